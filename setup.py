@@ -1,0 +1,77 @@
+"""Builds the C extension; everything else about the package is in pyproject.toml."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+HERE = Path(__file__).parent
+SYSTEM_LAPACKE = os.environ.get("ROPEDYN_SYSTEM_LAPACKE") == "1"
+
+COMPILE = ([] if "CFLAGS" in os.environ else ["-O3"]) + [
+    "-std=c17",
+    "-fvisibility=hidden",
+    "-ffp-contract=off",
+]
+
+
+def lapacke():
+    """Where LAPACKE comes from: compiler and linker settings."""
+    if SYSTEM_LAPACKE:
+        command = ["pkg-config", "--cflags", "--libs", "lapacke", "openblas"]
+        flags = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+        return {
+            "include_dirs": [f[2:] for f in flags if f.startswith("-I")],
+            "library_dirs": [f[2:] for f in flags if f.startswith("-L")],
+            "libraries": [f[2:] for f in flags if f.startswith("-l")],
+        }
+    import scipy_openblas32
+
+    return {
+        "include_dirs": [scipy_openblas32.get_include_dir()],
+        "library_dirs": [scipy_openblas32.get_lib_dir()],
+        "libraries": ["scipy_openblas"],
+        "extra_link_args": ["-Wl,-rpath,$ORIGIN/_libs"],
+    }
+
+
+class BuildExt(build_ext):
+    """Builds the extension and copies the LAPACKE it links with beside it."""
+
+    def run(self):
+        """Build, then put a fresh copy of the library and its licence into ropedyn/_libs."""
+        super().run()
+        inplace = self.inplace or getattr(self, "editable_mode", False)
+        libraries = (HERE if inplace else Path(self.build_lib)) / "ropedyn" / "_libs"
+        shutil.rmtree(libraries, ignore_errors=True)
+        if SYSTEM_LAPACKE:
+            return
+        import scipy_openblas32
+
+        libraries.mkdir(parents=True)
+        for library in Path(scipy_openblas32.get_lib_dir()).glob("*.so*"):
+            shutil.copy(library, libraries)
+        package = Path(scipy_openblas32.__file__).parent
+        licence = next(package.parent.glob("scipy_openblas32-*.dist-info/**/LICENSE*"))
+        shutil.copy(licence, libraries / "LICENSE-OpenBLAS.txt")
+
+
+settings = lapacke()
+settings["include_dirs"] = ["csrc", numpy.get_include(), *settings["include_dirs"]]
+core = Extension(
+    "ropedyn._core",
+    sources=sorted(str(f.relative_to(HERE)) for f in (HERE / "csrc").glob("*.c")),
+    depends=sorted(str(f.relative_to(HERE)) for f in (HERE / "csrc").glob("*.h")),
+    define_macros=[
+        ("NPY_TARGET_VERSION", "NPY_1_23_API_VERSION"),
+        ("NPY_NO_DEPRECATED_API", "NPY_1_7_API_VERSION"),
+    ],
+    extra_compile_args=COMPILE,
+    **settings,
+)
+
+setup(ext_modules=[core], cmdclass={"build_ext": BuildExt})
