@@ -1,0 +1,35 @@
+/* A chain: nodes joined by elements, as views of the caller's arrays. */
+#ifndef RD_CHAIN_H
+#define RD_CHAIN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* coordinates of a node in their fixed order; a chain has any subset of them */
+enum rd_coordinate { RD_X, RD_Z, RD_ALPHA, RD_BETA };
+
+/* channels of a section: axial strain, twist rate, curvature */
+enum rd_channel { RD_AXIAL, RD_TORSION, RD_BENDING };
+
+enum rd_kind { RD_DIFFERENCE, RD_RIGID };
+
+enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
+
+struct rd_chain {
+    size_t nodes;              /* elements + 1 */
+    size_t width;              /* coordinates of a node, 1 to 4 */
+    size_t distinct;           /* different elements */
+    size_t terms;              /* different node terms */
+    enum rd_kind kind;         /* of every element */
+    const int32_t *coordinate; /* (width)                 enum rd_coordinate, increasing */
+    const double *length;      /* (distinct)              [m] */
+    const double *tension;     /* (distinct)              [N] */
+    const double *flexibility; /* (distinct, 3, 3)        S, absent channels zero */
+    const int32_t *element_of; /* (nodes - 1)             distinct element right of node i */
+    const double *mass;        /* (terms, width, width)   [kg, kg m, kg m^2] */
+    const double *stiffness;   /* (terms, width, width)   [N/m, N, N m] */
+    const uint8_t *held;       /* (terms, width)          1: the coordinate cannot move */
+    const int32_t *term_of;    /* (nodes)                 node term at node i */
+};
+
+#endif

@@ -1,0 +1,48 @@
+/* Small dense matrices, row by row. */
+#include "dense.h"
+
+/* Gauss-Jordan in place; without pivoting, which is stable for positive definite matrices. */
+bool rd_dense_invert(size_t n, double *A)
+{
+    for (size_t k = 0; k < n; k++) {
+        const double pivot = A[k * n + k];
+        if (pivot == 0)
+            continue;
+        if (!(pivot > 0))
+            return false;
+        A[k * n + k] = 1;
+        for (size_t j = 0; j < n; j++)
+            A[k * n + j] /= pivot;
+        for (size_t i = 0; i < n; i++) {
+            if (i == k)
+                continue;
+            const double factor = A[i * n + k];
+            A[i * n + k] = 0;
+            for (size_t j = 0; j < n; j++)
+                A[i * n + j] -= factor * A[k * n + j];
+        }
+    }
+    /* rounding leaves the two triangles apart by a few last digits */
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < i; j++)
+            A[i * n + j] = A[j * n + i] = (A[i * n + j] + A[j * n + i]) / 2;
+    return true;
+}
+
+void rd_dense_multiply(size_t n, size_t k, size_t m, const double *A, const double *B, double *C)
+{
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < m; j++) {
+            double sum = 0;
+            for (size_t p = 0; p < k; p++)
+                sum += A[i * k + p] * B[p * m + j];
+            C[i * m + j] = sum;
+        }
+}
+
+void rd_dense_transpose(size_t n, size_t m, const double *A, double *B)
+{
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < m; j++)
+            B[j * n + i] = A[i * m + j];
+}

@@ -1,0 +1,26 @@
+/* The caller's block of memory, handed out in aligned pieces. */
+#include "workspace.h"
+
+#include <stdint.h>
+
+enum { ALIGNMENT = 16 };
+
+void *rd_take(struct rd_workspace *workspace, size_t count, size_t size)
+{
+    const size_t left = SIZE_MAX - ALIGNMENT - workspace->used;
+    if (workspace->used > SIZE_MAX - ALIGNMENT || (size > 0 && count > left / size)) {
+        workspace->used = SIZE_MAX;
+        return NULL;
+    }
+    const size_t start = workspace->used;
+    const size_t bytes = count * size;
+    workspace->used += bytes + (ALIGNMENT - bytes % ALIGNMENT) % ALIGNMENT;
+    if (workspace->base == NULL || workspace->used > workspace->size)
+        return NULL;
+    return workspace->base + start;
+}
+
+bool rd_workspace_fits(const struct rd_workspace *workspace)
+{
+    return workspace->base != NULL && workspace->used <= workspace->size;
+}
