@@ -1,0 +1,55 @@
+/* Assembled matrices of a chain: block tridiagonal, in parts that damping scales apart. */
+#include "assemble.h"
+
+#include "element.h"
+
+#include <string.h>
+
+enum { N = 2 * RD_WIDTH_MAX };
+
+/* adds K (2 width, 2 width) over nodes i and i + 1 */
+static void add_element(const struct rd_blocks *blocks, size_t i, size_t width, const double *K)
+{
+    const size_t block = width * width;
+    for (size_t a = 0; a < width; a++)
+        for (size_t b = 0; b < width; b++) {
+            const size_t ab = a * width + b;
+            blocks->diagonal[i * block + ab] += K[a * 2 * width + b];
+            blocks->diagonal[(i + 1) * block + ab] += K[(width + a) * 2 * width + width + b];
+            blocks->coupling[i * block + ab] = K[a * 2 * width + width + b];
+        }
+}
+
+static enum rd_status add_elements(const struct rd_chain *chain, struct rd_assembly *assembly)
+{
+    double elastic[N * N], string[N * N];
+    int32_t last = -1;
+    for (size_t i = 0; i + 1 < chain->nodes; i++) {
+        if (chain->element_of[i] != last) {
+            last = chain->element_of[i];
+            const struct rd_element element = rd_chain_element(chain, (size_t)last);
+            const enum rd_status status = rd_element_stiffness(&element, elastic, string);
+            if (status != RD_OK)
+                return status;
+        }
+        add_element(&assembly->elastic, i, chain->width, elastic);
+        add_element(&assembly->string, i, chain->width, string);
+    }
+    return RD_OK;
+}
+
+enum rd_status rd_assemble(const struct rd_chain *chain, struct rd_assembly *assembly)
+{
+    const size_t block = chain->width * chain->width;
+    const size_t bytes = chain->nodes * block * sizeof(double);
+    assembly->nodes = chain->nodes;
+    assembly->width = chain->width;
+    memset(assembly->elastic.diagonal, 0, bytes);
+    memset(assembly->string.diagonal, 0, bytes);
+    for (size_t i = 0; i < chain->nodes; i++) {
+        const size_t term = (size_t)chain->term_of[i] * block;
+        memcpy(assembly->springs + i * block, chain->stiffness + term, block * sizeof(double));
+        memcpy(assembly->mass + i * block, chain->mass + term, block * sizeof(double));
+    }
+    return add_elements(chain, assembly);
+}

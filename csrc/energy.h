@@ -1,0 +1,25 @@
+/* Strain and kinetic energy of shapes, by what stores it. */
+#ifndef RD_ENERGY_H
+#define RD_ENERGY_H
+
+#include "chain.h"
+#include "status.h"
+
+enum rd_strain {
+    RD_STRAIN_BENDING,
+    RD_STRAIN_TWIST,
+    RD_STRAIN_STRETCH,
+    RD_STRAIN_LAY, /* what the coupled entries of S store; may be negative */
+    RD_STRAIN_TENSION,
+    RD_STRAIN_SPRING,
+    RD_STRAINS
+};
+
+/* strain (RD_STRAINS) [J] of shape (nodes, width): elements by their end forces f,
+   f^T G f = integral S (axial, torque, moment)^2, never by differences of stiffness products */
+enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain);
+
+/* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape */
+void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double *kinetic);
+
+#endif

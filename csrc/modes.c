@@ -1,0 +1,250 @@
+/* Natural frequencies and shapes of the assembled system by LAPACK's dense symmetric solver. */
+#include "modes.h"
+
+#include "lapack.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { W = RD_WIDTH_MAX, ATTEMPTS = 64 };
+
+/* rank of a symmetric matrix A (n, n), n <= W, by elimination with complete pivoting; entries
+   that cancel to a few eps of the largest count as zero */
+static size_t rank(size_t n, double *A)
+{
+    double largest = 0;
+    for (size_t k = 0; k < n * n; k++)
+        largest = fmax(largest, fabs(A[k]));
+    for (size_t step = 0; step < n; step++) {
+        size_t p = 0;
+        for (size_t k = 1; k < n * n; k++)
+            if (fabs(A[k]) > fabs(A[p]))
+                p = k;
+        if (fabs(A[p]) <= 4 * DBL_EPSILON * largest)
+            return step;
+        double row[W];
+        memcpy(row, A + p / n * n, n * sizeof *row);
+        const double pivot = A[p];
+        for (size_t i = 0; i < n; i++) {
+            const double factor = A[i * n + p % n] / pivot;
+            for (size_t j = 0; j < n; j++)
+                A[i * n + j] -= factor * row[j];
+        }
+    }
+    return n;
+}
+
+/* A <- A scaled so that no entry exceeds 1 and every inertia on the diagonal is 1: units and ratios
+   of inertia do not hide a small one */
+static void equilibrate(size_t n, double *A)
+{
+    double scale[W];
+    for (size_t i = 0; i < n; i++) {
+        const double own = fabs(A[i * n + i]);
+        scale[i] = own > 0 ? 1 / sqrt(own) : 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        double largest = 0;
+        for (size_t j = 0; j < n; j++)
+            largest = fmax(largest, fabs(A[i * n + j]) * scale[j]);
+        if (scale[i] == 0 && largest > 0)
+            scale[i] = 1 / largest;
+    }
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            A[i * n + j] *= scale[i] * scale[j];
+}
+
+static size_t count_finite(const struct rd_system *system)
+{
+    const size_t w = system->assembly.width;
+    size_t finite = 0;
+    for (size_t p = 0; p < system->assembly.nodes; p++) {
+        const int32_t *number = system->number + p * w;
+        const double *mass = system->assembly.mass + p * w * w;
+        double A[W * W];
+        size_t free[W], n = 0;
+        for (size_t a = 0; a < w; a++)
+            if (number[a] >= 0)
+                free[n++] = a;
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < n; j++)
+                A[i * n + j] = mass[free[i] * w + free[j]];
+        equilibrate(n, A);
+        finite += rank(n, A);
+    }
+    return finite;
+}
+
+enum rd_status rd_modes_prepare(const struct rd_chain *chain, size_t columns,
+                                struct rd_modes *modes, struct rd_workspace *workspace)
+{
+    const enum rd_status status = rd_system_prepare(chain, &modes->system, workspace);
+    const size_t n = modes->system.free;
+    modes->columns = columns < n ? columns : n;
+    modes->band = rd_take(workspace, n * (modes->system.reach + 1), sizeof *modes->band);
+    modes->matrix = n == 0 ? NULL : rd_take(workspace, n, n * sizeof *modes->matrix);
+    modes->value = rd_take(workspace, n, sizeof *modes->value);
+    modes->vector = n == 0 ? NULL : rd_take(workspace, modes->columns, n * sizeof *modes->vector);
+    modes->size = rd_take(workspace, n, sizeof *modes->size);
+    modes->work = rd_take(workspace, n, 128 * sizeof *modes->work);
+    modes->integers = rd_take(workspace, n, 10 * sizeof *modes->integers);
+    modes->support = rd_take(workspace, n, 2 * sizeof *modes->support);
+    if (!rd_workspace_fits(workspace))
+        return RD_NO_MEMORY;
+    modes->finite = status == RD_OK ? count_finite(&modes->system) : 0;
+    return status;
+}
+
+/* band Cholesky of K + shift M; false where that is not positive definite, or with `safely` where
+   it is so only by rounding */
+static bool cholesky(struct rd_modes *modes, double shift, bool safely)
+{
+    const struct rd_system *system = &modes->system;
+    const int n = (int)system->free;
+    const int reach = (int)system->reach;
+    const double factor[RD_PARTS] = {
+        [RD_ELASTIC] = 1, [RD_STRING] = 1, [RD_SPRINGS] = 1, [RD_MASS] = shift};
+    const struct rd_band band = {
+        .matrix = modes->band,
+        .stride = 1,
+        .leading = (size_t)reach + 1,
+        .row = 0,
+        .lower = true,
+        .scale = system->scale,
+    };
+    memset(band.matrix, 0, system->free * band.leading * sizeof *band.matrix);
+    rd_band_fill(&system->assembly, factor, system->number, &band);
+    if (LAPACKE_dpbtrf_work(LAPACK_COL_MAJOR, 'L', n, reach, modes->band, reach + 1) != 0)
+        return false;
+    if (!safely)
+        return true;
+    /* the scaled stiffness has a norm between 1 and 2 reach + 1 */
+    double condition = 0;
+    LAPACKE_dpbcon_work(LAPACK_COL_MAJOR, 'L', n, reach, modes->band, reach + 1, 1, &condition,
+                        modes->work, modes->integers);
+    return condition > 1e3 * DBL_EPSILON;
+}
+
+/* M, scaled, as a full matrix: a band with room for every entry */
+static void fill_mass(struct rd_modes *modes)
+{
+    const struct rd_system *system = &modes->system;
+    const double factor[RD_PARTS] = {[RD_MASS] = 1};
+    const struct rd_band full = {
+        .matrix = modes->matrix,
+        .stride = 1,
+        .leading = system->free + 1,
+        .row = 0,
+        .scale = system->scale,
+    };
+    memset(modes->matrix, 0, system->free * system->free * sizeof *modes->matrix);
+    rd_band_fill(&system->assembly, factor, system->number, &full);
+}
+
+enum rd_status rd_modes_factorise(struct rd_modes *modes, double scale)
+{
+    modes->shift = 0;
+    if (modes->system.free == 0)
+        return RD_OK;
+    fill_mass(modes);
+    if (cholesky(modes, 0, true))
+        return RD_OK;
+    modes->shift = scale;
+    for (int k = 0; k < ATTEMPTS; k++) {
+        if (cholesky(modes, modes->shift, false))
+            return RD_OK;
+        modes->shift *= 4;
+    }
+    return RD_UNSTABLE_MASSLESS;
+}
+
+void rd_modes_reduce(struct rd_modes *modes, size_t start, size_t stop)
+{
+    const int n = (int)modes->system.free;
+    const int reach = (int)modes->system.reach;
+    if (n == 0)
+        return;
+    LAPACKE_dtbtrs_work(LAPACK_COL_MAJOR, 'L', 'N', 'N', n, reach, (int)(stop - start), modes->band,
+                        reach + 1, modes->matrix + start * (size_t)n, n);
+}
+
+void rd_modes_transpose(struct rd_modes *modes)
+{
+    const size_t n = modes->system.free;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < i; j++) {
+            const double upper = modes->matrix[i * n + j];
+            modes->matrix[i * n + j] = modes->matrix[j * n + i];
+            modes->matrix[j * n + i] = upper;
+        }
+}
+
+enum rd_status rd_modes_solve(struct rd_modes *modes, size_t wanted, double below, size_t *found)
+{
+    const int n = (int)modes->system.free;
+    *found = 0;
+    if (n == 0)
+        return RD_OK;
+    /* lambda < below is mu > 1/(below + shift); at or under -shift there is nothing */
+    if (wanted == 0 && below + modes->shift <= 0)
+        return RD_OK;
+    const double lowest = wanted == 0 ? 1 / (below + modes->shift) : 0;
+    int count = 0;
+    const int info = LAPACKE_dsyevr_work(
+        LAPACK_COL_MAJOR, 'V', wanted == 0 ? 'V' : 'I', 'L', n, modes->matrix, n, lowest, DBL_MAX,
+        wanted == 0 ? 1 : n - (int)wanted + 1, n, 0, &count, modes->value, modes->vector, n,
+        modes->support, modes->work, 128 * n, modes->integers, 10 * n);
+    if (info != 0)
+        return RD_NO_CONVERGENCE;
+    *found = (size_t)count;
+    return RD_OK;
+}
+
+/* x^T M x */
+static double modal_mass(const struct rd_assembly *assembly, const double *shape)
+{
+    const size_t w = assembly->width;
+    double sum = 0;
+    for (size_t p = 0; p < assembly->nodes; p++)
+        for (size_t a = 0; a < w; a++)
+            for (size_t b = 0; b < w; b++)
+                sum += shape[p * w + a] * assembly->mass[(p * w + a) * w + b] * shape[p * w + b];
+    return sum;
+}
+
+/* Relative errors eps in the entries of K + s M change lambda by at most
+   eps |x|^T |K + s M| |x| / x^T M x, and the dense solver errs by eps of the largest mu. */
+static double rounding_of(const struct rd_modes *modes, double eigenvalue, double largest,
+                          double mass)
+{
+    const struct rd_system *system = &modes->system;
+    const double size[RD_PARTS] = {
+        [RD_ELASTIC] = 1, [RD_STRING] = 1, [RD_SPRINGS] = 1, [RD_MASS] = modes->shift};
+    const double entries =
+        rd_band_rounding(&system->assembly, size, system->number, modes->size, modes->size);
+    const double shifted = eigenvalue + modes->shift;
+    return DBL_EPSILON * (entries / fabs(mass) + shifted * shifted * largest);
+}
+
+void rd_modes_read(struct rd_modes *modes, size_t found, size_t k, double *eigenvalue,
+                   double *rounding, double *shape)
+{
+    const struct rd_system *system = &modes->system;
+    const size_t n = system->free;
+    const size_t entries = system->assembly.nodes * system->assembly.width;
+    const int reach = (int)system->reach;
+    double *y = modes->vector + (found - 1 - k) * n;
+    LAPACKE_dtbtrs_work(LAPACK_COL_MAJOR, 'L', 'T', 'N', (int)n, reach, 1, modes->band, reach + 1,
+                        y, (int)n);
+    for (size_t i = 0; i < entries; i++) {
+        const int32_t free = system->number[i];
+        shape[i] = free < 0 ? 0 : y[free] * system->scale[free];
+        if (free >= 0)
+            modes->size[free] = fabs(shape[i]);
+    }
+    *eigenvalue = 1 / modes->value[found - 1 - k] - modes->shift;
+    const double mass = modal_mass(&system->assembly, shape);
+    *rounding = rounding_of(modes, *eigenvalue, modes->value[found - 1], mass);
+}
