@@ -1,0 +1,143 @@
+/* Sections and elements for reading. */
+#include "py_glue.h"
+
+#include "dense.h"
+#include "element.h"
+#include "section.h"
+
+PyObject *py_section(PyObject *module, PyObject *arguments)
+{
+    struct rd_section section;
+    if (!PyArg_ParseTuple(arguments, "ddddd", &section.axial, &section.torsion, &section.bending,
+                          &section.coupling, &section.slope))
+        return NULL;
+    PyObject *flexibility = py_new(NPY_DOUBLE, 2, (npy_intp[]){3, 3});
+    if (flexibility == NULL)
+        return NULL;
+    const enum rd_status status =
+        rd_section_flexibility(&section, PyArray_DATA((PyArrayObject *)flexibility));
+    if (status == RD_OK)
+        return flexibility;
+    Py_DECREF(flexibility);
+    return py_raise(module, status);
+}
+
+PyObject *py_invert(PyObject *module, PyObject *arguments)
+{
+    PyObject *object;
+    if (!PyArg_ParseTuple(arguments, "O", &object))
+        return NULL;
+    PyArrayObject *inverse = (PyArrayObject *)PyArray_FROMANY(
+        object, NPY_DOUBLE, 2, 2, NPY_ARRAY_CARRAY | NPY_ARRAY_ENSURECOPY);
+    if (inverse == NULL)
+        return NULL;
+    const npy_intp n = PyArray_DIM(inverse, 0);
+    if (n != PyArray_DIM(inverse, 1))
+        PyErr_SetString(PyExc_ValueError, "matrix must be square");
+    else if (rd_dense_invert((size_t)n, PyArray_DATA(inverse)))
+        return (PyObject *)inverse;
+    else
+        py_raise(module, RD_NOT_POSITIVE_DEFINITE);
+    Py_DECREF(inverse);
+    return NULL;
+}
+
+PyObject *py_triples(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    PyObject *object, *F = NULL, *G = NULL, *Q = NULL, *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "O", &object))
+        return NULL;
+    if (py_chain_parse(object, &parsed) < 0)
+        goto done;
+    const size_t w = parsed.chain.width;
+    const npy_intp shape[] = {(npy_intp)parsed.chain.distinct, (npy_intp)w, (npy_intp)w};
+    F = py_new(NPY_DOUBLE, 3, shape);
+    G = py_new(NPY_DOUBLE, 3, shape);
+    Q = py_new(NPY_DOUBLE, 3, shape);
+    if (F == NULL || G == NULL || Q == NULL)
+        goto done;
+    double *f = PyArray_DATA((PyArrayObject *)F);
+    double *g = PyArray_DATA((PyArrayObject *)G);
+    double *q = PyArray_DATA((PyArrayObject *)Q);
+    for (size_t i = 0; i < parsed.chain.distinct; i++) {
+        const struct rd_element element = rd_chain_element(&parsed.chain, i);
+        const enum rd_status status =
+            rd_element_triple(&element, f + i * w * w, g + i * w * w, q + i * w * w);
+        if (status != RD_OK) {
+            py_raise(module, status);
+            goto done;
+        }
+    }
+    result = PyTuple_Pack(3, F, G, Q);
+done:
+    Py_XDECREF(F);
+    Py_XDECREF(G);
+    Py_XDECREF(Q);
+    py_chain_release(&parsed);
+    return result;
+}
+
+/* the element a position lies in, checked */
+static int element_at(const struct rd_chain *chain, Py_ssize_t index, struct rd_element *element)
+{
+    if (index < 0 || (size_t)index >= chain->distinct) {
+        PyErr_Format(PyExc_ValueError, "element must lie in 0 ... %zd, got %zd",
+                     (Py_ssize_t)chain->distinct - 1, index);
+        return -1;
+    }
+    *element = rd_chain_element(chain, (size_t)index);
+    return 0;
+}
+
+PyObject *py_shape(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    struct rd_element element;
+    PyObject *object, *shape = NULL;
+    Py_ssize_t index;
+    double s;
+    if (!PyArg_ParseTuple(arguments, "Ond", &object, &index, &s))
+        return NULL;
+    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+        goto done;
+    const npy_intp w = (npy_intp)element.width;
+    shape = py_new(NPY_DOUBLE, 3, (npy_intp[]){w, 2, w});
+    if (shape == NULL)
+        goto done;
+    const enum rd_status status =
+        rd_element_shape(&element, s, PyArray_DATA((PyArrayObject *)shape));
+    if (status != RD_OK) {
+        Py_CLEAR(shape);
+        py_raise(module, status);
+    }
+done:
+    py_chain_release(&parsed);
+    return shape;
+}
+
+PyObject *py_local(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    struct rd_element element;
+    PyObject *object, *local = NULL;
+    Py_ssize_t index;
+    double s, p;
+    if (!PyArg_ParseTuple(arguments, "Ondd", &object, &index, &s, &p))
+        return NULL;
+    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+        goto done;
+    const npy_intp w = (npy_intp)element.width;
+    local = py_new(NPY_DOUBLE, 2, (npy_intp[]){w, w});
+    if (local == NULL)
+        goto done;
+    const enum rd_status status =
+        rd_element_local(&element, s, p, PyArray_DATA((PyArrayObject *)local));
+    if (status != RD_OK) {
+        Py_CLEAR(local);
+        py_raise(module, status);
+    }
+done:
+    py_chain_release(&parsed);
+    return local;
+}

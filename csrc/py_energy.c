@@ -1,0 +1,46 @@
+/* Energies of shapes. */
+#include "py_glue.h"
+
+#include "energy.h"
+
+PyObject *py_energy(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    PyArrayObject *shapes = NULL;
+    PyObject *chain, *object, *strain = NULL, *kinetic = NULL, *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OO", &chain, &object))
+        return NULL;
+    if (py_chain_parse(chain, &parsed) < 0)
+        goto done;
+    const size_t w = parsed.chain.width;
+    const size_t entries = parsed.chain.nodes * w;
+    shapes = py_array(object, NPY_DOUBLE, 3,
+                      (npy_intp[]){-1, (npy_intp)parsed.chain.nodes, (npy_intp)w}, "shape");
+    if (shapes == NULL)
+        goto done;
+    const npy_intp count = PyArray_DIM(shapes, 0);
+    strain = py_new(NPY_DOUBLE, 2, (npy_intp[]){count, RD_STRAINS});
+    kinetic = py_new(NPY_DOUBLE, 2, (npy_intp[]){count, (npy_intp)w});
+    if (strain == NULL || kinetic == NULL)
+        goto done;
+    const double *u = PyArray_DATA(shapes);
+    double *stored = PyArray_DATA((PyArrayObject *)strain);
+    double *moving = PyArray_DATA((PyArrayObject *)kinetic);
+    enum rd_status status = RD_OK;
+    Py_BEGIN_ALLOW_THREADS
+    for (size_t k = 0; k < (size_t)count && status == RD_OK; k++) {
+        status = rd_energy_strain(&parsed.chain, u + k * entries, stored + k * RD_STRAINS);
+        rd_energy_kinetic(&parsed.chain, u + k * entries, moving + k * w);
+    }
+    Py_END_ALLOW_THREADS
+    if (status == RD_OK)
+        result = PyTuple_Pack(2, strain, kinetic);
+    else
+        py_raise(module, status);
+done:
+    Py_XDECREF(kinetic);
+    Py_XDECREF(strain);
+    Py_XDECREF(shapes);
+    py_chain_release(&parsed);
+    return result;
+}

@@ -1,0 +1,206 @@
+/* What every entry point of the extension shares. */
+#include "py_glue.h"
+
+#include <stdint.h>
+
+static const char *text_of(enum rd_status status)
+{
+    switch (status) {
+    case RD_NOT_POSITIVE_DEFINITE:
+        return "a section flexibility is not positive definite to working precision";
+    case RD_CRITICAL_ELEMENT:
+        return "the compression is exactly the critical load of one element: no transfer exists; "
+               "use other elements";
+    case RD_SINGULAR:
+        return "the stiffness is singular to working precision";
+    case RD_UNSTABLE_MASSLESS:
+        return "the stiffness is not positive definite on the coordinates without mass, or the "
+               "mass is indefinite where the stiffness is: there are no lowest modes; give these "
+               "coordinates an inertia or use more elements";
+    case RD_NO_CONVERGENCE:
+        return "LAPACK's eigensolver did not converge";
+    default:
+        return "unexpected status of the core";
+    }
+}
+
+PyObject *py_raise(PyObject *module, enum rd_status status)
+{
+    const struct py_state *state = PyModule_GetState(module);
+    if (status == RD_NO_MEMORY)
+        return PyErr_NoMemory();
+    PyObject *type = status == RD_NOT_POSITIVE_DEFINITE ? state->scene_error : state->solve_error;
+    PyErr_SetString(type, text_of(status));
+    return NULL;
+}
+
+PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_intp *shape,
+                        const char *name)
+{
+    PyArrayObject *array =
+        (PyArrayObject *)PyArray_FROMANY(object, type, dimensions, dimensions, NPY_ARRAY_IN_ARRAY);
+    if (array == NULL)
+        return NULL;
+    for (int k = 0; k < dimensions; k++) {
+        if (shape[k] < 0 || PyArray_DIM(array, k) == shape[k])
+            continue;
+        PyErr_Format(PyExc_ValueError, "%s must have %zd entries along axis %d, got %zd", name,
+                     (Py_ssize_t)shape[k], k, (Py_ssize_t)PyArray_DIM(array, k));
+        Py_DECREF(array);
+        return NULL;
+    }
+    return array;
+}
+
+/* every entry of an index array lies in 0 ... bound - 1 */
+static int check_range(PyArrayObject *array, size_t bound, const char *name)
+{
+    const int32_t *entry = PyArray_DATA(array);
+    const npy_intp count = PyArray_SIZE(array);
+    for (npy_intp i = 0; i < count; i++)
+        if (entry[i] < 0 || (size_t)entry[i] >= bound) {
+            PyErr_Format(PyExc_ValueError, "%s[%zd] must lie in 0 ... %zd, got %d", name,
+                         (Py_ssize_t)i, (Py_ssize_t)bound - 1, (int)entry[i]);
+            return -1;
+        }
+    return 0;
+}
+
+enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, ELEMENT_OF, MASS, STIFFNESS, HELD, TERM_OF };
+
+static int check_indices(const struct py_chain *parsed)
+{
+    const struct rd_chain *chain = &parsed->chain;
+    for (size_t k = 1; k < chain->width; k++)
+        if (chain->coordinate[k] <= chain->coordinate[k - 1]) {
+            PyErr_SetString(PyExc_ValueError, "coordinate must increase");
+            return -1;
+        }
+    if (chain->width < 1 || chain->width > RD_WIDTH_MAX || chain->nodes < 2 ||
+        chain->nodes > INT32_MAX / (RD_WIDTH_MAX * 32)) {
+        PyErr_SetString(PyExc_ValueError,
+                        "a chain has 1 to 4 coordinates and at least one element");
+        return -1;
+    }
+    if (check_range(parsed->array[COORDINATE], RD_WIDTH_MAX, "coordinate") < 0)
+        return -1;
+    if (check_range(parsed->array[ELEMENT_OF], chain->distinct, "element_of") < 0)
+        return -1;
+    return check_range(parsed->array[TERM_OF], chain->terms, "term_of");
+}
+
+int py_chain_parse(PyObject *object, struct py_chain *parsed)
+{
+    static const char *const name[9] = {"coordinate",  "length",     "tension",
+                                        "flexibility", "element_of", "mass",
+                                        "stiffness",   "held",       "term_of"};
+    static const int type[9] = {NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_INT32,
+                                NPY_DOUBLE, NPY_DOUBLE, NPY_UINT8,  NPY_INT32};
+    static const int dimensions[9] = {1, 1, 1, 3, 1, 3, 3, 2, 1};
+    struct rd_chain *chain = &parsed->chain;
+    int kind;
+    PyObject *item[9];
+    if (!PyTuple_Check(object)) {
+        PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
+        return -1;
+    }
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3, item + 4,
+                          item + 5, item + 6, item + 7, item + 8))
+        return -1;
+    npy_intp width = -1, distinct = -1, terms = -1;
+    for (int k = 0; k < 9; k++) {
+        const npy_intp shape[9][3] = {
+            {-1},
+            {-1},
+            {distinct},
+            {distinct, 3, 3},
+            {-1},
+            {-1, width, width},
+            {terms, width, width},
+            {terms, width},
+            {-1},
+        };
+        parsed->array[k] = py_array(item[k], type[k], dimensions[k], shape[k], name[k]);
+        if (parsed->array[k] == NULL)
+            return -1;
+        const npy_intp entries = PyArray_DIM(parsed->array[k], 0);
+        width = k == COORDINATE ? entries : width;
+        distinct = k == LENGTH ? entries : distinct;
+        terms = k == MASS ? entries : terms;
+    }
+    *chain = (struct rd_chain){
+        .nodes = (size_t)PyArray_DIM(parsed->array[TERM_OF], 0),
+        .width = (size_t)width,
+        .distinct = (size_t)distinct,
+        .terms = (size_t)terms,
+        .kind = (enum rd_kind)kind,
+        .coordinate = PyArray_DATA(parsed->array[COORDINATE]),
+        .length = PyArray_DATA(parsed->array[LENGTH]),
+        .tension = PyArray_DATA(parsed->array[TENSION]),
+        .flexibility = PyArray_DATA(parsed->array[FLEXIBILITY]),
+        .element_of = PyArray_DATA(parsed->array[ELEMENT_OF]),
+        .mass = PyArray_DATA(parsed->array[MASS]),
+        .stiffness = PyArray_DATA(parsed->array[STIFFNESS]),
+        .held = PyArray_DATA(parsed->array[HELD]),
+        .term_of = PyArray_DATA(parsed->array[TERM_OF]),
+    };
+    if (PyArray_DIM(parsed->array[ELEMENT_OF], 0) + 1 != (npy_intp)chain->nodes) {
+        PyErr_SetString(PyExc_ValueError, "element_of must have one entry fewer than term_of");
+        return -1;
+    }
+    return check_indices(parsed);
+}
+
+void py_chain_release(struct py_chain *parsed)
+{
+    for (int k = 0; k < 9; k++)
+        Py_XDECREF(parsed->array[k]);
+}
+
+int py_ports_parse(PyObject *object, const struct rd_chain *chain, const char *name,
+                   struct py_ports *parsed)
+{
+    PyObject *node, *row;
+    if (!PyTuple_Check(object)) {
+        PyErr_Format(PyExc_TypeError, "%s must be a tuple", name);
+        return -1;
+    }
+    if (!PyArg_ParseTuple(object, "OO", &node, &row))
+        return -1;
+    const npy_intp any[] = {-1};
+    parsed->node = py_array(node, NPY_INT32, 1, any, name);
+    if (parsed->node == NULL)
+        return -1;
+    const npy_intp shape[] = {PyArray_DIM(parsed->node, 0), 2, (npy_intp)chain->width};
+    parsed->row = py_array(row, NPY_DOUBLE, 3, shape, name);
+    if (parsed->row == NULL || check_range(parsed->node, chain->nodes - 1, name) < 0)
+        return -1;
+    parsed->ports = (struct rd_ports){
+        .count = (size_t)shape[0],
+        .node = PyArray_DATA(parsed->node),
+        .row = PyArray_DATA(parsed->row),
+    };
+    return 0;
+}
+
+void py_ports_release(struct py_ports *parsed)
+{
+    Py_XDECREF(parsed->node);
+    Py_XDECREF(parsed->row);
+}
+
+int py_workspace_allocate(struct rd_workspace *workspace)
+{
+    workspace->size = workspace->used;
+    workspace->used = 0;
+    workspace->base = workspace->size == SIZE_MAX ? NULL : PyMem_RawMalloc(workspace->size);
+    if (workspace->base != NULL)
+        return 0;
+    PyErr_NoMemory();
+    return -1;
+}
+
+PyObject *py_new(int type, int dimensions, const npy_intp *shape)
+{
+    return PyArray_SimpleNew(dimensions, shape, type);
+}

@@ -1,0 +1,72 @@
+/* What every entry point of the extension shares. */
+#ifndef PY_GLUE_H
+#define PY_GLUE_H
+
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+
+#define PY_ARRAY_UNIQUE_SYMBOL ropedyn_core_array_api
+#ifndef PY_GLUE_IMPORTS_ARRAY
+#define NO_IMPORT_ARRAY
+#endif
+#include <numpy/arrayobject.h>
+
+#include "chain.h"
+#include "status.h"
+#include "system.h"
+#include "workspace.h"
+
+struct py_state {
+    PyObject *scene_error;
+    PyObject *solve_error;
+};
+
+/* raises what the status means and returns NULL */
+PyObject *py_raise(PyObject *module, enum rd_status status);
+
+/* a new reference to an array of this type with `dimensions` axes, aligned and contiguous; axis k
+   has shape[k] entries unless that is negative. NULL and an exception that names the argument */
+PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_intp *shape,
+                        const char *name);
+
+/* a chain and the arrays it views */
+struct py_chain {
+    struct rd_chain chain;
+    PyArrayObject *array[9];
+};
+
+/* 0, or -1 and an exception; to be released in both cases */
+int py_chain_parse(PyObject *object, struct py_chain *parsed);
+void py_chain_release(struct py_chain *parsed);
+
+/* ports and the arrays they view, from the tuple (node (count), row (count, 2, width)) */
+struct py_ports {
+    struct rd_ports ports;
+    PyArrayObject *node;
+    PyArrayObject *row;
+};
+
+int py_ports_parse(PyObject *object, const struct rd_chain *chain, const char *name,
+                   struct py_ports *parsed);
+void py_ports_release(struct py_ports *parsed);
+
+/* After a measuring pass: gives the workspace a block of what was counted.
+   0, or -1 and MemoryError; the block is freed with PyMem_RawFree(workspace->base). */
+int py_workspace_allocate(struct rd_workspace *workspace);
+
+/* a new uninitialised float64 array */
+PyObject *py_new(int type, int dimensions, const npy_intp *shape);
+
+/* the entry points, one file each */
+PyObject *py_section(PyObject *module, PyObject *arguments);
+PyObject *py_invert(PyObject *module, PyObject *arguments);
+PyObject *py_triples(PyObject *module, PyObject *arguments);
+PyObject *py_shape(PyObject *module, PyObject *arguments);
+PyObject *py_local(PyObject *module, PyObject *arguments);
+PyObject *py_assemble(PyObject *module, PyObject *arguments);
+PyObject *py_deflection(PyObject *module, PyObject *arguments);
+PyObject *py_modes(PyObject *module, PyObject *arguments);
+PyObject *py_frf(PyObject *module, PyObject *arguments);
+PyObject *py_energy(PyObject *module, PyObject *arguments);
+
+#endif

@@ -1,0 +1,81 @@
+/* The extension module ropedyn._core: its table of entry points and its state. */
+#define PY_GLUE_IMPORTS_ARRAY
+#include "py_glue.h"
+
+#include "lapack.h"
+
+static PyMethodDef methods[] = {
+    {"section", py_section, METH_VARARGS, "section(axial, torsion, bending, coupling, slope)"},
+    {"invert", py_invert, METH_VARARGS, "invert(matrix): inverse, positive definite only"},
+    {"triples", py_triples, METH_VARARGS, "triples(chain) -> F, G, Q"},
+    {"shape", py_shape, METH_VARARGS, "shape(chain, element, s) -> (width, 2, width)"},
+    {"local", py_local, METH_VARARGS, "local(chain, element, s, p) -> (width, width)"},
+    {"assemble", py_assemble, METH_VARARGS,
+     "assemble(chain) -> elastic, its coupling, string, its coupling, springs, mass"},
+    {"deflection", py_deflection, METH_VARARGS,
+     "deflection(chain, force) -> displacement, reciprocal condition"},
+    {"modes", py_modes, METH_VARARGS,
+     "modes(chain, wanted, below, scale) -> (eigenvalue, rounding, shape), finite"},
+    {"frf", py_frf, METH_VARARGS,
+     "frf(chain, factor, drives, responses) -> value, rounding, frequencies solved"},
+    {"energy", py_energy, METH_VARARGS, "energy(chain, shape) -> strain, kinetic"},
+    {NULL, NULL, 0, NULL},
+};
+
+static int execute(PyObject *module)
+{
+    struct py_state *state = PyModule_GetState(module);
+    import_array1(-1);
+    if (openblas_set_num_threads != NULL)
+        openblas_set_num_threads(1);
+    PyObject *errors = PyImport_ImportModule("ropedyn.errors");
+    if (errors == NULL)
+        return -1;
+    state->scene_error = PyObject_GetAttrString(errors, "SceneError");
+    state->solve_error = PyObject_GetAttrString(errors, "SolveError");
+    Py_DECREF(errors);
+    return state->scene_error == NULL || state->solve_error == NULL ? -1 : 0;
+}
+
+static int traverse(PyObject *module, visitproc visit, void *arg)
+{
+    struct py_state *state = PyModule_GetState(module);
+    Py_VISIT(state->scene_error);
+    Py_VISIT(state->solve_error);
+    return 0;
+}
+
+static int clear(PyObject *module)
+{
+    struct py_state *state = PyModule_GetState(module);
+    Py_CLEAR(state->scene_error);
+    Py_CLEAR(state->solve_error);
+    return 0;
+}
+
+static PyModuleDef_Slot slots[] = {
+    {Py_mod_exec, (void *)execute},
+#ifdef Py_mod_multiple_interpreters
+    {Py_mod_multiple_interpreters, Py_MOD_MULTIPLE_INTERPRETERS_NOT_SUPPORTED},
+#endif
+#ifdef Py_mod_gil
+    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#endif
+    {0, NULL},
+};
+
+static struct PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT,
+    .m_name = "ropedyn._core",
+    .m_doc = "The C core of ropedyn over NumPy arrays.",
+    .m_size = sizeof(struct py_state),
+    .m_methods = methods,
+    .m_slots = slots,
+    .m_traverse = traverse,
+    .m_clear = clear,
+};
+
+PyMODINIT_FUNC PyInit__core(void)
+{
+    return PyModuleDef_Init(&definition);
+}
