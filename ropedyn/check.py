@@ -1,0 +1,159 @@
+"""Checks of what users give: each names the argument, what was expected and what was given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import SceneError
+
+COORDINATES = ("x", "z", "alpha", "beta")
+"""Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
+
+
+def shown(value: object) -> str:
+    """Show a value in a message, on one line and not too long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _expected(name: str, what: str, unit: str, value: object) -> str:
+    return f"{name} must be {what}{f' [{unit}]' if unit else ''}, got {shown(value)}"
+
+
+def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float:
+    """Return a finite real number.
+
+    Parameters
+    ----------
+    value : float
+        What the user gave.
+    name, unit : str
+        For the message.
+    sign : {"any", "nonzero", "positive", "nonnegative"}
+        What has a meaning.
+
+    Raises
+    ------
+    TypeError
+        If it is not a real number.
+    SceneError
+        If it is not finite or has the wrong sign.
+    """
+    words = {
+        "any": "a finite number",
+        "nonzero": "a finite number other than 0",
+        "positive": "a finite number > 0",
+        "nonnegative": "a finite number >= 0",
+    }
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Real):
+        raise TypeError(_expected(name, words[sign], unit, value))
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
+    bad = {
+        "any": False,
+        "nonzero": result == 0,
+        "positive": result <= 0,
+        "nonnegative": result < 0,
+    }
+    if not math.isfinite(result) or bad[sign]:
+        raise SceneError(_expected(name, words[sign], unit, value))
+    return result
+
+
+def optional(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float | None:
+    """Return a finite real number, or None where there is none."""
+    return None if value is None else number(value, name, unit, sign=sign)
+
+
+def count(value: Any, name: str, *, least: int = 1, most: int) -> int:
+    """Return a whole number between two bounds."""
+    what = f"a whole number from {least} to {most}"
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Integral):
+        raise TypeError(_expected(name, what, "", value))
+    result = int(value)
+    if not least <= result <= most:
+        raise SceneError(_expected(name, what, "", value))
+    return result
+
+
+def one_of(value: Any, name: str, words: Iterable[str]) -> str:
+    """Return one of the words."""
+    words = tuple(words)
+    what = "one of " + ", ".join(f'"{word}"' for word in words)
+    if not isinstance(value, str):
+        raise TypeError(_expected(name, what, "", value))
+    if value not in words:
+        raise SceneError(_expected(name, what, "", value))
+    return value
+
+
+def instance(value: Any, name: str, types: type | tuple[type, ...], what: str) -> Any:
+    """Return an object of the wanted type."""
+    if not isinstance(value, types):
+        raise TypeError(_expected(name, what, "", value))
+    return value
+
+
+def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDArray[np.float64]:
+    """Return a new one-dimensional array of at least one finite real number; a number is one."""
+    words = {"any": "", "nonnegative": " >= 0", "positive": " > 0"}[sign]
+    what = f"a one-dimensional array of finite numbers{words}"
+    if value is None or isinstance(value, (str, bytes)):
+        raise TypeError(_expected(name, what, unit, value))
+    try:
+        array = np.atleast_1d(np.asarray(value))
+    except ValueError as error:
+        raise SceneError(_expected(name, what, unit, value)) from error
+    if array.dtype.kind not in "iuf":
+        if array.size == 0:
+            raise SceneError(_expected(name, what, unit, value))
+        raise TypeError(_expected(name, what, unit, value))
+    if array.ndim != 1 or array.size == 0:
+        raise SceneError(_expected(name, what, unit, value) + f" of shape {array.shape}")
+    array = array.astype(np.float64)
+    bad = ~np.isfinite(array)
+    if sign == "positive":
+        bad |= array <= 0
+    if sign == "nonnegative":
+        bad |= array < 0
+    if bad.any():
+        where = int(np.flatnonzero(bad)[0])
+        raise SceneError(
+            _expected(f"{name}[{where}]", f"a finite number{words}", unit, float(array[where]))
+        )
+    return array
+
+
+def point(value: Any, name: str, present: Sequence[str], length: float) -> tuple[str, float]:
+    """Return a coordinate and a position on the rope, such as ("z", 0.5)."""
+    what = 'a coordinate and a position [m] such as ("z", 0.5)'
+    if not isinstance(value, (tuple, list)):
+        raise TypeError(_expected(name, what, "", value))
+    if len(value) != 2:
+        raise SceneError(_expected(name, what, "", value))
+    coordinate = one_of(value[0], f"{name}[0]", COORDINATES)
+    if coordinate not in present:
+        raise SceneError(
+            f"{name}[0] must be a coordinate the scene has ({', '.join(present)}), "
+            f"got {coordinate!r}"
+        )
+    return coordinate, position(value[1], f"{name}[1]", length)
+
+
+def position(value: Any, name: str, length: float) -> float:
+    """Return a position on the rope; within 1e-9 of the length of an end it is that end."""
+    x = number(value, name, "m")
+    margin = 1e-9 * length
+    if not -margin <= x <= length + margin:
+        raise SceneError(
+            f"{name} must lie on the rope, between 0 and {length:g} m, got {shown(value)}"
+        )
+    return min(max(x, 0.0), length)

@@ -1,0 +1,228 @@
+"""Parts that stand on the rope: what each adds to the node it stands at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+
+
+@dataclass(frozen=True)
+class NodeTerm:
+    """What stands at one node, over the coordinates of a chain.
+
+    Attributes
+    ----------
+    mass, stiffness : ndarray, shape (width, width)
+        Symmetric [kg, kg m, kg m^2] and [N/m, N, N m].
+    held : ndarray of bool, shape (width,)
+        Coordinates that cannot move.
+    """
+
+    mass: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    held: NDArray[np.bool_]
+
+    def __add__(self, other: NodeTerm) -> NodeTerm:
+        return NodeTerm(
+            self.mass + other.mass, self.stiffness + other.stiffness, self.held | other.held
+        )
+
+
+def node_term(
+    coordinates: Sequence[str],
+    *,
+    mass: dict[str, float] | None = None,
+    stiffness: dict[str, float] | None = None,
+    held: Sequence[str] = (),
+) -> NodeTerm:
+    """Build a diagonal node term from values per coordinate; absent coordinates are ignored."""
+    return NodeTerm(
+        np.diag([(mass or {}).get(c, 0.0) for c in coordinates]),
+        np.diag([(stiffness or {}).get(c, 0.0) for c in coordinates]),
+        np.array([c in held for c in coordinates], dtype=bool),
+    )
+
+
+class Part(Protocol):
+    """What the compiler asks of a part."""
+
+    kind: ClassVar[str]
+    """Name of the effect."""
+
+    @property
+    def x(self) -> float:
+        """Where it stands [m]."""
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Coordinates without which it has no meaning."""
+
+    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+        """Return what it adds to its node."""
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A rigid body clamped to the rope at one point.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    mass : float
+        [kg]; 0 is allowed, for a disc that only turns.
+    rotary_inertia, polar_inertia : float
+        About the transverse axis and about the rope's own [kg m^2].
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or is negative.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.PointMass(0.5, 0.1, polar_inertia=1e-5).mass
+    0.1
+    """
+
+    kind: ClassVar[str] = "point mass"
+
+    x: float
+    mass: float
+    _: KW_ONLY
+    rotary_inertia: float = 0.0
+    polar_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        for name, unit in (
+            ("mass", "kg"),
+            ("rotary_inertia", "kg m^2"),
+            ("polar_inertia", "kg m^2"),
+        ):
+            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
+            object.__setattr__(self, name, value)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Nothing: inertia on an absent coordinate is ignored."""
+        return ()
+
+    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+        """Inertia on the diagonal."""
+        mass = {
+            "x": self.mass,
+            "z": self.mass,
+            "alpha": self.polar_inertia,
+            "beta": self.rotary_inertia,
+        }
+        return node_term(coordinates, mass=mass)
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring from the rope to the ground.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    stiffness : float
+        [N/m for x and z, N m for alpha and beta]; may be negative.
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it acts on.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number or the coordinate not a string.
+    SceneError
+        If something is not finite, the stiffness is 0 or the coordinate is unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Spring(0.5, 1e4).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "spring"
+
+    x: float
+    stiffness: float
+    _: KW_ONLY
+    coordinate: str = "z"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+        unit = "N/m" if self.coordinate in ("x", "z") else "N m"
+        stiffness = check.number(self.stiffness, "stiffness", unit, sign="nonzero")
+        object.__setattr__(self, "stiffness", stiffness)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+        """Stiffness on the diagonal."""
+        return node_term(coordinates, stiffness={self.coordinate: self.stiffness})
+
+
+@dataclass(frozen=True)
+class Support:
+    """A rigid support of one coordinate.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it holds.
+
+    Raises
+    ------
+    TypeError
+        If the position is not a number or the coordinate not a string.
+    SceneError
+        If the position is not finite or the coordinate is unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Support(0.5).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "support"
+
+    x: float
+    _: KW_ONLY
+    coordinate: str = "z"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+        """Return the held coordinate."""
+        return node_term(coordinates, held=(self.coordinate,))
+
+
+KINDS = (PointMass, Spring, Support)
+"""Every kind of part."""

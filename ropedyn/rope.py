@@ -1,0 +1,120 @@
+"""The rope: length, density and the stiffnesses of its section."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import KW_ONLY, dataclass
+from typing import Any
+
+import numpy as np
+
+from . import check
+from .errors import SceneError
+
+
+@dataclass(frozen=True)
+class Rope:
+    """A rope of uniform section. A property left out is an effect that does not exist.
+
+    Parameters
+    ----------
+    length : float
+        Between the two ends [m].
+    linear_density : float
+        Mass per length [kg/m].
+    bending_stiffness : float, optional
+        B [N m^2]: gives bending and with it the coordinates z and beta.
+    torsional_stiffness : float, optional
+        C [N m^2]: gives twist, the coordinate alpha.
+    axial_stiffness : float, optional
+        EA [N]: gives stretch, the coordinate x.
+    lay_coupling : float, optional
+        D [N m]: (axial force, torque) = [[EA, D], [D, C]] (axial strain, twist rate), the linear
+        coupling of an axisymmetric laid rope. Needs axial and torsional stiffness.
+    lay_slope : float, optional
+        H [1]: the section axes of bending and twist are tilted by the slope H, which couples
+        bending and twist as in the 2015 study. Needs bending and torsional stiffness.
+    rotary_inertia, polar_inertia : float, optional
+        Inertia of bending rotation and of twist per length [kg m]; 0 is none.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, not positive where it must be, or if the section is not
+        positive definite.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54)
+    >>> rope.replace(length=2.0).length
+    2.0
+    """
+
+    length: float
+    linear_density: float
+    _: KW_ONLY
+    bending_stiffness: float | None = None
+    torsional_stiffness: float | None = None
+    axial_stiffness: float | None = None
+    lay_coupling: float | None = None
+    lay_slope: float | None = None
+    rotary_inertia: float | None = None
+    polar_inertia: float | None = None
+
+    def __post_init__(self) -> None:
+        number, optional = check.number, check.optional
+        checked = {
+            "length": number(self.length, "length", "m", sign="positive"),
+            "linear_density": number(
+                self.linear_density, "linear_density", "kg/m", sign="positive"
+            ),
+            "lay_coupling": optional(self.lay_coupling, "lay_coupling", "N m"),
+            "lay_slope": optional(self.lay_slope, "lay_slope"),
+        }
+        for name in ("bending_stiffness", "torsional_stiffness", "axial_stiffness"):
+            unit = "N" if name == "axial_stiffness" else "N m^2"
+            checked[name] = optional(getattr(self, name), name, unit, sign="positive")
+        for name in ("rotary_inertia", "polar_inertia"):
+            checked[name] = optional(getattr(self, name), name, "kg m", sign="nonnegative")
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        self._check_lay()
+
+    def _check_lay(self) -> None:
+        needs = {
+            "lay_coupling": ("axial_stiffness", "torsional_stiffness"),
+            "lay_slope": ("bending_stiffness", "torsional_stiffness"),
+        }
+        for name, others in needs.items():
+            missing = [other for other in others if getattr(self, other) is None]
+            if getattr(self, name) is not None and missing:
+                raise SceneError(f"{name} needs {' and '.join(missing)}, got None")
+        EA, C, D = self.axial_stiffness, self.torsional_stiffness, self.lay_coupling
+        if D is None or EA is None or C is None or EA * C > D * D:
+            return
+        lowest = np.linalg.eigvalsh([[EA, D], [D, C]])[0]
+        raise SceneError(
+            "the section stiffness [[axial_stiffness, lay_coupling], [lay_coupling, "
+            f"torsional_stiffness]] must be positive definite, got {[[EA, D], [D, C]]} with the "
+            f"eigenvalue {lowest:.6g}"
+        )
+
+    def replace(self, **changes: Any) -> Rope:
+        """Return a rope with these properties changed.
+
+        Parameters
+        ----------
+        **changes
+            Any argument of `Rope`.
+
+        Raises
+        ------
+        TypeError
+            If there is no such property.
+        SceneError
+            As `Rope` does.
+        """
+        return dataclasses.replace(self, **changes)

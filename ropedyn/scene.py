@@ -1,0 +1,328 @@
+"""The scene: a rope, what holds and loads it, and what stands on it."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any
+
+from . import check
+from . import damping as _damping
+from . import end as _end
+from . import part as _part
+from .damping import Damping
+from .end import End
+from .errors import SceneError
+from .part import Part
+from .rope import Rope
+
+if TYPE_CHECKING:
+    from .model import Model
+
+EFFECTS = (
+    "tension",
+    "bending",
+    "twist",
+    "stretch",
+    "lay",
+    "rotary inertia",
+    "polar inertia",
+    *(kind.kind for kind in _part.KINDS),
+    *(kind.kind for kind in _damping.KINDS),
+)
+"""Every effect a scene can have."""
+
+_PROPERTIES = {
+    "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
+    "twist": ("torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia"),
+    "stretch": ("axial_stiffness", "lay_coupling"),
+    "lay": ("lay_coupling", "lay_slope"),
+    "rotary inertia": ("rotary_inertia",),
+    "polar inertia": ("polar_inertia",),
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A rope with its tension, ends, damping and parts.
+
+    Parameters
+    ----------
+    rope : Rope
+        The rope.
+    tension : float
+        [N]; negative is compression, which needs bending stiffness.
+    ends : pair of {"clamped", "pinned", "free"} or End
+        Left and right end.
+    damping : StiffnessDamping, RayleighDamping or tuple of them, optional
+        A tuple is their sum.
+    parts : sequence of PointMass, Spring, Support
+        What stands on the rope.
+
+    Raises
+    ------
+    TypeError
+        If something is of the wrong type.
+    SceneError
+        If something has no meaning: a position off the rope, a part on a coordinate that the
+        scene does not have, a rope that nothing holds together.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.35, 0.1017, bending_stiffness=1.54), tension=2830.0)
+    >>> scene.effects
+    ('tension', 'bending')
+    >>> scene.without("tension").tension
+    0.0
+    """
+
+    rope: Rope
+    _: KW_ONLY
+    tension: float = 0.0
+    ends: tuple[str | End, str | End] = ("clamped", "clamped")
+    damping: Damping | tuple[Damping, ...] | None = None
+    parts: tuple[Part, ...] = ()
+
+    def __post_init__(self) -> None:
+        check.instance(self.rope, "rope", Rope, "a Rope")
+        object.__setattr__(self, "tension", check.number(self.tension, "tension", "N"))
+        object.__setattr__(self, "ends", _checked_ends(self.ends))
+        object.__setattr__(self, "damping", _checked_damping(self.damping))
+        object.__setattr__(self, "parts", _checked_parts(self.parts))
+        self._check_coordinates()
+        self._check_places()
+
+    def _check_coordinates(self) -> None:
+        bends = self.rope.bending_stiffness is not None
+        if self.tension < 0 and not bends:
+            raise SceneError(
+                "tension must be >= 0 for a rope without bending_stiffness [N], "
+                f"got {self.tension:g}"
+            )
+        if not self.coordinates:
+            raise SceneError(
+                "rope must have a stiffness or the scene a tension: tension is 0 and "
+                "bending_stiffness, torsional_stiffness and axial_stiffness are None"
+            )
+
+    def _check_places(self) -> None:
+        present = ", ".join(self.coordinates)
+        for i, part in enumerate(self.parts):
+            check.position(part.x, f"parts[{i}].x", self.rope.length)
+            for coordinate in part.stands_on:
+                if coordinate not in self.coordinates:
+                    raise SceneError(
+                        f"parts[{i}].coordinate must be one the scene has ({present}), "
+                        f"got {coordinate!r}"
+                    )
+        for i, end in enumerate(self.ends):
+            for coordinate in _end.end_of(end).spring:
+                if coordinate not in self.coordinates:
+                    raise SceneError(
+                        f"ends[{i}].spring must stand on coordinates the scene has "
+                        f"({present}), got {coordinate!r}"
+                    )
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Coordinates of a node: z with bending or tension, beta with bending, and so on."""
+        rope = self.rope
+        present = {
+            "x": rope.axial_stiffness is not None,
+            "z": rope.bending_stiffness is not None or self.tension != 0,
+            "alpha": rope.torsional_stiffness is not None,
+            "beta": rope.bending_stiffness is not None,
+        }
+        return tuple(c for c in check.COORDINATES if present[c])
+
+    @property
+    def dampings(self) -> tuple[Damping, ...]:
+        """The dampings whose sum acts, none or one or more."""
+        if self.damping is None:
+            return ()
+        return self.damping if isinstance(self.damping, tuple) else (self.damping,)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """What acts in this scene, in a fixed order."""
+        rope = self.rope
+        stands = {part.kind for part in self.parts} | {d.kind for d in self.dampings}
+        if any(_end.end_of(end).spring for end in self.ends):
+            stands.add(_part.Spring.kind)
+        acts = {
+            "tension": self.tension != 0,
+            "bending": rope.bending_stiffness is not None,
+            "twist": rope.torsional_stiffness is not None,
+            "stretch": rope.axial_stiffness is not None,
+            "lay": bool(rope.lay_coupling or rope.lay_slope),
+            "rotary inertia": bool(rope.rotary_inertia and rope.bending_stiffness),
+            "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
+        }
+        return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
+
+    def replace(self, **changes: Any) -> Scene:
+        """Return a scene with these arguments changed.
+
+        Parameters
+        ----------
+        **changes
+            Any argument of `Scene`.
+
+        Raises
+        ------
+        TypeError
+            If there is no such argument.
+        SceneError
+            As `Scene` does.
+        """
+        return dataclasses.replace(self, **changes)
+
+    def without(self, *effects: str) -> Scene:
+        """Return a scene that never had these effects.
+
+        What stood on a coordinate that goes with them is dropped too.
+
+        Parameters
+        ----------
+        *effects : str
+            Names out of `effects`; an effect that the scene does not have changes nothing.
+
+        Raises
+        ------
+        TypeError
+            If a name is not a string.
+        SceneError
+            If there is no such effect, or nothing is left that could vibrate.
+        """
+        for effect in effects:
+            check.one_of(effect, "effect", EFFECTS)
+        gone = {name for effect in effects for name in _PROPERTIES.get(effect, ())}
+        rope = self.rope.replace(**dict.fromkeys(gone))
+        bare = Scene(rope, tension=0.0 if "tension" in effects else self.tension)
+        kept = tuple(d for d in self.dampings if d.kind not in effects)
+        return bare.replace(
+            ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
+            damping=kept if isinstance(self.damping, tuple) and kept else (*kept, None)[0],
+            parts=tuple(
+                part
+                for part in self.parts
+                if part.kind not in effects and set(part.stands_on) <= set(bare.coordinates)
+            ),
+        )
+
+    def compile(self, *, elements: int, element: str = "rigid") -> Model:
+        """Compile the scene to a chain of nodes and elements.
+
+        Parameters
+        ----------
+        elements : int
+            Over the whole rope. There is a node at every station (end or part); the stretches
+            between stations share the elements as equally as can be.
+        element : {"rigid", "difference"}
+            ``"rigid"``: beam elements between rigid node frames, tension as a string in parallel;
+            second order in their length. ``"difference"``: the kinematics of the 2015 study.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If there are fewer elements than stretches between stations or more than 10^7, the
+            element is unknown, or is ``"difference"`` with bending and tension.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> scene.compile(elements=8).size
+        7
+        """
+        from .compile import compile_scene
+
+        return compile_scene(self, elements=elements, element=element)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene as TOML, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            Of the file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+        """
+        from .scene_file import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Scene:
+        """Read a scene from TOML.
+
+        Parameters
+        ----------
+        path : path
+            Of the file; keys are the names of the arguments.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        SceneError
+            If it is not TOML, a key is unknown or missing, or a value has no meaning.
+        """
+        from .scene_file import load
+
+        return load(path)
+
+
+def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
+    what = 'a pair of "clamped", "pinned", "free" or End'
+    check.instance(ends, "ends", (tuple, list), what)
+    if len(ends) != 2:
+        raise SceneError(f"ends must be {what}, got {check.shown(ends)}")
+    for i, end in enumerate(ends):
+        check.instance(end, f"ends[{i}]", (str, End), "a word or an End")
+        if isinstance(end, str):
+            check.one_of(end, f"ends[{i}]", _end.NAMED)
+    return (ends[0], ends[1])
+
+
+def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
+    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
+    if damping is None or isinstance(damping, _damping.KINDS):
+        return damping
+    if isinstance(damping, (tuple, list)):
+        for i, one in enumerate(damping):
+            check.instance(one, f"damping[{i}]", _damping.KINDS, names)
+        return tuple(damping) or None
+    raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
+
+
+def _checked_parts(parts: Any) -> tuple[Part, ...]:
+    names = ", ".join(kind.__name__ for kind in _part.KINDS)
+    if isinstance(parts, (str, bytes)) or not isinstance(parts, Iterable):
+        raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
+    parts = tuple(parts)
+    for i, part in enumerate(parts):
+        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {names}")
+    return parts
+
+
+def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
+    """Return an end without the springs that go with coordinates or with the effect itself."""
+    if isinstance(end, str):
+        return end
+    gone = _part.Spring.kind in effects
+    spring = {c: k for c, k in end.spring.items() if c in present and not gone}
+    return dataclasses.replace(end, spring=spring)

@@ -1,0 +1,133 @@
+"""Scenes as TOML files."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from . import check, damping, part
+from .atomic import write_bytes
+from .end import End, PerCoordinate
+from .errors import SceneError
+from .rope import Rope
+from .scene import Scene
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene; see `Scene.load`."""
+    file = Path(path)
+    try:
+        document = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError(f"{file} is not a TOML file: {error}") from error
+    try:
+        return _scene(document)
+    except (SceneError, TypeError) as error:
+        raise SceneError(f"{file}: {error}") from error
+
+
+def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+    """Write a scene; see `Scene.save`."""
+    import tomli_w
+
+    document: dict[str, Any] = {
+        "tension": scene.tension,
+        "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
+        "rope": _plain(scene.rope),
+    }
+    if scene.dampings:
+        document["damping"] = [_named(one) for one in scene.dampings]
+    if scene.parts:
+        document["parts"] = [_named(one) for one in scene.parts]
+    write_bytes(path, tomli_w.dumps(document).encode())
+
+
+def _plain(thing: Any) -> dict[str, Any]:
+    """Return the arguments of a description that are not their defaults."""
+    values = {}
+    for field in dataclasses.fields(thing):
+        value = getattr(thing, field.name)
+        if isinstance(value, PerCoordinate):
+            value = dict(value)
+        if value is not None and value != {}:
+            values[field.name] = value
+    return values
+
+
+def _named(thing: Any) -> dict[str, Any]:
+    return {"kind": type(thing).__name__, **_plain(thing)}
+
+
+def _scene(document: Mapping[str, Any]) -> Scene:
+    known = {field.name for field in dataclasses.fields(Scene)}
+    _known_keys(document, known, "the file")
+    if "rope" not in document:
+        raise SceneError("key rope is missing: a scene needs a table [rope]")
+    arguments = dict(document)
+    arguments["rope"] = _built(Rope, document["rope"], "rope")
+    if "ends" in document:
+        arguments["ends"] = _ends(document["ends"])
+    if "damping" in document:
+        given = document["damping"]
+        many = _each(given if isinstance(given, list) else [given], "damping", damping.KINDS)
+        arguments["damping"] = many[0] if len(many) == 1 else many
+    if "parts" in document:
+        arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
+    return Scene(**arguments)
+
+
+def _ends(given: Any) -> Any:
+    if not isinstance(given, list):
+        return given
+    return tuple(
+        _built(End, end, f"ends[{i}]") if isinstance(end, dict) else end
+        for i, end in enumerate(given)
+    )
+
+
+def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:
+    check.instance(given, name, list, f"an array of tables [[{name}]]")
+    by_name = {kind.__name__: kind for kind in kinds}
+    built = []
+    for i, table in enumerate(given):
+        where = f"{name}[{i}]"
+        check.instance(table, where, dict, "a table")
+        if "kind" not in table:
+            raise SceneError(f"key {where}.kind is missing: one of {', '.join(by_name)}")
+        kind = by_name[check.one_of(table["kind"], f"{where}.kind", by_name)]
+        arguments = {key: value for key, value in table.items() if key != "kind"}
+        built.append(_built(kind, arguments, where))
+    return tuple(built)
+
+
+def _built(kind: Callable[..., Any], table: Any, where: str) -> Any:
+    """Call a description with the keys of a table, and say where an error comes from."""
+    check.instance(table, where, dict, "a table")
+    fields = dataclasses.fields(kind)  # type: ignore[arg-type]
+    _known_keys(table, {field.name for field in fields}, where)
+    required = [
+        field.name
+        for field in fields
+        if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+    ]
+    for key in required:
+        if key not in table:
+            raise SceneError(f"key {where}.{key} is missing")
+    try:
+        return kind(**table)
+    except SceneError as error:
+        raise SceneError(f"{where}.{error}") from error
+    except TypeError as error:
+        raise TypeError(f"{where}.{error}") from error
+
+
+def _known_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:
+    for key in table:
+        if key not in known:
+            raise SceneError(
+                f"unknown key {key!r} in {where}: expected one of {', '.join(sorted(known))}"
+            )
