@@ -1,0 +1,92 @@
+"""The compiled chain: plain arrays that the core reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .check import COORDINATES
+
+CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
+"""Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
+
+
+class Chain(NamedTuple):
+    """A chain as the core takes it; see csrc/chain.h."""
+
+    kind: int
+    coordinate: NDArray[np.int32]
+    """(width,) numbers of the coordinates."""
+    length: NDArray[np.float64]
+    """(distinct,) [m]."""
+    tension: NDArray[np.float64]
+    """(distinct,) [N]."""
+    flexibility: NDArray[np.float64]
+    """(distinct, 3, 3) of the section: axial, torsion, bending."""
+    element_of: NDArray[np.int32]
+    """(nodes - 1,) which distinct element."""
+    mass: NDArray[np.float64]
+    """(terms, width, width)."""
+    stiffness: NDArray[np.float64]
+    """(terms, width, width)."""
+    held: NDArray[np.uint8]
+    """(terms, width)."""
+    term_of: NDArray[np.int32]
+    """(nodes,) which node term."""
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are."""
+        return len(self.term_of)
+
+    @property
+    def free(self) -> int:
+        """How many coordinates can move."""
+        free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
+        return int(free_of_term[self.term_of].sum())
+
+    def only(self, coordinates: Sequence[str]) -> Chain:
+        """Return the chain of some of the coordinates."""
+        wanted = [COORDINATES.index(c) for c in coordinates]
+        kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
+        square = np.ix_(range(len(self.mass)), kept, kept)
+        return self._replace(
+            coordinate=np.array(wanted, dtype=np.int32),
+            mass=np.ascontiguousarray(self.mass[square]),
+            stiffness=np.ascontiguousarray(self.stiffness[square]),
+            held=np.ascontiguousarray(self.held[:, kept]),
+        )
+
+
+def components(chain: Chain, coordinates: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    """Group the coordinates that move together.
+
+    Two coordinates are joined where the section flexibility couples their channels or a node term
+    couples them; z and beta are one bending motion.
+
+    Parameters
+    ----------
+    chain : Chain
+        Of all the coordinates.
+    coordinates : sequence of str
+        Their names.
+
+    Returns
+    -------
+    tuple of tuple of str
+        Each in the fixed order of coordinates.
+    """
+    width = len(coordinates)
+    channel = [CHANNELS[c] for c in coordinates]
+    coupled = (chain.mass != 0).any(axis=0) | (chain.stiffness != 0).any(axis=0)
+    coupled |= (chain.flexibility != 0).any(axis=0)[np.ix_(channel, channel)]
+    group = list(range(width))
+    for i in range(width):
+        for j in range(width):
+            if coupled[i, j]:
+                group = [group[i] if g == group[j] else g for g in group]
+    members = [tuple(c for c, g in zip(coordinates, group) if g == k) for k in range(width)]
+    return tuple(sorted((m for m in members if m), key=lambda m: coordinates.index(m[0])))

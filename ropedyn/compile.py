@@ -1,0 +1,147 @@
+"""From a scene to a model: stations, elements, node terms."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, check, mesh
+from .chain import Chain, components
+from .end import End, end_of
+from .errors import SceneError
+from .model import Model
+from .part import NodeTerm, node_term
+from .rope import Rope
+from .scene import Scene
+
+KINDS = ("difference", "rigid")
+"""Kinds of element, in the core's order."""
+
+MOST_ELEMENTS = 10_000_000
+
+
+def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
+    """Compile a scene; see `Scene.compile`."""
+    check.count(elements, "elements", most=MOST_ELEMENTS)
+    kind = KINDS.index(check.one_of(element, "element", KINDS))
+    if element == "difference" and scene.tension != 0 and scene.rope.bending_stiffness is not None:
+        raise SceneError(
+            'element must be "rigid" where there is bending and tension, got "difference": the '
+            "2015 study's kinematics has no geometric stiffness"
+        )
+    stations = mesh.stations(scene.rope.length, (part.x for part in scene.parts))
+    spans = np.diff(stations)
+    counts = mesh.shares(spans, elements)
+    chain = Chain(
+        kind,
+        np.array([check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32),
+        *_elements(scene, spans, counts),
+        *_terms(scene, stations, counts),
+    )
+    for array in chain[1:]:
+        array.flags.writeable = False
+    return Model(
+        scene=scene,
+        element=element,
+        coordinates=scene.coordinates,
+        components=components(chain, scene.coordinates),
+        x=_positions(stations, counts),
+        chain=chain,
+    )
+
+
+def section(rope: Rope) -> NDArray[np.float64]:
+    """Return the section flexibility of a rope.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        (axial strain, twist rate, curvature) per (axial force, torque, bending moment), zero where
+        the rope has no such stiffness.
+    """
+    return _core.section(
+        rope.axial_stiffness or 0.0,
+        rope.torsional_stiffness or 0.0,
+        rope.bending_stiffness or 0.0,
+        rope.lay_coupling or 0.0,
+        rope.lay_slope or 0.0,
+    )
+
+
+def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArray[np.float64]:
+    pieces = [
+        np.linspace(a, b, n, endpoint=False) for a, b, n in zip(stations, stations[1:], counts)
+    ]
+    x = np.concatenate([*pieces, stations[-1:]])
+    x.flags.writeable = False
+    return x
+
+
+def _elements(
+    scene: Scene, spans: NDArray[np.float64], counts: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]]:
+    """Return length, tension, flexibility of the distinct elements and which stands where."""
+    length, which = np.unique(spans / counts, return_inverse=True)
+    return (
+        length,
+        np.full(len(length), scene.tension),
+        np.tile(section(scene.rope), (len(length), 1, 1)),
+        np.repeat(which.astype(np.int32), counts),
+    )
+
+
+def _terms(
+    scene: Scene, stations: NDArray[np.float64], counts: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.int32]]:
+    """Return mass, stiffness, held of the distinct node terms and which stands where.
+
+    Term 2 k is station k's, term 2 k + 1 that of the nodes inside the span right of it.
+    """
+    width = len(scene.coordinates)
+    lengths = np.diff(stations) / counts
+    beside = np.zeros(2 * len(stations) - 1)
+    beside[1::2] = lengths
+    beside[2::2] += lengths / 2
+    beside[:-1:2] += lengths / 2
+    mass = beside[:, None, None] * np.diag(_inertia(scene))
+    stiffness = np.zeros((len(beside), width, width))
+    held = np.zeros((len(beside), width), dtype=np.uint8)
+    for station, term in _standing(scene, stations):
+        mass[2 * station] += term.mass
+        stiffness[2 * station] += term.stiffness
+        held[2 * station] |= term.held
+    pattern = np.arange(len(beside), dtype=np.int32)
+    times = np.ones(len(beside), dtype=np.intp)
+    times[1::2] = counts - 1
+    return mass, stiffness, held, np.repeat(pattern, times)
+
+
+def _inertia(scene: Scene) -> NDArray[np.float64]:
+    """Return the inertia per length of each coordinate [kg/m, kg m]."""
+    rope = scene.rope
+    inertia = {
+        "x": rope.linear_density,
+        "z": rope.linear_density,
+        "alpha": rope.polar_inertia or 0.0,
+        "beta": rope.rotary_inertia or 0.0,
+    }
+    return np.array([inertia[c] for c in scene.coordinates])
+
+
+def _standing(scene: Scene, stations: NDArray[np.float64]) -> list[tuple[int, NodeTerm]]:
+    """Return what stands at which station."""
+    standing = [
+        (0, _end_term(end_of(scene.ends[0]), scene.coordinates)),
+        (len(stations) - 1, _end_term(end_of(scene.ends[1]), scene.coordinates)),
+    ]
+    between = (stations[1:] + stations[:-1]) / 2
+    standing += [
+        (int(np.searchsorted(between, part.x)), part.term(scene.coordinates))
+        for part in scene.parts
+    ]
+    return standing
+
+
+def _end_term(end: End, coordinates: tuple[str, ...]) -> NodeTerm:
+    held = [c for c in coordinates if end.holds(c)]
+    return node_term(coordinates, stiffness=dict(end.spring), held=held)

@@ -1,0 +1,75 @@
+"""Where the nodes of a chain stand."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import SceneError
+
+NEAR = 1e-9
+"""Positions closer than this part of the length are one node."""
+
+
+def stations(length: float, positions: Iterable[float]) -> NDArray[np.float64]:
+    """Return the ends and the positions of parts in order, near ones merged.
+
+    Parameters
+    ----------
+    length : float
+        Of the rope [m].
+    positions : iterable of float
+        Of the parts [m].
+
+    Returns
+    -------
+    ndarray
+        From 0 to the length [m].
+    """
+    margin = NEAR * length
+    inner = sorted(x for x in positions if margin < x < length - margin)
+    kept = [0.0]
+    for x in inner:
+        if x - kept[-1] > margin:
+            kept.append(x)
+    return np.array([*kept, length])
+
+
+def shares(lengths: NDArray[np.float64], elements: int) -> NDArray[np.intp]:
+    """Share out elements over spans so that the longest element is as short as can be.
+
+    Parameters
+    ----------
+    lengths : ndarray, shape (spans,)
+        Of the spans [m].
+    elements : int
+        In all.
+
+    Returns
+    -------
+    ndarray of int, shape (spans,)
+        At least one each.
+
+    Raises
+    ------
+    SceneError
+        If there are fewer elements than spans.
+    """
+    if elements < len(lengths):
+        raise SceneError(
+            f"elements must be at least {len(lengths)}, one for each stretch between stations, "
+            f"got {elements}"
+        )
+    # every span has at least this many in the end
+    counts = np.floor(lengths / lengths.sum() * (elements - len(lengths))).astype(np.intp)
+    counts = np.maximum(counts, 1)
+    heap = [(-float(length / n), i) for i, (length, n) in enumerate(zip(lengths, counts))]
+    heapq.heapify(heap)
+    for _ in range(elements - int(counts.sum())):
+        _, i = heap[0]
+        counts[i] += 1
+        heapq.heapreplace(heap, (-float(lengths[i] / counts[i]), i))
+    return counts

@@ -1,0 +1,309 @@
+"""The model: a scene compiled to plain arrays, and the questions it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .chain import Chain
+from .scene import Scene
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
+
+    from .deflection import Deflection
+    from .frf import FRF
+    from .modes import Modes
+
+Point = tuple[str, float]
+
+
+class Triples(NamedTuple):
+    """The distinct elements: u_b = F u_a + G f_b and f_a = F^T f_b - Q u_a.
+
+    Attributes
+    ----------
+    F, G, Q : ndarray, shape (distinct, width, width)
+        Over the model's coordinates, SI units.
+    element : ndarray of int, shape (elements,)
+        Which of them stands where.
+    """
+
+    F: NDArray[np.float64]
+    G: NDArray[np.float64]
+    Q: NDArray[np.float64]
+    element: NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A chain of nodes and elements; plain data that pickles.
+
+    Made by `Scene.compile`.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was compiled.
+    element : str
+        Kind of the elements.
+    coordinates : tuple of str
+        Of every node, in their fixed order.
+    components : tuple of tuple of str
+        Coordinates that move together; an analysis computes only those its question touches.
+    x : ndarray, shape (nodes,)
+        Where the nodes stand [m].
+    chain : Chain
+        What the core reads.
+    """
+
+    scene: Scene
+    element: str
+    coordinates: tuple[str, ...]
+    components: tuple[tuple[str, ...], ...]
+    x: NDArray[np.float64]
+    chain: Chain
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns: coordinates that can move."""
+        return self.chain.free
+
+    @property
+    def triples(self) -> Triples:
+        """The distinct elements.
+
+        Raises
+        ------
+        SolveError
+            If the compression is exactly the critical load of one element.
+        """
+        return Triples(*_core.triples(self.chain), self.chain.element_of)
+
+    def stiffness(self) -> sp.csr_array:
+        """Assemble the stiffness matrix, tension included.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (size, size)
+            Over the free coordinates, node by node in the order of `coordinates` [N/m, N, N m].
+        """
+        from .matrices import stiffness
+
+        return stiffness(self.chain)
+
+    def mass(self) -> sp.csr_array:
+        """Assemble the mass matrix.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (size, size)
+            Over the free coordinates [kg, kg m, kg m^2].
+        """
+        from .matrices import mass
+
+        return mass(self.chain)
+
+    def damping(self) -> sp.csr_array:
+        """Assemble the damping matrix.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (size, size)
+            Over the free coordinates [N s/m, N s, N m s].
+        """
+        from .matrices import damping
+
+        return damping(self.chain, self.scene.dampings)
+
+    def modes(
+        self, number: int | None = None, *, below: float | None = None, solver: str = "lapack"
+    ) -> Modes:
+        """Find natural frequencies and shapes of the undamped model.
+
+        Parameters
+        ----------
+        number : int, optional
+            How many of the lowest.
+        below : float, optional
+            All below this frequency [Hz]; instead of `number`.
+        solver : {"lapack"}
+            Assembles the matrices and reduces them to a dense symmetric problem (see
+            csrc/modes.h). The assembled stiffness loses digits as n^4: of the first frequency of
+            a clamped beam about 12 are right with 64 elements, 8 with 512, 6 with 1024; and the
+            time grows as n^3.
+
+        Returns
+        -------
+        Modes
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If not exactly one of `number` and `below` is given, or a value has no meaning.
+        SolveError
+            If more modes are asked for than the model has finite ones (the message says how
+            many), or the stiffness is negative where there is no mass.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=64)
+        >>> print(model.modes(2).frequency.round(2))
+        [15.81 31.61]
+        """
+        from .modes import solve_modes
+
+        return solve_modes(self, number, below=below, solver=solver)
+
+    def frf(
+        self,
+        frequency: ArrayLike,
+        *,
+        drive: Point | Sequence[Point],
+        response: Point | Sequence[Point] | None = None,
+        quantity: str = "receptance",
+        solver: str = "lapack",
+    ) -> FRF:
+        """Compute the frequency response to a harmonic force or moment.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (f,)
+            [Hz], each >= 0.
+        drive : point or list of points
+            Coordinate and position of a unit force or moment, such as ``("z", 0.5)``; with a list
+            the values have a leading axis of drives.
+        response : point or list of points, optional
+            What is watched; the drive points where left out.
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration per force.
+        solver : {"lapack"}
+            Complex band LU of the assembled dynamic stiffness at each frequency; loses digits with
+            n as `modes` does.
+
+        Returns
+        -------
+        FRF
+            Motion is Re(value exp(+i omega t)).
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning, such as a position off the rope.
+        SolveError
+            If a frequency lies on an undamped resonance; the message names it.
+
+        Notes
+        -----
+        Between two nodes the displacement is the element's own static shape; a force acts through
+        the same shape, and points in the driven element also move by its local flexibility.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=64)
+        >>> print(model.frf([0.0], drive=("z", 0.5)).value[0, 0].real.round(6))
+        0.0025
+        """
+        from .frf import solve_frf
+
+        return solve_frf(
+            self, frequency, drive=drive, response=response, quantity=quantity, solver=solver
+        )
+
+    def static(self, load: Mapping[Point, float], *, solver: str = "lapack") -> Deflection:
+        """Find the static deflection under forces and moments.
+
+        Parameters
+        ----------
+        load : mapping from points to float
+            Such as ``{("z", 0.5): 10.0}`` [N, N m].
+        solver : {"lapack"}
+            Band LU of the assembled stiffness.
+
+        Returns
+        -------
+        Deflection
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning.
+        SolveError
+            If the stiffness is singular: a rigid motion is free or the compression is critical.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4)
+        >>> print(model.static({("z", 0.5): 8.0}).displacement[2])
+        [0.02]
+        """
+        from .deflection import solve_static
+
+        return solve_static(self, load, solver=solver)
+
+    def component_of(self, coordinate: str) -> tuple[str, ...]:
+        """Return the coordinates that move with this one."""
+        return next(c for c in self.components if coordinate in c)
+
+
+def ports(
+    model: Model, chain: Chain, coordinates: Sequence[str], points: Iterable[Point]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Return where points stand, as rows over the coordinates of two neighbouring nodes.
+
+    Parameters
+    ----------
+    model : Model
+        Whose positions count.
+    chain : Chain
+        Of the coordinates.
+    coordinates : sequence of str
+        Of the chain.
+    points : iterable of points
+        On these coordinates.
+
+    Returns
+    -------
+    node : ndarray of int, shape (points,)
+        Left node.
+    row : ndarray, shape (points, 2, width)
+        Displacement of the point per displacement of the nodes.
+    """
+    points = list(points)
+    node = np.zeros(len(points), dtype=np.int32)
+    row = np.zeros((len(points), 2, len(coordinates)))
+    for k, (coordinate, x) in enumerate(points):
+        at = list(coordinates).index(coordinate)
+        left, s = locate(model, x)
+        if s is None:
+            last = left == len(model.x) - 1
+            node[k] = left - last
+            row[k, int(last), at] = 1.0
+        else:
+            node[k] = left
+            row[k] = _core.shape(chain, int(chain.element_of[left]), s)[at]
+    return node, row
+
+
+def locate(model: Model, x: float) -> tuple[int, float | None]:
+    """Return the node at x and None, or the node left of x and the distance from it [m]."""
+    margin = 1e-9 * model.scene.rope.length
+    nearest = int(np.abs(model.x - x).argmin())
+    if abs(model.x[nearest] - x) <= margin:
+        return nearest, None
+    left = int(np.searchsorted(model.x, x)) - 1
+    return left, float(x - model.x[left])
