@@ -1,0 +1,51 @@
+"""Vibration of axially tensed steel ropes.
+
+Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask for `modes`, `frf` or
+`static`, and compare the answer with a measurement.
+"""
+
+from . import study2015
+from .answer import Answer, Cost, load
+from .compare import Comparison, compare
+from .damping import RayleighDamping, StiffnessDamping
+from .deflection import Deflection
+from .end import End
+from .errors import RopedynError, SceneError, SolveError
+from .frf import FRF
+from .model import Model
+from .modes import Modes
+from .part import PointMass, Spring, Support
+from .peaks import Peaks
+from .resonance import Resonances
+from .rope import Rope
+from .scene import Scene
+from .table import Table
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "FRF",
+    "Answer",
+    "Comparison",
+    "Cost",
+    "Deflection",
+    "End",
+    "Model",
+    "Modes",
+    "Peaks",
+    "PointMass",
+    "RayleighDamping",
+    "Resonances",
+    "Rope",
+    "RopedynError",
+    "Scene",
+    "SceneError",
+    "SolveError",
+    "Spring",
+    "StiffnessDamping",
+    "Support",
+    "Table",
+    "compare",
+    "load",
+    "study2015",
+]

@@ -1,0 +1,225 @@
+"""What every answer can do: table, data frame, xarray, netCDF file."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from .atomic import replacing
+from .errors import SceneError
+from .table import Table
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What an answer cost.
+
+    Attributes
+    ----------
+    seconds : float
+        Wall time of the core.
+    method : str
+        The solver.
+    elements, unknowns : int
+        Of the chain, and of what was solved of it.
+    factorisations : int
+        Of matrices.
+    """
+
+    seconds: float
+    method: str
+    elements: int
+    unknowns: int
+    factorisations: int
+
+
+def axes(*names: str, unit: str = "", keyed: bool = False) -> dict[str, Any]:
+    """Return the metadata of an array field: its axes and its unit.
+
+    With `keyed` the field is a dictionary of such arrays.
+    """
+    return {"axes": names, "unit": unit, "keyed": keyed}
+
+
+class Answer:
+    """Base of the answers: frozen dataclasses whose array fields are declared with `axes`."""
+
+    kinds: ClassVar[dict[str, type[Answer]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        Answer.kinds[cls.__name__] = cls
+
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            for array in value.values() if isinstance(value, dict) else (value,):
+                if isinstance(array, np.ndarray):
+                    array.flags.writeable = False
+
+    def table(self) -> Table:
+        """Return the answer as a table."""
+        raise NotImplementedError
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the answer.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's where left out.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return str(self.table())
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the table as a pandas data frame.
+
+        Raises
+        ------
+        ImportError
+            If pandas is missing.
+        """
+        return self.table().to_dataframe()
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return every array with its axes and units.
+
+        Raises
+        ------
+        ImportError
+            If xarray is missing.
+        """
+        from .extra import xarray
+
+        variables: dict[str, Any] = {}
+        attributes: dict[str, Any] = {"ropedyn": type(self).__name__}
+        for item in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, item.name)
+            if "axes" not in item.metadata:
+                attributes[item.name] = json.dumps(_plain(value))
+                continue
+            names, unit = item.metadata["axes"], {"units": item.metadata["unit"]}
+            if item.metadata["keyed"]:
+                for key, array in value.items():
+                    variables[f"{item.name}.{key}"] = (names, array, unit)
+            else:
+                variables[item.name] = (names, value, unit)
+        return xarray().Dataset(variables, attrs=attributes)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the answer as a netCDF file, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            Of the file; `load` reads it.
+
+        Raises
+        ------
+        ImportError
+            If xarray or h5netcdf is missing.
+        OSError
+            If the file cannot be written.
+        """
+        dataset = self.to_xarray()
+        # netCDF knows no complex numbers: real and imaginary parts along a last axis
+        for name in [n for n, v in dataset.data_vars.items() if np.iscomplexobj(v)]:
+            value = dataset[name]
+            parts = np.stack([value.values.real, value.values.imag], axis=-1)
+            dataset[name] = ((*value.dims, "re_im"), parts, value.attrs)
+        with replacing(path) as draft:
+            dataset.to_netcdf(draft, engine="h5netcdf")
+
+
+def load(path: str | os.PathLike[str]) -> Answer:
+    """Read an answer that `save` wrote.
+
+    Parameters
+    ----------
+    path : path
+        Of the file.
+
+    Returns
+    -------
+    Answer
+        Of the kind that was saved.
+
+    Raises
+    ------
+    ImportError
+        If xarray or h5netcdf is missing.
+    OSError
+        If the file cannot be read.
+    SceneError
+        If it holds no answer of ropedyn.
+    """
+    from .extra import xarray
+
+    file = Path(path)
+    if not file.is_file():
+        raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
+    try:
+        with xarray().open_dataset(file, engine="h5netcdf") as opened:
+            dataset = opened.load()
+    except (OSError, ValueError) as error:
+        raise SceneError(f"path must be a netCDF file, got {str(file)!r}: {error}") from error
+    kind = Answer.kinds.get(dataset.attrs.get("ropedyn", ""))
+    if kind is None:
+        raise SceneError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
+    try:
+        return _rebuilt(kind, dataset)
+    except KeyError as error:
+        raise SceneError(f"{file} is incomplete: {error} is missing") from error
+
+
+def _rebuilt(kind: type[Answer], dataset: Any) -> Answer:
+    arguments: dict[str, Any] = {}
+    for item in fields(kind):  # type: ignore[arg-type]
+        if "axes" not in item.metadata:
+            value = json.loads(dataset.attrs[item.name])
+            arguments[item.name] = Cost(**value) if item.name == "cost" else _frozen(value)
+        elif item.metadata["keyed"]:
+            start = item.name + "."
+            names = [name for name in dataset.variables if name.startswith(start)]
+            arguments[item.name] = {n[len(start) :]: _array(dataset[n]) for n in names}
+        else:
+            arguments[item.name] = _array(dataset[item.name])
+    return kind(**arguments)
+
+
+def _array(variable: Any) -> np.ndarray[Any, Any]:
+    value = np.array(variable.values)
+    if variable.dims[-1:] == ("re_im",):
+        return value[..., 0] + 1j * value[..., 1]
+    return value.astype(str) if value.dtype.kind == "O" else value
+
+
+def _plain(value: Any) -> Any:
+    """Turn a field into what JSON knows."""
+    if isinstance(value, Cost):
+        return vars(value)
+    return dict(value) if isinstance(value, Mapping) else value
+
+
+def _frozen(value: Any) -> Any:
+    """Turn JSON's lists back into tuples."""
+    return tuple(_frozen(one) for one in value) if isinstance(value, list) else value

@@ -1,0 +1,174 @@
+"""The command line."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import study2015
+from .answer import Answer
+from .atomic import replacing
+from .check import shown
+from .compare import compare
+from .compile import KINDS
+from .errors import RopedynError, SceneError, SolveError
+from .model import Model, Point
+from .peaks import Peaks
+from .scene import Scene
+
+STUDY_FOLDER = Path("ropedyn-study")
+
+SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Those of the process where left out.
+
+    Returns
+    -------
+    int
+        Exit status: 0, 1 where the numbers refused, 2 where the input was bad.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        options.run(options)
+    except SolveError as error:
+        return _complain(error, REFUSED)
+    except (RopedynError, TypeError, OSError, ImportError) as error:
+        return _complain(error, BAD_INPUT)
+    return SOLVED
+
+
+def _complain(error: Exception, status: int) -> int:
+    print(f"ropedyn: {error}", file=sys.stderr)
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="ropedyn",
+        description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
+        epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad.",
+    )
+    parser.set_defaults(run=_study, folder=STUDY_FOLDER)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    study = commands.add_parser("study", help="the 2015 study: table, verdict, figures")
+    study.add_argument(
+        "--folder", type=Path, default=STUDY_FOLDER, help="of the figures (%(default)s)"
+    )
+    study.set_defaults(run=_study)
+    _scene_command(commands, "modes", _modes, "natural frequencies and shapes")
+    _scene_command(commands, "frf", _frf, "frequency response")
+    _scene_command(commands, "compare", _compare, "calculated against measured peaks")
+    return parser
+
+
+def _scene_command(
+    commands: Any, name: str, run: Callable[[argparse.Namespace], None], text: str
+) -> None:
+    parser = commands.add_parser(name, help=text)
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    parser.add_argument("--elements", type=int, default=64, help="over the rope (%(default)s)")
+    parser.add_argument("--element", choices=KINDS, default="rigid", help="kind (%(default)s)")
+    if name in ("modes", "compare"):
+        parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
+    if name == "frf":
+        parser.add_argument(
+            "--frequency", required=True, help="start:stop:lines or a comma list [Hz]"
+        )
+        parser.add_argument("--drive", required=True, help="coordinate@position [m], such as z@0.5")
+        parser.add_argument("--response", action="append", help="as --drive; may be repeated")
+    if name == "compare":
+        parser.add_argument("--peaks", required=True, help="measured peaks, comma list [Hz]")
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="write a figure")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print the table as JSON")
+    form.add_argument("--csv", action="store_true", help="print the table as CSV")
+    parser.set_defaults(run=run)
+
+
+def _study(options: argparse.Namespace) -> None:
+    from . import study_figures
+
+    print(study2015.report())
+    print()
+    for path in study_figures.draw(options.folder):
+        print(f"figure: {path}")
+
+
+def _modes(options: argparse.Namespace) -> None:
+    _show(options, _model(options).modes(options.modes))
+
+
+def _frf(options: argparse.Namespace) -> None:
+    response = options.response and [_point(text, "--response") for text in options.response]
+    frf = _model(options).frf(
+        _frequencies(options.frequency), drive=_point(options.drive, "--drive"), response=response
+    )
+    _show(options, frf)
+
+
+def _compare(options: argparse.Namespace) -> None:
+    peaks = Peaks(_numbers(options.peaks, "--peaks"))
+    _show(options, compare(_model(options).modes(options.modes), peaks))
+
+
+def _model(options: argparse.Namespace) -> Model:
+    return Scene.load(options.scene).compile(elements=options.elements, element=options.element)
+
+
+def _show(options: argparse.Namespace, answer: Answer) -> None:
+    table = answer.table()
+    if options.json:
+        print(json.dumps({"title": table.title, "rows": table.to_records()}, indent=1))
+    elif options.csv:
+        print(table.to_csv(), end="")
+    else:
+        print(table)
+    if options.plot is not None:
+        figure = answer.plot().get_figure(root=True)
+        assert figure is not None
+        with replacing(options.plot) as draft:
+            figure.savefig(draft, dpi=120)
+
+
+def _numbers(text: str, option: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise SceneError(f"{option} must be a comma list of numbers, got {shown(text)}") from None
+
+
+def _frequencies(text: str) -> NDArray[np.float64] | list[float]:
+    if ":" not in text:
+        return _numbers(text, "--frequency")
+    parts = text.split(":")
+    try:
+        start, stop, lines = float(parts[0]), float(parts[1]), int(parts[2])
+        if len(parts) == 3 and 1 <= lines <= 10_000_000 and np.isfinite([start, stop]).all():
+            return np.linspace(start, stop, lines)
+    except (ValueError, IndexError):
+        pass
+    raise SceneError(f"--frequency must be start:stop:lines [Hz], got {shown(text)}")
+
+
+def _point(text: str, option: str) -> Point:
+    coordinate, at, position = text.partition("@")
+    try:
+        if at:
+            return coordinate, float(position)
+    except ValueError:
+        pass
+    raise SceneError(f"{option} must be coordinate@position [m] such as z@0.5, got {shown(text)}")

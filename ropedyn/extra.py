@@ -1,0 +1,26 @@
+"""Libraries of the extra `io`, imported when they are used."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+
+
+def _need(name: str) -> ModuleType:
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ImportError(
+            f"{name} is needed for this and is not installed: pip install 'ropedyn[io]'"
+        ) from error
+
+
+def pandas() -> ModuleType:
+    """Import pandas."""
+    return _need("pandas")
+
+
+def xarray() -> ModuleType:
+    """Import xarray and what it writes netCDF with."""
+    _need("h5netcdf")
+    return _need("xarray")

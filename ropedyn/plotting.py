@@ -1,0 +1,114 @@
+"""Figures: each takes axes and returns them, and never shows them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .unit import NAME, UNIT, label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .compare import Comparison
+    from .deflection import Deflection
+    from .frf import FRF
+    from .modes import Modes
+
+
+def new_axes(ax: Axes | None) -> Axes:
+    """Return the axes, or those of a new figure that no window shows."""
+    if ax is not None:
+        return ax
+    return new_figure(1)[1][0]
+
+
+def new_figure(rows: int, *, height: float = 4.5) -> tuple[Figure, list[Axes]]:
+    """Return a figure with axes one above the other; it needs no display and no pyplot."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, height * rows), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes: Any = figure.subplots(rows, 1, squeeze=False)
+    return figure, list(axes[:, 0])
+
+
+def plot_modes(modes: Modes, ax: Axes | None, coordinate: str | None) -> Axes:
+    """Plot shapes of one coordinate along the rope."""
+    if coordinate is None:
+        coordinate = "z" if "z" in modes.coordinates else modes.coordinates[0]
+    check.one_of(coordinate, "coordinate", modes.coordinates)
+    at = modes.coordinates.index(coordinate)
+    ax = new_axes(ax)
+    for k, f in enumerate(modes.frequency):
+        ax.plot(modes.x, modes.shape[k, :, at], label=f"{k + 1}: {f:.4g} Hz, {modes.family[k]}")
+    ax.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
+    ax.set(xlabel="position along the rope [m]", ylabel=f"{NAME[coordinate]} [{UNIT[coordinate]}]")
+    ax.set_title("mode shapes, largest component of the mode's own coordinate 1")
+    ax.legend(title="mode", fontsize="small")
+    return ax
+
+
+def plot_frf(frf: FRF, ax: Axes | None) -> Axes:
+    """Plot amplitudes over frequency on a logarithmic scale."""
+    ax = new_axes(ax)
+    for d, (coordinate, x) in enumerate(frf.drive):
+        for r, response in enumerate(frf.response):
+            name = label(response, coordinate, frf.quantity)
+            if len(frf.drive) > 1:
+                name += f", driven in {coordinate} at {x:.3f} m"
+            amplitude = np.abs(frf.curve(r, d))
+            if amplitude.any():
+                ax.semilogy(frf.frequency, amplitude, label=name)
+    drives = ", ".join(f"{c} at {x:.3f} m" for c, x in frf.drive)
+    ax.set(xlabel="frequency [Hz]", ylabel=f"{frf.quantity}, amplitude")
+    ax.set_title(f"frequency response, driven in {drives}")
+    ax.grid(True, which="both", color="0.92")
+    if ax.lines:
+        ax.legend(fontsize="small")
+    return ax
+
+
+def plot_deflection(deflection: Deflection, ax: Axes | None) -> Axes:
+    """Plot each coordinate along the rope, scaled to its largest value."""
+    ax = new_axes(ax)
+    for k, c in enumerate(deflection.coordinates):
+        u = deflection.displacement[:, k]
+        largest = np.abs(u).max()
+        if largest > 0:
+            ax.plot(deflection.x, u / largest, label=f"{NAME[c]}, largest {largest:.3g} {UNIT[c]}")
+    ax.set(xlabel="position along the rope [m]", ylabel="share of the largest [1]")
+    ax.set_title("static deflection")
+    ax.legend(fontsize="small")
+    return ax
+
+
+def plot_comparison(comparison: Comparison, ax: Axes | None) -> Axes:
+    """Plot calculated over measured peaks, with the line where both agree."""
+    ax = new_axes(ax)
+    paired = comparison.order > 0
+    measured, calculated = comparison.measured[paired], comparison.calculated[paired]
+    top = 1.1 * max([*comparison.measured, *calculated])
+    ax.plot([0.0, top], [0.0, top], color="0.7", label="agreement")
+    ax.plot(measured, calculated, "o", label="pairs")
+    for f, g, difference in zip(measured, calculated, comparison.difference[paired]):
+        ax.annotate(f"{difference:+.1f} %", (f, g), textcoords="offset points", xytext=(8, -10))
+    ax.set(xlabel="measured [Hz]", ylabel="calculated [Hz]", xlim=(0.0, top), ylim=(0.0, top))
+    ax.set_title("calculated against measured peaks")
+    ax.legend(fontsize="small")
+    return ax
+
+
+def plot_peaks(
+    frequency: NDArray[np.float64], ax: Axes | None, height: NDArray[np.float64] | None = None
+) -> Axes:
+    """Plot peaks as vertical lines over frequency."""
+    ax = new_axes(ax)
+    ax.vlines(frequency, 0.0, np.ones_like(frequency) if height is None else height)
+    ax.set(xlabel="frequency [Hz]", title="peaks")
+    return ax

@@ -1,0 +1,104 @@
+"""Tables: what every answer can show as text, HTML, CSV and data frame."""
+
+from __future__ import annotations
+
+import csv
+import html
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Table:
+    """Named columns with their units, in rows.
+
+    Attributes
+    ----------
+    title : str
+        What the table shows.
+    columns : tuple of str
+        Names, with units in brackets.
+    rows : tuple of tuple
+        Numbers, strings or None where there is nothing.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Any, ...], ...]
+
+    @staticmethod
+    def of(title: str, columns: Mapping[str, Sequence[Any] | np.ndarray[Any, Any]]) -> Table:
+        """Build a table from columns of equal length."""
+        values = [
+            np.asarray(c).tolist() if not isinstance(c, tuple) else c for c in columns.values()
+        ]
+        return Table(title, tuple(columns), tuple(zip(*values, strict=True)))
+
+    def column(self, name: str) -> tuple[Any, ...]:
+        """Return one column."""
+        at = self.columns.index(name)
+        return tuple(row[at] for row in self.rows)
+
+    def __str__(self) -> str:
+        cells = [list(self.columns)] + [[_text(v) for v in row] for row in self.rows]
+        widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
+        right = [all(not isinstance(row[k], str) for row in self.rows) for k in range(len(widths))]
+        lines = [
+            "  ".join(
+                cell.rjust(width) if number else cell.ljust(width)
+                for cell, width, number in zip(row, widths, right)
+            ).rstrip()
+            for row in cells
+        ]
+        rule = "  ".join("-" * width for width in widths)
+        return "\n".join([self.title, lines[0], rule, *lines[1:]])
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{html.escape(c)}</th>" for c in self.columns)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{html.escape(_text(v))}</td>" for v in row) + "</tr>"
+            for row in self.rows
+        )
+        caption = f"<caption>{html.escape(self.title)}</caption>"
+        return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    def to_csv(self) -> str:
+        """Return the table as comma-separated text with every digit."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows(self.rows)
+        return text.getvalue()
+
+    def to_records(self) -> list[dict[str, Any]]:
+        """Return one dictionary for each row."""
+        return [dict(zip(self.columns, row)) for row in self.rows]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a pandas data frame.
+
+        Raises
+        ------
+        ImportError
+            If pandas is missing; ``pip install 'ropedyn[io]'`` brings it.
+        """
+        from .extra import pandas
+
+        return pandas().DataFrame(list(self.rows), columns=list(self.columns))
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, complex):
+        return f"{value:.6g}"
+    return str(value)

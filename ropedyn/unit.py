@@ -1,0 +1,27 @@
+"""Units and names of coordinates and of their forces."""
+
+UNIT = {"x": "m", "z": "m", "alpha": "rad", "beta": "rad"}
+FORCE = {"x": "F_x", "z": "F_z", "alpha": "M_alpha", "beta": "M_beta"}
+FORCE_UNIT = {"x": "N", "z": "N", "alpha": "N m", "beta": "N m"}
+NAME = {
+    "x": "axial displacement",
+    "z": "transverse displacement",
+    "alpha": "twist",
+    "beta": "bending rotation",
+}
+FAMILY = {"x": "axial", "z": "transverse", "alpha": "torsional", "beta": "bending rotation"}
+QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
+"""How often the displacement is differentiated."""
+
+
+def label(
+    response: tuple[str, float], drive: str | None = None, quantity: str = "receptance"
+) -> str:
+    """Say what a response is, such as ``z at 0.500 m [m/N]``."""
+    coordinate, x = response
+    motion = UNIT[coordinate] + ("", "/s", "/s^2")[QUANTITIES[quantity]]
+    if drive is None:
+        return f"{coordinate} at {x:.3f} m [{motion}]"
+    force = FORCE_UNIT[drive]
+    per = f"{motion}/{force}" if " " not in force else f"{motion}/({force})"
+    return f"{coordinate} at {x:.3f} m [{per}]"
