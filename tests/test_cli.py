@@ -1,0 +1,115 @@
+"""The command line: output, exit status, messages."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import ropedyn as rd
+from ropedyn.cli import main
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    path = tmp_path / "rope.toml"
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=0.2, polar_inertia=1e-6)
+    rd.Scene(rope, tension=100.0, damping=rd.StiffnessDamping(1e-4)).save(path)
+    return path
+
+
+def model(path, elements=64):
+    return rd.Scene.load(path).compile(elements=elements)
+
+
+def test_modes_prints_the_frequencies_of_the_model(scene_file, capsys):
+    assert main(["modes", str(scene_file), "--modes", "3", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    frequency = [row["frequency [Hz]"] for row in rows]
+    assert frequency == model(scene_file).modes(3).frequency.tolist()
+
+
+def test_modes_prints_a_table_by_default(scene_file, capsys):
+    assert main(["modes", str(scene_file), "--modes", "2", "--elements", "8"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("natural frequencies\n")
+    assert len(out.splitlines()) == 5
+
+
+def test_frf_prints_every_line_as_csv(scene_file, capsys):
+    arguments = ["--frequency", "1:100:5", "--drive", "z@0.3", "--response", "beta@0.6", "--csv"]
+    assert main(["frf", str(scene_file), *arguments]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert rows[0].startswith("frequency [Hz],|beta at 0.600 m [rad/N]|,phase")
+    printed = np.array([float(row.split(",")[1]) for row in rows[1:]])
+    frf = model(scene_file).frf(np.linspace(1, 100, 5), drive=("z", 0.3), response=("beta", 0.6))
+    assert printed.tolist() == np.abs(frf.value[0]).tolist()
+
+
+def test_compare_pairs_the_peaks(scene_file, capsys):
+    assert main(["compare", str(scene_file), "--peaks", "20,41", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert [row["mode"] for row in rows] == [1, 2]
+    assert [row["measured [Hz]"] for row in rows] == [20.0, 41.0]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["modes", "--modes", "3"],
+        ["frf", "--frequency", "1:100:50", "--drive", "z@0.5"],
+        ["compare", "--peaks", "20,41"],
+    ],
+)
+def test_plot_writes_a_figure(scene_file, tmp_path, capsys, command):
+    figure = tmp_path / "figure.png"
+    name, *rest = command
+    assert main([name, str(scene_file), *rest, "--plot", str(figure)]) == 0
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (["modes", "nowhere.toml"], 2, "nowhere.toml"),
+        (["modes", "{}", "--elements", "0"], 2, "elements must be"),
+        (["modes", "{}", "--elements", "2", "--modes", "99"], 1, "number must be at most"),
+        (["frf", "{}", "--frequency", "1:2", "--drive", "z@0.5"], 2, "--frequency"),
+        (["frf", "{}", "--frequency", "5", "--drive", "z0.5"], 2, "--drive"),
+        (["frf", "{}", "--frequency", "5", "--drive", "q@0.5"], 2, "drive[0]"),
+        (["frf", "{}", "--frequency", "-5", "--drive", "z@0.5"], 2, "frequency[0]"),
+        (["compare", "{}", "--peaks", "a"], 2, "--peaks"),
+        (["modes", "{}", "--plot", "/nowhere/figure.png"], 2, "nowhere"),
+    ],
+)
+def test_bad_input_ends_with_a_message_and_a_status(scene_file, capsys, arguments, status, words):
+    given = [argument.format(scene_file) for argument in arguments]
+    assert main(given) == status
+    assert words in capsys.readouterr().err
+
+
+def test_unknown_command_ends_with_status_2():
+    with pytest.raises(SystemExit) as stopped:
+        main(["sing"])
+    assert stopped.value.code == 2
+
+
+def test_study_command_prints_and_draws(tmp_path, capsys):
+    assert main(["study", "--folder", str(tmp_path / "study")]) == 0
+    out = capsys.readouterr().out
+    assert "69.40    136.13  197.64" in out
+    assert len(list((tmp_path / "study").glob("*.png"))) == 4
+
+
+def test_module_is_the_command_line(tmp_path):
+    run = subprocess.run(
+        [sys.executable, "-m", "ropedyn", "modes", "missing.toml"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 2
+    assert "missing.toml" in run.stderr

@@ -1,0 +1,71 @@
+"""Plots: axes in, axes out, labels with units, no window and no pyplot."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import ropedyn as rd
+
+
+@pytest.fixture(scope="module")
+def model():
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=0.2, polar_inertia=1e-6)
+    return rd.Scene(rope, tension=100.0, damping=rd.StiffnessDamping(1e-4)).compile(elements=16)
+
+
+def answers(model):
+    frf = model.frf(np.linspace(1, 200, 400), drive=("z", 0.3), response=[("z", 0.5)])
+    return {
+        "modes": (model.modes(3), "position along the rope [m]", "transverse displacement [m]"),
+        "frf": (frf, "frequency [Hz]", "receptance, amplitude"),
+        "static": (
+            model.static({("z", 0.5): 1.0}),
+            "position along the rope [m]",
+            "share of the largest [1]",
+        ),
+        "compare": (rd.compare(model, rd.Peaks([20.0])), "measured [Hz]", "calculated [Hz]"),
+        "peaks": (rd.Peaks([20.0]), "frequency [Hz]", ""),
+        "resonances": (frf.peaks()[0], "frequency [Hz]", "amplitude of z at 0.500 m [m/N]"),
+    }
+
+
+@pytest.mark.parametrize("name", ["modes", "frf", "static", "compare", "peaks", "resonances"])
+def test_plot_returns_labelled_axes(model, name):
+    answer, xlabel, ylabel = answers(model)[name]
+    ax = answer.plot()
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (xlabel, ylabel)
+    assert ax.get_title()
+
+
+@pytest.mark.parametrize("name", ["modes", "frf", "static", "compare", "peaks", "resonances"])
+def test_plot_draws_into_given_axes(model, name):
+    ax = Figure().subplots()
+    assert answers(model)[name][0].plot(ax) is ax
+    assert ax.lines or ax.collections
+
+
+def test_curves_of_a_plot_are_the_values(model):
+    frf = model.frf([10.0, 20.0, 30.0], drive=("z", 0.3))
+    line = frf.plot().lines[0]
+    assert line.get_ydata().tolist() == np.abs(frf.value[0]).tolist()
+    assert line.get_label() == "z at 0.300 m [m/N]"
+
+
+def test_modes_plot_another_coordinate(model):
+    ax = model.modes(2).plot(coordinate="beta")
+    assert ax.get_ylabel() == "bending rotation [rad]"
+    with pytest.raises(rd.SceneError, match="coordinate must be one of"):
+        model.modes(2).plot(coordinate="x")
+
+
+def test_plotting_needs_no_pyplot():
+    code = (
+        "import sys, ropedyn as rd;"
+        "m = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=8);"
+        "m.modes(2).plot();"
+        "sys.exit('matplotlib.pyplot' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
