@@ -3,6 +3,7 @@
 
 #include "element.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { N = 2 * RD_WIDTH_MAX };
@@ -41,6 +42,7 @@ static enum rd_status add_elements(const struct rd_chain *chain, struct rd_assem
 enum rd_status rd_assemble(const struct rd_chain *chain, struct rd_assembly *assembly)
 {
     const size_t block = chain->width * chain->width;
+    assert(chain->nodes > 1 && chain->width > 0 && chain->width <= RD_WIDTH_MAX);
     const size_t bytes = chain->nodes * block * sizeof(double);
     assembly->nodes = chain->nodes;
     assembly->width = chain->width;

@@ -1,6 +1,7 @@
 /* Band matrices over the free coordinates of an assembly, as LAPACK stores them. */
 #include "band.h"
 
+#include <assert.h>
 #include <math.h>
 
 size_t rd_number_free(const struct rd_chain *chain, int32_t *number)
@@ -58,6 +59,7 @@ static bool coupling_entry(const struct rd_assembly *assembly, const int32_t *nu
 
 static void store(const struct rd_band *band, const double *factor, const struct entry *entry)
 {
+    assert(entry->j - entry->i < (int32_t)band->leading);
     const size_t i = (size_t)entry->i;
     const size_t j = (size_t)entry->j;
     double sum = 0;

@@ -47,8 +47,10 @@ static enum rd_status factorise(struct rd_deflection *deflection, double *condit
         norm = fmax(norm, column);
     }
     if (LAPACKE_dgbtrf_work(LAPACK_COL_MAJOR, n, n, reach, reach, deflection->matrix, leading,
-                            deflection->pivot) != 0)
+                            deflection->pivot) != 0) {
+        *condition = 0;
         return RD_SINGULAR;
+    }
     LAPACKE_dgbcon_work(LAPACK_COL_MAJOR, '1', n, reach, reach, deflection->matrix, leading,
                         deflection->pivot, norm, condition, deflection->work, deflection->integers);
     return *condition > DBL_EPSILON ? RD_OK : RD_SINGULAR;

@@ -1,12 +1,20 @@
 /* Small dense matrices, row by row. */
 #include "dense.h"
 
+static bool is_absent(size_t n, const double *A, size_t k)
+{
+    for (size_t j = 0; j < n; j++)
+        if (A[k * n + j] != 0)
+            return false;
+    return true;
+}
+
 /* Gauss-Jordan in place; without pivoting, which is stable for positive definite matrices. */
 bool rd_dense_invert(size_t n, double *A)
 {
     for (size_t k = 0; k < n; k++) {
         const double pivot = A[k * n + k];
-        if (pivot == 0)
+        if (is_absent(n, A, k))
             continue;
         if (!(pivot > 0))
             return false;

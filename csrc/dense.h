@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A (n, n) symmetric positive definite <- its inverse. Coordinates whose diagonal is zero are
-   taken as absent and stay zero. False where A is not positive definite; A is then destroyed. */
+/* A (n, n) symmetric positive definite <- its inverse. A coordinate whose row is zero is
+   absent and stays zero. False where A is not positive definite; A is then destroyed. */
 bool rd_dense_invert(size_t n, double *A);
 
 /* C (n, m) = A (n, k) B (k, m) */

@@ -3,6 +3,7 @@
 
 #include "dense.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -15,6 +16,7 @@ static const int power[RD_WIDTH_MAX] = {0, 1, 0, 0};
 
 struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i)
 {
+    assert(i < chain->distinct);
     return (struct rd_element){
         .kind = chain->kind,
         .width = chain->width,
@@ -120,12 +122,13 @@ enum rd_status rd_element_triple(const struct rd_element *element, double *F, do
     cantilever(element, element->length, element->length, G);
     memset(Q, 0, w * w * sizeof *Q);
     const size_t z = find(element, RD_Z);
-    if (z == w || element->tension == 0)
-        return RD_OK;
-    if (is_string(element)) {
+    if (z < w && is_string(element)) {
+        assert(element->tension > 0);
         G[z * w + z] = element->length / element->tension;
         return RD_OK;
     }
+    if (z == w || element->tension == 0)
+        return RD_OK;
     return stretch_in_parallel(element, F, G, Q);
 }
 
@@ -191,6 +194,7 @@ static bool tip_share(const struct rd_element *element, double s, double *share)
 /* u(s) = F(s) u_a + G(s, l) G^-1 (u_b - F u_a) */
 enum rd_status rd_element_shape(const struct rd_element *element, double s, double *shape)
 {
+    assert(0 <= s && s <= element->length);
     const size_t w = element->width;
     double F[W * W], Fs[W * W], share[W * W], carried[W * W];
     if (!tip_share(element, s, share))

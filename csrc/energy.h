@@ -15,7 +15,7 @@ enum rd_strain {
     RD_STRAINS
 };
 
-/* strain (RD_STRAINS) [J] of shape (nodes, width): elements by their end forces f,
+/* strain (RD_STRAINS) of shape (nodes, width), twice its energy [J]: elements by their end forces f,
    f^T G f = integral S (axial, torque, moment)^2, never by differences of stiffness products */
 enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain);
 

@@ -15,6 +15,7 @@
 #define LAPACKE_dgbtrs_work scipy_LAPACKE_dgbtrs_work
 #define LAPACKE_dpbcon_work scipy_LAPACKE_dpbcon_work
 #define LAPACKE_dpbtrf_work scipy_LAPACKE_dpbtrf_work
+#define LAPACKE_dsyev_work scipy_LAPACKE_dsyev_work
 #define LAPACKE_dsyevr_work scipy_LAPACKE_dsyevr_work
 #define LAPACKE_dtbtrs_work scipy_LAPACKE_dtbtrs_work
 #define LAPACKE_zgbtrf_work scipy_LAPACKE_zgbtrf_work

@@ -3,37 +3,12 @@
 
 #include "lapack.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 enum { W = RD_WIDTH_MAX, ATTEMPTS = 64 };
-
-/* rank of a symmetric matrix A (n, n), n <= W, by elimination with complete pivoting; entries
-   that cancel to a few eps of the largest count as zero */
-static size_t rank(size_t n, double *A)
-{
-    double largest = 0;
-    for (size_t k = 0; k < n * n; k++)
-        largest = fmax(largest, fabs(A[k]));
-    for (size_t step = 0; step < n; step++) {
-        size_t p = 0;
-        for (size_t k = 1; k < n * n; k++)
-            if (fabs(A[k]) > fabs(A[p]))
-                p = k;
-        if (fabs(A[p]) <= 4 * DBL_EPSILON * largest)
-            return step;
-        double row[W];
-        memcpy(row, A + p / n * n, n * sizeof *row);
-        const double pivot = A[p];
-        for (size_t i = 0; i < n; i++) {
-            const double factor = A[i * n + p % n] / pivot;
-            for (size_t j = 0; j < n; j++)
-                A[i * n + j] -= factor * row[j];
-        }
-    }
-    return n;
-}
 
 /* A <- A scaled so that no entry exceeds 1 and every inertia on the diagonal is 1: units and ratios
    of inertia do not hide a small one */
@@ -47,7 +22,7 @@ static void equilibrate(size_t n, double *A)
     for (size_t i = 0; i < n; i++) {
         double largest = 0;
         for (size_t j = 0; j < n; j++)
-            largest = fmax(largest, fabs(A[i * n + j]) * scale[j]);
+            largest = fmax(largest, fabs(A[i * n + j]) * (scale[j] > 0 ? scale[j] : 1));
         if (scale[i] == 0 && largest > 0)
             scale[i] = 1 / largest;
     }
@@ -56,6 +31,23 @@ static void equilibrate(size_t n, double *A)
             A[i * n + j] *= scale[i] * scale[j];
 }
 
+/* positive eigenvalues of A (n, n), n <= W, which is destroyed; what is within rounding of zero
+   counts as zero */
+static size_t positive(size_t n, double *A)
+{
+    double value[W], work[8 * W];
+    if (n == 0)
+        return 0;
+    equilibrate(n, A);
+    LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'N', 'L', (int)n, A, (int)n, value, work, 8 * W);
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        count += value[i] > 8 * DBL_EPSILON;
+    return count;
+}
+
+/* With K + s M positive definite there are as many mu > 0 as M has positive eigenvalues
+   (Sylvester), whatever the node they stand at. */
 static size_t count_finite(const struct rd_system *system)
 {
     const size_t w = system->assembly.width;
@@ -71,8 +63,7 @@ static size_t count_finite(const struct rd_system *system)
         for (size_t i = 0; i < n; i++)
             for (size_t j = 0; j < n; j++)
                 A[i * n + j] = mass[free[i] * w + free[j]];
-        equilibrate(n, A);
-        finite += rank(n, A);
+        finite += positive(n, A);
     }
     return finite;
 }
@@ -183,22 +174,25 @@ void rd_modes_transpose(struct rd_modes *modes)
 
 enum rd_status rd_modes_solve(struct rd_modes *modes, size_t wanted, double below, size_t *found)
 {
+    assert(wanted > 0 ? wanted <= modes->columns || modes->columns == modes->system.free
+                      : modes->columns == modes->system.free);
     const int n = (int)modes->system.free;
+    const int most = (int)(wanted < modes->finite ? wanted : modes->finite);
     *found = 0;
-    if (n == 0)
-        return RD_OK;
     /* lambda < below is mu > 1/(below + shift); at or under -shift there is nothing */
-    if (wanted == 0 && below + modes->shift <= 0)
+    const double limit = wanted > 0 ? 1 : 1 / (below + modes->shift);
+    if (modes->finite == 0 || !(limit > 0 && limit <= DBL_MAX))
         return RD_OK;
-    const double lowest = wanted == 0 ? 1 / (below + modes->shift) : 0;
     int count = 0;
     const int info = LAPACKE_dsyevr_work(
-        LAPACK_COL_MAJOR, 'V', wanted == 0 ? 'V' : 'I', 'L', n, modes->matrix, n, lowest, DBL_MAX,
-        wanted == 0 ? 1 : n - (int)wanted + 1, n, 0, &count, modes->value, modes->vector, n,
-        modes->support, modes->work, 128 * n, modes->integers, 10 * n);
+        LAPACK_COL_MAJOR, 'V', wanted > 0 ? 'I' : 'V', 'L', n, modes->matrix, n, limit, DBL_MAX,
+        wanted > 0 ? n - most + 1 : 1, n, 0, &count, modes->value, modes->vector, n, modes->support,
+        modes->work, 128 * n, modes->integers, 10 * n);
     if (info != 0)
         return RD_NO_CONVERGENCE;
-    *found = (size_t)count;
+    /* below those there are, a tiny mu is a coordinate without mass that rounding moved off 0 */
+    *found = (size_t)count < modes->finite ? (size_t)count : modes->finite;
+    modes->computed = (size_t)count;
     return RD_OK;
 }
 
@@ -228,14 +222,15 @@ static double rounding_of(const struct rd_modes *modes, double eigenvalue, doubl
     return DBL_EPSILON * (entries / fabs(mass) + shifted * shifted * largest);
 }
 
-void rd_modes_read(struct rd_modes *modes, size_t found, size_t k, double *eigenvalue,
-                   double *rounding, double *shape)
+void rd_modes_read(struct rd_modes *modes, size_t k, double *eigenvalue, double *rounding,
+                   double *shape)
 {
     const struct rd_system *system = &modes->system;
     const size_t n = system->free;
     const size_t entries = system->assembly.nodes * system->assembly.width;
     const int reach = (int)system->reach;
-    double *y = modes->vector + (found - 1 - k) * n;
+    const size_t at = modes->computed - 1 - k; /* mu ascends */
+    double *y = modes->vector + at * n;
     LAPACKE_dtbtrs_work(LAPACK_COL_MAJOR, 'L', 'T', 'N', (int)n, reach, 1, modes->band, reach + 1,
                         y, (int)n);
     for (size_t i = 0; i < entries; i++) {
@@ -244,7 +239,7 @@ void rd_modes_read(struct rd_modes *modes, size_t found, size_t k, double *eigen
         if (free >= 0)
             modes->size[free] = fabs(shape[i]);
     }
-    *eigenvalue = 1 / modes->value[found - 1 - k] - modes->shift;
+    *eigenvalue = 1 / modes->value[at] - modes->shift;
     const double mass = modal_mass(&system->assembly, shape);
-    *rounding = rounding_of(modes, *eigenvalue, modes->value[found - 1], mass);
+    *rounding = rounding_of(modes, *eigenvalue, modes->value[modes->computed - 1], mass);
 }

@@ -15,7 +15,7 @@
    of a coordinate without mass. */
 struct rd_modes {
     struct rd_system system;
-    size_t finite;     /* rank of M over the free coordinates: modes there are */
+    size_t finite;     /* positive eigenvalues of M over the free coordinates: modes there are */
     double shift;      /* s in use [rad^2/s^2] */
     double *band;      /* (free, reach + 1) K + s M, then L */
     double *matrix;    /* (free, free) M, then L^-1 M L^-T */
@@ -26,6 +26,7 @@ struct rd_modes {
     int32_t *integers; /* (10 free) */
     int32_t *support;  /* (2 free) */
     size_t columns;    /* the most modes that fit in `vector` */
+    size_t computed;   /* how many are there */
 };
 
 /* Takes the arrays for at most `columns` modes and counts the finite ones. */
@@ -42,13 +43,14 @@ enum rd_status rd_modes_factorise(struct rd_modes *modes, double scale);
 void rd_modes_reduce(struct rd_modes *modes, size_t start, size_t stop);
 void rd_modes_transpose(struct rd_modes *modes);
 
-/* The `wanted` lowest modes, or with wanted = 0 all below `below` [rad^2/s^2]:
-   found <- how many. RD_NO_CONVERGENCE where LAPACK gives up. */
+/* The `wanted` lowest modes as far as there are so many, or with wanted = 0 all below `below` [rad^2/s^2], for
+   which `columns` must have been SIZE_MAX: found <- how many. RD_NO_CONVERGENCE where LAPACK gives
+   up. */
 enum rd_status rd_modes_solve(struct rd_modes *modes, size_t wanted, double below, size_t *found);
 
-/* Mode k of those found, lowest first: eigenvalue and the estimated error of it that rounding in
-   the assembled matrices causes [rad^2/s^2]; shape (nodes, width), zero where held. */
-void rd_modes_read(struct rd_modes *modes, size_t found, size_t k, double *eigenvalue,
-                   double *rounding, double *shape);
+/* Mode k of those found, lowest first, once each: eigenvalue and the estimated error of it that
+   rounding in the assembled matrices causes [rad^2/s^2]; shape (nodes, width), zero where held. */
+void rd_modes_read(struct rd_modes *modes, size_t k, double *eigenvalue, double *rounding,
+                   double *shape);
 
 #endif

@@ -47,7 +47,7 @@ static PyObject *build(struct rd_modes *modes, size_t found)
         double *u = PyArray_DATA((PyArrayObject *)shapes);
         Py_BEGIN_ALLOW_THREADS
         for (size_t k = 0; k < found; k++)
-            rd_modes_read(modes, found, k, value + k, error + k, u + k * (size_t)(nodes * w));
+            rd_modes_read(modes, k, value + k, error + k, u + k * (size_t)(nodes * w));
         Py_END_ALLOW_THREADS
         result = PyTuple_Pack(3, eigenvalue, rounding, shapes);
     }
@@ -69,6 +69,10 @@ PyObject *py_modes(PyObject *module, PyObject *arguments)
         return NULL;
     if (py_chain_parse(object, &parsed) < 0)
         goto done;
+    if (wanted < 0) {
+        PyErr_SetString(PyExc_ValueError, "wanted must be >= 0");
+        goto done;
+    }
     const size_t columns = wanted > 0 ? (size_t)wanted : SIZE_MAX;
     rd_modes_prepare(&parsed.chain, columns, &modes, &workspace);
     if (py_workspace_allocate(&workspace) < 0)
@@ -78,13 +82,12 @@ PyObject *py_modes(PyObject *module, PyObject *arguments)
         py_raise(module, status);
         goto done;
     }
-    size_t count = wanted > 0 && (size_t)wanted < modes.finite ? (size_t)wanted : modes.finite;
     size_t found = 0;
-    if (count > 0) {
+    if (modes.finite > 0) {
         if (reduce(module, &modes, scale) < 0)
             goto done;
         Py_BEGIN_ALLOW_THREADS
-        status = rd_modes_solve(&modes, wanted > 0 ? count : 0, below, &found);
+        status = rd_modes_solve(&modes, (size_t)wanted, below, &found);
         Py_END_ALLOW_THREADS
         if (status != RD_OK) {
             py_raise(module, status);

@@ -10,14 +10,13 @@ enum rd_status rd_section_flexibility(const struct rd_section *section, double *
     const double C = section->torsion;
     const double B = section->bending;
     const double D = section->coupling;
-    const double H = section->slope;
-    if (EA < 0 || C < 0 || B < 0)
-        return RD_NOT_POSITIVE_DEFINITE;
-    if (D != 0 && !(EA * C > D * D))
+    const double H = C > 0 && B > 0 ? section->slope : 0;
+    const double left = D == 0 ? 1 : 1 - (D / EA) * (D / C);
+    if (EA < 0 || C < 0 || B < 0 || !(left > 0))
         return RD_NOT_POSITIVE_DEFINITE;
 
     /* the flexibility about the section's own axes: a axial, t torsion, b bending */
-    const double own = D == 0 ? 1 : 1 / (1 - (D / EA) * (D / C));
+    const double own = 1 / left;
     const double aa = EA > 0 ? own / EA : 0;
     const double tt = C > 0 ? own / C : 0;
     const double at = D == 0 ? 0 : -own * (D / EA) / C;

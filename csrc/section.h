@@ -9,7 +9,8 @@ struct rd_section {
     double torsion;  /* C [N m^2],  0: absent */
     double bending;  /* B [N m^2],  0: absent */
     double coupling; /* D [N m]     extension-twist */
-    double slope;    /* H [1]       tilt of the section axes: couples twist and bending */
+    double
+        slope; /* H [1]       tilt of the section axes: couples twist and bending where both are */
 };
 
 /* flexibility (3, 3): (axial strain, twist rate, curvature) = S (axial force, torque, moment),

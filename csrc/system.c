@@ -1,6 +1,7 @@
 /* A chain made ready for the assembled solvers. */
 #include "system.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum rd_status rd_system_prepare(const struct rd_chain *chain, struct rd_system *system,
@@ -31,6 +32,7 @@ enum rd_status rd_system_prepare(const struct rd_chain *chain, struct rd_system 
 void rd_port_load(const struct rd_system *system, const struct rd_ports *ports, size_t p,
                   size_t stride, double *load)
 {
+    assert(p < ports->count && (size_t)ports->node[p] + 1 < system->assembly.nodes);
     const size_t w = system->assembly.width;
     const int32_t *number = system->number + (size_t)ports->node[p] * w;
     const double *row = ports->row + p * 2 * w;
@@ -43,6 +45,7 @@ void rd_port_load(const struct rd_system *system, const struct rd_ports *ports, 
 double rd_port_read(const struct rd_system *system, const struct rd_ports *ports, size_t p,
                     size_t stride, const double *u)
 {
+    assert(p < ports->count && (size_t)ports->node[p] + 1 < system->assembly.nodes);
     const size_t w = system->assembly.width;
     const int32_t *number = system->number + (size_t)ports->node[p] * w;
     const double *row = ports->row + p * 2 * w;

@@ -212,7 +212,7 @@ def _solve_component(
     if lost:
         first = min([solved, *np.flatnonzero((motion[:solved] >= 1).any(axis=1))])
         raise SolveError(
-            f"frequency {frequency[first]!r} Hz has no correct digit in "
+            f"frequency {float(frequency[first])!r} Hz has no correct digit in "
             f"({', '.join(component)}): it lies on an undamped resonance, or "
             f"{len(model.x) - 1} elements are too many for the assembled stiffness"
         )

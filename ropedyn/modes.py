@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
 """What stores strain energy, in the core's order."""
 
-LARGEST_DENSE = 12_000
+LARGEST_DENSE = 8_000
 """Unknowns above which the dense matrix of the assembled solver, 8 n^2 bytes, is refused."""
 
 

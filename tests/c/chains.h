@@ -1,0 +1,57 @@
+/* Chains for tests: a uniform rope from a recipe, every array of its own exact size. */
+#ifndef CHAINS_H
+#define CHAINS_H
+
+#include "chain.h"
+#include "section.h"
+#include "workspace.h"
+
+/* What the nodes of a chain carry: term 0 the left end, 1 the inner nodes, 2 the right end, and
+   from there `more` free copies of term 1 for the test to change. */
+enum { LEFT_END, INNER, RIGHT_END, MORE };
+
+struct recipe {
+    enum rd_kind kind;
+    size_t elements;
+    const char *coordinates; /* of "xzab", increasing: x, z, alpha, beta */
+    double length;           /* [m] of one element */
+    double tension;          /* [N] */
+    struct rd_section section;
+    double inertia[RD_WIDTH_MAX]; /* of an inner node by enum rd_coordinate; ends carry half */
+    const char *left, *right;     /* held coordinates of the ends, "" where free */
+    size_t distinct;              /* copies of the element for the test to change, 0: one */
+    size_t more;
+};
+
+/* a chain whose arrays may be changed before it is used */
+struct rope {
+    struct rd_chain chain; /* views of: */
+    int32_t *coordinate;
+    double *length;
+    double *tension;
+    double *flexibility;
+    int32_t *element_of;
+    double *mass;
+    double *stiffness;
+    uint8_t *held;
+    int32_t *term_of;
+};
+
+struct rope rope_make(const struct recipe *recipe);
+void rope_free(struct rope *rope);
+
+/* position of coordinate 'x', 'z', 'a' or 'b' in a node of the chain */
+size_t rope_find(const struct rd_chain *chain, char coordinate);
+
+/* K or M (n, n), n = nodes width, from rd_element_stiffness and the node terms, entry by entry;
+   the caller's to free. part: what of it, e.g. { [RD_ELASTIC] = 1 } */
+double *rope_dense(const struct rd_chain *chain, const double *part);
+
+/* an empty workspace of exactly `bytes` at the end of a block of its own, so that valgrind and
+   AddressSanitizer see every byte written outside; free(workspace.base) */
+struct rd_workspace exact_workspace(size_t bytes);
+
+/* `count` numbers of zero, the caller's to free */
+double *zeros(size_t count);
+
+#endif
