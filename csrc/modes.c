@@ -209,7 +209,8 @@ static double modal_mass(const struct rd_assembly *assembly, const double *shape
 }
 
 /* Relative errors eps in the entries of K + s M change lambda by at most
-   eps |x|^T |K + s M| |x| / x^T M x, and the dense solver errs by eps of the largest mu. */
+   eps |x|^T |K + s M| |x| / x^T M x, and the dense solver errs by eps of the largest mu; where that
+   leaves no digit, as far above a very heavy mass, nothing is known. */
 static double rounding_of(const struct rd_modes *modes, double eigenvalue, double largest,
                           double mass)
 {
@@ -219,7 +220,8 @@ static double rounding_of(const struct rd_modes *modes, double eigenvalue, doubl
     const double entries =
         rd_band_rounding(&system->assembly, size, system->number, modes->size, modes->size);
     const double shifted = eigenvalue + modes->shift;
-    return DBL_EPSILON * (entries / fabs(mass) + shifted * shifted * largest);
+    const double lost = DBL_EPSILON * shifted * largest;
+    return lost < 0.1 ? DBL_EPSILON * entries / fabs(mass) + lost * shifted : INFINITY;
 }
 
 void rd_modes_read(struct rd_modes *modes, size_t k, double *eigenvalue, double *rounding,

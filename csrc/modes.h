@@ -10,7 +10,7 @@
        L^-1 M L^-T y = mu y,   x = L^-T y,   lambda = 1/mu - s.
 
    The lowest frequencies are then the largest mu, which the dense solver gets to the last digits
-   of its matrix: at 64 clamped elements this keeps 2e-12 of f1 where solving K x = lambda M x,
+   of its matrix: at 64 clamped elements this keeps 2e-12 to 2e-11 of f1 where solving K x = lambda M x,
    dense or banded, keeps 1e-10. M may be singular or indefinite: mu = 0 is the infinite frequency
    of a coordinate without mass. */
 struct rd_modes {
@@ -49,7 +49,7 @@ void rd_modes_transpose(struct rd_modes *modes);
 enum rd_status rd_modes_solve(struct rd_modes *modes, size_t wanted, double below, size_t *found);
 
 /* Mode k of those found, lowest first, once each: eigenvalue and the estimated error of it that
-   rounding in the assembled matrices causes [rad^2/s^2]; shape (nodes, width), zero where held. */
+   rounding in the assembled matrices causes [rad^2/s^2], INFINITY where no digit is left; shape (nodes, width), zero where held. */
 void rd_modes_read(struct rd_modes *modes, size_t k, double *eigenvalue, double *rounding,
                    double *shape);
 

@@ -90,6 +90,14 @@ static int element_at(const struct rd_chain *chain, Py_ssize_t index, struct rd_
     return 0;
 }
 
+static int check_distance(const struct rd_element *element, double s, const char *name)
+{
+    if (0 <= s && s <= element->length)
+        return 0;
+    PyErr_Format(PyExc_ValueError, "%s must lie between 0 and the length of the element", name);
+    return -1;
+}
+
 PyObject *py_shape(PyObject *module, PyObject *arguments)
 {
     struct py_chain parsed = {0};
@@ -99,7 +107,8 @@ PyObject *py_shape(PyObject *module, PyObject *arguments)
     double s;
     if (!PyArg_ParseTuple(arguments, "Ond", &object, &index, &s))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
+        check_distance(&element, s, "s") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;
     shape = py_new(NPY_DOUBLE, 3, (npy_intp[]){w, 2, w});
@@ -125,7 +134,8 @@ PyObject *py_local(PyObject *module, PyObject *arguments)
     double s, p;
     if (!PyArg_ParseTuple(arguments, "Ondd", &object, &index, &s, &p))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
+        check_distance(&element, s, "s") < 0 || check_distance(&element, p, "p") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;
     local = py_new(NPY_DOUBLE, 2, (npy_intp[]){w, w});

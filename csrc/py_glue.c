@@ -68,9 +68,35 @@ static int check_range(PyArrayObject *array, size_t bound, const char *name)
 
 enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, ELEMENT_OF, MASS, STIFFNESS, HELD, TERM_OF };
 
+/* what the core asserts of the numbers */
+static int check_values(const struct rd_chain *chain)
+{
+    bool string = false;
+    for (size_t k = 0; k < chain->width; k++) {
+        string = string || chain->coordinate[k] == RD_Z;
+        string = string && chain->coordinate[k] != RD_BETA;
+    }
+    for (size_t k = 0; k < chain->distinct; k++) {
+        if (!(chain->length[k] > 0)) {
+            PyErr_Format(PyExc_ValueError, "length[%zd] must be > 0", (Py_ssize_t)k);
+            return -1;
+        }
+        if (string && !(chain->tension[k] > 0)) {
+            PyErr_Format(PyExc_ValueError, "tension[%zd] must be > 0 without bending",
+                         (Py_ssize_t)k);
+            return -1;
+        }
+    }
+    return 0;
+}
+
 static int check_indices(const struct py_chain *parsed)
 {
     const struct rd_chain *chain = &parsed->chain;
+    if (chain->kind != RD_DIFFERENCE && chain->kind != RD_RIGID) {
+        PyErr_Format(PyExc_ValueError, "kind must be 0 or 1, got %d", (int)chain->kind);
+        return -1;
+    }
     for (size_t k = 1; k < chain->width; k++)
         if (chain->coordinate[k] <= chain->coordinate[k - 1]) {
             PyErr_SetString(PyExc_ValueError, "coordinate must increase");
@@ -86,7 +112,9 @@ static int check_indices(const struct py_chain *parsed)
         return -1;
     if (check_range(parsed->array[ELEMENT_OF], chain->distinct, "element_of") < 0)
         return -1;
-    return check_range(parsed->array[TERM_OF], chain->terms, "term_of");
+    if (check_range(parsed->array[TERM_OF], chain->terms, "term_of") < 0)
+        return -1;
+    return check_values(chain);
 }
 
 int py_chain_parse(PyObject *object, struct py_chain *parsed)

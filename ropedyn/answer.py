@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from . import check
 from .atomic import replacing
 from .errors import SceneError
 from .table import Table
@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.axes import Axes
+
+
+KIND = "ropedyn"
+"""Attribute of a file that says which answer it holds."""
+
+PREFIX = "ropedyn_"
+"""Of the attributes that hold fields: netCDF gives some names, as "coordinates", a meaning."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +59,17 @@ def axes(*names: str, unit: str = "", keyed: bool = False) -> dict[str, Any]:
     return {"axes": names, "unit": unit, "keyed": keyed}
 
 
+def freeze(thing: Any) -> None:
+    """Make the arrays that something holds read-only; a pickle or a copy forgets that."""
+    for value in vars(thing).values():
+        many = value.values() if isinstance(value, dict) else value
+        for array in many if isinstance(many, (Iterable, tuple)) else ():
+            if isinstance(array, np.ndarray):
+                array.flags.writeable = False
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+
+
 class Answer:
     """Base of the answers: frozen dataclasses whose array fields are declared with `axes`."""
 
@@ -61,10 +79,11 @@ class Answer:
         Answer.kinds[cls.__name__] = cls
 
     def __post_init__(self) -> None:
-        for value in vars(self).values():
-            for array in value.values() if isinstance(value, dict) else (value,):
-                if isinstance(array, np.ndarray):
-                    array.flags.writeable = False
+        freeze(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
 
     def table(self) -> Table:
         """Return the answer as a table."""
@@ -111,18 +130,19 @@ class Answer:
         from .extra import xarray
 
         variables: dict[str, Any] = {}
-        attributes: dict[str, Any] = {"ropedyn": type(self).__name__}
+        attributes: dict[str, Any] = {KIND: type(self).__name__}
         for item in fields(self):  # type: ignore[arg-type]
             value = getattr(self, item.name)
             if "axes" not in item.metadata:
-                attributes[item.name] = json.dumps(_plain(value))
+                attributes[PREFIX + item.name] = json.dumps(_plain(value))
                 continue
             names, unit = item.metadata["axes"], {"units": item.metadata["unit"]}
             if item.metadata["keyed"]:
                 for key, array in value.items():
                     variables[f"{item.name}.{key}"] = (names, array, unit)
             else:
-                variables[item.name] = (names, value, unit)
+                # a leading axis that was not asked for is not there
+                variables[item.name] = (names[len(names) - np.ndim(value) :], value, unit)
         return xarray().Dataset(variables, attrs=attributes)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -140,6 +160,10 @@ class Answer:
         OSError
             If the file cannot be written.
         """
+        from .extra import netcdf
+
+        check.path(path)
+        netcdf()
         dataset = self.to_xarray()
         # netCDF knows no complex numbers: real and imaginary parts along a last axis
         for name in [n for n, v in dataset.data_vars.items() if np.iscomplexobj(v)]:
@@ -172,30 +196,34 @@ def load(path: str | os.PathLike[str]) -> Answer:
     SceneError
         If it holds no answer of ropedyn.
     """
-    from .extra import xarray
+    from .extra import netcdf
 
-    file = Path(path)
+    file = check.path(path)
+    xarray = netcdf()
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
     try:
-        with xarray().open_dataset(file, engine="h5netcdf") as opened:
+        with xarray.open_dataset(file, engine="h5netcdf") as opened:
             dataset = opened.load()
     except (OSError, ValueError) as error:
         raise SceneError(f"path must be a netCDF file, got {str(file)!r}: {error}") from error
-    kind = Answer.kinds.get(dataset.attrs.get("ropedyn", ""))
+    kind = Answer.kinds.get(str(dataset.attrs.get(KIND, "")))
     if kind is None:
         raise SceneError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
     try:
         return _rebuilt(kind, dataset)
-    except KeyError as error:
-        raise SceneError(f"{file} is incomplete: {error} is missing") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise SceneError(
+            f"path must be a file that Answer.save wrote and nobody changed, got {str(file)!r}: "
+            f"{error!r}"
+        ) from error
 
 
 def _rebuilt(kind: type[Answer], dataset: Any) -> Answer:
     arguments: dict[str, Any] = {}
     for item in fields(kind):  # type: ignore[arg-type]
         if "axes" not in item.metadata:
-            value = json.loads(dataset.attrs[item.name])
+            value = json.loads(dataset.attrs[PREFIX + item.name])
             arguments[item.name] = Cost(**value) if item.name == "cost" else _frozen(value)
         elif item.metadata["keyed"]:
             start = item.name + "."

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Sequence
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,9 +18,16 @@ COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
 
 
+HIGHEST = 1e150
+"""Of frequencies [Hz], so that squares do not overflow."""
+
+
 def shown(value: object) -> str:
     """Show a value in a message, on one line and not too long."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # Python does not print the longest whole numbers
+        text = f"{type(value).__name__} of too many digits"
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -132,6 +141,17 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
     return array
 
 
+def frequencies(value: Any) -> NDArray[np.float64]:
+    """Return frequencies [Hz] whose squares do not overflow."""
+    f = numbers(value, "frequency", "Hz", sign="nonnegative")
+    if f.max() > HIGHEST:
+        where = int(f.argmax())
+        raise SceneError(
+            f"frequency[{where}] must be at most {HIGHEST:g} Hz, got {float(f[where])!r}"
+        )
+    return f
+
+
 def point(value: Any, name: str, present: Sequence[str], length: float) -> tuple[str, float]:
     """Return a coordinate and a position on the rope, such as ("z", 0.5)."""
     what = 'a coordinate and a position [m] such as ("z", 0.5)'
@@ -146,6 +166,12 @@ def point(value: Any, name: str, present: Sequence[str], length: float) -> tuple
             f"got {coordinate!r}"
         )
     return coordinate, position(value[1], f"{name}[1]", length)
+
+
+def path(value: Any) -> Path:
+    """Return the path of a file."""
+    instance(value, "path", (str, os.PathLike), "the path of a file")
+    return Path(value)
 
 
 def position(value: Any, name: str, length: float) -> float:

@@ -13,7 +13,7 @@ from .answer import Answer, axes
 from .errors import SceneError
 from .frf import FRF
 from .model import Model
-from .modes import Modes
+from .modes import Modes, solve_modes
 from .peaks import Peaks
 from .table import Table
 
@@ -125,10 +125,7 @@ def compare(calculated: Model | Modes | FRF, measured: Peaks) -> Comparison:
 def _frequencies(calculated: Model | Modes | FRF, measured: Peaks) -> NDArray[np.float64]:
     """Return the calculated peaks that measured ones may be [Hz]."""
     if isinstance(calculated, Model):
-        if measured.order is not None:
-            calculated = calculated.modes(max(measured.order))
-        else:
-            calculated = calculated.modes(below=2 * float(np.max(measured.frequency)))
+        calculated = _enough_modes(calculated, measured)
     if isinstance(calculated, Modes):
         found = calculated.frequency[calculated.frequency > 0]
     else:
@@ -136,6 +133,18 @@ def _frequencies(calculated: Model | Modes | FRF, measured: Peaks) -> NDArray[np
     if len(found) == 0:
         raise SceneError("calculated must have at least one peak, got none")
     return found
+
+
+def _enough_modes(model: Model, measured: Peaks) -> Modes:
+    """Return every mode that may be the partner of a measured peak."""
+    peaks = np.asarray(measured.frequency)
+    if measured.order is not None:
+        number = max(measured.order)
+    else:
+        # those below the highest peak, and above it one for each
+        number = len(model.modes(below=float(peaks.max())).frequency) + len(peaks)
+    rigid = len(model.coordinates) + 1
+    return solve_modes(model, number + rigid, below=None, solver="lapack", strict=False)
 
 
 def _paired(peaks: NDArray[np.float64], found: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -32,6 +32,11 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
     stations = mesh.stations(scene.rope.length, (part.x for part in scene.parts))
     spans = np.diff(stations)
     counts = mesh.shares(spans, elements)
+    if not (spans / counts > 0).all():
+        raise SceneError(
+            f"elements must be longer than the smallest number, got {elements} on "
+            f"{scene.rope.length!r} m"
+        )
     chain = Chain(
         kind,
         np.array([check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32),

@@ -21,6 +21,12 @@ def pandas() -> ModuleType:
 
 
 def xarray() -> ModuleType:
-    """Import xarray and what it writes netCDF with."""
-    _need("h5netcdf")
+    """Import xarray."""
     return _need("xarray")
+
+
+def netcdf() -> ModuleType:
+    """Import xarray and make sure of what it reads and writes netCDF with."""
+    _need("h5netcdf")
+    _need("h5py")
+    return xarray()

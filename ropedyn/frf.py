@@ -48,8 +48,8 @@ class FRF(Answer):
     response: tuple[Point, ...]
     quantity: str
     frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
-    value: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
-    rounding_error: NDArray[np.float64] = field(metadata=axes("response", "frequency"))
+    value: NDArray[np.complex128] = field(metadata=axes("drive", "response", "frequency"))
+    rounding_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
 
     @property
@@ -58,7 +58,15 @@ class FRF(Answer):
         return tuple(label(r, self.drive[0][0], self.quantity) for r in self.response)
 
     def curve(self, response: int = 0, drive: int = 0) -> NDArray[np.complex128]:
-        """Return one response to one drive, shape (f,)."""
+        """Return one response to one drive, shape (f,).
+
+        Raises
+        ------
+        TypeError, SceneError
+            If a number is none of those there are.
+        """
+        check.count(response, "response", least=0, most=len(self.response) - 1)
+        check.count(drive, "drive", least=0, most=len(self.drive) - 1)
         return self.value[response] if self.value.ndim == 2 else self.value[drive, response]
 
     def to(self, quantity: str) -> FRF:
@@ -111,7 +119,13 @@ class FRF(Answer):
         -------
         tuple of Resonances
             Frequency [Hz], amplitude and damping ratio of each peak.
+
+        Raises
+        ------
+        TypeError, SceneError
+            If the drive is none of those there are.
         """
+        check.count(drive, "drive", least=0, most=len(self.drive) - 1)
         return tuple(
             resonances(self.frequency, self.curve(r, drive), self.quantity, self.labels[r])
             for r in range(len(self.response))
@@ -149,7 +163,7 @@ def solve_frf(
     """Compute the frequency response; see `Model.frf`."""
     check.one_of(solver, "solver", ("lapack",))
     check.one_of(quantity, "quantity", QUANTITIES)
-    f = check.numbers(frequency, "frequency", "Hz", sign="nonnegative")
+    f = check.frequencies(frequency)
     drives, several = _points(model, drive, "drive")
     responses = drives if response is None else _points(model, response, "response")[0]
     value = np.zeros((len(f), len(drives), len(responses)), dtype=np.complex128)
@@ -220,6 +234,10 @@ def _solve_component(
         for r, watched in enumerate(responses):
             which, flexibility = _local(model, component, pushed, watched)
             value[:, d, r] += flexibility / factor[:, which]
+    bad = ~np.isfinite(value).all(axis=(1, 2)) | np.isnan(rounding).any(axis=(1, 2))
+    if bad.any():
+        first = float(frequency[bad][0])
+        raise SolveError(f"the numbers overflow at the frequency {first!r} Hz: check the units")
     return value, rounding
 
 

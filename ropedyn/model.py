@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .answer import freeze
 from .chain import Chain
 from .scene import Scene
 
@@ -68,6 +69,10 @@ class Model:
     components: tuple[tuple[str, ...], ...]
     x: NDArray[np.float64]
     chain: Chain
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
 
     @property
     def size(self) -> int:
@@ -135,7 +140,7 @@ class Model:
         solver : {"lapack"}
             Assembles the matrices and reduces them to a dense symmetric problem (see
             csrc/modes.h). The assembled stiffness loses digits as n^4: of the first frequency of
-            a clamped beam about 12 are right with 64 elements, 8 with 512, 6 with 1024. The time
+            a clamped beam about 11 are right with 64 elements, 8 with 512, 6 with 1024. The time
             grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
             of a minute for so many, does not stop for Ctrl-C.
 

@@ -68,7 +68,7 @@ def resonances(
     Parameters
     ----------
     frequency : ndarray, shape (f,)
-        [Hz], increasing.
+        [Hz], in any order.
     value : ndarray of complex, shape (f,)
         The response.
     quantity : str
@@ -82,11 +82,15 @@ def resonances(
     """
     from scipy.signal import find_peaks
 
+    frequency, first = np.unique(frequency, return_index=True)
+    value = value[first]
     at, _ = find_peaks(np.abs(value))
     omega = 2 * np.pi * frequency
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = (1j * omega) ** QUANTITIES[quantity] / value
-    before, after = at - 1, at + 1
+    # at 0 Hz a velocity or an acceleration is 0 and says nothing
+    before = np.where(np.isfinite(inverse[at - 1]), at - 1, at)
+    after = at + 1
     slope = (inverse[after] - inverse[before]) / (omega[after] ** 2 - omega[before] ** 2)
     zero = omega[at] ** 2 - inverse[at] / slope
     natural = np.sqrt(np.maximum(zero.real, 0.0))

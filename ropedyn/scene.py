@@ -205,7 +205,7 @@ class Scene:
         kept = tuple(d for d in self.dampings if d.kind not in effects)
         return bare.replace(
             ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
-            damping=kept if isinstance(self.damping, tuple) and kept else (*kept, None)[0],
+            damping=kept,
             parts=tuple(
                 part
                 for part in self.parts
@@ -305,8 +305,13 @@ def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
     if isinstance(damping, (tuple, list)):
         for i, one in enumerate(damping):
             check.instance(one, f"damping[{i}]", _damping.KINDS, names)
-        return tuple(damping) or None
+        return _sum_of(tuple(damping))
     raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
+
+
+def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
+    """Return a sum as a scene holds it: one term is itself, none is None."""
+    return dampings if len(dampings) > 1 else (*dampings, None)[0]
 
 
 def _checked_parts(parts: Any) -> tuple[Part, ...]:

@@ -6,7 +6,6 @@ import dataclasses
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from . import check, damping, part
@@ -19,10 +18,10 @@ from .scene import Scene
 
 def load(path: str | os.PathLike[str]) -> Scene:
     """Read a scene; see `Scene.load`."""
-    file = Path(path)
+    file = check.path(path)
     try:
         document = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:  # not TOML, not UTF-8, or a number of thousands of digits
         raise SceneError(f"{file} is not a TOML file: {error}") from error
     try:
         return _scene(document)
@@ -34,6 +33,7 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     """Write a scene; see `Scene.save`."""
     import tomli_w
 
+    check.path(path)
     document: dict[str, Any] = {
         "tension": scene.tension,
         "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
@@ -73,8 +73,8 @@ def _scene(document: Mapping[str, Any]) -> Scene:
         arguments["ends"] = _ends(document["ends"])
     if "damping" in document:
         given = document["damping"]
-        many = _each(given if isinstance(given, list) else [given], "damping", damping.KINDS)
-        arguments["damping"] = many[0] if len(many) == 1 else many
+        many = given if isinstance(given, list) else [given]
+        arguments["damping"] = _each(many, "damping", damping.KINDS)
     if "parts" in document:
         arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
     return Scene(**arguments)

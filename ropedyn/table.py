@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import check
+from .errors import SceneError
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -36,14 +39,18 @@ class Table:
     @staticmethod
     def of(title: str, columns: Mapping[str, Sequence[Any] | np.ndarray[Any, Any]]) -> Table:
         """Build a table from columns of equal length."""
+        check.instance(columns, "columns", Mapping, "a mapping from names to columns")
         values = [
             np.asarray(c).tolist() if not isinstance(c, tuple) else c for c in columns.values()
         ]
-        return Table(title, tuple(columns), tuple(zip(*values, strict=True)))
+        if len({len(column) for column in values}) > 1:
+            lengths = {name: len(column) for name, column in zip(columns, values)}
+            raise SceneError(f"columns must have equal lengths, got {lengths}")
+        return Table(title, tuple(columns), tuple(zip(*values)))
 
     def column(self, name: str) -> tuple[Any, ...]:
         """Return one column."""
-        at = self.columns.index(name)
+        at = self.columns.index(check.one_of(name, "name", self.columns))
         return tuple(row[at] for row in self.rows)
 
     def __str__(self) -> str:
