@@ -1,0 +1,62 @@
+"""Helpers of the tests: reference numbers and matrices for reading."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+from hypothesis import settings
+
+import ropedyn as rd
+
+# the same examples in every run; a slow machine is no failure
+settings.register_profile("ropedyn", max_examples=40, deadline=None, derandomize=True)
+settings.register_profile("search", max_examples=1500, deadline=None)
+settings.load_profile("ropedyn")
+
+EPS = float(np.finfo(float).eps)
+LENGTH, BENDING, MASS = 1.35, 54.626, 0.13725
+"""Of the beam in the reference files [m, N m^2, kg]."""
+
+
+def reference(name):
+    """Read tests/reference/<name>.json; each file names its source."""
+    return json.loads((Path(__file__).parent / "reference" / f"{name}.json").read_text())
+
+
+def beam(elements, *, tension=0.0, ends=("clamped", "clamped"), rotary=True, **more):
+    """Return the beam of the reference files, rotary inertia mu (L/n)^2/12 as there."""
+    density = MASS / LENGTH
+    turning = density * (LENGTH / elements) ** 2 / 12 if rotary else None
+    rope = rd.Rope(LENGTH, density, bending_stiffness=BENDING, rotary_inertia=turning)
+    return rd.Scene(rope, tension=tension, ends=ends, **more)
+
+
+def pinned_rigid_chain(elements, wave, tension=0.0):
+    """Return the two eigenvalues of k half waves on the pinned chain of `beam` [rad^2/s^2].
+
+    With c = cos(k pi/n), tau = T a^2/B the amplitudes of z/a and beta obey
+    [[24 (1 - c) + 2 tau (1 - c) - lambda, 12 s], [12 s, 8 + 4 c - lambda/12]], s = sin(k pi/n),
+    whose determinant vanishes: ../shared/reference/rigid_chain_exact.json, pinned ends.
+    """
+    a = LENGTH / elements
+    angle = wave * math.pi / elements
+    versed = 2 * math.sin(angle / 2) ** 2
+    tau = tension * a * a / BENDING
+    p, q = (24 + 2 * tau) * versed, 12 * (12 - 4 * versed)
+    # p q - 12 (12 s)^2 without cancellation: s^2 = versed (2 - versed)
+    product = versed * versed * 576 + 2 * tau * versed * q
+    half = (p + q) / 2
+    large = half + math.sqrt(half * half - product)
+    unit = BENDING / (MASS / LENGTH * a**4)
+    return np.array([product / large, large]) * unit
+
+
+def dense(model):
+    """Return stiffness, mass and damping matrix as arrays."""
+    return model.stiffness().toarray(), model.mass().toarray(), model.damping().toarray()
+
+
+def free(model):
+    """Return which coordinates can move, shape (nodes, coordinates)."""
+    return model.chain.held[model.chain.term_of] == 0

@@ -1,0 +1,105 @@
+"""How the elements are shared out over the spans."""
+
+import itertools
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ropedyn as rd
+from ropedyn import mesh
+
+
+def every_distribution(elements, spans):
+    """All ways to give each span at least one element."""
+    for cut in itertools.combinations(range(1, elements), spans - 1):
+        yield np.diff((0, *cut, elements))
+
+
+@given(
+    st.lists(st.integers(1, 30), min_size=1, max_size=4),
+    st.integers(0, 9),
+)
+def test_longest_element_is_as_short_as_any_distribution_makes_it(lengths, more):
+    elements = len(lengths) + more
+    counts = mesh.shares(np.array(lengths, dtype=float), elements)
+
+    def longest(shares):
+        return max(Fraction(length, int(n)) for length, n in zip(lengths, shares))
+
+    best = min(longest(shares) for shares in every_distribution(elements, len(lengths)))
+    assert counts.sum() == elements
+    assert counts.min() >= 1
+    # whole lengths: compared without rounding
+    assert longest(counts) == best
+
+
+@given(st.lists(st.floats(1e-6, 1.0), min_size=1, max_size=12), st.integers(0, 5000))
+def test_taking_an_element_from_a_span_never_helps_another(lengths, more):
+    # the longest element could only be shortened by an element from a span whose own would then
+    # stay below it
+    lengths = np.array(lengths)
+    counts = mesh.shares(lengths, len(lengths) + more)
+    longest = (lengths / counts).max()
+    spare = counts > 1
+    assert (lengths[spare] / (counts[spare] - 1) >= longest * (1 - 1e-15)).all()
+    assert counts.sum() == len(lengths) + more
+
+
+@pytest.mark.parametrize("spans", [1, 2, 3, 7])
+def test_equal_spans_get_equal_shares(spans):
+    assert (mesh.shares(np.full(spans, 0.3), 5 * spans) == 5).all()
+
+
+@pytest.mark.parametrize(
+    ("lengths", "elements", "expected"),
+    [
+        ([1.0, 3.0], 4, [1, 3]),
+        ([1.0, 3.0], 8, [2, 6]),
+        ([1e-6, 1.0], 5, [1, 4]),
+        ([0.3, 0.4, 0.3], 10, [3, 4, 3]),
+        ([1.0, 1.0, 1e-9], 3, [1, 1, 1]),
+    ],
+)
+def test_shares_are_proportional_where_they_can_be(lengths, elements, expected):
+    np.testing.assert_array_equal(mesh.shares(np.array(lengths), elements), expected)
+
+
+def test_fewer_elements_than_spans_are_refused():
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=[rd.PointMass(0.3, 1.0)])
+    with pytest.raises(rd.SceneError, match=r"elements must be at least 2.*got 1"):
+        scene.compile(elements=1)
+
+
+def test_nodes_stand_at_every_station_and_evenly_between():
+    parts = [rd.Spring(0.3, 1.0), rd.PointMass(0.8, 0.1), rd.Support(0.3, coordinate="z")]
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=parts).compile(elements=10)
+    expected = [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+    np.testing.assert_allclose(model.x, expected, rtol=2.3e-16, atol=0)
+    assert model.x[3] == 0.3
+    assert model.x[8] == 0.8
+    assert model.x[0] == 0.0
+    assert model.x[-1] == 1.0
+
+
+@pytest.mark.parametrize("away", [0.9e-9, -0.9e-9, 0.0])
+def test_stations_within_a_billionth_of_the_length_are_one(away):
+    parts = [rd.PointMass(0.5, 0.1), rd.PointMass(0.5 + away, 0.2), rd.PointMass(abs(away), 7.0)]
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=parts).compile(elements=2)
+    assert len(model.x) == 3
+    # both masses and half of each element stand there
+    assert model.mass().toarray()[0, 0] == pytest.approx(0.3 + 0.05, rel=1e-15)
+
+
+@given(st.lists(st.floats(0.01, 0.99), max_size=5), st.integers(6, 40))
+def test_lumping_keeps_the_mass_of_the_rope(positions, elements):
+    parts = [rd.PointMass(x, 0) for x in positions]
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, rotary_inertia=0.003)
+    scene = rd.Scene(rope, ends=("free", "free"), parts=parts)
+    mass = scene.compile(elements=elements).mass().diagonal()
+    # sums of up to 40 numbers
+    assert mass[0::2].sum() == pytest.approx(0.1, rel=1e-14)
+    assert mass[1::2].sum() == pytest.approx(0.003, rel=1e-14)
+    assert (mass > 0).all()

@@ -1,0 +1,213 @@
+"""Static deflection: textbook values, equilibrium, critical and unheld ropes."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import EPS, dense, free
+
+import ropedyn as rd
+
+L, B, C, EA = 2.0, 7.0, 3.0, 500.0
+BEAM = rd.Rope(L, 0.1, bending_stiffness=B)
+HINGED = rd.End(beta="free")
+
+
+def digits(elements):
+    """Relative error of a beam's deflection: its condition, 50 (n/pi)^4, times a few eps."""
+    return 200 * EPS * (elements / math.pi) ** 4
+
+
+@pytest.mark.parametrize("n", [2, 8, 32])
+@pytest.mark.parametrize(
+    ("ends", "load", "watched", "exact"),
+    [
+        (("clamped", "clamped"), ("z", L / 2), ("z", L / 2), L**3 / (192 * B)),
+        (("pinned", "pinned"), ("z", L / 2), ("z", L / 2), L**3 / (48 * B)),
+        (("pinned", "pinned"), ("z", L / 2), ("beta", 0.0), L**2 / (16 * B)),
+        (("pinned", "pinned"), ("z", L / 2), ("beta", L), -(L**2) / (16 * B)),
+        (("clamped", "pinned"), ("z", L / 2), ("z", L / 2), 7 * L**3 / (768 * B)),
+        (("clamped", "free"), ("z", L), ("z", L), L**3 / (3 * B)),
+        (("clamped", "free"), ("z", L), ("beta", L), L**2 / (2 * B)),
+        (("clamped", "free"), ("beta", L), ("z", L), L**2 / (2 * B)),
+        (("clamped", "free"), ("beta", L), ("beta", L), L / B),
+        (("free", "clamped"), ("z", 0.0), ("beta", 0.0), -(L**2) / (2 * B)),
+    ],
+)
+def test_beam_deflects_as_in_the_textbook(n, ends, load, watched, exact):
+    static = rd.Scene(BEAM, ends=ends).compile(elements=n).static({load: 1.0})
+    node = round(watched[1] / L * n)
+    value = static.displacement[node, static.coordinates.index(watched[0])]
+    assert value == pytest.approx(exact, rel=digits(n))
+
+
+@pytest.mark.parametrize("n", [1, 5, 16])
+@pytest.mark.parametrize("load", ["z", "alpha", "beta"])
+def test_helical_cantilever_of_any_elements_has_the_flexibility_of_one(n, load):
+    # the section is the same all along: G of design.md, section 2, with l = L
+    H = 0.3
+    rope = rd.Rope(L, 0.1, bending_stiffness=B, torsional_stiffness=C, lay_slope=H)
+    static = rd.Scene(rope, ends=("clamped", "free")).compile(elements=n).static({(load, L): 1.0})
+    c = 1 / (1 + H**2)
+    P, Q, R = c * (H**2 / C + 1 / B), c * (1 / C + H**2 / B), c * H * (1 / C - 1 / B)
+    G = np.array([[P * L**3 / 3, R * L**2 / 2, P * L**2 / 2], [0, Q * L, R * L], [0, 0, P * L]])
+    G = np.triu(G) + np.triu(G, 1).T
+    column = ("z", "alpha", "beta").index(load)
+    np.testing.assert_allclose(static.displacement[-1], G[:, column], rtol=digits(max(n, 2)))
+
+
+def test_pulled_laid_rope_untwists():
+    # [[EA, D], [D, C]] (strain, twist rate) = (F, 0)
+    D = -20.0
+    rope = rd.Rope(L, 0.1, axial_stiffness=EA, torsional_stiffness=C, lay_coupling=D)
+    scene = rd.Scene(rope, ends=("clamped", "free"))
+    static = scene.compile(elements=6).static({("x", L): 9.0})
+    strain, rate = np.linalg.solve([[EA, D], [D, C]], [9.0, 0.0])
+    line = np.outer(static.x, [strain, rate])
+    # chain condition (2 n/pi)^2 and the section's, a few eps each
+    np.testing.assert_allclose(static.displacement, line, rtol=200 * EPS)
+
+
+@pytest.mark.parametrize(("coordinate", "stiffness"), [("x", EA), ("alpha", C)])
+def test_rod_between_walls_takes_a_load_as_two_springs(coordinate, stiffness):
+    rope = rd.Rope(L, 0.1, axial_stiffness=EA, torsional_stiffness=C)
+    static = rd.Scene(rope).compile(elements=4).static({(coordinate, L / 4): 5.0})
+    k = static.coordinates.index(coordinate)
+    exact = 5.0 / (stiffness / (L / 4) + stiffness / (3 * L / 4))
+    np.testing.assert_allclose(
+        static.displacement[:, k] / exact, [0, 1, 2 / 3, 1 / 3, 0], rtol=40 * EPS, atol=0
+    )
+    np.testing.assert_allclose(static.force[[0, 1, 4], k], [-3.75, 5, -1.25], rtol=40 * EPS)
+    assert (static.displacement[:, 1 - k] == 0).all()
+
+
+def test_string_under_point_loads_is_a_polygon():
+    T = 40.0
+    static = rd.Scene(rd.Rope(1.0, 0.1), tension=T).compile(elements=8)
+    z = static.static({("z", 0.25): 3.0, ("z", 0.55): -1.0}).displacement[:, 0]
+    x = np.linspace(0, 1, 9)
+
+    def triangle(a):
+        return np.minimum(x, a) * (1 - np.maximum(x, a)) / T
+
+    # the chain loses (2 n/pi)^2 = 26 eps
+    np.testing.assert_allclose(z, 3 * triangle(0.25) - triangle(0.55), atol=100 * EPS * 0.01)
+
+
+@pytest.mark.parametrize("stiffness", [1e-3, 10.0, 1e9])
+def test_rotation_spring_at_an_end_leads_from_pinned_to_clamped(stiffness):
+    # fixed-end moment m = (F L/8)/(1 + 2 B/(k L)); z = F L^3/48 B - m L^2/8 B
+    end = rd.End(beta="free", spring={"beta": stiffness})
+    static = rd.Scene(BEAM, ends=(end, end)).compile(elements=8).static({("z", L / 2): 1.0})
+    m = L / 8 / (1 + 2 * B / (stiffness * L))
+    assert static.displacement[4, 0] == pytest.approx(
+        L**3 / (48 * B) - m * L**2 / (8 * B), rel=digits(8)
+    )
+    # the wall turns the left end against its rotation
+    assert static.force[0, 1] == pytest.approx(-stiffness * static.displacement[0, 1], rel=1e-9)
+    assert static.force[0, 1] == pytest.approx(-m, rel=1e-9)
+
+
+def test_spring_half_way_shares_the_load():
+    k = 60.0
+    scene = rd.Scene(BEAM, parts=[rd.Spring(L / 2, k)])
+    static = scene.compile(elements=4).static({("z", L / 2): 1.0})
+    assert static.displacement[2, 0] == pytest.approx(1 / (192 * B / L**3 + k), rel=digits(4))
+
+
+def test_support_half_way_makes_two_ropes():
+    scene = rd.Scene(BEAM, parts=[rd.Support(L / 2), rd.Support(L / 2, coordinate="beta")])
+    static = scene.compile(elements=8).static({("z", L / 4): 1.0})
+    assert static.displacement[2, 0] == pytest.approx((L / 2) ** 3 / (192 * B), rel=digits(4))
+    assert (static.displacement[4:] == 0).all()
+    assert (static.force[5:] == 0).all()
+
+
+def test_reactions_of_a_clamped_beam_are_half_the_load_and_an_eighth_of_its_moment():
+    static = rd.Scene(BEAM).compile(elements=8).static({("z", L / 2): 16.0})
+    # left wall: -F/2 and, turning the rope's end back to the horizontal, -F L/8
+    np.testing.assert_allclose(static.force[0], [-8.0, -16.0 * L / 8], rtol=digits(8))
+    np.testing.assert_allclose(static.force[-1], [-8.0, 16.0 * L / 8], rtol=digits(8))
+    # what is left at the other nodes is rounding of forces that cancel, 24 B n^3/L^3 x z
+    stray = np.delete(static.force, [0, 4, 8], axis=0)
+    assert np.abs(stray).max() <= 16 * digits(8)
+
+
+@pytest.mark.parametrize("tension", [-20.0, 0.0, 300.0])
+@pytest.mark.parametrize(
+    "load", [{("z", 0.3): 2.0}, {("beta", 1.1): 1.0, ("z", 1.77): -3.0}], ids=["one", "two"]
+)
+def test_loads_and_reactions_balance(tension, load):
+    # moment about x = 0: sum of x F_z + M_beta = T (z_L - z_0), here 0 as the ends are held
+    scene = rd.Scene(BEAM, tension=tension, ends=("clamped", HINGED), parts=[rd.Spring(0.7, 9.0)])
+    static = scene.compile(elements=8).static(load)
+    F, M = static.force.T
+    # every force is a sum of products of up to 24 B (n/L)^3 z
+    size = 24 * B * (8 / L) ** 3 * np.abs(static.displacement[:, 0]).max()
+    assert abs(F.sum()) <= 100 * EPS * size
+    assert abs((static.x * F + M).sum()) <= 100 * EPS * size * L
+    spring = static.x == 0.7
+    assert spring.sum() == 1
+
+
+def test_loads_superpose_and_work_both_ways():
+    model = rd.Scene(BEAM, tension=50.0).compile(elements=10)
+    one, other = {("z", 0.33): 2.0}, {("beta", 1.21): 5.0}
+    a, b, both = (model.static(load).displacement for load in (one, other, one | other))
+    np.testing.assert_allclose(a + b, both, rtol=0, atol=digits(10) * np.abs(both).max())
+    # Betti: the work of each load on the other's displacement, read by the frf at 0 Hz
+    here = model.frf(0.0, drive=("z", 0.33), response=("beta", 1.21)).value[0, 0].real
+    there = model.frf(0.0, drive=("beta", 1.21), response=("z", 0.33)).value[0, 0].real
+    assert here == pytest.approx(there, rel=digits(10))
+
+
+def test_deflection_solves_the_assembled_equations():
+    rope = rd.Rope(L, 0.1, bending_stiffness=B, torsional_stiffness=C, lay_slope=0.2)
+    model = rd.Scene(rope, tension=30.0, ends=("pinned", "clamped")).compile(elements=6)
+    static = model.static({("z", L / 2): 1.0, ("alpha", L / 3): 0.5})
+    K, _, _ = dense(model)
+    load = np.zeros(static.displacement.shape)
+    load[3, 0], load[2, 1] = 1.0, 0.5
+    u = np.linalg.solve(K, load[free(model)])
+    np.testing.assert_allclose(
+        static.displacement[free(model)], u, rtol=0, atol=digits(6) * np.abs(u).max()
+    )
+
+
+def test_loads_at_one_place_add():
+    model = rd.Scene(BEAM).compile(elements=4)
+    once = model.static({("z", 1.0): 3.0}).displacement
+    # the same point written twice: an integer and a float
+    assert (model.static({("z", 1): 3.0}).displacement == once).all()
+
+
+@pytest.mark.parametrize(
+    ("scene", "coordinate"),
+    [
+        (rd.Scene(BEAM, ends=("free", "free")), "z"),
+        (rd.Scene(BEAM, ends=("pinned", "free")), "z"),
+        (rd.Scene(rd.Rope(L, 0.1, torsional_stiffness=C), ends=("free", "free")), "alpha"),
+        (rd.Scene(rd.Rope(L, 0.1), tension=5.0, ends=("free", "free")), "z"),
+    ],
+    ids=["free beam", "hinged at one end", "free shaft", "free string"],
+)
+@pytest.mark.parametrize("n", [1, 7, 8])
+def test_rope_that_nothing_holds_is_refused(scene, coordinate, n):
+    with pytest.raises(rd.SolveError, match="rigid motion"):
+        scene.compile(elements=n).static({(coordinate, L): 1.0})
+
+
+def test_free_component_does_not_keep_the_held_one_from_its_answer():
+    ends = (rd.End(alpha="free"), rd.End(alpha="free"))
+    model = rd.Scene(BEAM.replace(torsional_stiffness=C), ends=ends).compile(elements=4)
+    static = model.static({("z", L / 2): 1.0})
+    assert static.displacement[2, 0] == pytest.approx(L**3 / (192 * B), rel=digits(4))
+    with pytest.raises(rd.SolveError, match="alpha"):
+        model.static({("alpha", L / 2): 1.0})
+
+
+def test_spring_that_cancels_the_stiffness_is_refused():
+    # one mass on two strings, 4 T/L, and a spring of -4 T/L
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=8.0, parts=[rd.Spring(0.5, -32.0)])
+    with pytest.raises(rd.SolveError, match=r"critical|rigid"):
+        scene.compile(elements=2).static({("z", 0.5): 1.0})
