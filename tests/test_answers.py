@@ -1,0 +1,504 @@
+"""What every answer can do: tables, frames, files that come back exact; nothing can be changed."""
+
+import copy
+import csv
+import dataclasses
+import io
+import json
+import pickle
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import ropedyn as rd
+
+ROPE = rd.Rope(
+    1.2,
+    0.1,
+    bending_stiffness=1.5,
+    torsional_stiffness=0.4,
+    lay_slope=0.1,
+    rotary_inertia=1e-5,
+    polar_inertia=1e-6,
+)
+SCENE = rd.Scene(
+    ROPE,
+    tension=200.0,
+    ends=("clamped", rd.End(beta="free", spring={"beta": 2.0})),
+    damping=rd.StiffnessDamping(1e-4),
+    parts=[rd.PointMass(0.4, 0.02)],
+)
+MODEL = SCENE.compile(elements=10)
+GRID = np.linspace(5.0, 150.0, 300)
+FREE = SCENE.replace(ends=("free", "free")).compile(elements=10)
+BUCKLED = SCENE.replace(tension=-300.0).compile(elements=10)
+
+ANSWERS = {
+    "modes": MODEL.modes(5),
+    "no modes": MODEL.modes(below=1e-3),
+    "free modes": FREE.modes(4),
+    "growing modes": BUCKLED.modes(2),
+    "frf": MODEL.frf(GRID, drive=("z", 0.31), response=[("z", 0.31), ("alpha", 0.9)]),
+    "one frequency": MODEL.frf(33.0, drive=("beta", 1.2)),
+    "mobility": MODEL.frf(GRID, drive=("z", 0.31), quantity="mobility"),
+    "several drives": MODEL.frf(
+        GRID, drive=[("z", 0.31), ("alpha", 0.4)], response=[("z", 0.5), ("z", 0.7), ("beta", 0.7)]
+    ),
+    "list of one drive": MODEL.frf(GRID, drive=[("z", 0.31)]),
+    "deflection": MODEL.static({("z", 0.31): 10.0, ("alpha", 0.9): -0.1}),
+    "comparison": rd.compare(MODEL, rd.Peaks([20.0, 50.0])),
+    "unpaired": rd.compare(MODEL.modes(2), rd.Peaks([20.0, 50.0, 90.0])),
+    "peaks": rd.Peaks([20.0, 50.0]),
+    "peaks with std": rd.Peaks([20.0, 50.0], std=0.1),
+    "peaks with order": rd.Peaks([20.0, 50.0], std=[0.1, 0.2], order=[3, 1]),
+    "resonances": MODEL.frf(GRID, drive=("z", 0.31)).peaks()[0],
+    "no resonances": MODEL.frf([1.0, 2.0], drive=("z", 0.31)).peaks()[0],
+}
+PAIR = {name: ANSWERS[name] for name in ("modes", "frf", "deflection", "comparison", "peaks")}
+
+
+def arrays(answer):
+    """Every array of an answer by its name."""
+    found = {}
+    for name, value in vars(answer).items():
+        inside = value if isinstance(value, dict) else {"": value}
+        found |= {f"{name}.{k}": v for k, v in inside.items() if isinstance(v, np.ndarray)}
+    return found
+
+
+def assert_same(first, second):
+    """The same kind, fields, types and bits."""
+    assert type(first) is type(second)
+    for field in dataclasses.fields(first):
+        a, b = getattr(first, field.name), getattr(second, field.name)
+        assert type(a) is type(b), field.name
+        if not isinstance(a, (np.ndarray, dict)):
+            assert a == b, field.name
+    assert list(arrays(first)) == list(arrays(second))
+    for name, array in arrays(first).items():
+        other = arrays(second)[name]
+        assert array.shape == other.shape, name
+        assert array.dtype.kind == other.dtype.kind, name
+        if array.dtype.kind == "U":
+            assert array.tolist() == other.tolist(), name
+        else:
+            assert (array.dtype, array.tobytes()) == (other.dtype, other.tobytes()), name
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_save_and_load_return_the_same_bits(name, tmp_path):
+    ANSWERS[name].save(tmp_path / "answer.nc")
+    assert_same(rd.load(tmp_path / "answer.nc"), ANSWERS[name])
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_saving_what_was_loaded_loses_nothing(name, tmp_path):
+    ANSWERS[name].save(tmp_path / "first.nc")
+    rd.load(tmp_path / "first.nc").save(tmp_path / "second.nc")
+    assert_same(rd.load(tmp_path / "second.nc"), ANSWERS[name])
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_pickle_and_copy_return_the_same_bits(name):
+    answer = ANSWERS[name]
+    assert_same(pickle.loads(pickle.dumps(answer)), answer)
+    assert_same(copy.deepcopy(answer), answer)
+
+
+def after_pickle(answer, _):
+    return pickle.loads(pickle.dumps(answer))
+
+
+def after_copy(answer, _):
+    return copy.deepcopy(answer)
+
+
+def after_file(answer, folder):
+    answer.save(folder / "answer.nc")
+    return rd.load(folder / "answer.nc")
+
+
+WAYS = {
+    "made": lambda answer, _: answer,
+    "loaded": after_file,
+    "unpickled": after_pickle,
+    "copied": after_copy,
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("name", ANSWERS)
+def test_no_number_of_an_answer_can_be_changed(name, way, tmp_path):
+    answer = WAYS[way](ANSWERS[name], tmp_path)
+    writeable = [key for key, array in arrays(answer).items() if array.flags.writeable]
+    assert writeable == []
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_no_field_of_an_answer_can_be_changed(name):
+    field = dataclasses.fields(ANSWERS[name])[0].name
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(ANSWERS[name], field, None)
+
+
+def test_an_answer_does_not_follow_the_array_it_was_asked_with():
+    grid, measured = np.array([10.0, 20.0]), np.array([20.0, 50.0])
+    frf, peaks = MODEL.frf(grid, drive=("z", 0.31)), rd.Peaks(measured)
+    grid[:] = measured[:] = 1.0
+    assert frf.frequency.tolist() == [10.0, 20.0]
+    assert peaks.frequency.tolist() == [20.0, 50.0]
+
+
+@pytest.mark.parametrize("way", ["made", "unpickled", "copied"])
+def test_no_number_of_a_model_can_be_changed(way):
+    model = {"made": MODEL, "unpickled": pickle.loads(pickle.dumps(MODEL))}.get(
+        way, copy.deepcopy(MODEL)
+    )
+    every = [model.x, *(a for a in model.chain if isinstance(a, np.ndarray))]
+    assert [a.flags.writeable for a in every] == [False] * 10
+
+
+QUESTIONS = {
+    "modes": lambda model: model.modes(5),
+    "frf": lambda model: model.frf(GRID, drive=("z", 0.31), response=("alpha", 0.9)),
+    "static": lambda model: model.static({("z", 0.31): 1.0}),
+}
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_a_pickled_model_answers_the_same_bits(question):
+    model = pickle.loads(pickle.dumps(MODEL))
+    first, second = arrays(QUESTIONS[question](MODEL)), arrays(QUESTIONS[question](model))
+    assert {k: v.tobytes() for k, v in first.items()} == {k: v.tobytes() for k, v in second.items()}
+
+
+# tables
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_text_has_a_title_a_head_and_a_line_for_each_row(name):
+    table = ANSWERS[name].table()
+    lines = str(ANSWERS[name]).splitlines()
+    assert lines[0] == table.title
+    assert re.split(r"\s{2,}", lines[1].strip()) == list(table.columns)
+    assert set(lines[2]) <= {"-", " "}
+    assert len(lines) == 3 + len(table.rows)
+
+
+class Cells(HTMLParser):
+    """Collects the texts of table cells."""
+
+    def __init__(self):
+        super().__init__()
+        self.cells, self.tag = {"th": [], "td": [], "caption": []}, None
+
+    def handle_starttag(self, tag, attrs):
+        self.tag = tag
+        if tag in self.cells:
+            self.cells[tag].append("")
+
+    def handle_endtag(self, tag):
+        self.tag = None
+
+    def handle_data(self, data):
+        if self.tag in self.cells:
+            self.cells[self.tag][-1] += data
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_html_shows_what_the_text_shows(name):
+    table = ANSWERS[name].table()
+    cells = Cells()
+    cells.feed(ANSWERS[name]._repr_html_())
+    assert cells.cells["caption"] == [table.title]
+    assert cells.cells["th"] == list(table.columns)
+    words = " ".join(cells.cells["td"]).split()
+    assert words == " ".join(str(ANSWERS[name]).splitlines()[3:]).split()
+
+
+def test_html_of_a_table_escapes_what_is_not_text():
+    table = rd.Table.of("a < b & c", {"<script>": ["<b>"]})
+    assert table._repr_html_() == (
+        "<table><caption>a &lt; b &amp; c</caption><thead><tr><th>&lt;script&gt;</th></tr></thead>"
+        "<tbody><tr><td>&lt;b&gt;</td></tr></tbody></table>"
+    )
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_csv_keeps_every_digit(name):
+    table = ANSWERS[name].table()
+    read = list(csv.reader(io.StringIO(table.to_csv())))
+    assert tuple(read[0]) == table.columns
+    for line, row in zip(read[1:], table.rows, strict=True):
+        assert line == ["" if v is None else v if isinstance(v, str) else repr(v) for v in row]
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_records_are_the_rows_and_plain_enough_for_json(name):
+    table = ANSWERS[name].table()
+    records = json.loads(json.dumps(table.to_records()))
+    assert [tuple(record.values()) for record in records] == list(table.rows)
+    assert all(tuple(record) == table.columns for record in records)
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_data_frame_has_the_columns_and_every_digit(name):
+    table, frame = ANSWERS[name].table(), ANSWERS[name].to_dataframe()
+    assert isinstance(frame, pd.DataFrame)
+    assert tuple(frame.columns) == table.columns
+    assert len(frame) == len(table.rows)
+    for column in table.columns:
+        kept = [None if pd.isna(v) else v for v in frame[column].tolist()]
+        assert kept == list(table.column(column))
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_columns_of_a_table_are_all_there(name):
+    # as many names as cells: no column has taken the place of another of the same name
+    table = ANSWERS[name].table()
+    assert len(set(table.columns)) == len(table.columns)
+    assert {len(row) for row in table.rows} <= {len(table.columns)}
+
+
+def test_table_of_several_drives_has_a_curve_for_each_pair():
+    frf = ANSWERS["several drives"]
+    table = frf.table()
+    assert len(table.columns) == 1 + 2 * 2 * 3
+    amplitudes = np.array(table.rows)[:, 1::2].T.reshape(2, 3, -1)
+    np.testing.assert_array_equal(amplitudes, np.abs(frf.value))
+
+
+def test_table_of_modes_counts_from_one_in_per_cent():
+    modes, table = ANSWERS["modes"], ANSWERS["modes"].table()
+    assert table.column("mode") == (1, 2, 3, 4, 5)
+    assert table.column("frequency [Hz]") == tuple(modes.frequency.tolist())
+    shares = [c for c in table.columns if c.startswith("kinetic")]
+    assert shares == ["kinetic z [%]", "kinetic alpha [%]", "kinetic beta [%]"]
+    # three fractions of one sum and their sum: a few eps of 100
+    total = np.sum([table.column(c) for c in shares], axis=0)
+    np.testing.assert_allclose(total, 100.0, rtol=8 * np.finfo(float).eps)
+
+
+def test_table_of_growing_modes_shows_the_growth():
+    assert "growth [1/s]" in ANSWERS["growing modes"].table().columns
+    assert "growth [1/s]" not in ANSWERS["modes"].table().columns
+
+
+def test_table_of_a_deflection_names_units():
+    assert ANSWERS["deflection"].table().columns == (
+        "x [m]",
+        "z [m]",
+        "alpha [rad]",
+        "beta [rad]",
+        "F_z [N]",
+        "M_alpha [N m]",
+        "M_beta [N m]",
+    )
+
+
+def test_table_of_a_comparison_leaves_what_has_no_partner_empty():
+    table = ANSWERS["unpaired"].table()
+    order = table.column("mode")
+    assert order.count(None) == 1
+    gap = order.index(None)
+    assert table.rows[gap][1:] == (None, None, None)
+    assert str(ANSWERS["unpaired"]).splitlines()[3 + gap].split()[1:] == ["-", "-", "-"]
+
+
+# xarray and netCDF
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_xarray_holds_every_array(name):
+    dataset = ANSWERS[name].to_xarray()
+    assert isinstance(dataset, xr.Dataset)
+    for key, array in arrays(ANSWERS[name]).items():
+        variable = dataset[key.rstrip(".")]
+        assert variable.values.tolist() == array.tolist()
+        assert "units" in variable.attrs
+
+
+@pytest.mark.parametrize(
+    ("name", "variable", "axes", "unit"),
+    [
+        ("modes", "frequency", ("mode",), "Hz"),
+        ("modes", "shape", ("mode", "node", "coordinate"), "m or rad"),
+        ("modes", "energy.bending", ("mode",), ""),
+        ("frf", "value", ("response", "frequency"), ""),
+        ("several drives", "value", ("drive", "response", "frequency"), ""),
+        ("several drives", "rounding_error", ("drive", "response", "frequency"), ""),
+        ("deflection", "force", ("node", "coordinate"), "N or N m"),
+        ("comparison", "difference", ("peak",), "%"),
+        ("comparison", "all_calculated", ("calculated",), "Hz"),
+        ("peaks", "frequency", ("peak",), "Hz"),
+        ("resonances", "damping_ratio", ("peak",), ""),
+    ],
+)
+def test_xarray_names_axes_and_units(name, variable, axes, unit):
+    found = ANSWERS[name].to_xarray()[variable]
+    assert (found.dims, found.attrs["units"]) == (axes, unit)
+
+
+def test_a_file_can_be_read_without_ropedyn(tmp_path):
+    ANSWERS["frf"].save(tmp_path / "frf.nc")
+    with xr.open_dataset(tmp_path / "frf.nc", engine="h5netcdf") as dataset:
+        parts = dataset["value"].values
+        assert dataset.attrs["ropedyn"] == "FRF"
+        assert dataset["value"].dims == ("response", "frequency", "re_im")
+    np.testing.assert_array_equal(parts[..., 0] + 1j * parts[..., 1], ANSWERS["frf"].value)
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"path must be a file .*nowhere\.nc"):
+        rd.load(tmp_path / "nowhere.nc")
+
+
+def test_a_folder_holds_no_answer(tmp_path):
+    with pytest.raises(OSError, match="path must be a file"):
+        rd.load(tmp_path)
+
+
+GARBAGE = {
+    "empty": b"",
+    "text": b"frequency, value\n1, 2\n",
+    "zeros": bytes(4096),
+    "head of HDF5": b"\x89HDF\r\n\x1a\n" + bytes(100),
+    "netCDF 3": b"CDF\x01" + bytes(28),
+}
+
+
+@pytest.mark.parametrize("name", GARBAGE)
+def test_garbage_is_refused_by_path(name, tmp_path):
+    path = tmp_path / "garbage.nc"
+    path.write_bytes(GARBAGE[name])
+    with pytest.raises(rd.SceneError, match=r"path must be .*garbage\.nc"):
+        rd.load(path)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_truncated_file_is_refused_by_path(share, tmp_path):
+    path = tmp_path / "cut.nc"
+    ANSWERS["modes"].save(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(share * len(whole))])
+    with pytest.raises(rd.SceneError, match=r"cut\.nc"):
+        rd.load(path)
+
+
+def foreign(attributes, **variables):
+    return xr.Dataset({k: ("peak", v) for k, v in variables.items()}, attrs=attributes)
+
+
+ORDERLESS = {"ropedyn": "Peaks", "std": "null", "order": "null"}
+FOREIGN = {
+    "no mark": foreign({}, frequency=[1.0]),
+    "unknown kind": foreign({"ropedyn": "Spectrum"}, frequency=[1.0]),
+    "the base": foreign({"ropedyn": "Answer"}, frequency=[1.0]),
+    "a number as kind": foreign({"ropedyn": 3}, frequency=[1.0]),
+    "numbers as kind": foreign({"ropedyn": [1, 2]}, frequency=[1.0]),
+    "no variable": foreign(ORDERLESS),
+    "no attribute": foreign({"ropedyn": "Peaks", "std": "null"}, frequency=[1.0]),
+    "attribute without meaning": foreign(ORDERLESS | {"std": "{"}, frequency=[1.0]),
+    "attribute of numbers": foreign(ORDERLESS | {"std": 3.0}, frequency=[1.0]),
+    "frequency below 0": foreign(ORDERLESS, frequency=[-1.0]),
+    "frequency of text": foreign(ORDERLESS, frequency=["a"]),
+}
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_a_foreign_file_is_refused_by_path(name, tmp_path):
+    path = tmp_path / "foreign.nc"
+    FOREIGN[name].to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(rd.SceneError, match=r"foreign\.nc"):
+        rd.load(path)
+
+
+def test_a_damaged_cost_is_refused_by_path(tmp_path):
+    dataset = ANSWERS["deflection"].to_xarray()
+    dataset.attrs["ropedyn_cost"] = '{"minutes": 3}'
+    dataset.to_netcdf(tmp_path / "damaged.nc", engine="h5netcdf")
+    with pytest.raises(rd.SceneError, match=r"damaged\.nc"):
+        rd.load(tmp_path / "damaged.nc")
+
+
+@pytest.mark.parametrize("name", PAIR)
+def test_a_failing_save_leaves_the_old_file_and_no_other(name, tmp_path, monkeypatch):
+    path = tmp_path / "answer.nc"
+    path.write_text("old")
+
+    def full(self, draft, **_):
+        draft.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    with pytest.raises(OSError, match="No space left"):
+        PAIR[name].save(path)
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("answer.nc", "old")]
+
+
+def test_saving_replaces_the_file_and_leaves_nothing_else(tmp_path):
+    path = tmp_path / "answer.nc"
+    path.write_text("old")
+    ANSWERS["modes"].save(path)
+    assert_same(rd.load(path), ANSWERS["modes"])
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_missing_folder_is_an_error_and_is_not_made(tmp_path):
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        ANSWERS["modes"].save(tmp_path / "nowhere" / "answer.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+# what the extra `io` brings
+
+WITHOUT = """
+import sys
+for name in {missing!r}:
+    sys.modules[name] = None  # as if it were not installed
+import ropedyn as rd
+peaks = rd.Peaks([20.0])
+print(peaks.table())
+try:
+    {call}
+except ImportError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize(
+    ("missing", "call"),
+    [
+        ("pandas", "peaks.to_dataframe()"),
+        ("xarray", "peaks.to_xarray()"),
+        ("xarray", "peaks.save('answer.nc')"),
+        ("h5netcdf", "peaks.save('answer.nc')"),
+        ("xarray", "rd.load(__file__)"),
+        ("h5netcdf", "rd.load(__file__)"),
+        ("h5py", "peaks.save('answer.nc')"),  # optional to h5netcdf since its 1.8
+        ("h5py", "rd.load(__file__)"),
+    ],
+)
+def test_a_missing_library_says_which_extra_brings_it(missing, call, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(WITHOUT.format(missing=[missing], call=call))
+    done = subprocess.run(
+        [sys.executable, script], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert done.stdout.splitlines()[-1] == (
+        f"{missing} is needed for this and is not installed: pip install 'ropedyn[io]'"
+    )
+    assert [p.name for p in tmp_path.iterdir()] == ["script.py"]
+
+
+def test_xarray_alone_needs_no_netcdf_library(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(WITHOUT.format(missing=["h5netcdf"], call="print(peaks.to_xarray().sizes)"))
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert "'peak': 1" in done.stdout

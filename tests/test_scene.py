@@ -1,0 +1,373 @@
+"""The scene: effects in order, what `without` leaves, coordinates, ends; frozen and hashable."""
+
+import copy
+import dataclasses
+import itertools
+import pickle
+
+import numpy as np
+import pytest
+
+import ropedyn as rd
+
+ORDER = (
+    "tension",
+    "bending",
+    "twist",
+    "stretch",
+    "lay",
+    "rotary inertia",
+    "polar inertia",
+    "point mass",
+    "spring",
+    "support",
+    "stiffness damping",
+    "rayleigh damping",
+)
+ROPE = {
+    "length": 1.2,
+    "linear_density": 0.1,
+    "bending_stiffness": 1.5,
+    "torsional_stiffness": 0.4,
+    "axial_stiffness": 9e3,
+    "lay_coupling": 3.0,
+    "lay_slope": 0.2,
+    "rotary_inertia": 1e-5,
+    "polar_inertia": 1e-6,
+}
+MASS = rd.PointMass(0.3, 0.05, rotary_inertia=1e-6, polar_inertia=1e-7)
+SPRINGS = {c: rd.Spring(0.5, 700.0, coordinate=c) for c in ("x", "z", "alpha", "beta")}
+SUPPORTS = {c: rd.Support(0.8, coordinate=c) for c in ("x", "z", "alpha", "beta")}
+SPRUNG = {"x": 4e3, "z": 900.0, "alpha": 0.7, "beta": 3.0}
+STIFFNESS, RAYLEIGH = rd.StiffnessDamping(1e-4), rd.RayleighDamping(0.3, 2e-5)
+
+
+def end(spring):
+    return rd.End(x="free", z="free", alpha="free", beta="free", spring=spring)
+
+
+def full():
+    """Return a scene with every effect."""
+    return rd.Scene(
+        rd.Rope(**ROPE),
+        tension=250.0,
+        ends=(end(SPRUNG), "pinned"),
+        damping=(STIFFNESS, RAYLEIGH),
+        parts=[MASS, *SPRINGS.values(), *SUPPORTS.values()],
+    )
+
+
+def never(*properties, gone=(), **changes):
+    """Return the scene that was never given these properties and what stood on `gone`."""
+    given = {
+        "tension": 250.0,
+        "ends": (end({c: k for c, k in SPRUNG.items() if c not in gone}), "pinned"),
+        "damping": (STIFFNESS, RAYLEIGH),
+        "parts": [
+            MASS,
+            *(s for c, s in SPRINGS.items() if c not in gone),
+            *(s for c, s in SUPPORTS.items() if c not in gone),
+        ],
+    }
+    rope = rd.Rope(**{name: v for name, v in ROPE.items() if name not in properties})
+    return rd.Scene(rope, **given | changes)
+
+
+# the scene written down again without the effect, by hand
+NEVER_GIVEN = {
+    "tension": never(tension=0.0),
+    "bending": never("bending_stiffness", "lay_slope", "rotary_inertia", gone=["beta"]),
+    "twist": never(
+        "torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia", gone=["alpha"]
+    ),
+    "stretch": never("axial_stiffness", "lay_coupling", gone=["x"]),
+    "lay": never("lay_coupling", "lay_slope"),
+    "rotary inertia": never("rotary_inertia"),
+    "polar inertia": never("polar_inertia"),
+    "point mass": never(parts=[*SPRINGS.values(), *SUPPORTS.values()]),
+    "spring": never(parts=[MASS, *SUPPORTS.values()], ends=(end({}), "pinned")),
+    "support": never(parts=[MASS, *SPRINGS.values()]),
+    "stiffness damping": never(damping=(RAYLEIGH,)),
+    "rayleigh damping": never(damping=(STIFFNESS,)),
+}
+
+
+def bits(model):
+    """Every number of a model, as bytes with type and shape."""
+    arrays = [model.x, *(a for a in model.chain if isinstance(a, np.ndarray))]
+    return [(a.dtype.str, a.shape, a.tobytes()) for a in arrays]
+
+
+def test_full_scene_has_every_effect_in_the_documented_order():
+    assert full().effects == ORDER
+
+
+@pytest.mark.parametrize("effect", ORDER)
+def test_without_equals_the_scene_never_given_the_effect(effect):
+    assert full().without(effect) == NEVER_GIVEN[effect]
+    assert hash(full().without(effect)) == hash(NEVER_GIVEN[effect])
+
+
+@pytest.mark.parametrize("effect", ORDER)
+def test_without_compiles_to_the_bits_of_the_scene_never_given_the_effect(effect):
+    thinned = full().without(effect).compile(elements=12)
+    bare = NEVER_GIVEN[effect].compile(elements=12)
+    assert thinned.coordinates == bare.coordinates
+    assert thinned.components == bare.components
+    assert bits(thinned) == bits(bare)
+
+
+@pytest.mark.parametrize("effect", ORDER)
+def test_without_answers_the_bits_of_the_scene_never_given_the_effect(effect):
+    first, second = (
+        scene.compile(elements=12).modes(4)
+        for scene in (full().without(effect), NEVER_GIVEN[effect])
+    )
+    np.testing.assert_array_equal(first.frequency, second.frequency)
+    np.testing.assert_array_equal(first.shape, second.shape)
+    np.testing.assert_array_equal(first.damping_ratio, second.damping_ratio)
+
+
+@pytest.mark.parametrize("effect", ORDER)
+def test_without_removes_the_effect_and_what_cannot_be_without_it(effect):
+    dragged = {
+        "bending": {"bending", "rotary inertia"},  # the lay coupling of stretch and twist stays
+        "twist": {"twist", "lay", "polar inertia"},
+    }.get(effect, {effect})
+    assert full().without(effect).effects == tuple(e for e in ORDER if e not in dragged)
+
+
+@pytest.mark.parametrize(("first", "second"), list(itertools.combinations(ORDER, 2)))
+def test_effects_are_removed_in_any_order(first, second):
+    together = full().without(first, second)
+    assert full().without(first).without(second) == together
+    assert full().without(second, first) == together
+
+
+@pytest.mark.parametrize("effect", ORDER)
+def test_removing_an_effect_twice_changes_nothing_more(effect):
+    once = full().without(effect)
+    assert once.without(effect) == once
+
+
+def test_without_nothing_is_the_scene():
+    assert full().without() == full()
+
+
+def test_without_leaves_the_scene_itself_alone():
+    scene = full()
+    scene.without(*ORDER[3:])
+    assert scene == full()
+
+
+def test_without_keeps_words_that_name_ends():
+    assert full().replace(ends=("free", "pinned")).without("spring").ends == ("free", "pinned")
+
+
+@pytest.mark.parametrize("effects", [("bending", "twist", "stretch", "tension"), ORDER])
+def test_without_all_that_could_vibrate_is_refused(effects):
+    with pytest.raises(rd.SceneError, match="must have a stiffness or the scene a tension"):
+        full().without(*effects)
+
+
+def test_replace_changes_what_it_names_alone():
+    changed = full().replace(tension=10.0)
+    for field in dataclasses.fields(rd.Scene):
+        expected = 10.0 if field.name == "tension" else getattr(full(), field.name)
+        assert getattr(changed, field.name) == expected
+
+
+def test_replace_checks_like_the_scene():
+    # the parts stand at up to 0.8 m
+    with pytest.raises(rd.SceneError, match=r"parts\[5\].x must lie on the rope, .* got 0.8"):
+        full().replace(rope=rd.Rope(**ROPE | {"length": 0.7}))
+
+
+THINGS = {
+    "rope": rd.Rope(**ROPE),
+    "end": end(SPRUNG),
+    "point mass": MASS,
+    "spring": SPRINGS["z"],
+    "support": SUPPORTS["z"],
+    "stiffness damping": STIFFNESS,
+    "rayleigh damping": RAYLEIGH,
+    "scene": full(),
+}
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_descriptions_are_frozen(name):
+    thing = THINGS[name]
+    field = dataclasses.fields(thing)[0].name
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(thing, field, getattr(thing, field))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        delattr(thing, field)
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_descriptions_travel_by_pickle_and_copy_and_stay_equal(name):
+    thing = THINGS[name]
+    for twin in (pickle.loads(pickle.dumps(thing)), copy.deepcopy(thing), copy.copy(thing)):
+        assert twin == thing
+        assert hash(twin) == hash(thing)
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_descriptions_can_be_read_back_from_their_repr(name):
+    text = repr(THINGS[name])
+    assert eval(text, vars(rd)) == THINGS[name]
+
+
+def test_springs_of_an_end_cannot_be_changed():
+    spring = end(SPRUNG).spring
+    with pytest.raises(TypeError):
+        spring["z"] = 1.0
+    with pytest.raises(TypeError):
+        del spring["z"]
+
+
+def test_springs_of_an_end_do_not_follow_the_dictionary_they_came_from():
+    given = dict(SPRUNG)
+    made = end(given)
+    given["z"] = -1.0
+    assert made.spring["z"] == SPRUNG["z"]
+
+
+def test_springs_of_an_end_do_not_depend_on_the_order_they_were_given_in():
+    turned = end(dict(reversed(SPRUNG.items())))
+    assert (turned, hash(turned)) == (end(SPRUNG), hash(end(SPRUNG)))
+
+
+def test_parts_do_not_follow_the_list_they_came_from():
+    parts = [MASS]
+    scene = rd.Scene(rd.Rope(**ROPE), parts=parts)
+    parts.clear()
+    assert scene.parts == (MASS,)
+
+
+@pytest.mark.parametrize("kind", [int, np.float64, np.float32, np.int16])
+def test_numbers_of_any_kind_make_the_same_scene(kind):
+    # 2, 1 and 8 are exact in each
+    scene = rd.Scene(rd.Rope(kind(2), kind(1)), tension=kind(8), parts=[rd.Support(kind(1))])
+    assert scene == rd.Scene(rd.Rope(2.0, 1.0), tension=8.0, parts=[rd.Support(1.0)])
+    assert type(scene.tension) is type(scene.rope.length) is type(scene.parts[0].x) is float
+
+
+def test_lists_make_the_same_scene_as_tuples():
+    rope = rd.Rope(**ROPE)
+    lists = rd.Scene(rope, ends=["free", "pinned"], damping=[STIFFNESS], parts=[MASS])
+    tuples = rd.Scene(rope, ends=("free", "pinned"), damping=(STIFFNESS,), parts=(MASS,))
+    assert (lists, hash(lists)) == (tuples, hash(tuples))
+
+
+def test_an_empty_sum_of_dampings_is_no_damping():
+    assert rd.Scene(rd.Rope(**ROPE), damping=()).damping is None
+
+
+# coordinates exist with what moves them: x stretch, z bending or tension, alpha twist, beta bending
+@pytest.mark.parametrize(
+    ("given", "tension", "coordinates"),
+    [
+        ((), 100.0, ("z",)),
+        (("bending",), 0.0, ("z", "beta")),
+        (("bending",), 100.0, ("z", "beta")),
+        (("bending",), -1.0, ("z", "beta")),
+        (("torsional",), 0.0, ("alpha",)),
+        (("torsional",), 100.0, ("z", "alpha")),
+        (("axial",), 0.0, ("x",)),
+        (("axial",), 100.0, ("x", "z")),
+        (("axial", "torsional"), 0.0, ("x", "alpha")),
+        (("bending", "torsional"), 0.0, ("z", "alpha", "beta")),
+        (("bending", "torsional", "axial"), 100.0, ("x", "z", "alpha", "beta")),
+    ],
+)
+def test_coordinates_follow_from_stiffnesses_and_tension(given, tension, coordinates):
+    rope = rd.Rope(1.0, 0.1, **{f"{name}_stiffness": 5.0 for name in given})
+    scene = rd.Scene(rope, tension=tension)
+    assert scene.coordinates == coordinates
+    assert scene.compile(elements=3).coordinates == coordinates
+    assert scene.compile(elements=3).chain.mass.shape[1:] == (len(coordinates),) * 2
+
+
+@pytest.mark.parametrize("kind", ["difference", "rigid"])
+def test_a_bare_string_has_no_entry_of_what_it_was_not_given(kind):
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=5, element=kind)
+    assert rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).effects == ("tension",)
+    assert model.components == (("z",),)
+    assert not model.chain.flexibility.any()
+    assert not model.chain.stiffness.any()
+    assert model.damping().nnz == 0
+    assert set(model.modes(1).energy) == {"tension", "z"}
+
+
+@pytest.mark.parametrize("effect", ["rotary inertia", "polar inertia"])
+def test_absent_inertia_has_no_entry_in_the_mass_matrix(effect):
+    coordinate = {"rotary inertia": "beta", "polar inertia": "alpha"}[effect]
+    model = full().without(effect, "point mass").compile(elements=9)
+    at = model.coordinates.index(coordinate)
+    assert not model.chain.mass[:, at].any()
+    assert not model.chain.mass[:, :, at].any()
+
+
+@pytest.mark.parametrize("effect", ["stiffness damping", "rayleigh damping"])
+def test_absent_damping_has_no_entry_in_the_damping_matrix(effect):
+    other = {"stiffness damping": "rayleigh damping", "rayleigh damping": "stiffness damping"}
+    assert full().without(effect).compile(elements=9).damping().nnz > 0
+    assert full().without(effect, other[effect]).compile(elements=9).damping().nnz == 0
+
+
+def test_without_lay_bending_and_twist_are_not_coupled():
+    laid, straight = full(), full().without("lay")
+    assert laid.compile(elements=9).components == (("x", "z", "alpha", "beta"),)
+    assert straight.compile(elements=9).components == (("x",), ("z", "beta"), ("alpha",))
+
+
+@pytest.mark.parametrize(
+    ("property_", "value"),
+    [("lay_coupling", 0.0), ("lay_slope", 0.0), ("rotary_inertia", 0.0), ("polar_inertia", 0.0)],
+)
+def test_a_property_of_zero_is_no_effect_and_compiles_to_the_same_bits(property_, value):
+    others = {k: v for k, v in ROPE.items() if k not in (property_, "lay_coupling", "lay_slope")}
+    without = rd.Scene(rd.Rope(**others), tension=50.0)
+    zero = rd.Scene(rd.Rope(**others, **{property_: value}), tension=50.0)
+    assert zero.effects == without.effects
+    assert bits(zero.compile(elements=4)) == bits(without.compile(elements=4))
+
+
+def test_inertia_on_an_absent_coordinate_is_ignored():
+    plain = rd.Scene(rd.Rope(1.0, 0.1), tension=50.0, parts=[rd.PointMass(0.5, 0.2)])
+    rope = rd.Rope(1.0, 0.1, rotary_inertia=1e-5, polar_inertia=1e-6)
+    heavy = rd.PointMass(0.5, 0.2, rotary_inertia=1e-3, polar_inertia=1e-4)
+    turning = rd.Scene(rope, tension=50.0, parts=[heavy])
+    assert turning.effects == plain.effects == ("tension", "point mass")
+    assert bits(turning.compile(elements=4)) == bits(plain.compile(elements=4))
+
+
+NAMED = {
+    "clamped": rd.End(x="held", z="held", alpha="held", beta="held"),
+    "pinned": rd.End(x="held", z="held", alpha="held", beta="free"),
+    "free": rd.End(x="free", z="free", alpha="free", beta="free"),
+}
+
+
+@pytest.mark.parametrize("left", NAMED)
+@pytest.mark.parametrize("right", NAMED)
+def test_words_for_ends_compile_to_the_ends_they_stand_for(left, right):
+    rope = rd.Rope(**ROPE)
+    words = rd.Scene(rope, ends=(left, right)).compile(elements=3)
+    spelled = rd.Scene(rope, ends=(NAMED[left], NAMED[right])).compile(elements=3)
+    assert bits(words) == bits(spelled)
+
+
+@pytest.mark.parametrize(("word", "free"), [("clamped", 0), ("pinned", 1), ("free", 4)])
+def test_words_for_ends_hold_what_they_say(word, free):
+    # two inner nodes with 4 coordinates each, and what the left end leaves free
+    model = rd.Scene(rd.Rope(**ROPE), ends=(word, "clamped")).compile(elements=3)
+    assert model.size == 2 * 4 + free
+
+
+def test_ends_of_coordinates_that_the_scene_lacks_are_ignored():
+    string = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0)
+    other = string.replace(ends=(rd.End(x="free", alpha="free", beta="free"), "pinned"))
+    assert bits(other.compile(elements=3)) == bits(string.compile(elements=3))
