@@ -10,7 +10,7 @@
        L^-1 M L^-T y = mu y,   x = L^-T y,   lambda = 1/mu - s.
 
    The lowest frequencies are then the largest mu, which the dense solver gets to the last digits
-   of its matrix: at 64 clamped elements this keeps 2e-12 to 2e-11 of f1 where solving K x = lambda M x,
+   of its matrix: at 64 clamped elements this keeps 2e-11 of f1 where solving K x = lambda M x,
    dense or banded, keeps 1e-10. M may be singular or indefinite: mu = 0 is the infinite frequency
    of a coordinate without mass. */
 struct rd_modes {

@@ -140,7 +140,7 @@ class Model:
         solver : {"lapack"}
             Assembles the matrices and reduces them to a dense symmetric problem (see
             csrc/modes.h). The assembled stiffness loses digits as n^4: of the first frequency of
-            a clamped beam about 11 are right with 64 elements, 8 with 512, 6 with 1024. The time
+            a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
             grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
             of a minute for so many, does not stop for Ctrl-C.
 

@@ -152,6 +152,12 @@ def _solve_component(model: Model, component: tuple[str, ...], number: int, limi
         )
     except SolveError as refusal:
         raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
+    lost = ~np.isfinite(error) | ~np.isfinite(eigenvalue)
+    if lost.any():
+        raise SolveError(
+            f"mode {int(lost.argmax()) + 1} of ({', '.join(component)}) has no correct digit: the "
+            "inertias or stiffnesses differ too much for the assembled solver"
+        )
     shape = np.zeros((len(part), len(model.x), len(model.coordinates)))
     shape[:, :, [model.coordinates.index(c) for c in component]] = part
     return _Raw(eigenvalue, error, shape, finite, chain.free)
@@ -179,12 +185,6 @@ def _answer(model: Model, parts: list[_Raw], number: int | None, cost: Cost) -> 
     eigenvalue = np.concatenate([part.eigenvalue for part in parts])
     error = np.concatenate([part.error for part in parts])
     shape = np.concatenate([part.shape for part in parts])
-    if not np.isfinite(error).all() or not np.isfinite(eigenvalue).all():
-        lost = int(np.flatnonzero(~np.isfinite(error) | ~np.isfinite(eigenvalue))[0])
-        raise SolveError(
-            f"mode {lost + 1} has no correct digit: the inertias or stiffnesses differ too much "
-            "for the assembled solver"
-        )
     # what rounding cannot tell from 0 is rigid-body motion
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
     order = np.argsort(eigenvalue, kind="stable")[:number]
