@@ -60,10 +60,10 @@ def resonances(
 ) -> Resonances:
     """Find local maxima of the amplitude and fit one mode to each.
 
-    Near a resonance 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a straight
-    line in omega^2 but for the slow omega of the last term: through the line just below and just
-    above the largest one, its zero gives omega_0^2 (1 - 2 i zeta) and so both unknowns. Exact
-    for one mode; with others the residual tilts it a little.
+    Of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
+    omega: the one through the three lines about the maximum has its root there at the pole
+    omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact for
+    one mode; others tilt it a little.
 
     Parameters
     ----------
@@ -84,20 +84,32 @@ def resonances(
 
     frequency, first = np.unique(frequency, return_index=True)
     value = value[first]
-    at, _ = find_peaks(np.abs(value))
     omega = 2 * np.pi * frequency
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = (1j * omega) ** QUANTITIES[quantity] / value
-    # at 0 Hz a velocity or an acceleration is 0 and says nothing
-    before = np.where(np.isfinite(inverse[at - 1]), at - 1, at)
-    after = at + 1
-    slope = (inverse[after] - inverse[before]) / (omega[after] ** 2 - omega[before] ** 2)
-    zero = omega[at] ** 2 - inverse[at] / slope
-    natural = np.sqrt(np.maximum(zero.real, 0.0))
-    ratio = np.divide(zero.imag, 2 * zero.real, out=np.zeros(len(at)), where=zero.real > 0)
+    at, _ = find_peaks(np.abs(value))
+    pole = np.array([_pole(omega, inverse, int(k)) for k in at], dtype=np.complex128)
     return Resonances(
         label=label,
-        frequency=natural / (2 * np.pi),
+        frequency=np.abs(pole) / (2 * np.pi),
         amplitude=np.abs(value[at]),
-        damping_ratio=ratio,
+        damping_ratio=pole.imag / np.abs(pole),
     )
+
+
+def _pole(omega: NDArray[np.float64], inverse: NDArray[np.complex128], k: int) -> complex:
+    """Return the root of the parabola through line k and its neighbours [rad/s].
+
+    At 0 Hz a velocity or an acceleration is 0 and says nothing: the parabola then goes through
+    what lies above, and where there is nothing more it is a straight line.
+    """
+    first = k - 1 if np.isfinite(inverse[k - 1]) else k
+    x, f = omega[first : first + 3], inverse[first : first + 3]
+    slope = np.diff(f) / np.diff(x)
+    bend = (slope[1] - slope[0]) / (x[2] - x[0]) if len(x) > 2 else 0.0
+    # about x[j], the maximum: f + t steep + t^2 bend = 0, the root t that is near
+    j = k - first
+    steep = slope[0] + bend * (2 * x[j] - x[0] - x[1])
+    root = np.sqrt(steep**2 - 4 * bend * f[j])
+    far = max(steep + root, steep - root, key=abs)
+    return complex(x[j] - 2 * f[j] / far)

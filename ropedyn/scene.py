@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -316,7 +316,7 @@ def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | No
 
 def _checked_parts(parts: Any) -> tuple[Part, ...]:
     names = ", ".join(kind.__name__ for kind in _part.KINDS)
-    if isinstance(parts, (str, bytes)) or not isinstance(parts, Iterable):
+    if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
         raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
     parts = tuple(parts)
     for i, part in enumerate(parts):

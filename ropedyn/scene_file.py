@@ -21,7 +21,8 @@ def load(path: str | os.PathLike[str]) -> Scene:
     file = check.path(path)
     try:
         document = tomllib.loads(file.read_text(encoding="utf-8"))
-    except ValueError as error:  # not TOML, not UTF-8, or a number of thousands of digits
+    # not TOML, not UTF-8, a number of thousands of digits, thousands of brackets
+    except (ValueError, RecursionError) as error:
         raise SceneError(f"{file} is not a TOML file: {error}") from error
     try:
         return _scene(document)
