@@ -11,7 +11,7 @@ enum rd_coordinate { RD_X, RD_Z, RD_ALPHA, RD_BETA };
 /* channels of a section: axial strain, twist rate, curvature */
 enum rd_channel { RD_AXIAL, RD_TORSION, RD_BENDING };
 
-enum rd_kind { RD_DIFFERENCE, RD_RIGID };
+enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED };
 
 enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
 
@@ -30,6 +30,9 @@ struct rd_chain {
     const double *stiffness;   /* (terms, width, width)   [N/m, N, N m] */
     const uint8_t *held;       /* (terms, width)          1: the coordinate cannot move */
     const int32_t *term_of;    /* (nodes)                 node term at node i */
+    const double *hinge;       /* (terms, width) or NULL   compliance between the node and the
+                                                           element on its right [rad/(N m), m/N],
+                                                           INFINITY: free */
 };
 
 #endif

@@ -2,6 +2,7 @@
 #include "element.h"
 
 #include "dense.h"
+#include "triple.h"
 
 #include <assert.h>
 #include <math.h>
@@ -83,55 +84,6 @@ static void transfer(const struct rd_element *element, double s, double *F)
         F[z * w + beta] = s;
 }
 
-/* The string stiffness t = T/l on z_b - z_a in parallel with (F, G), S_T = t e_z e_z^T:
-       X = (I + G S_T)^-1 = I - G e_z e_z^T t/(1 + t G_zz)
-       F <- X (F + G S_T) = I + X (F - I),  G <- X G,  Q = -(I - F^T) S_T (F' - I) */
-static enum rd_status stretch_in_parallel(const struct rd_element *element, double *F, double *G,
-                                          double *Q)
-{
-    const size_t w = element->width;
-    const size_t z = find(element, RD_Z);
-    const double t = element->tension / element->length;
-    const double pivot = 1 + t * G[z * w + z];
-    if (pivot == 0)
-        return RD_CRITICAL_ELEMENT;
-    double column[W], lever[W], row[W];
-    for (size_t i = 0; i < w; i++) {
-        column[i] = G[i * w + z] * (t / pivot);
-        lever[i] = F[z * w + i] - (i == z);
-        row[i] = G[z * w + i];
-    }
-    for (size_t i = 0; i < w; i++)
-        for (size_t j = 0; j < w; j++) {
-            F[i * w + j] -= column[i] * lever[j];
-            G[i * w + j] -= column[i] * row[j];
-            Q[i * w + j] = lever[i] * lever[j] * (t / pivot);
-        }
-    /* z's own row without the cancellation of 1 - t G_zz/(1 + t G_zz) */
-    for (size_t j = 0; j < w; j++) {
-        F[z * w + j] = (j == z) + lever[j] / pivot;
-        G[z * w + j] = G[j * w + z] = row[j] / pivot;
-    }
-    return RD_OK;
-}
-
-enum rd_status rd_element_triple(const struct rd_element *element, double *F, double *G, double *Q)
-{
-    const size_t w = element->width;
-    transfer(element, element->length, F);
-    cantilever(element, element->length, element->length, G);
-    memset(Q, 0, w * w * sizeof *Q);
-    const size_t z = find(element, RD_Z);
-    if (z < w && is_string(element)) {
-        assert(element->tension > 0);
-        G[z * w + z] = element->length / element->tension;
-        return RD_OK;
-    }
-    if (z == w || element->tension == 0)
-        return RD_OK;
-    return stretch_in_parallel(element, F, G, Q);
-}
-
 bool rd_element_grip(const struct rd_element *element, double *F, double *inverse)
 {
     transfer(element, element->length, F);
@@ -139,25 +91,27 @@ bool rd_element_grip(const struct rd_element *element, double *F, double *invers
     return rd_dense_invert(element->width, inverse);
 }
 
-/* K_e = [[F^T G^-1 F, -F^T G^-1], [-G^-1 F, G^-1]] of the untensed element */
-static bool elastic_stiffness(const struct rd_element *element, double *K)
+/* K (2 width, 2 width) <- [[Q + F^T G^-1 F, -F^T G^-1], [-G^-1 F, G^-1]] */
+static void assemble(size_t w, const double *F, const double *Gi, const double *Q, double *K)
 {
-    const size_t w = element->width;
-    double F[W * W], Ft[W * W], Gi[W * W], GiF[W * W], FtGiF[W * W];
-    if (!rd_element_grip(element, F, Gi))
-        return false;
+    double Ft[W * W], GiF[W * W], FtGiF[W * W];
     rd_dense_transpose(w, w, F, Ft);
     rd_dense_multiply(w, w, w, Gi, F, GiF);
     rd_dense_multiply(w, w, w, Ft, GiF, FtGiF);
     const size_t n = 2 * w;
     for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j < w; j++) {
-            K[i * n + j] = (FtGiF[i * w + j] + FtGiF[j * w + i]) / 2;
+            K[i * n + j] = Q[i * w + j] + (FtGiF[i * w + j] + FtGiF[j * w + i]) / 2;
             K[i * n + w + j] = -GiF[j * w + i];
             K[(w + i) * n + j] = -GiF[i * w + j];
             K[(w + i) * n + w + j] = Gi[i * w + j];
         }
-    return true;
+}
+
+/* sections and tension are one in a tensed element that bends */
+static bool is_inseparable(const struct rd_element *element)
+{
+    return element->kind == RD_TENSED && find(element, RD_BETA) < element->width;
 }
 
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
@@ -165,14 +119,25 @@ enum rd_status rd_element_stiffness(const struct rd_element *element, double *el
 {
     const size_t w = element->width;
     const size_t n = 2 * w;
+    double F[W * W], Gi[W * W], Q[W * W] = {0};
     memset(tension, 0, n * n * sizeof *tension);
+    if (is_inseparable(element)) {
+        const enum rd_status status = rd_triple_real(element, F, Gi, Q);
+        if (status != RD_OK)
+            return status;
+        if (!rd_dense_invert(w, Gi))
+            return RD_CRITICAL_ELEMENT;
+    } else if (!rd_element_grip(element, F, Gi)) {
+        return RD_NOT_POSITIVE_DEFINITE;
+    }
+    assemble(w, F, Gi, Q, elastic);
     const size_t z = find(element, RD_Z);
-    if (z < w) {
+    if (z < w && !is_inseparable(element)) {
         const double t = element->tension / element->length;
         tension[z * n + z] = tension[(w + z) * n + w + z] = t;
         tension[z * n + w + z] = tension[(w + z) * n + z] = -t;
     }
-    return elastic_stiffness(element, elastic) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+    return RD_OK;
 }
 
 /* G(s, l) G^-1, with s/l for the z of a string */

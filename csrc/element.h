@@ -20,12 +20,9 @@ struct rd_element {
 /* the distinct element i of a chain */
 struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i);
 
-/* The triple: u_b = F u_a + G f_b,  f_a = F^T f_b - Q u_a.  F, G, Q (width, width).
-   A string, z without beta, must have tension > 0. RD_CRITICAL_ELEMENT where the tension makes 1 + G_zz T/l vanish. */
-enum rd_status rd_element_triple(const struct rd_element *element, double *F, double *G, double *Q);
-
 /* The assembled element over (u_a, u_b), its elastic and its tension part apart:
-   elastic, tension (2 width, 2 width). RD_NOT_POSITIVE_DEFINITE where G is not. */
+   elastic, tension (2 width, 2 width). A tensed element that bends has both in `elastic`.
+   RD_NOT_POSITIVE_DEFINITE where G is not, RD_CRITICAL_ELEMENT where compression makes it so. */
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
                                     double *tension);
 

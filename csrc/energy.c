@@ -2,54 +2,106 @@
 #include "energy.h"
 
 #include "element.h"
+#include "triple.h"
 
 #include <string.h>
 
-enum { W = RD_WIDTH_MAX };
+enum { W = RD_WIDTH_MAX, N = 2 * RD_WIDTH_MAX };
 
-/* End force of the untensed element, spread over the four coordinates. */
-static void end_force(const struct rd_element *element, const double *compliance,
-                      const double *transfer, const double *u, double *force)
+/* size of an imaginary step: its square is nothing beside 1, so derivatives are exact */
+static const double STEP = 0x1p-100;
+
+/* An element ready for its energies. */
+struct store {
+    struct rd_element element;
+    double K[N * N];                              /* assembled, sections and tension */
+    double _Complex F[W * W], G[W * W], Q[W * W]; /* at T (1 + i STEP) */
+};
+
+static enum rd_status prepare(const struct rd_chain *chain, size_t which, struct store *store)
 {
-    const size_t w = element->width;
-    double slip[W];
-    for (size_t i = 0; i < w; i++) {
-        slip[i] = u[w + i];
-        for (size_t j = 0; j < w; j++)
-            slip[i] -= transfer[i * w + j] * u[j];
-    }
-    memset(force, 0, W * sizeof *force);
-    for (size_t i = 0; i < w; i++)
-        for (size_t j = 0; j < w; j++)
-            force[element->coordinate[i]] += compliance[i * w + j] * slip[j];
+    double string[N * N];
+    store->element = rd_chain_element(chain, which);
+    const size_t n = 2 * chain->width;
+    const enum rd_status status = rd_element_stiffness(&store->element, store->K, string);
+    for (size_t i = 0; i < n * n; i++)
+        store->K[i] += string[i];
+    if (status != RD_OK)
+        return status;
+    return rd_triple(&store->element, 1, CMPLX(1, STEP), store->F, store->G, store->Q);
 }
 
-/* integrals over the element of products of torque t = M_alpha, moment m(s) = s F_z + M_beta and
-   axial force a = F_x, each weighed with its entry of S */
-static void add_elastic(const struct rd_element *element, const double *force, double *strain)
+/* f_b, the force on the right end, of the nodes' motion u (2, width) */
+static void end_force(const struct store *store, const double *u, double *force)
 {
+    const size_t w = store->element.width;
+    for (size_t i = 0; i < w; i++) {
+        force[i] = 0;
+        for (size_t j = 0; j < 2 * w; j++)
+            force[i] += store->K[(w + i) * 2 * w + j] * u[j];
+    }
+}
+
+/* The mixed form P = f^T F u_a + (f^T G f - u_a^T Q u_a)/2 has u_b = dP/df, f_a = dP/du_a and is
+   f u_b less the energy, so that twice the energy of the tension is -2 T dP/dT and twice the whole
+   f^T G f + u_a^T Q u_a. */
+static void weigh(const struct store *store, const double *u, const double *f, double *whole,
+                  double *tension)
+{
+    const size_t w = store->element.width;
+    double _Complex cross = 0, stored = 0, released = 0;
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            cross += f[i] * store->F[i * w + j] * u[j];
+            stored += f[i] * store->G[i * w + j] * f[j];
+            released += u[i] * store->Q[i * w + j] * u[j];
+        }
+    *whole = creal(stored) + creal(released);
+    *tension = -cimag(2 * cross + stored - released) / STEP;
+}
+
+/* beta_b - beta_a without the difference of two large numbers */
+static double bent(const struct store *store, const double *u, const double *f)
+{
+    const size_t w = store->element.width;
+    const size_t beta = w - 1;
+    double sum = (creal(store->F[beta * w + beta]) - 1) * u[beta];
+    for (size_t j = 0; j < w; j++)
+        sum += creal(store->G[beta * w + j]) * f[j];
+    return sum;
+}
+
+/* Torque t and axial force a are constant along the element; of the bending moment m the integral
+   follows from the rotation between the ends: beta_b - beta_a = S_bb int m + l (S_tb t + S_ab a). */
+static void add_element(const struct store *store, const double *u, const double *force,
+                        double *strain)
+{
+    const struct rd_element *element = &store->element;
+    const size_t w = element->width;
     const double l = element->length;
     const double *S = element->flexibility;
-    const double a = force[RD_X];
-    const double t = force[RD_ALPHA];
-    const double mean = l * (l / 2 * force[RD_Z] + force[RD_BETA]);
-    const double spread = l * l * l / 12 * force[RD_Z] * force[RD_Z];
-    strain[RD_STRAIN_STRETCH] += S[RD_AXIAL * 3 + RD_AXIAL] * l * a * a;
-    strain[RD_STRAIN_TWIST] += S[RD_TORSION * 3 + RD_TORSION] * l * t * t;
-    strain[RD_STRAIN_BENDING] += S[RD_BENDING * 3 + RD_BENDING] * (mean * mean / l + spread);
-    strain[RD_STRAIN_LAY] +=
-        2 * (S[RD_AXIAL * 3 + RD_TORSION] * l * a * t + S[RD_AXIAL * 3 + RD_BENDING] * a * mean +
-             S[RD_TORSION * 3 + RD_BENDING] * t * mean);
-}
-
-/* T/l (z_b - z_a)^2 */
-static void add_tension(const struct rd_element *element, const double *u, double *strain)
-{
-    for (size_t i = 0; i < element->width; i++)
-        if (element->coordinate[i] == RD_Z) {
-            const double rise = u[element->width + i] - u[i];
-            strain[RD_STRAIN_TENSION] += element->tension / element->length * rise * rise;
-        }
+    const double Sbb = S[RD_BENDING * RD_CHANNELS + RD_BENDING];
+    const double Stb = S[RD_TORSION * RD_CHANNELS + RD_BENDING];
+    const double Sab = S[RD_AXIAL * RD_CHANNELS + RD_BENDING];
+    double f[W] = {0}, whole, tension;
+    for (size_t i = 0; i < w; i++)
+        f[element->coordinate[i]] = force[i];
+    weigh(store, u, force, &whole, &tension);
+    const double a = f[RD_X];
+    const double t = f[RD_ALPHA];
+    const double stretch = S[RD_AXIAL * RD_CHANNELS + RD_AXIAL] * l * a * a;
+    const double twist = S[RD_TORSION * RD_CHANNELS + RD_TORSION] * l * t * t;
+    double lay = 2 * S[RD_AXIAL * RD_CHANNELS + RD_TORSION] * l * a * t;
+    if (Stb != 0 || Sab != 0) {
+        const double moment = (bent(store, u, force) - l * (Stb * t + Sab * a)) / Sbb;
+        lay += 2 * (Stb * t + Sab * a) * moment;
+    }
+    strain[RD_STRAIN_TENSION] += tension;
+    strain[RD_STRAIN_STRETCH] += stretch;
+    strain[RD_STRAIN_TWIST] += twist;
+    strain[RD_STRAIN_LAY] += lay;
+    if (element->coordinate[w - 1] == RD_BETA)
+        strain[RD_STRAIN_BENDING] += whole - tension - stretch - twist - lay;
 }
 
 static double quadratic(size_t n, const double *A, const double *u)
@@ -61,28 +113,30 @@ static double quadratic(size_t n, const double *A, const double *u)
     return sum;
 }
 
-enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain)
+enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape,
+                                const double *force, double *strain)
 {
     const size_t w = chain->width;
-    double transfer[W * W], compliance[W * W];
-    struct rd_element element = {0};
+    struct store store;
     int32_t last = -1;
     memset(strain, 0, RD_STRAINS * sizeof *strain);
     for (size_t i = 0; i + 1 < chain->nodes; i++) {
         if (chain->element_of[i] != last) {
             last = chain->element_of[i];
-            element = rd_chain_element(chain, (size_t)last);
-            if (!rd_element_grip(&element, transfer, compliance))
-                return RD_NOT_POSITIVE_DEFINITE;
+            const enum rd_status status = prepare(chain, (size_t)last, &store);
+            if (status != RD_OK)
+                return status;
         }
-        double force[W];
-        end_force(&element, compliance, transfer, shape + i * w, force);
-        add_elastic(&element, force, strain);
-        add_tension(&element, shape + i * w, strain);
+        double f[W];
+        if (force == NULL)
+            end_force(&store, shape + i * w, f);
+        else
+            memcpy(f, force + i * w, w * sizeof *f);
+        add_element(&store, shape + i * w, f, strain);
     }
     for (size_t i = 0; i < chain->nodes; i++) {
-        const double *N = chain->stiffness + (size_t)chain->term_of[i] * w * w;
-        strain[RD_STRAIN_SPRING] += quadratic(w, N, shape + i * w);
+        const double *spring = chain->stiffness + (size_t)chain->term_of[i] * w * w;
+        strain[RD_STRAIN_SPRING] += quadratic(w, spring, shape + i * w);
     }
     return RD_OK;
 }

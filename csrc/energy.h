@@ -15,9 +15,11 @@ enum rd_strain {
     RD_STRAINS
 };
 
-/* strain (RD_STRAINS) of shape (nodes, width), twice its energy [J]: elements by their end forces f,
-   f^T G f = integral S (axial, torque, moment)^2, never by differences of stiffness products */
-enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain);
+/* strain (RD_STRAINS), twice the energy [J] of shape (nodes, width) with the force (nodes - 1,
+   width) on the right end of each element, or NULL where that is to follow from the shape: then
+   short elements lose digits, being differences of nearly equal motions. */
+enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape,
+                                const double *force, double *strain);
 
 /* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape */
 void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double *kinetic);

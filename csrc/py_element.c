@@ -4,6 +4,7 @@
 #include "dense.h"
 #include "element.h"
 #include "section.h"
+#include "triple.h"
 
 PyObject *py_section(PyObject *module, PyObject *arguments)
 {
@@ -63,7 +64,7 @@ PyObject *py_triples(PyObject *module, PyObject *arguments)
     for (size_t i = 0; i < parsed.chain.distinct; i++) {
         const struct rd_element element = rd_chain_element(&parsed.chain, i);
         const enum rd_status status =
-            rd_element_triple(&element, f + i * w * w, g + i * w * w, q + i * w * w);
+            rd_triple_real(&element, f + i * w * w, g + i * w * w, q + i * w * w);
         if (status != RD_OK) {
             py_raise(module, status);
             goto done;
@@ -96,6 +97,49 @@ static int check_distance(const struct rd_element *element, double s, const char
         return 0;
     PyErr_Format(PyExc_ValueError, "%s must lie between 0 and the length of the element", name);
     return -1;
+}
+
+/* the triple of one element at many complex factors of its section and its tension */
+PyObject *py_triple(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    struct rd_element element;
+    PyArrayObject *factor = NULL;
+    PyObject *object, *factors, *array[3] = {NULL}, *result = NULL;
+    Py_ssize_t index;
+    if (!PyArg_ParseTuple(arguments, "OnO", &object, &index, &factors))
+        return NULL;
+    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+        goto done;
+    factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){2, -1}, "factor");
+    if (factor == NULL)
+        goto done;
+    const npy_intp count = PyArray_DIM(factor, 1);
+    const npy_intp w = (npy_intp)element.width;
+    double _Complex *data[3];
+    for (int k = 0; k < 3; k++) {
+        array[k] = py_new(NPY_COMPLEX128, 3, (npy_intp[]){count, w, w});
+        if (array[k] == NULL)
+            goto done;
+        data[k] = PyArray_DATA((PyArrayObject *)array[k]);
+    }
+    const double _Complex *section = PyArray_DATA(factor);
+    for (npy_intp i = 0; i < count; i++) {
+        const npy_intp at = i * w * w;
+        const enum rd_status status = rd_triple(&element, section[i], section[count + i],
+                                                data[0] + at, data[1] + at, data[2] + at);
+        if (status != RD_OK) {
+            py_raise(module, status);
+            goto done;
+        }
+    }
+    result = PyTuple_Pack(3, array[0], array[1], array[2]);
+done:
+    for (int k = 0; k < 3; k++)
+        Py_XDECREF(array[k]);
+    Py_XDECREF(factor);
+    py_chain_release(&parsed);
+    return result;
 }
 
 PyObject *py_shape(PyObject *module, PyObject *arguments)

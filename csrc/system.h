@@ -3,6 +3,7 @@
 #define RD_SYSTEM_H
 
 #include "band.h"
+#include "ports.h"
 #include "workspace.h"
 
 struct rd_system {
@@ -16,13 +17,6 @@ struct rd_system {
 /* Takes the system's arrays from the workspace; while that measures, nothing is filled. */
 enum rd_status rd_system_prepare(const struct rd_chain *chain, struct rd_system *system,
                                  struct rd_workspace *workspace);
-
-/* Where something is pushed or watched: a row over the coordinates of two neighbouring nodes. */
-struct rd_ports {
-    size_t count;
-    const int32_t *node; /* (count)            left node */
-    const double *row;   /* (count, 2, width)  displacement = row (u_node, u_node+1) */
-};
 
 /* load (free, complex where stride is 2) <- scale * row^T of port p; the rest is zeroed */
 void rd_port_load(const struct rd_system *system, const struct rd_ports *ports, size_t p,

@@ -1,5 +1,6 @@
 /* Elements: triples, stiffness, shapes and local flexibility against closed forms. */
 #include "element.h"
+#include "triple.h"
 
 #include "chains.h"
 #include "check.h"
@@ -92,7 +93,7 @@ static void example_make(struct piece *piece, const struct example *of)
 static void units(const struct rd_element *element, double *g)
 {
     double F[W * W], G[W * W], Q[W * W];
-    CHECK_INT(rd_element_triple(element, F, G, Q), RD_OK);
+    CHECK_INT(rd_triple_real(element, F, G, Q), RD_OK);
     for (size_t i = 0; i < element->width; i++) {
         const double own = fabs(G[i * element->width + i]);
         g[i] = own > 0 ? sqrt(own) : 1;
@@ -146,7 +147,7 @@ static void study_flexibility_to_the_last_digits(void)
         struct piece piece;
         double F[9], G[9], Q[9];
         piece_make(&piece, "zab", RD_DIFFERENCE, 0, &section);
-        CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+        CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
         const double expected[] = {zz[k], za[k], zb[k], za[k], aa[k], ab[k], zb[k], ab[k], bb[k]};
         for (int i = 0; i < 9; i++)
             CHECK_REL(G[i], expected[i], 16 * EPS, reason);
@@ -182,7 +183,7 @@ static void untensed_transfer_is_identity_or_a_lever(void)
         struct example without = example[k];
         without.tension = strchr(without.coordinates, 'b') != NULL ? 0 : without.tension;
         example_make(&piece, &without);
-        CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+        CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
         const size_t w = piece.element.width;
         for (size_t i = 0; i < w; i++)
             for (size_t j = 0; j < w; j++) {
@@ -201,7 +202,7 @@ static void string_element_is_its_tension(void)
     struct piece piece;
     double F[4], G[4], Q[4], elastic[16], tension[16];
     piece_make(&piece, "za", RD_RIGID, 300, &full);
-    CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+    CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
     CHECK_EXACT(G[0], L / 300);
     CHECK_EXACT(G[1], 0);
     CHECK_EXACT(G[3], piece.S[4] * L);
@@ -222,7 +223,7 @@ static void tension_resists_turning_with_one_entry(void)
     double F[16], G[16], Q[16];
     piece_make(&piece, "xzab", RD_RIGID, 300, &full);
     const double Gzz = piece.S[8] * L * L * L / 3;
-    CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+    CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
     for (size_t k = 0; k < 15; k++)
         CHECK_EXACT(Q[k], 0);
     CHECK_REL(Q[15], 300 * L / (1 + Gzz * 300 / L), 16 * EPS, "a dozen roundings");
@@ -243,7 +244,7 @@ static void triple_and_stiffness_agree(const struct example *of)
     example_make(&piece, of);
     const size_t w = piece.element.width;
     units(&piece.element, g);
-    CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+    CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
     CHECK_INT(rd_element_stiffness(&piece.element, K, tension), RD_OK);
     for (size_t k = 0; k < 4 * w * w; k++)
         K[k] += tension[k];
@@ -293,7 +294,7 @@ static void rigid_motion_gives_no_force(const struct example *of)
     example_make(&piece, &untensed);
     const size_t w = piece.element.width;
     units(&piece.element, g);
-    CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+    CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
     CHECK_INT(rd_element_stiffness(&piece.element, K, tension), RD_OK);
     for (size_t motion = 0; motion < w; motion++)
         for (size_t i = 0; i < 2 * w; i++) {
@@ -319,7 +320,7 @@ static void half_a_turn_reverses_the_element(const struct example *of)
     example_make(&piece, of);
     const size_t w = piece.element.width;
     units(&piece.element, g);
-    CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+    CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
     memcpy(copy, F, sizeof copy);
     invert(w, copy, Fi);
     rd_dense_transpose(w, w, Fi, Fit);
@@ -357,10 +358,10 @@ static void exactly_critical_compression_is_refused(void)
         piece_make(&piece, coordinates[k], RD_RIGID, -1, &section);
         piece.element.length = 1;
         piece.S[8] = 3;
-        CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_CRITICAL_ELEMENT);
+        CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_CRITICAL_ELEMENT);
         for (int side = 0; side < 2; side++) {
             piece.element.tension = nextafter(-1, side == 0 ? 0 : -2);
-            CHECK_INT(rd_element_triple(&piece.element, F, G, Q), RD_OK);
+            CHECK_INT(rd_triple_real(&piece.element, F, G, Q), RD_OK);
             for (size_t i = 0; i < piece.element.width * piece.element.width; i++)
                 CHECK(isfinite(F[i]) && isfinite(G[i]) && isfinite(Q[i]));
         }

@@ -53,7 +53,7 @@ static void ready_free(struct ready *ready)
 /* z of the right node of the only element, or of any one coordinate */
 static const int32_t first[] = {0};
 static const double right_end[] = {0, 1};
-static const struct rd_ports at_right_end = {1, first, right_end};
+static const struct rd_ports at_right_end = {1, first, right_end, NULL};
 
 /* h = 1/(g k + g_s k_s + f m) with any damping factor on each part */
 static void one_mass_is_the_textbook_oscillator(void)
@@ -125,7 +125,7 @@ static void string_of_masses_follows_its_closed_form(double damping)
     static const int32_t node[] = {0, 1, 2, 4, 7, 3};
     static const double row[] = {0, 1, 1, 0, 0, 1, 1, 0, 1, 0, 0.5, 0.5};
     static const size_t at[] = {1, 1, 3, 4, 7};
-    const struct rd_ports ports = {6, node, row};
+    const struct rd_ports ports = {6, node, row, NULL};
     struct ready ready;
     ready_make(&ready, rope_make(&recipe), &ports, &ports);
     for (int step = 1; step < 40; step++) {
@@ -168,7 +168,7 @@ static void rounding_grows_towards_a_resonance(void)
     };
     static const int32_t node[] = {3};
     static const double row[] = {1, 0};
-    const struct rd_ports port = {1, node, row};
+    const struct rd_ports port = {1, node, row, NULL};
     const double omega = 2 * sqrt(300 / 0.16875 / 0.01715625) * sin(PI / 16);
     double last = 0, motion = 0;
     struct ready ready;
@@ -216,7 +216,7 @@ static void response_is_reciprocal(const char *coordinates, double tension)
     double row[PORTS * 2 * RD_WIDTH_MAX];
     for (size_t k = 0; k < sizeof row / sizeof *row; k++)
         row[k] = check_random();
-    const struct rd_ports ports = {PORTS, node, row};
+    const struct rd_ports ports = {PORTS, node, row, NULL};
     struct ready ready;
     ready_make(&ready, rope_make(&recipe), &ports, &ports);
     for (int step = 0; step < 10; step++) {
@@ -253,7 +253,8 @@ static void value_is_laid_out_drive_by_drive(void)
     static const double drive_row[] = {0, 1, 0, 1}, response_row[] = {0, 1, 0, 1, 1, 0};
     /* static: h = min(s, p)/T at s = 1, 2 and 0 for forces at p = 1, 2 */
     static const double expected[] = {0.25, 0.25, 0, 0.25, 0.5, 0};
-    const struct rd_ports drives = {2, drive, drive_row}, responses = {3, response, response_row};
+    const struct rd_ports drives = {2, drive, drive_row, NULL},
+                          responses = {3, response, response_row, NULL};
     static const complex_t factor[RD_PARTS] = {1, 1, 1, 0};
     complex_t value[6];
     double rounding[6];
@@ -320,7 +321,7 @@ static void held_chain_does_not_move(void)
         .right = "zb",
     };
     static const double row[] = {1, 2, 3, 4};
-    const struct rd_ports port = {1, first, row};
+    const struct rd_ports port = {1, first, row, NULL};
     static const complex_t factor[RD_PARTS] = {1, 1, 1, -1};
     complex_t value = 1;
     double rounding = 1;
@@ -349,7 +350,7 @@ static void short_memory_is_refused_at_every_size(void)
     };
     static const int32_t node[] = {0, 1};
     static const double row[8] = {1, 2, 3, 4, 5, 6, 7, 8};
-    const struct rd_ports drives = {2, node, row}, responses = {1, node, row};
+    const struct rd_ports drives = {2, node, row, NULL}, responses = {1, node, row, NULL};
     struct rope rope = rope_make(&recipe);
     const size_t needed = measure(&rope, &drives, &responses);
     for (size_t bytes = 0; bytes < needed; bytes += bytes + 8 < needed ? 8 : 1) {

@@ -132,7 +132,7 @@ static void port_of_one_coordinate_is_that_coordinate(void)
     struct rd_workspace workspace;
     static const int32_t node[] = {0, 2};
     static const double row[] = {1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0};
-    const struct rd_ports ports = {2, node, row};
+    const struct rd_ports ports = {2, node, row, NULL};
     CHECK_INT(prepare(&rope, measure(&rope), &system, &workspace), RD_OK);
     double *u = zeros(system.free), *load = zeros(system.free);
     for (size_t i = 0; i < system.free; i++)

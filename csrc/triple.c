@@ -1,0 +1,172 @@
+/* The triple (F, G, Q) of an element, at any complex stiffness and tension. */
+#include "triple.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { W = RD_WIDTH_MAX, TERMS = 12 };
+
+/* tau and P0, P1, P2 of triple.h; less = P0 - 1 without cancellation */
+struct shape {
+    double _Complex tau, less, P[3];
+};
+
+/* |theta| <= 1: with c = (cosh t - 1)/theta = sum theta^k/(2k + 2)! and
+   d = (cosh t - sinh(t)/t)/theta = sum (2k + 2) theta^k/(2k + 3)!, C = cosh t = 1 + theta c:
+       P1 = c/C,  P2 = d/C,  tau = 1 - theta P2 */
+static struct shape by_series(double _Complex theta)
+{
+    double _Complex c = 0, d = 0, power = 1;
+    double factorial = 1; /* (2k + 1)! */
+    for (int k = 0; k < TERMS; k++) {
+        const double next = factorial * (2 * k + 2);
+        c += power / next;
+        d += power * ((2 * k + 2) / (next * (2 * k + 3)));
+        power *= theta;
+        factorial = next * (2 * k + 3);
+    }
+    const double _Complex C = 1 + theta * c;
+    const double _Complex less = -theta * d / C;
+    return (struct shape){.tau = 1 + less, .less = less, .P = {1 + less, c / C, d / C}};
+}
+
+/* e = exp(-t), Re t >= 0: tanh t = (1 - e^2)/(1 + e^2), 1 - 1/cosh t = (1 - e)^2/(1 + e^2):
+   nothing overflows however long the element is */
+static struct shape in_closed_form(double _Complex theta)
+{
+    const double _Complex t = csqrt(theta);
+    const double _Complex e = cexp(-t);
+    const double _Complex f = 1 + e * e;
+    const double _Complex tau = (1 - e * e) / (t * f);
+    return (struct shape){
+        .tau = tau,
+        .less = tau - 1,
+        .P = {tau, (1 - e) * (1 - e) / (f * theta), (1 - tau) / theta},
+    };
+}
+
+/* theta = -t^2 real: trigonometric, so that what is real stays real */
+static struct shape compressed(double theta)
+{
+    const double t = sqrt(-theta);
+    const double tau = tan(t) / t;
+    const double sine = sin(t / 2);
+    return (struct shape){
+        .tau = tau,
+        .less = tau - 1,
+        .P = {tau, -2 * sine * sine / (cos(t) * theta), (1 - tau) / theta},
+    };
+}
+
+static struct shape shape_of(enum rd_kind kind, double _Complex theta)
+{
+    if (kind == RD_DIFFERENCE)
+        return (struct shape){.P = {1, 0.5, 1.0 / 3}};
+    if (kind == RD_RIGID) {
+        const double _Complex p = 1 + theta / 3;
+        const double _Complex less = -theta / (4 * p);
+        return (struct shape){
+            .tau = 1 / p, .less = less, .P = {1 + less, 1 / (2 * p), 1 / (3 * p)}};
+    }
+    if (cabs(theta) <= 1)
+        return by_series(theta);
+    if (creal(theta) < 0 && cimag(theta) == 0)
+        return compressed(creal(theta));
+    return in_closed_form(theta);
+}
+
+/* channel of the section that a coordinate's end force loads, and whether by the lever of z */
+static const int channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
+static const int lever[RD_WIDTH_MAX] = {0, 1, 0, 0};
+
+static bool has(const struct rd_element *element, enum rd_coordinate coordinate)
+{
+    for (size_t i = 0; i < element->width; i++)
+        if (element->coordinate[i] == (int32_t)coordinate)
+            return true;
+    return false;
+}
+
+/* without bending every coordinate is a rod of its own: G_cd = l S_cd, and l/T for z */
+static void rods(const struct rd_element *element, double _Complex section, double _Complex tension,
+                 double _Complex *G)
+{
+    const size_t w = element->width;
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            const int c = channel[element->coordinate[i]];
+            const int d = channel[element->coordinate[j]];
+            if (c != RD_BENDING && d != RD_BENDING)
+                G[i * w + j] =
+                    element->length * element->flexibility[c * RD_CHANNELS + d] / section;
+            else if (i == j) {
+                assert(element->tension > 0);
+                G[i * w + j] = element->length / (element->tension * tension);
+            }
+        }
+}
+
+static void bend(const struct rd_element *element, double _Complex section, double _Complex tension,
+                 double _Complex *F, double _Complex *G, double _Complex *Q)
+{
+    const size_t w = element->width;
+    const double l = element->length;
+    const double *S = element->flexibility;
+    const double Sbb = S[RD_BENDING * RD_CHANNELS + RD_BENDING];
+    const double _Complex theta = element->tension * Sbb * l * l * tension / section;
+    const struct shape shape = shape_of(element->kind, theta);
+    const double reach[3] = {l, l * l, l * l * l};
+    const size_t beta = w - 1;
+    for (size_t i = 0; i < w; i++) {
+        const int c = channel[element->coordinate[i]];
+        const double ri = c == RD_BENDING ? 1 : S[c * RD_CHANNELS + RD_BENDING] / Sbb;
+        for (size_t j = 0; j < w; j++) {
+            const int d = channel[element->coordinate[j]];
+            const double rj = d == RD_BENDING ? 1 : S[d * RD_CHANNELS + RD_BENDING] / Sbb;
+            const int k = lever[element->coordinate[i]] + lever[element->coordinate[j]];
+            if (c != RD_BENDING && d != RD_BENDING)
+                G[i * w + j] = l * (S[c * RD_CHANNELS + d] + ri * rj * Sbb * shape.less) / section;
+            else
+                G[i * w + j] = ri * rj * Sbb * reach[k] * shape.P[k] / section;
+        }
+        if (lever[element->coordinate[i]])
+            F[i * w + beta] = l * shape.tau;
+        else
+            F[i * w + beta] = (i == beta) - ri * theta * shape.P[1];
+    }
+    Q[beta * w + beta] = element->tension * tension * l * shape.tau;
+}
+
+enum rd_status rd_triple(const struct rd_element *element, double _Complex section,
+                         double _Complex tension, double _Complex *F, double _Complex *G,
+                         double _Complex *Q)
+{
+    const size_t w = element->width;
+    for (size_t i = 0; i < w * w; i++) {
+        F[i] = i % (w + 1) == 0;
+        G[i] = Q[i] = 0;
+    }
+    if (!has(element, RD_BETA)) {
+        rods(element, section, tension, G);
+        return RD_OK;
+    }
+    bend(element, section, tension, F, G, Q);
+    for (size_t i = 0; i < w * w; i++)
+        if (!isfinite(creal(G[i])) || !isfinite(cimag(G[i])))
+            return RD_CRITICAL_ELEMENT;
+    return RD_OK;
+}
+
+enum rd_status rd_triple_real(const struct rd_element *element, double *F, double *G, double *Q)
+{
+    const size_t block = element->width * element->width;
+    double _Complex Fc[W * W], Gc[W * W], Qc[W * W];
+    const enum rd_status status = rd_triple(element, 1, 1, Fc, Gc, Qc);
+    for (size_t i = 0; i < block; i++) {
+        F[i] = creal(Fc[i]);
+        G[i] = creal(Gc[i]);
+        Q[i] = creal(Qc[i]);
+    }
+    return status;
+}
