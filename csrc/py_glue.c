@@ -52,18 +52,24 @@ PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_in
     return array;
 }
 
-/* every entry of an index array lies in 0 ... bound - 1 */
-static int check_range(PyArrayObject *array, size_t bound, const char *name)
+/* every entry of an index array lies in 0 ... bound - 1; the loop never leaves early, so that the
+   compiler takes many entries at once */
+__attribute__((optimize("O3"))) static int check_range(PyArrayObject *array, size_t bound,
+                                                       const char *name)
 {
-    const int32_t *entry = PyArray_DATA(array);
+    const uint32_t *entry = PyArray_DATA(array);
     const npy_intp count = PyArray_SIZE(array);
+    uint32_t largest = 0; /* a negative entry is a very large one */
     for (npy_intp i = 0; i < count; i++)
-        if (entry[i] < 0 || (size_t)entry[i] >= bound) {
-            PyErr_Format(PyExc_ValueError, "%s[%zd] must lie in 0 ... %zd, got %d", name,
-                         (Py_ssize_t)i, (Py_ssize_t)bound - 1, (int)entry[i]);
-            return -1;
-        }
-    return 0;
+        largest = entry[i] > largest ? entry[i] : largest;
+    if (count == 0 || largest < bound)
+        return 0;
+    npy_intp i = 0;
+    while (entry[i] < bound)
+        i++;
+    PyErr_Format(PyExc_ValueError, "%s[%zd] must lie in 0 ... %zd, got %d", name, (Py_ssize_t)i,
+                 (Py_ssize_t)bound - 1, (int)(int32_t)entry[i]);
+    return -1;
 }
 
 enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, ELEMENT_OF, MASS, STIFFNESS, HELD, TERM_OF };
@@ -93,8 +99,8 @@ static int check_values(const struct rd_chain *chain)
 static int check_indices(const struct py_chain *parsed)
 {
     const struct rd_chain *chain = &parsed->chain;
-    if (chain->kind != RD_DIFFERENCE && chain->kind != RD_RIGID) {
-        PyErr_Format(PyExc_ValueError, "kind must be 0 or 1, got %d", (int)chain->kind);
+    if (chain->kind != RD_DIFFERENCE && chain->kind != RD_RIGID && chain->kind != RD_TENSED) {
+        PyErr_Format(PyExc_ValueError, "kind must be 0, 1 or 2, got %d", (int)chain->kind);
         return -1;
     }
     for (size_t k = 1; k < chain->width; k++)
@@ -188,12 +194,12 @@ void py_chain_release(struct py_chain *parsed)
 int py_ports_parse(PyObject *object, const struct rd_chain *chain, const char *name,
                    struct py_ports *parsed)
 {
-    PyObject *node, *row;
+    PyObject *node, *row, *force = Py_None;
     if (!PyTuple_Check(object)) {
         PyErr_Format(PyExc_TypeError, "%s must be a tuple", name);
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "OO", &node, &row))
+    if (!PyArg_ParseTuple(object, "OO|O", &node, &row, &force))
         return -1;
     const npy_intp any[] = {-1};
     parsed->node = py_array(node, NPY_INT32, 1, any, name);
@@ -203,10 +209,15 @@ int py_ports_parse(PyObject *object, const struct rd_chain *chain, const char *n
     parsed->row = py_array(row, NPY_DOUBLE, 3, shape, name);
     if (parsed->row == NULL || check_range(parsed->node, chain->nodes - 1, name) < 0)
         return -1;
+    const npy_intp rows[] = {shape[0], shape[2]};
+    parsed->force = force == Py_None ? NULL : py_array(force, NPY_DOUBLE, 2, rows, name);
+    if (force != Py_None && parsed->force == NULL)
+        return -1;
     parsed->ports = (struct rd_ports){
         .count = (size_t)shape[0],
         .node = PyArray_DATA(parsed->node),
         .row = PyArray_DATA(parsed->row),
+        .force = parsed->force == NULL ? NULL : PyArray_DATA(parsed->force),
     };
     return 0;
 }
@@ -215,6 +226,7 @@ void py_ports_release(struct py_ports *parsed)
 {
     Py_XDECREF(parsed->node);
     Py_XDECREF(parsed->row);
+    Py_XDECREF(parsed->force);
 }
 
 int py_workspace_allocate(struct rd_workspace *workspace)

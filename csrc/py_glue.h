@@ -39,11 +39,13 @@ struct py_chain {
 int py_chain_parse(PyObject *object, struct py_chain *parsed);
 void py_chain_release(struct py_chain *parsed);
 
-/* ports and the arrays they view, from the tuple (node (count), row (count, 2, width)) */
+/* ports and the arrays they view, from the tuple (node (count), row (count, 2, width), force (count,
+   width) or None) */
 struct py_ports {
     struct rd_ports ports;
     PyArrayObject *node;
     PyArrayObject *row;
+    PyArrayObject *force;
 };
 
 int py_ports_parse(PyObject *object, const struct rd_chain *chain, const char *name,
@@ -68,5 +70,8 @@ PyObject *py_deflection(PyObject *module, PyObject *arguments);
 PyObject *py_modes(PyObject *module, PyObject *arguments);
 PyObject *py_frf(PyObject *module, PyObject *arguments);
 PyObject *py_energy(PyObject *module, PyObject *arguments);
+PyObject *py_runs(PyObject *module, PyObject *arguments);
+PyObject *py_sweep(PyObject *module, PyObject *arguments);
+PyObject *py_triple(PyObject *module, PyObject *arguments);
 
 #endif

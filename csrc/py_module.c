@@ -18,6 +18,10 @@ static PyMethodDef methods[] = {
      "modes(chain, wanted, below, scale) -> (eigenvalue, rounding, shape), finite"},
     {"frf", py_frf, METH_VARARGS,
      "frf(chain, factor, drives, responses) -> value, rounding, frequencies solved"},
+    {"runs", py_runs, METH_VARARGS, "runs(chain) -> run, average"},
+    {"sweep", py_sweep, METH_VARARGS,
+     "sweep(chain, runs, factor, drives, responses) -> value, error, frequencies solved"},
+    {"triple", py_triple, METH_VARARGS, "triple(chain, element, factor) -> F, G, Q"},
     {"energy", py_energy, METH_VARARGS, "energy(chain, shape) -> strain, kinetic"},
     {NULL, NULL, 0, NULL},
 };

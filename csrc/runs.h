@@ -1,0 +1,31 @@
+/* What of a chain repeats, and its averages: found once, used by every sweep. */
+#ifndef RD_RUNS_H
+#define RD_RUNS_H
+
+#include "chain.h"
+#include "status.h"
+
+/* Elements first .. last - 1 are the same and so are the node terms at first + 1 .. last - 1,
+   where nothing is held. Only stretches of RD_RUN_LEAST elements or more are runs. */
+struct rd_run {
+    size_t first, last;
+};
+
+enum { RD_RUN_LEAST = 8 };
+
+struct rd_runs {
+    size_t count, longest;
+    const struct rd_run *run;        /* (count) */
+    double length;                   /* [m] of the chain */
+    double tension;                  /* [N] mean over the length */
+    double flexibility[RD_CHANNELS]; /* mean S_cc over the length */
+    double mass[RD_WIDTH_MAX];       /* per length, geometric mean of nodes that have any */
+};
+
+/* places needed for the runs of a chain */
+size_t rd_runs_capacity(const struct rd_chain *chain);
+
+/* fills run (capacity) and the view of it */
+void rd_runs_find(const struct rd_chain *chain, struct rd_run *run, struct rd_runs *runs);
+
+#endif

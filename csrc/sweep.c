@@ -1,0 +1,59 @@
+/* Frequency response by one sweep from each end, in scattering form. */
+#include "sweep.h"
+
+#include "sweep_order.h"
+#include "sweep_plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/* the frequencies order[first] .. that fit together */
+static void begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
+{
+    s->used = rd_sweep_block_from(s->chain, s->runs, factors, s->order, first, s->index);
+    s->extent = rd_sweep_extent(factors, s->index[0]);
+    rd_sweep_scale(s->chain, s->runs, factors, s->index, &s->block, s->way);
+    s->levels = 0;
+    s->steps = 1.0;
+    for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)
+        s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);
+    for (size_t e = 0; s->plain && e < s->chain->distinct; e++)
+        s->kernel->make_plain(s->chain, &s->block, e, s->plain + e * RD_PLAIN);
+}
+
+/* overflow counts as a resonance too */
+static void find_infinite(const double *x, size_t rows, size_t count, size_t width, size_t *failed)
+{
+    for (size_t r = 0; r < rows; r++)
+        for (size_t i = 0; i < *failed * width; i++)
+            if (!isfinite(x[r * count * width + i]))
+                *failed = i / width;
+}
+
+enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_runs *runs,
+                            const struct rd_factors *factors, const struct rd_ports *drives,
+                            const struct rd_ports *responses, struct rd_workspace *workspace,
+                            double *value, double *error, size_t *failed)
+{
+    struct sweep *s = rd_sweep_plan(chain, runs, factors, drives, responses, workspace);
+    if (!s)
+        return RD_NO_MEMORY;
+    const size_t count = factors->count, rows = drives->count * responses->count;
+    const size_t all = s->swapped ? responses->count : drives->count;
+    memset(value, 0, 2 * rows * count * sizeof *value);
+    memset(error, 0, rows * count * sizeof *error);
+    rd_sweep_order(factors, s->order);
+    for (size_t first = 0; first < count; first += s->used) {
+        begin_block(s, factors, first);
+        rd_sweep_left(s);
+        rd_sweep_right(s, count, all, value, error);
+    }
+    find_infinite(value, rows, count, 2, &s->failed);
+    find_infinite(error, rows, count, 1, &s->failed);
+    if (s->failed == count)
+        return RD_OK;
+    *failed = s->failed;
+    return RD_SINGULAR;
+}

@@ -1,0 +1,158 @@
+/* Across the chain: runs by pieces, the rest element by element. */
+#include "sweep_plan.h"
+
+#include <string.h>
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/* at a free end nothing is behind the walk: U = I */
+void rd_sweep_begin(struct sweep *s)
+{
+    const size_t w = s->chain->width;
+    for (size_t i = 0, p = 0; i < w; i++)
+        for (size_t j = i; j < w; j++, p++)
+            s->state.U[p] = c_real(i == j ? 1.0 : 0.0);
+    memset(s->rows, 0, s->carried * w * sizeof *s->rows);
+    s->state.absorbed = 0;
+    s->state.rows = 0;
+    s->state.E = s->state.E_all = s->rows;
+}
+
+void rd_sweep_absorb(struct sweep *s, int way, size_t node)
+{
+    if (!s->state.absorbed)
+        s->kernel->absorb(&s->walk[way], (size_t)s->chain->term_of[node], &s->state);
+}
+
+/* a node term that half a turn about z changes makes the pieces differ with the direction */
+static int turns(const struct sweep *s, int32_t term)
+{
+    const size_t w = s->chain->width, at = (size_t)term * w * w;
+    int any = 0;
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++)
+            if (s->way[1].sign[i] * s->way[1].sign[j] < 0.0)
+                any |= s->chain->mass[at + i * w + j] != 0.0 ||
+                       s->chain->stiffness[at + i * w + j] != 0.0;
+    return any;
+}
+
+/* pieces of 1, 2, 4, .. elements of a run, joined by doubling */
+static void make_table(struct sweep *s, int32_t e, int32_t t, int way, size_t levels)
+{
+    way = turns(s, t) ? way : 0;
+    if (s->levels == levels && s->table_element == e && s->table_term == t && s->table_way == way)
+        return;
+    cv *one = s->triple, *two = s->triple + s->coefs;
+    s->kernel->make_element(s->chain, &s->block, (size_t)e, one);
+    for (size_t k = 0; k < levels; k++) {
+        s->kernel->make_coefficients(one, s->table + k * s->coefs);
+        if (k + 1 < levels)
+            s->kernel->join(s->chain, &s->way[way], (size_t)t, one, one, two);
+        cv *swap = one;
+        one = two;
+        two = swap;
+    }
+    s->levels = levels;
+    s->table_element = e;
+    s->table_term = t;
+    s->table_way = way;
+}
+
+/* the node term at the near end of the first piece may differ from the run's */
+static void first_piece(struct sweep *s, int way, const cv *piece, size_t node)
+{
+    const size_t term = (size_t)s->chain->term_of[node];
+    rd_sweep_absorb(s, way, node);
+    if (!way && (s->trait[term] & RD_HINGED))
+        s->kernel->open(&s->walk[way], term, &s->state);
+    s->kernel->walk(&s->walk[way], piece, -1, node, 1, &s->state);
+    s->state.absorbed = 0;
+}
+
+static void cross_each(struct sweep *s, int way, size_t node, size_t count)
+{
+    if (count == 0)
+        return;
+    if (s->kernel->walk_plain && s->state.rows == 0)
+        s->kernel->walk_plain(&s->walk[way], node, count, &s->state);
+    else
+        s->kernel->walk(&s->walk[way], NULL, -1, node, count, &s->state);
+    s->state.absorbed = 0;
+    s->steps += (double)count;
+}
+
+/* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
+static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
+{
+    const int32_t e = s->chain->element_of[run->first], t = s->chain->term_of[run->first + 1];
+    size_t top = rd_sweep_levels(s->chain, (size_t)e, (size_t)t, count, &s->extent);
+    if (top == 0) {
+        cross_each(s, way, node, count);
+        return;
+    }
+    make_table(s, e, t, way, top + 1);
+    int begun = 0;
+    for (size_t left = count; left > 0; top--) {
+        size_t pieces = left >> top;
+        left -= pieces << top;
+        s->steps += (double)pieces * (double)pieces;
+        if (pieces == 0)
+            continue;
+        const cv *piece = s->table + top * s->coefs;
+        if (!begun) {
+            first_piece(s, way, piece, node);
+            begun = 1;
+            pieces--;
+        }
+        s->kernel->walk(&s->walk[way], piece, t, node, pieces, &s->state);
+    }
+    const size_t end = (size_t)s->chain->term_of[way ? node - count : node + count];
+    if (way && (s->trait[end] & RD_HINGED))
+        s->kernel->open(&s->walk[way], end, &s->state);
+}
+
+/* from node a to a later node b, runs by pieces and the rest element by element; r is the first
+   run that ends behind a */
+void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
+{
+    while (a < b) {
+        while (*r < s->runs->count && s->runs->run[*r].last <= a)
+            ++*r;
+        const struct rd_run *run = *r < s->runs->count ? s->runs->run + *r : NULL;
+        const size_t until = !run || run->first > b ? b : run->first;
+        if (a < until) {
+            cross_each(s, 0, a, until - a);
+            a = until;
+        } else {
+            const size_t end = run->last < b ? run->last : b;
+            if (end - a >= RD_RUN_LEAST)
+                cross_run(s, run, 0, a, end - a);
+            else
+                cross_each(s, 0, a, end - a);
+            a = end;
+        }
+    }
+}
+
+/* the same from b back to an earlier node a; *r - 1 is the last run that begins before b */
+void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
+{
+    while (a < b) {
+        while (*r > 0 && s->runs->run[*r - 1].first >= b)
+            --*r;
+        const struct rd_run *run = *r > 0 ? s->runs->run + *r - 1 : NULL;
+        const size_t until = !run || run->last < a ? a : run->last;
+        if (until < b) {
+            cross_each(s, 1, b, b - until);
+            b = until;
+        } else {
+            const size_t end = run->first > a ? run->first : a;
+            if (b - end >= RD_RUN_LEAST)
+                cross_run(s, run, 1, b, b - end);
+            else
+                cross_each(s, 1, b, b - end);
+            b = end;
+        }
+    }
+}

@@ -1,0 +1,120 @@
+/* The scaled triple of one element and its scattering coefficients.
+   Included by sweep_width.h, once per width. */
+
+/* The triple of one element, scaled: D = F - I, G, Q (see triple.h for the shape functions).
+       G_ij = flex_ij (S_bb rho_i rho_j l^(1+k) P_k),  k the number of z among i, j
+       D_z,beta = l tau,  D_c,beta = -rho_c theta P_1,  Q_beta,beta = T l tau
+   with rho_c = S_cb/S_bb for the channels c that bending drives and 1 for z and beta. */
+RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct sweep_block *b,
+                           cv *triple)
+{
+    cv *D = triple, *G = triple + FULL, *Q = G + SYM;
+    const double l = chain->length[e], T = chain->tension[e];
+    const double *S = chain->flexibility + 9 * e;
+    UNROLL for (int i = 0; i < FULL; i++)
+        D[i] = c_zero();
+    UNROLL for (int i = 0; i < SYM; i++)
+        Q[i] = c_zero();
+    if (!b->bends) {
+        UNROLL for (int i = 0; i < W; i++)
+            UNROLL for (int j = i; j < W; j++) {
+                const int c = b->channel[i], d = b->channel[j];
+                cv g = c_zero();
+                if (c != RD_BENDING && d != RD_BENDING)
+                    g = c_scale(b->flex[at(i, j)], S[3 * c + d] * l);
+                else if (i == j)
+                    g = c_scale(b->slack, l / T);
+                G[at(i, j)] = g;
+            }
+        return;
+    }
+    const double Sbb = S[3 * RD_BENDING + RD_BENDING];
+    const cv theta = c_scale(b->phi, T * Sbb * l * l);
+    struct shape_lanes p;
+    shape_functions(chain->kind, theta, &p);
+    const cv bent[3] = {c_scale(p.P0, Sbb * l), c_scale(p.P1, Sbb * l * l),
+                        c_scale(p.P2, Sbb * l * l * l)};
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = i; j < W; j++) {
+            const int c = b->channel[i], d = b->channel[j];
+            const double ri = c == RD_BENDING ? 1.0 : S[3 * c + RD_BENDING] / Sbb;
+            const double rj = d == RD_BENDING ? 1.0 : S[3 * d + RD_BENDING] / Sbb;
+            const cv flex = b->flex[at(i, j)];
+            if (c != RD_BENDING && d != RD_BENDING) {
+                const cv stiffened = c_scale(p.less, ri * rj * Sbb * l);
+                G[at(i, j)] = c_mul(flex, c_add(c_real(S[3 * c + d] * l), stiffened));
+            } else {
+                const cv g = c_mul(flex, bent[b->arm[i] + b->arm[j]]);
+                G[at(i, j)] = c == d ? g : c_scale(g, ri * rj);
+            }
+        }
+    const cv turn = c_neg(c_mul(theta, p.P1));
+    UNROLL for (int i = 0; i < W; i++) {
+        const int c = b->channel[i];
+        cv d;
+        if (b->arm[i])
+            d = c_scale(p.tau, l);
+        else
+            d = c == RD_BENDING ? turn : c_scale(turn, S[3 * c + RD_BENDING] / Sbb);
+        D[i * W + W - 1] = c_scale_lanes(d, b->ratio[i]);
+    }
+    Q[SYM - 1] = c_scale(c_mul(b->pull, p.tau), T * l);
+}
+
+/* K = (G - i I)^-1,  A = K G,  B = K F,  W = -i I + Q + F^T B
+   plain: a single element, whose D has its last column only */
+RD_INLINE void K_(coefficients)(const cv *triple, cv *coef, const int plain)
+{
+    const cv *D = triple, *G = triple + FULL, *Q = G + SYM;
+    cv *A = coef, *B = coef + SYM, *C = B + FULL;
+    cv m[FULL], K[FULL];
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++) {
+            m[i * W + j] = G[at(i, j)];
+            if (i == j)
+                m[i * W + j].im -= 1.0;
+        }
+    const cv s = c_inverse(K_(adjugate)(m, K));
+    UNROLL for (int i = 0; i < FULL; i++)
+        K[i] = c_mul(K[i], s);
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = i; j < W; j++) {
+            cv sum = c_mul(K[i * W], G[at(0, j)]);
+            UNROLL for (int k = 1; k < W; k++)
+                sum = c_add(sum, c_mul(K[i * W + k], G[at(k, j)]));
+            A[at(i, j)] = sum;
+        }
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++)
+            B[i * W + j] = plain && j < W - 1 ? K[i * W + j]
+                                              : c_add(K[i * W + j], K_(dot_nn)(K, D, i, j));
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = i; j < W; j++) {
+            cv sum = B[i * W + j];
+            if (!plain || i == W - 1)
+                sum = c_add(Q[at(i, j)], c_add(sum, K_(dot_tn)(D, B, i, j)));
+            if (i == j)
+                sum.im -= 1.0;
+            C[at(i, j)] = sum;
+        }
+}
+
+static RD_CLONES void K_(make_element)(const struct rd_chain *chain, const struct sweep_block *b,
+                                       size_t e, cv *triple)
+{
+    K_(element)(chain, e, b, triple);
+}
+
+static RD_CLONES void K_(make_coefficients)(const cv *triple, cv *coef)
+{
+    K_(coefficients)(triple, coef, 0);
+}
+
+/* the coefficients of one element; its triple stays behind */
+static RD_CLONES void K_(make_single)(const struct rd_chain *chain, const struct sweep_block *b,
+                                      size_t e, cv *coef)
+{
+    cv triple[FULL + 2 * SYM];
+    K_(element)(chain, e, b, triple);
+    K_(coefficients)(triple, coef, 1);
+}

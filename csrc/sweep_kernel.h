@@ -1,0 +1,81 @@
+/* The sweep's inner operations, one table of them per width. */
+#ifndef RD_SWEEP_KERNEL_H
+#define RD_SWEEP_KERNEL_H
+
+#include "chain.h"
+#include "lanes.h"
+
+enum { RD_PLAIN = 7 }; /* complex lanes of an element in a walk without rows */
+
+/* what a node term needs besides adding masses */
+enum rd_trait {
+    RD_COUPLED = 1, /* a coordinate is held or two are coupled */
+    RD_SPRUNG = 2,  /* it has stiffness */
+    RD_HINGED = 4,  /* a hinge on its right */
+};
+
+enum { RD_PAIRS_MAX = RD_WIDTH_MAX * (RD_WIDTH_MAX + 1) / 2 };
+
+/* What RD_LANES frequencies share with every element: scales and complex factors. */
+struct sweep_block {
+    int bends;                 /* the chain has bending: z, beta and F_z,beta exist */
+    int channel[RD_WIDTH_MAX]; /* enum rd_channel of each coordinate */
+    int arm[RD_WIDTH_MAX];     /* 1 for z in bending */
+    lanes z[RD_WIDTH_MAX];     /* scale of each coordinate: u = z u^, f = f^/z */
+    lanes ratio[RD_WIDTH_MAX]; /* z_beta/z_i */
+    cv flex[RD_PAIRS_MAX];     /* 1/(section z_i z_j) */
+    cv phi;                    /* tension/section */
+    cv pull;                   /* tension z_beta^2 */
+    cv slack;                  /* 1/(tension z_z^2) */
+    cv spring, inertia;        /* factors of node stiffness and mass */
+};
+
+/* What depends on the direction of the walk as well: backward all is seen with u -> D u. */
+struct sweep_way {
+    int backward;
+    double sign[RD_WIDTH_MAX]; /* D */
+    cv spring[RD_PAIRS_MAX];   /* factor z_i z_j D_i D_j */
+    cv inertia[RD_PAIRS_MAX];
+};
+
+struct sweep_walk {
+    const struct rd_chain *chain;
+    const struct sweep_block *block;
+    const struct sweep_way *way;
+    const uint8_t *trait;   /* (terms) enum rd_trait */
+    const cv *coefficients; /* of each distinct element, or NULL: made on the way */
+    const cv *plain;        /* (distinct, RD_PLAIN) the same for a walk without rows */
+};
+
+/* The part behind the walk: u = U s, f = i (I - U) s, and responses in it as rows over s. */
+struct sweep_state {
+    cv U[RD_PAIRS_MAX];
+    int absorbed; /* the node ahead is part of U already */
+    size_t rows;  /* of E that are under way */
+    cv *E;        /* (rows, width), inside E_all */
+    cv *E_all;    /* (all carried ports, width) */
+};
+
+struct sweep_kernel {
+    void (*make_element)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *triple);
+    void (*make_coefficients)(const cv *triple, cv *coef);
+    void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
+    void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);
+    void (*walk_plain)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
+    void (*join)(const struct rd_chain *, const struct sweep_way *, size_t term, const cv *one,
+                 const cv *two, cv *joined);
+    void (*walk)(const struct sweep_walk *, const cv *piece, int32_t term, size_t node,
+                 size_t count, struct sweep_state *);
+    void (*absorb)(const struct sweep_walk *, size_t term, struct sweep_state *);
+    void (*open)(const struct sweep_walk *, size_t term, struct sweep_state *);
+    void (*listen)(const struct sweep_walk *, const double *motion, const double *force,
+                   const cv *U, cv *row);
+    void (*meet)(const struct sweep_walk *, const double *motion, const double *force,
+                 const cv *left, const struct sweep_state *right, size_t rows, cv *value,
+                 lanes *error, lanes *singular);
+};
+
+extern const struct sweep_kernel rd_sweep_kernel_1, rd_sweep_kernel_2, rd_sweep_kernel_3,
+    rd_sweep_kernel_4;
+
+#endif

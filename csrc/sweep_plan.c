@@ -1,0 +1,115 @@
+/* All that a sweep works with, laid out in one workspace. */
+#include "sweep_plan.h"
+
+#include "sweep_order.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+enum {
+    DISTINCT_MOST = 64,   /* element coefficients kept per block of frequencies */
+    ALIGN = 8 * RD_LANES, /* [B] of a lane vector in the workspace */
+};
+
+static const struct sweep_kernel *const kernels[] = {&rd_sweep_kernel_1, &rd_sweep_kernel_2,
+                                                     &rd_sweep_kernel_3, &rd_sweep_kernel_4};
+
+/* lane vectors want more alignment than the workspace gives */
+static void *take_lanes(struct rd_workspace *workspace, size_t count, size_t size)
+{
+    const size_t most = SIZE_MAX / 2 / size;
+    char *p = rd_take(workspace, count < most ? count * size + ALIGN : SIZE_MAX, 1);
+    return p ? p + (ALIGN - (uintptr_t)p % ALIGN) % ALIGN : NULL;
+}
+
+static size_t levels_most(const struct rd_runs *runs)
+{
+    size_t levels = 1;
+    for (size_t n = runs->longest; n > 1; n /= 2)
+        levels++;
+    return levels;
+}
+
+/* what a node term needs besides adding masses */
+static uint8_t trait_of(const struct rd_chain *chain, size_t t)
+{
+    const size_t w = chain->width;
+    int trait = 0;
+    for (size_t i = 0; i < w; i++) {
+        if (chain->held[t * w + i])
+            trait |= RD_COUPLED;
+        if (chain->hinge && chain->hinge[t * w + i] != 0.0)
+            trait |= RD_HINGED;
+        for (size_t j = 0; j < w; j++) {
+            const size_t at = (t * w + i) * w + j;
+            if (chain->stiffness[at] != 0.0)
+                trait |= RD_SPRUNG;
+            if (i != j && (chain->stiffness[at] != 0.0 || chain->mass[at] != 0.0))
+                trait |= RD_COUPLED;
+        }
+    }
+    return (uint8_t)trait;
+}
+
+struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *runs,
+                            const struct rd_factors *factors, const struct rd_ports *drives,
+                            const struct rd_ports *responses, struct rd_workspace *workspace)
+{
+    const size_t w = chain->width, sym = w * (w + 1) / 2, coefs = w * w + 2 * sym;
+    const int swapped = drives->count < responses->count;
+    const struct rd_ports *carry = swapped ? drives : responses;
+    const struct rd_ports *meet = swapped ? responses : drives;
+    struct sweep *s = take_lanes(workspace, 1, sizeof *s);
+    struct taps carried, meeting;
+    rd_taps_find(carry, w, &carried, workspace);
+    rd_taps_find(meet, w, &meeting, workspace);
+    size_t *rank = rd_take(workspace, carry->count, sizeof *rank);
+    const size_t records = meeting.tap ? rd_taps_nodes(&meeting) : meeting.count;
+    cv *record = take_lanes(workspace, records * (sym + carry->count * w), sizeof *record);
+    cv *rows = take_lanes(workspace, carry->count * w, sizeof *rows);
+    cv *table = take_lanes(workspace, levels_most(runs) * coefs, sizeof *table);
+    cv *triple = take_lanes(workspace, 2 * coefs, sizeof *triple);
+    cv *value = take_lanes(workspace, carry->count, sizeof *value);
+    lanes *error = take_lanes(workspace, carry->count, sizeof *error);
+    lanes *heavy = take_lanes(workspace, carry->count, sizeof *heavy);
+    cv *coefficients = NULL;
+    if (chain->distinct <= DISTINCT_MOST)
+        coefficients = take_lanes(workspace, chain->distinct * coefs, sizeof *coefficients);
+    cv *plain = NULL;
+    if (chain->distinct <= DISTINCT_MOST && w == 2)
+        plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *plain);
+    uint8_t *trait = rd_take(workspace, chain->terms, sizeof *trait);
+    size_t *order = rd_take(workspace, factors->count, sizeof *order);
+    if (!rd_workspace_fits(workspace))
+        return NULL;
+    *s = (struct sweep){
+        .chain = chain,
+        .runs = runs,
+        .kernel = kernels[w - 1],
+        .coefs = coefs,
+        .sym = sym,
+        .carried = carry->count,
+        .swapped = swapped,
+        .carry = carried,
+        .meet = meeting,
+        .rank = rank,
+        .records = records,
+        .record = record,
+        .rows = rows,
+        .table = table,
+        .triple = triple,
+        .coefficients = coefficients,
+        .plain = plain,
+        .value = value,
+        .error = error,
+        .weight = heavy,
+        .trait = trait,
+        .order = order,
+        .failed = factors->count,
+    };
+    rd_taps_rank(&s->carry, s->carried, rank);
+    for (size_t t = 0; t < chain->terms; t++)
+        trait[t] = trait_of(chain, t);
+    for (size_t b = 0; b < 2; b++)
+        s->walk[b] = (struct sweep_walk){chain, &s->block, &s->way[b], trait, coefficients, plain};
+    return s;
+}

@@ -1,0 +1,69 @@
+/* All that a sweep works with, laid out in one workspace. */
+#ifndef RD_SWEEP_PLAN_H
+#define RD_SWEEP_PLAN_H
+
+#include "runs.h"
+#include "sweep_kernel.h"
+#include "sweep_scale.h"
+#include "taps.h"
+
+struct sweep {
+    const struct rd_chain *chain;
+    const struct rd_runs *runs;
+    const struct sweep_kernel *kernel;
+    size_t coefs;   /* complex lanes in the coefficients of an element */
+    size_t sym;     /* and in U */
+    size_t carried; /* ports whose rows are carried: the fewer */
+    int swapped;    /* the carried ports are the drives */
+    struct taps carry, meet;
+    size_t *rank;           /* (carried) */
+    size_t records;         /* different nodes where parts meet */
+    cv *record;             /* (records, sym + carried width) left parts there */
+    cv *rows;               /* (carried, width) */
+    cv *table;              /* (levels, coefs) of the pieces of one run */
+    cv *triple;             /* (2, coefs) */
+    cv *coefficients;       /* (distinct, coefs) or NULL */
+    cv *plain;              /* (distinct, RD_PLAIN) or NULL */
+    cv *value;              /* (carried) */
+    lanes *error;           /* (carried) */
+    lanes *weight;          /* (carried) of rounding, 1 where no node is heavy */
+    uint8_t *trait;         /* (terms) enum rd_trait */
+    size_t *order;          /* (frequencies) */
+    size_t index[RD_LANES]; /* frequencies of the block */
+    size_t used;            /* lanes of it that are not repeated */
+    size_t failed;          /* the first frequency without a response, or their count */
+    size_t levels;          /* of the table, 0: none */
+    int32_t table_element, table_term;
+    int table_way;
+    struct sweep_block block;
+    struct sweep_way way[2];
+    struct sweep_extent extent;
+    struct sweep_walk walk[2];
+    struct sweep_state state;
+    double steps; /* elements crossed + squares of equal pieces in a row */
+};
+
+/* NULL: the workspace measures or is too small */
+struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *runs,
+                            const struct rd_factors *factors, const struct rd_ports *drives,
+                            const struct rd_ports *responses, struct rd_workspace *workspace);
+
+/* at a free end, with nothing behind the walk */
+void rd_sweep_begin(struct sweep *s);
+
+/* From node a to a later node b; *run is the first run that ends behind a. */
+void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *run);
+
+/* From node b back to an earlier node a; *run - 1 is the last run that begins before b. */
+void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *run);
+
+/* Takes the node ahead into the part behind the walk, if it is not in it already. */
+void rd_sweep_absorb(struct sweep *s, int way, size_t node);
+
+/* the left parts at the nodes where parts will meet, with the rows carried so far */
+void rd_sweep_left(struct sweep *s);
+
+/* The right parts, which meet the left ones. count: frequencies, all: meeting ports */
+void rd_sweep_right(struct sweep *s, size_t count, size_t all, double *value, double *error);
+
+#endif

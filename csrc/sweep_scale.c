@@ -1,0 +1,186 @@
+/* The characteristic receptances that scale a sweep, and how long its pieces may be. */
+#include "sweep_scale.h"
+
+#include <math.h>
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+static const int channel_of[] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
+
+/* Propagating and evanescent wavenumber squared of B z'''' - T z'' = q z:
+       h = T/2B, r = sqrt(h^2 + q/B), a^2 = r + h, k^2 = r - h, the smaller one from k a */
+static void wavenumbers(double B, double T, double q, double *k2, double *a2)
+{
+    const double h = 0.5 * T / B, r = sqrt(h * h + q / B);
+    if (h >= 0.0) {
+        *a2 = r + h;
+        *k2 = *a2 > 0.0 ? q / (B * *a2) : 0.0;
+    } else {
+        *k2 = r - h;
+        *a2 = q / (B * *k2);
+    }
+}
+
+/* Below `least` the rope is static and its length is the scale. */
+static double at_least(double k2, double least)
+{
+    return k2 > least ? k2 : least;
+}
+
+/* z^2 = 1/(B k (k^2 + a^2)), 1/(B a) for z, beta; 1/(T k) without bending; 1/(C k) for twist,
+   and so for x: receptances of the endless rope; a rigid element has no less than l/4B for beta */
+static void characteristic(const struct rd_chain *chain, const struct rd_runs *runs, double section,
+                           double tension, double lambda, double *z)
+{
+    const double L = runs->length, least = (lambda > 0.0 ? 1e-8 : 1.0) / (L * L);
+    const double S = runs->flexibility[RD_BENDING], T = runs->tension * tension;
+    const double l = L / (double)(chain->nodes - 1);
+    double mu = 0.0;
+    for (size_t i = 0; i < chain->width; i++)
+        if (chain->coordinate[i] == RD_Z)
+            mu = runs->mass[i];
+    for (size_t i = 0; i < chain->width; i++) {
+        const int32_t c = chain->coordinate[i];
+        if (S > 0.0 && (c == RD_Z || c == RD_BETA)) {
+            double k2, a2;
+            wavenumbers(section / S, T, mu * lambda, &k2, &a2);
+            k2 = at_least(k2, least);
+            a2 = at_least(a2, k2 < 1.0 / (L * L) ? k2 : 1.0 / (L * L));
+            if (c == RD_BETA && chain->kind == RD_RIGID)
+                a2 = fmin(a2, 16.0 / (l * l));
+            z[i] = c == RD_Z ? sqrt(S / (section * sqrt(k2) * (k2 + a2)))
+                             : sqrt(S / (section * sqrt(a2)));
+        } else {
+            const double C = c == RD_Z ? fabs(T) : section / runs->flexibility[channel_of[c]];
+            const double k2 =
+                runs->mass[i] > 0.0 ? at_least(lambda * runs->mass[i] / C, least) : 1.0 / (L * L);
+            z[i] = sqrt(1.0 / (C * sqrt(k2)));
+        }
+    }
+}
+
+static double size_of(const double *factor)
+{
+    return sqrt(factor[0] * factor[0] + factor[1] * factor[1]);
+}
+
+static cv times(cv a, lanes s)
+{
+    return c_scale_lanes(a, s);
+}
+
+static void load(const struct rd_factors *f, size_t lane, size_t i, cv *section, cv *tension,
+                 cv *spring, cv *inertia)
+{
+    section->re[lane] = f->section[2 * i];
+    section->im[lane] = f->section[2 * i + 1];
+    tension->re[lane] = f->tension[2 * i];
+    tension->im[lane] = f->tension[2 * i + 1];
+    spring->re[lane] = f->spring[2 * i];
+    spring->im[lane] = f->spring[2 * i + 1];
+    inertia->re[lane] = f->inertia[2 * i];
+    inertia->im[lane] = f->inertia[2 * i + 1];
+}
+
+struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i)
+{
+    return (struct sweep_extent){
+        .section = 1.0 / size_of(factors->section + 2 * i),
+        .tension = size_of(factors->tension + 2 * i),
+        .spring = size_of(factors->spring + 2 * i),
+        .inertia = size_of(factors->inertia + 2 * i),
+    };
+}
+
+void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
+                    const struct rd_factors *factors, const size_t *index,
+                    struct sweep_block *block, struct sweep_way *way)
+{
+    const size_t w = chain->width;
+    cv section, tension, spring, inertia;
+    for (size_t lane = 0; lane < RD_LANES; lane++) {
+        const size_t i = index[lane];
+        double z[RD_WIDTH_MAX];
+        load(factors, lane, i, &section, &tension, &spring, &inertia);
+        characteristic(chain, runs, size_of(factors->section + 2 * i),
+                       size_of(factors->tension + 2 * i), size_of(factors->inertia + 2 * i), z);
+        for (size_t c = 0; c < w; c++)
+            block->z[c][lane] = z[c];
+    }
+    block->bends = chain->coordinate[w - 1] == RD_BETA;
+    way[0].backward = 0;
+    way[1].backward = 1;
+    const lanes last = block->z[w - 1];
+    const cv soft = c_inverse(section);
+    for (size_t i = 0; i < w; i++) {
+        const int32_t c = chain->coordinate[i];
+        block->channel[i] = channel_of[c];
+        block->arm[i] = block->bends && c == RD_Z;
+        block->ratio[i] = last / block->z[i];
+        way[0].sign[i] = 1.0;
+        way[1].sign[i] = c == RD_Z || chain->kind == RD_DIFFERENCE ? 1.0 : -1.0;
+        if (c == RD_Z)
+            block->slack = times(c_inverse(tension), 1.0 / (block->z[i] * block->z[i]));
+    }
+    block->spring = spring;
+    block->inertia = inertia;
+    block->phi = c_mul(tension, soft);
+    block->pull = times(tension, last * last);
+    for (size_t i = 0, p = 0; i < w; i++)
+        for (size_t j = i; j < w; j++, p++) {
+            const lanes zz = block->z[i] * block->z[j];
+            block->flex[p] = times(soft, 1.0 / zz);
+            for (size_t b = 0; b < 2; b++) {
+                const double d = way[b].sign[i] * way[b].sign[j];
+                way[b].spring[p] = times(spring, zz * d);
+                way[b].inertia[p] = times(inertia, zz * d);
+            }
+        }
+}
+
+/* largest wavenumber of a run: of z with bending from N_zz, N_beta,beta (which acts like a
+   compression) and N_z,beta; of the others from their own term */
+static double run_wavenumber(const struct rd_chain *chain, size_t e, size_t t,
+                             const struct sweep_extent *x)
+{
+    const size_t w = chain->width;
+    const double *S = chain->flexibility + 9 * e, l = chain->length[e];
+    const double *m = chain->mass + t * w * w, *k = chain->stiffness + t * w * w;
+    const int bends = chain->coordinate[w - 1] == RD_BETA;
+    double n[RD_WIDTH_MAX] = {0}, turn = 0.0, most = 0.0;
+    for (size_t i = 0; i < w; i++) {
+        n[i] = (fabs(k[i * (w + 1)]) * x->spring + fabs(m[i * (w + 1)]) * x->inertia) / l;
+        if (bends && chain->coordinate[i] == RD_Z)
+            turn = (fabs(k[i * w + w - 1]) * x->spring + fabs(m[i * w + w - 1]) * x->inertia) / l;
+    }
+    const double T = chain->tension[e] * x->tension;
+    for (size_t i = 0; i < w; i++) {
+        const int32_t c = chain->coordinate[i];
+        const double s = S[4 * (size_t)channel_of[c]] * x->section;
+        if (bends && c == RD_Z) {
+            double k2, a2;
+            wavenumbers(1.0 / s, T - n[w - 1], n[i], &k2, &a2);
+            most = fmax(most, sqrt(k2));
+            most = fmax(most, cbrt(turn * s));
+            most = fmax(most, 1.2 * sqrt(fmax(-T * s, 0.0)));
+        } else if (c == RD_Z) {
+            most = fmax(most, sqrt(n[i] / fabs(T)));
+        } else if (c != RD_BETA) {
+            most = fmax(most, sqrt(n[i] * s));
+        }
+    }
+    return most;
+}
+
+size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t count,
+                       const struct sweep_extent *extent)
+{
+    const double k = run_wavenumber(chain, e, t, extent);
+    double length = chain->length[e];
+    size_t level = 0;
+    while (((size_t)2 << level) <= count && 2.0 * length * k <= 1.2) {
+        level++;
+        length *= 2.0;
+    }
+    return level;
+}

@@ -1,0 +1,35 @@
+/* The characteristic receptances that scale a sweep, and how long its pieces may be. */
+#ifndef RD_SWEEP_SCALE_H
+#define RD_SWEEP_SCALE_H
+
+#include "runs.h"
+#include "sweep_kernel.h"
+
+/* The four complex factors of each frequency, real and imaginary part side by side. */
+struct rd_factors {
+    size_t count;
+    const double *section; /* (count, 2)  S/section */
+    const double *tension; /* (count, 2)  T tension */
+    const double *spring;  /* (count, 2)  node stiffness times it */
+    const double *inertia; /* (count, 2)  node mass times it: -omega^2 [1/s^2] */
+};
+
+/* sizes of the factors of a frequency, for the length of pieces */
+struct sweep_extent {
+    double section, tension, spring, inertia; /* 1/|section|, |tension|, |spring|, |inertia| */
+};
+
+struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i);
+
+/* Fills the block and both ways (forward, backward) for the frequencies index[0 .. RD_LANES - 1]
+   of the factors. A lane depends on its own frequency alone. */
+void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
+                    const struct rd_factors *factors, const size_t *index,
+                    struct sweep_block *block, struct sweep_way *way);
+
+/* largest k with 2^k elements e and node terms t between them below their first cantilever
+   resonance, and 2^k <= count */
+size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t count,
+                       const struct sweep_extent *extent);
+
+#endif

@@ -1,0 +1,73 @@
+/* A uniform line for tests, its runs and one call of the sweep in memory of exactly its size. */
+#include "line.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+void line_make(struct line *line, enum rd_kind kind, size_t width, size_t elements, double T,
+               double B, double mu, int hold_beta)
+{
+    *line = (struct line){
+        .chain = {.nodes = elements + 1, .width = width, .distinct = 1, .terms = 5, .kind = kind}};
+    line->coordinate[0] = RD_Z;
+    line->coordinate[1] = RD_BETA;
+    line->length[0] = 1.0 / (double)elements;
+    line->tension[0] = T;
+    line->flexibility[8] = width == 2 ? 1.0 / B : 0.0;
+    for (size_t i = 0; i <= elements; i++)
+        line->term_of[i] = i == 0 ? LEFT : i < elements ? INNER : RIGHT;
+    for (size_t t = 0; t < 5; t++)
+        line->mass[t * width * width] = mu / (double)elements * (t == LEFT || t == RIGHT ? 0.5 : 1);
+    for (size_t i = 0; i < width; i++)
+        line->held[LEFT * width + i] = line->held[RIGHT * width + i] = i == 0 || hold_beta;
+}
+
+void line_find(struct line *line)
+{
+    struct rd_chain *chain = &line->chain;
+    chain->coordinate = line->coordinate;
+    chain->length = line->length;
+    chain->tension = line->tension;
+    chain->flexibility = line->flexibility;
+    chain->element_of = line->element_of;
+    chain->mass = line->mass;
+    chain->stiffness = line->stiffness;
+    chain->held = line->held;
+    chain->term_of = line->term_of;
+    chain->hinge = line->hinge;
+    rd_runs_find(chain, line->run, &line->runs);
+}
+
+enum rd_status line_frf_less(const struct line *line, int32_t drive, int32_t response,
+                             const double *omega, size_t count, double complex *value,
+                             double *error, size_t less, size_t *failed)
+{
+    double one[2 * LINE_POINTS], inertia[2 * LINE_POINTS] = {0};
+    for (size_t i = 0; i < count; i++) {
+        one[2 * i] = 1.0;
+        one[2 * i + 1] = 0.0;
+        inertia[2 * i] = -omega[i] * omega[i];
+    }
+    const double row[4] = {1.0};
+    const struct rd_factors factors = {count, one, one, one, inertia};
+    const struct rd_ports drives = {1, &drive, row, NULL};
+    const struct rd_ports responses = {1, &response, row, NULL};
+    struct rd_workspace space = {0};
+    rd_frf_sweep(&line->chain, &line->runs, &factors, &drives, &responses, &space, (double *)value,
+                 error, failed);
+    const size_t size = space.used - less;
+    space = (struct rd_workspace){.base = malloc(size), .size = size};
+    if (!space.base)
+        abort();
+    const enum rd_status status = rd_frf_sweep(&line->chain, &line->runs, &factors, &drives,
+                                               &responses, &space, (double *)value, error, failed);
+    free(space.base);
+    return status;
+}
+
+enum rd_status line_frf(const struct line *line, int32_t drive, int32_t response,
+                        const double *omega, size_t count, double complex *value, double *error)
+{
+    size_t failed = 0;
+    return line_frf_less(line, drive, response, omega, count, value, error, 0, &failed);
+}

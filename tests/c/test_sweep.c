@@ -1,0 +1,141 @@
+/* Frequency response against closed forms. */
+#include "check.h"
+#include "line.h"
+
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* one mass m between two strings of length 1/2: h = 1/(4 T - m omega^2) */
+static void test_one_mass_on_a_string(void)
+{
+    struct line line;
+    line_make(&line, RD_RIGID, 1, 2, 3.0, 0.0, 4.0, 0);
+    line_find(&line);
+    const double omega[] = {0.0, 0.7, 2.0, 50.0};
+    double complex h[4];
+    double error[4];
+    CHECK_INT(line_frf(&line, 1, 1, omega, 4, h, error), RD_OK);
+    for (size_t i = 0; i < 4; i++) {
+        const double exact = 1.0 / (12.0 - 2.0 * omega[i] * omega[i]);
+        CHECK_REL(creal(h[i]), exact, 8 * EPS, "a few operations");
+        CHECK(fabs(creal(h[i]) - exact) <= error[i]);
+        CHECK_ABS(cimag(h[i]), 0.0, error[i], "undamped");
+    }
+}
+
+/* sin theta/2 = omega sqrt(m l/T)/2:  h_ij = sin(i theta) sin((n - j) theta) l
+                                               / (T sin(theta) sin(n theta)), i <= j */
+static void test_string_of_n_masses(size_t n)
+{
+    struct line line;
+    line_make(&line, RD_RIGID, 1, n, 3.0, 0.0, 4.0, 0);
+    line_find(&line);
+    const double omega[] = {0.3, 1.7, 2.9, 4.4};
+    const double l = 1.0 / (double)n;
+    const size_t i = n / 3, j = n / 2;
+    double complex h[4];
+    double error[4];
+    CHECK_INT(line_frf(&line, (int32_t)j, (int32_t)i, omega, 4, h, error), RD_OK);
+    for (size_t k = 0; k < 4; k++) {
+        const double theta = 2.0 * asin(0.5 * omega[k] * sqrt(4.0 * l * l / 3.0));
+        const double exact = sin((double)i * theta) * sin((double)(n - j) * theta) * l /
+                             (3.0 * sin(theta) * sin((double)n * theta));
+        CHECK_REL(creal(h[k]), exact, 1e-13 * (double)n, "the closed form's own arguments");
+    }
+}
+
+/* static middle deflection of a clamped beam L^3/192 B and of a pinned one L^3/48 B; clamped with
+   tension, xi = L sqrt(T/B): (xi/4 - tanh(xi/4)) L/(T xi) */
+static void test_static_beams(enum rd_kind kind, size_t n)
+{
+    const double omega[] = {0.0}, B = 2.0, T = 50.0, xi = sqrt(T / B);
+    double complex h;
+    double error;
+    struct line line;
+    for (int clamped = 0; clamped < 2; clamped++) {
+        line_make(&line, kind, 2, n, 0.0, B, 1.0, clamped);
+        line_find(&line);
+        CHECK_INT(line_frf(&line, (int32_t)n / 2, (int32_t)n / 2, omega, 1, &h, &error), RD_OK);
+        CHECK_REL(creal(h), 1.0 / ((clamped ? 192.0 : 48.0) * B), 1e-12, "measured 1e-14");
+    }
+    if (kind != RD_TENSED)
+        return;
+    line_make(&line, kind, 2, n, T, B, 1.0, 1);
+    line_find(&line);
+    CHECK_INT(line_frf(&line, (int32_t)n / 2, (int32_t)n / 2, omega, 1, &h, &error), RD_OK);
+    CHECK_REL(creal(h), (xi / 4 - tanh(xi / 4)) / (T * xi), 1e-12, "measured 1e-14");
+}
+
+/* a clamped beam with free hinges at its ends is a pinned one; with a free hinge at its middle it
+   is two cantilevers: L^3/48 B as well, by chance, and (L/2)^3/3B/2 = L^3/48 B */
+static void test_hinges(void)
+{
+    const double omega[] = {0.0}, B = 2.0;
+    double complex h;
+    double error;
+    struct line line;
+    line_make(&line, RD_RIGID, 2, 20, 0.0, B, 1.0, 1);
+    line.hinge[2 * FIRST + 1] = INFINITY;
+    line.term_of[10] = FIRST;
+    line_find(&line);
+    CHECK_INT(line_frf(&line, 10, 10, omega, 1, &h, &error), RD_OK);
+    CHECK_REL(creal(h), 1.0 / (48.0 * B), 1e-13, "measured 1e-15");
+    /* a compliance c in the middle of a pinned beam: L^3/48B + c (L/4)^2 */
+    line_make(&line, RD_RIGID, 2, 20, 0.0, B, 1.0, 0);
+    line.hinge[2 * FIRST + 1] = 0.3;
+    line.term_of[10] = FIRST;
+    line_find(&line);
+    CHECK_INT(line_frf(&line, 10, 10, omega, 1, &h, &error), RD_OK);
+    CHECK_REL(creal(h), 1.0 / (48.0 * B) + 0.3 / 16.0, 1e-13, "measured 1e-15");
+}
+
+/* same bits whatever the frequencies beside it */
+static void test_neighbours_do_not_matter(void)
+{
+    struct line line;
+    line_make(&line, RD_TENSED, 2, 300, 300.0, 2.0, 1.0, 1);
+    line_find(&line);
+    double omega[LINE_POINTS], error[LINE_POINTS], other[LINE_POINTS];
+    double complex h[LINE_POINTS], g[LINE_POINTS];
+    for (size_t i = 0; i < LINE_POINTS; i++)
+        omega[i] = 0.1 * exp(0.2 * (double)i);
+    CHECK_INT(line_frf(&line, 150, 100, omega, LINE_POINTS, h, error), RD_OK);
+    for (size_t n = 1; n < LINE_POINTS; n += 6)
+        for (size_t i = 0; i + n <= LINE_POINTS; i += n) {
+            CHECK_INT(line_frf(&line, 150, 100, omega + i, n, g, other), RD_OK);
+            CHECK(memcmp(g, h + i, n * sizeof *g) == 0);
+            CHECK(memcmp(other, error + i, n * sizeof *other) == 0);
+        }
+}
+
+static void test_failures(void)
+{
+    struct line line;
+    /* T/l + T/l = m omega^2 at omega = 1 */
+    line_make(&line, RD_RIGID, 1, 2, 1.0, 0.0, 8.0, 0);
+    line_find(&line);
+    const double omega[] = {0.5, 1.0, 1.5};
+    double complex h[3];
+    double error[3];
+    size_t failed = 99;
+    CHECK_INT(line_frf_less(&line, 1, 1, omega, 3, h, error, 0, &failed), RD_SINGULAR);
+    CHECK_INT(failed, 1);
+    CHECK_INT(line_frf_less(&line, 1, 1, omega, 1, h, error, 1, &failed), RD_NO_MEMORY);
+}
+
+int main(void)
+{
+    (void)PI;
+    test_one_mass_on_a_string();
+    for (size_t n = 3; n < 300; n *= 3)
+        test_string_of_n_masses(n);
+    for (size_t n = 2; n < 300; n *= 4) {
+        test_static_beams(RD_RIGID, n);
+        test_static_beams(RD_TENSED, n);
+    }
+    test_hinges();
+    test_neighbours_do_not_matter();
+    test_failures();
+    return check_report("sweep");
+}
