@@ -6,7 +6,9 @@ from numpy.typing import NDArray
 from .chain import Chain
 
 _Real = NDArray[np.float64]
-_Ports = tuple[NDArray[np.int32], _Real]
+_Ports = tuple[NDArray[np.int32], _Real, _Real | None]
+_Complex = NDArray[np.complex128]
+_Runs = tuple[NDArray[np.uintp], _Real]
 
 def section(
     axial: float, torsion: float, bending: float, coupling: float, slope: float, /
@@ -23,4 +25,11 @@ def modes(
 def frf(
     chain: Chain, factor: NDArray[np.complex128], drives: _Ports, responses: _Ports, /
 ) -> tuple[NDArray[np.complex128], _Real, _Real, int]: ...
+def runs(chain: Chain, /) -> _Runs: ...
+def sweep(
+    chain: Chain, runs: _Runs, factor: _Complex, drives: _Ports, responses: _Ports, /
+) -> tuple[_Complex, _Real, int]: ...
+def triple(
+    chain: Chain, element: int, factor: _Complex, /
+) -> tuple[_Complex, _Complex, _Complex]: ...
 def energy(chain: Chain, shape: _Real, /) -> tuple[_Real, _Real]: ...

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
+from .unit import OF_FORCE
 
 COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
@@ -152,15 +153,18 @@ def frequencies(value: Any) -> NDArray[np.float64]:
     return f
 
 
-def point(value: Any, name: str, present: Sequence[str], length: float) -> tuple[str, float]:
+def point(
+    value: Any, name: str, present: Sequence[str], length: float, *, forces: bool = False
+) -> tuple[str, float]:
     """Return a coordinate and a position on the rope, such as ("z", 0.5)."""
     what = 'a coordinate and a position [m] such as ("z", 0.5)'
     if not isinstance(value, (tuple, list)):
         raise TypeError(_expected(name, what, "", value))
     if len(value) != 2:
         raise SceneError(_expected(name, what, "", value))
-    coordinate = one_of(value[0], f"{name}[0]", COORDINATES)
-    if coordinate not in present:
+    names = (*COORDINATES, *OF_FORCE) if forces else COORDINATES
+    coordinate = one_of(value[0], f"{name}[0]", names)
+    if OF_FORCE.get(coordinate, coordinate) not in present:
         raise SceneError(
             f"{name}[0] must be a coordinate the scene has ({', '.join(present)}), "
             f"got {coordinate!r}"

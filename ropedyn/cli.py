@@ -19,8 +19,9 @@ from .check import shown
 from .compare import compare
 from .compile import KINDS
 from .errors import RopedynError, SceneError, SolveError
-from .model import Model, Point
+from .model import Model
 from .peaks import Peaks
+from .port import Point
 from .scene import Scene
 
 STUDY_FOLDER = Path("ropedyn-study")

@@ -133,3 +133,9 @@ def factors(dampings: Sequence[Damping], omega: NDArray[np.float64]) -> NDArray[
     for damping in dampings:
         total = total + damping.factors(omega)
     return total
+
+
+def separable(dampings: Sequence[Damping]) -> bool:
+    """Whether sections and tension are damped alike, so that their sum has one factor."""
+    share = factors(dampings, np.array(1.0))
+    return bool(share[SECTION] == share[TENSION])

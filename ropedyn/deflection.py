@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from . import _core, check
 from .answer import Answer, Cost, axes
+from .chain import Chain
 from .errors import SceneError, SolveError
-from .model import Model, Point, ports
+from .model import Model
+from .port import Point, Ports, cut, ports
 from .table import Table
 from .unit import FORCE, FORCE_UNIT, UNIT
 
@@ -36,8 +38,6 @@ class Deflection(Answer):
     force : ndarray, shape (nodes, coordinates)
         What the surroundings put on each node: loads, and reactions where a coordinate is held or
         a spring stands [N, N m].
-    condition : ndarray, shape (components,)
-        Reciprocal condition number of the stiffness, scaled to a unit diagonal.
     cost : Cost
         What it cost.
     """
@@ -46,7 +46,6 @@ class Deflection(Answer):
     x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
     displacement: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="m or rad"))
     force: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="N or N m"))
-    condition: NDArray[np.float64] = field(metadata=axes("component"))
     cost: Cost
 
     def table(self) -> Table:
@@ -67,41 +66,118 @@ class Deflection(Answer):
 
 def solve_static(model: Model, load: Mapping[Point, float], *, solver: str) -> Deflection:
     """Find the static deflection; see `Model.static`."""
-    check.one_of(solver, "solver", ("lapack",))
+    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
     loads = _checked(model, load)
     width = len(model.coordinates)
     displacement = np.zeros((len(model.x), width))
     force = np.zeros((len(model.x), width))
-    condition, unknowns = [], 0
+    unknowns, solved = 0, 0
     start = time.perf_counter()
     for component in model.components:
         here = {point: value for point, value in loads.items() if point[0] in component}
         if not here:
             continue
-        chain = model.chain.only(component)
         at = [model.coordinates.index(c) for c in component]
         try:
-            displacement[:, at], reciprocal = _core.deflection(
-                chain, _nodal(model, component, here)
-            )
+            displacement[:, at], force[:, at] = solve(model, component, here)
         except SolveError as error:
             raise SolveError(
-                f"{', '.join(component)}: {error}: a rigid motion is free, the compression is "
-                "critical, or there are too many elements for the assembled stiffness"
+                f"({', '.join(component)}): the stiffness is singular to working precision: a "
+                "rigid motion is free, the compression is critical, or there are too many "
+                "elements for the assembled stiffness"
             ) from error
-        force[:, at] = _held_up(model, component, displacement[:, at])
-        condition.append(reciprocal)
-        unknowns += chain.free
+        unknowns += model.chain.only(component).free
+        solved += 1
     seconds = time.perf_counter() - start
-    cost = Cost(seconds, "lapack", len(model.x) - 1, unknowns, len(condition))
+    if not np.isfinite(displacement).all() or not np.isfinite(force).all():
+        raise SolveError("the numbers of the static deflection overflow: check the units")
     return Deflection(
         coordinates=model.coordinates,
         x=model.x,
         displacement=displacement,
         force=force,
-        condition=np.array(condition),
-        cost=cost,
+        cost=Cost(seconds, solver, len(model.x) - 1, unknowns, solved),
     )
+
+
+BLOCK = 4096
+"""Nodes whose motion one sweep reports."""
+
+
+def _sweep(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return motion of the nodes and what the surroundings put on them."""
+    longer, finer, kept = _cut(model, component, loads)
+    runs = _core.runs(longer)
+    pushed = ports(longer, finer, component, loads)
+    amount = np.array(list(loads.values()))
+    factor = np.array([[1.0], [1.0], [1.0], [0.0]], dtype=np.complex128)
+
+    def ask(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
+        """Return motion of nodes, or force on the right end of the elements left of them."""
+        w = len(component)
+        rows = np.zeros((len(node) * w, 2, w))
+        force = np.tile(np.eye(w), (len(node), 1)) if forces else None
+        left = node - 1 if forces else np.minimum(node, longer.nodes - 2)
+        if not forces:
+            side = np.repeat(node - left, w)
+            rows[np.arange(len(rows)), side] = np.tile(np.eye(w), (len(node), 1))
+        watched = Ports(np.repeat(left, w).astype(np.int32), rows, force)
+        value, _, solved = _core.sweep(longer, runs, factor, pushed, watched)
+        if solved == 0:
+            raise SolveError("singular")
+        answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)
+        return answer.reshape(len(node), w)
+
+    def ask_all(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
+        blocks = [node[k : k + BLOCK] for k in range(0, len(node), BLOCK)]
+        return np.concatenate([ask(block, forces) for block in blocks])
+
+    u = ask_all(kept, False)
+    right = ask_all(kept[1:], True)
+    begins = ask_all(kept[:-1] + 1, True) if len(kept) < longer.nodes else right
+    return u, _on_nodes(longer, kept, u, right, begins)
+
+
+def _on_nodes(
+    chain: Chain,
+    kept: NDArray[np.intp],
+    u: NDArray[np.float64],
+    right: NDArray[np.float64],
+    begins: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return f_b of the element on the left less f_a = F^T f_b - Q u_a of the one on the right."""
+    F, _, Q = _core.triples(chain)
+    first = chain.element_of[kept[:-1]]
+    left_end = np.einsum("nji,nj->ni", F[first], begins)
+    left_end -= np.einsum("nij,nj->ni", Q[first], u[:-1])
+    force = np.zeros_like(u)
+    force[1:] += right
+    force[:-1] -= left_end
+    return force
+
+
+def _lapack(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    chain, x, kept = _cut(model, component, loads)
+    u, _ = _core.deflection(chain, _nodal(chain, x, component, loads))
+    return u[kept], _held_up(chain, u)[kept]
+
+
+def _cut(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+) -> tuple[Chain, NDArray[np.float64], NDArray[np.intp]]:
+    """Return the chain with nodes under the loads, where they stand, and which the model has."""
+    chain, x = model.chain.only(component), model.x
+    if model.element == "tensed":
+        chain, x = cut(chain, x, [point[1] for point in loads])
+    return chain, x, np.flatnonzero(np.isin(x, model.x))
+
+
+SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+"""What finds motion of and forces on the nodes of one component."""
 
 
 def _checked(model: Model, load: Any) -> dict[Point, float]:
@@ -118,24 +194,22 @@ def _checked(model: Model, load: Any) -> dict[Point, float]:
 
 
 def _nodal(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+    chain: Chain,
+    x: NDArray[np.float64],
+    component: tuple[str, ...],
+    loads: dict[Point, float],
 ) -> NDArray[np.float64]:
     """Return the forces on the nodes that the loads amount to."""
-    chain = model.chain.only(component)
-    node, row = ports(model, chain, component, loads)
-    force = np.zeros((len(model.x), len(component)))
+    node, row, _ = ports(chain, x, component, loads)
+    force = np.zeros((len(x), len(component)))
     for left, shape, value in zip(node, row, loads.values()):
         force[left : left + 2] += shape * value
     return force
 
 
-def _held_up(
-    model: Model, component: tuple[str, ...], u: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _held_up(chain: Chain, u: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return what the elements need from outside at every node: K_elements u."""
-    elastic, elastic_beside, string, string_beside, _, _ = _core.assemble(
-        model.chain.only(component)
-    )
+    elastic, elastic_beside, string, string_beside, _, _ = _core.assemble(chain)
     force = np.einsum("nij,nj->ni", elastic + string, u)
     beside = elastic_beside + string_beside
     force[:-1] += np.einsum("nij,nj->ni", beside, u[1:])

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from . import _core, check, damping
+from . import check
 from .answer import Answer, Cost, axes
-from .errors import SceneError, SolveError
-from .model import Model, Point, locate, ports
+from .errors import SceneError
+from .port import Point
 from .resonance import Resonances, resonances
 from .table import Table
 from .unit import QUANTITIES, label
@@ -39,7 +37,7 @@ class FRF(Answer):
     value : ndarray of complex, shape (responses, f) or (drives, responses, f)
         [m/N, rad/N, m/(N m), rad/(N m), and these per s or s^2].
     rounding_error : ndarray, as value
-        Estimated relative error that rounding in the assembled matrices causes.
+        Estimated relative error that rounding causes.
     cost : Cost
         What it cost.
     """
@@ -149,110 +147,3 @@ class FRF(Answer):
         from .plotting import plot_frf
 
         return plot_frf(self, ax)
-
-
-def solve_frf(
-    model: Model,
-    frequency: ArrayLike,
-    *,
-    drive: Any,
-    response: Any,
-    quantity: str,
-    solver: str,
-) -> FRF:
-    """Compute the frequency response; see `Model.frf`."""
-    check.one_of(solver, "solver", ("lapack",))
-    check.one_of(quantity, "quantity", QUANTITIES)
-    f = check.frequencies(frequency)
-    drives, several = _points(model, drive, "drive")
-    responses = drives if response is None else _points(model, response, "response")[0]
-    value = np.zeros((len(f), len(drives), len(responses)), dtype=np.complex128)
-    rounding = np.zeros(value.shape)
-    unknowns = 0
-    start = time.perf_counter()
-    for component in model.components:
-        d = [k for k, point in enumerate(drives) if point[0] in component]
-        r = [k for k, point in enumerate(responses) if point[0] in component]
-        if not d or not r:
-            continue
-        block = np.ix_(range(len(f)), d, r)
-        value[block], rounding[block] = _solve_component(
-            model, component, f, [drives[k] for k in d], [responses[k] for k in r]
-        )
-        unknowns += model.chain.only(component).free
-    seconds = time.perf_counter() - start
-    value *= ((2j * np.pi * f) ** QUANTITIES[quantity])[:, None, None]
-    value, rounding = value.transpose(1, 2, 0), rounding.transpose(1, 2, 0)
-    return FRF(
-        drive=drives,
-        response=responses,
-        quantity=quantity,
-        frequency=f,
-        value=np.ascontiguousarray(value if several else value[0]),
-        rounding_error=np.ascontiguousarray(rounding if several else rounding[0]),
-        cost=Cost(seconds, "lapack", len(model.x) - 1, unknowns, len(f) if unknowns else 0),
-    )
-
-
-def _points(model: Model, given: Any, name: str) -> tuple[tuple[Point, ...], bool]:
-    """Return one or several points, and whether a list of them was given."""
-    length = model.scene.rope.length
-    several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
-    if not several:
-        return (check.point(given, name, model.coordinates, length),), False
-    points = (
-        check.point(one, f"{name}[{k}]", model.coordinates, length) for k, one in enumerate(given)
-    )
-    return tuple(points), True
-
-
-def _solve_component(
-    model: Model,
-    component: tuple[str, ...],
-    frequency: NDArray[np.float64],
-    drives: Sequence[Point],
-    responses: Sequence[Point],
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Return value and relative rounding error, shape (f, drives, responses)."""
-    chain = model.chain.only(component)
-    factor = damping.factors(model.scene.dampings, 2 * np.pi * frequency)
-    value, rounding, motion, solved = _core.frf(
-        chain,
-        factor,
-        ports(model, chain, component, drives),
-        ports(model, chain, component, responses),
-    )
-    lost = solved < len(frequency) or (motion >= 1).any()
-    if lost:
-        first = min([solved, *np.flatnonzero((motion[:solved] >= 1).any(axis=1))])
-        raise SolveError(
-            f"frequency {float(frequency[first])!r} Hz has no correct digit in "
-            f"({', '.join(component)}): it lies on an undamped resonance, or "
-            f"{len(model.x) - 1} elements are too many for the assembled stiffness"
-        )
-    for d, pushed in enumerate(drives):
-        for r, watched in enumerate(responses):
-            which, flexibility = _local(model, component, pushed, watched)
-            value[:, d, r] += flexibility / factor[:, which]
-    bad = ~np.isfinite(value).all(axis=(1, 2)) | np.isnan(rounding).any(axis=(1, 2))
-    if bad.any():
-        first = float(frequency[bad][0])
-        raise SolveError(f"the numbers overflow at the frequency {first!r} Hz: check the units")
-    return value, rounding
-
-
-def _local(
-    model: Model, component: tuple[str, ...], pushed: Point, watched: Point
-) -> tuple[int, float]:
-    """Return what the inside of an element adds: which factor divides it, and the flexibility.
-
-    It is 0 unless both points lie inside the same element.
-    """
-    which = damping.SECTION if "beta" in component or pushed[0] != "z" else damping.TENSION
-    left, p = locate(model, pushed[1])
-    other, s = locate(model, watched[1])
-    if p is None or s is None or left != other:
-        return which, 0.0
-    chain = model.chain.only(component)
-    local = _core.local(chain, int(chain.element_of[left]), s, p)
-    return which, float(local[component.index(watched[0]), component.index(pushed[0])])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .answer import freeze
 from .chain import Chain
+from .damping import separable
+from .errors import SceneError
+from .port import Point
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -20,8 +23,6 @@ if TYPE_CHECKING:
     from .deflection import Deflection
     from .frf import FRF
     from .modes import Modes
-
-Point = tuple[str, float]
 
 
 class Triples(NamedTuple):
@@ -61,6 +62,8 @@ class Model:
         Where the nodes stand [m].
     chain : Chain
         What the core reads.
+    runs : tuple
+        Of each component, the uniform stretches that the sweep joins.
     """
 
     scene: Scene
@@ -69,6 +72,7 @@ class Model:
     components: tuple[tuple[str, ...], ...]
     x: NDArray[np.float64]
     chain: Chain
+    runs: tuple[tuple[Any, Any], ...]
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -78,6 +82,17 @@ class Model:
     def size(self) -> int:
         """Number of unknowns: coordinates that can move."""
         return self.chain.free
+
+    @property
+    def separable(self) -> bool:
+        """Whether damping scales parts of the assembled stiffness that the model keeps apart.
+
+        In a tensed element that bends, sections and tension are one.
+        """
+        inseparable = self.element == "tensed" and "beta" in self.coordinates
+        if not inseparable or self.scene.tension == 0:
+            return True
+        return separable(self.scene.dampings)
 
     @property
     def triples(self) -> Triples:
@@ -121,7 +136,17 @@ class Model:
         -------
         scipy.sparse.csr_array, shape (size, size)
             Over the free coordinates [N s/m, N s, N m s].
+
+        Raises
+        ------
+        SceneError
+            If there is none: tensed elements with tension and stiffness damping.
         """
+        if not self.separable:
+            raise SceneError(
+                "damping must scale sections and tension alike for tensed elements with tension "
+                f"to have a damping matrix, got {self.scene.damping}"
+            )
         from .matrices import damping
 
         return damping(self.chain, self.scene.dampings)
@@ -177,6 +202,7 @@ class Model:
         response: Point | Sequence[Point] | None = None,
         quantity: str = "receptance",
         solver: str = "lapack",
+        threads: int | None = None,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment.
 
@@ -188,12 +214,20 @@ class Model:
             Coordinate and position of a unit force or moment, such as ``("z", 0.5)``; with a list
             the values have a leading axis of drives.
         response : point or list of points, optional
-            What is watched; the drive points where left out.
+            What is watched; the drive points where left out. Also internal forces such as
+            ``("F_z", 0.3)`` or ``("M_beta", 0.0)``: what the rope right of the position puts on
+            the rope left of it, just left of a load or mass that stands there; these need the
+            sweep.
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration per force.
-        solver : {"lapack"}
-            Complex band LU of the assembled dynamic stiffness at each frequency; loses digits with
-            n as `modes` does.
+        solver : {"lapack", "sweep"}
+            ``"lapack"``: complex band LU of the assembled dynamic stiffness at each frequency;
+            loses digits with n as `modes` does. ``"sweep"``: along the chain in scattering form
+            (see csrc/sweep.h), nothing assembled, right to nearly the last digits whatever n;
+            uniform stretches cost no more for more elements.
+        threads : int, optional
+            Of the sweep: frequencies are shared out over so many threads; the environment variable
+            ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
 
         Returns
         -------
@@ -221,10 +255,16 @@ class Model:
         >>> print(model.frf([0.0], drive=("z", 0.5)).value[0, 0].real.round(6))
         0.0025
         """
-        from .frf import solve_frf
+        from .harmonic import solve_frf
 
         return solve_frf(
-            self, frequency, drive=drive, response=response, quantity=quantity, solver=solver
+            self,
+            frequency,
+            drive=drive,
+            response=response,
+            quantity=quantity,
+            solver=solver,
+            threads=threads,
         )
 
     def static(self, load: Mapping[Point, float], *, solver: str = "lapack") -> Deflection:
@@ -234,8 +274,8 @@ class Model:
         ----------
         load : mapping from points to float
             Such as ``{("z", 0.5): 10.0}`` [N, N m].
-        solver : {"lapack"}
-            Band LU of the assembled stiffness.
+        solver : {"lapack", "sweep"}
+            ``"lapack"``: band LU of the assembled stiffness; ``"sweep"``: as `frf` at 0 Hz.
 
         Returns
         -------
@@ -264,52 +304,3 @@ class Model:
     def component_of(self, coordinate: str) -> tuple[str, ...]:
         """Return the coordinates that move with this one."""
         return next(c for c in self.components if coordinate in c)
-
-
-def ports(
-    model: Model, chain: Chain, coordinates: Sequence[str], points: Iterable[Point]
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Return where points stand, as rows over the coordinates of two neighbouring nodes.
-
-    Parameters
-    ----------
-    model : Model
-        Whose positions count.
-    chain : Chain
-        Of the coordinates.
-    coordinates : sequence of str
-        Of the chain.
-    points : iterable of points
-        On these coordinates.
-
-    Returns
-    -------
-    node : ndarray of int, shape (points,)
-        Left node.
-    row : ndarray, shape (points, 2, width)
-        Displacement of the point per displacement of the nodes.
-    """
-    points = list(points)
-    node = np.zeros(len(points), dtype=np.int32)
-    row = np.zeros((len(points), 2, len(coordinates)))
-    for k, (coordinate, x) in enumerate(points):
-        at = list(coordinates).index(coordinate)
-        left, s = locate(model, x)
-        if s is None:
-            last = left == len(model.x) - 1
-            node[k] = left - last
-            row[k, int(last), at] = 1.0
-        else:
-            node[k] = left
-            row[k] = _core.shape(chain, int(chain.element_of[left]), s)[at]
-    return node, row
-
-
-def locate(model: Model, x: float) -> tuple[int, float | None]:
-    """Return the node at x and None, or the node left of x and the distance from it [m]."""
-    margin = 1e-9 * model.scene.rope.length
-    nearest = int(np.abs(model.x - x).argmin())
-    if abs(model.x[nearest] - x) <= margin:
-        return nearest, None
-    left = int(np.searchsorted(model.x, x)) - 1
-    return left, float(x - model.x[left])

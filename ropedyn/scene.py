@@ -221,9 +221,11 @@ class Scene:
         elements : int
             Over the whole rope. There is a node at every station (end or part); the stretches
             between stations share the elements as equally as can be.
-        element : {"rigid", "difference"}
+        element : {"rigid", "tensed", "difference"}
             ``"rigid"``: beam elements between rigid node frames, tension as a string in parallel;
-            second order in their length. ``"difference"``: the kinematics of the 2015 study.
+            second order in the length of elements. ``"tensed"``: the exact static tensed beam,
+            with end-corrected lumping; fourth order where there is bending. ``"difference"``: the
+            kinematics of the 2015 study.
 
         Returns
         -------

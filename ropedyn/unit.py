@@ -2,6 +2,8 @@
 
 UNIT = {"x": "m", "z": "m", "alpha": "rad", "beta": "rad"}
 FORCE = {"x": "F_x", "z": "F_z", "alpha": "M_alpha", "beta": "M_beta"}
+OF_FORCE = {force: coordinate for coordinate, force in FORCE.items()}
+"""Coordinate of each internal force."""
 FORCE_UNIT = {"x": "N", "z": "N", "alpha": "N m", "beta": "N m"}
 NAME = {
     "x": "axial displacement",
@@ -18,10 +20,11 @@ def label(
     response: tuple[str, float], drive: str | None = None, quantity: str = "receptance"
 ) -> str:
     """Say what a response is, such as ``z at 0.500 m [m/N]``."""
-    coordinate, x = response
-    motion = UNIT[coordinate] + ("", "/s", "/s^2")[QUANTITIES[quantity]]
+    name, x = response
+    unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT[name]
+    unit += ("", "/s", "/s^2")[QUANTITIES[quantity]]
     if drive is None:
-        return f"{coordinate} at {x:.3f} m [{motion}]"
+        return f"{name} at {x:.3f} m [{unit}]"
     force = FORCE_UNIT[drive]
-    per = f"{motion}/{force}" if " " not in force else f"{motion}/({force})"
-    return f"{coordinate} at {x:.3f} m [{per}]"
+    per = f"{unit}/{force}" if " " not in force else f"{unit}/({force})"
+    return f"{name} at {x:.3f} m [{per}]"

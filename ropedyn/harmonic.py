@@ -1,0 +1,349 @@
+"""The response to harmonic forces, by each solver."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core, check, damping
+from .answer import Cost
+from .chain import Chain
+from .errors import SceneError, SolveError
+from .frf import FRF
+from .model import Model
+from .port import Point, cut, is_force, locate, moving, ports
+from .unit import OF_FORCE, QUANTITIES
+
+LANES = 16
+"""Frequencies that the sweep solves side by side."""
+
+SLICE = 1 << 20
+"""Nodes times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of one component.
+
+    Attributes
+    ----------
+    model : Model
+        Whose component it is.
+    component : tuple of str
+        Coordinates.
+    frequency : ndarray, shape (f,)
+        [Hz].
+    drives, responses : list of points
+        On these coordinates.
+    workers : int
+        Threads.
+    """
+
+    model: Model
+    component: tuple[str, ...]
+    frequency: Real
+    drives: list[Point]
+    responses: list[Point]
+    workers: int
+
+    @cached_property
+    def factor(self) -> Complex:
+        """Factors on sections, tension, springs and inertia, shape (4, f)."""
+        omega = 2 * np.pi * self.frequency
+        return np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
+
+    @property
+    def is_damped(self) -> NDArray[np.bool_]:
+        """Whether a factor of something that this component has is complex, shape (f,)."""
+        chain = self.cut[0]
+        bends, rods = "beta" in self.component, {"x", "alpha"} & set(self.component)
+        has = {
+            damping.SECTION: bends or bool(rods),
+            damping.TENSION: "z" in self.component and self.model.scene.tension != 0,
+            damping.SPRING: bool(chain.stiffness.any()),
+            damping.INERTIA: True,
+        }
+        return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
+
+    @cached_property
+    def cut(self) -> tuple[Chain, Real, tuple[Any, Any]]:
+        """The component's chain with nodes where points need them, where they stand, its runs."""
+        model, points = self.model, [*self.drives, *self.responses]
+        chain = model.chain.only(self.component)
+        between = [p for p in points if locate(model.x, p[1])[1] is not None]
+        if model.element != "tensed":
+            for point in filter(is_force, between):
+                raise SceneError(
+                    "response of an internal force must stand at a node unless elements are "
+                    f'"tensed", got {point} between nodes of {model.element!r} elements'
+                )
+            between = []
+        longer, x = cut(chain, model.x, [p[1] for p in between])
+        if longer is chain:
+            return chain, x, model.runs[model.components.index(self.component)]
+        return longer, x, _core.runs(longer)
+
+    def resonance(self, k: int) -> str:
+        """Say that frequency k has no answer."""
+        return (
+            f"frequency {float(self.frequency[k])!r} Hz has no correct digit in "
+            f"({', '.join(self.component)}): it lies on an undamped resonance"
+        )
+
+
+def solve_frf(
+    model: Model,
+    frequency: ArrayLike,
+    *,
+    drive: Any,
+    response: Any,
+    quantity: str,
+    solver: str,
+    threads: int | None,
+) -> FRF:
+    """Compute the frequency response; see `Model.frf`."""
+    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    workers = _workers(threads)
+    check.one_of(quantity, "quantity", QUANTITIES)
+    f = check.frequencies(frequency)
+    drives, several = _points(model, drive, "drive", forces=False)
+    responses = drives if response is None else _points(model, response, "response")[0]
+    value = np.zeros((len(drives), len(responses), len(f)), dtype=np.complex128)
+    error = np.zeros(value.shape)
+    unknowns = 0
+    start = time.perf_counter()
+    for component in model.components:
+        d = [k for k, point in enumerate(drives) if point[0] in component]
+        r = [k for k, point in enumerate(responses) if moving(point) in component]
+        if not d or not r:
+            continue
+        block = np.ix_(d, r)
+        question = Question(
+            model, component, f, [drives[k] for k in d], [responses[k] for k in r], workers
+        )
+        value[block], error[block] = solve(question)
+        unknowns += model.chain.only(component).free
+    _refuse_overflow(f, value, error)
+    seconds = time.perf_counter() - start
+    value *= (2j * np.pi * f) ** QUANTITIES[quantity]
+    return FRF(
+        drive=drives,
+        response=responses,
+        quantity=quantity,
+        frequency=f,
+        value=value if several else value[0],
+        rounding_error=error if several else error[0],
+        cost=Cost(seconds, solver, len(model.x) - 1, unknowns, len(f) if unknowns else 0),
+    )
+
+
+def _workers(threads: int | None) -> int:
+    if threads is not None:
+        return check.count(threads, "threads", most=1024)
+    text = os.environ.get("ROPEDYN_THREADS", "")
+    if not text:
+        return os.cpu_count() or 1
+    if not text.isdecimal():
+        raise SceneError(f"ROPEDYN_THREADS must be a whole number from 1 to 1024, got {text!r}")
+    return check.count(int(text), "ROPEDYN_THREADS", most=1024)
+
+
+def _points(
+    model: Model, given: Any, name: str, *, forces: bool = True
+) -> tuple[tuple[Point, ...], bool]:
+    """Return one or several points, and whether a list of them was given."""
+    several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
+    length = model.scene.rope.length
+    points = tuple(
+        check.point(
+            one, f"{name}[{k}]" if several else name, model.coordinates, length, forces=forces
+        )
+        for k, one in enumerate(given if several else (given,))
+    )
+    return points, several
+
+
+def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:
+    bad = ~np.isfinite(value).all(axis=(0, 1)) | np.isnan(error).any(axis=(0, 1))
+    if bad.any():
+        first = float(frequency[bad][0])
+        raise SolveError(f"the numbers overflow at the frequency {first!r} Hz: check the units")
+
+
+def _relative(value: Complex, error: Real) -> Real:
+    """Return the relative error: 0 where both are 0, infinite where only the value is."""
+    size = np.abs(value)
+    ratio = np.full(size.shape, np.inf)
+    np.divide(error, size, out=ratio, where=size > 0)
+    return np.where((size == 0) & (error == 0), 0.0, ratio)
+
+
+# --- the sweep --------------------------------------------------------------------------------
+
+
+def _sweep(question: Question) -> tuple[Complex, Real]:
+    component, factor = question.component, question.factor
+    chain, x, runs = question.cut
+    direct = [p for p in question.responses if not _at_start(x, p)]
+    reactions = len(direct) < len(question.responses)
+    pushed = ports(chain, x, component, question.drives)
+    watched = ports(chain, x, component, direct + (_hidden(component, x) if reactions else []))
+
+    def solve(part: slice) -> tuple[Complex, Real]:
+        value, error, solved = _core.sweep(
+            chain, runs, np.ascontiguousarray(factor[:, part]), pushed, watched
+        )
+        if solved < value.shape[2]:
+            raise SolveError(question.resonance(part.start + solved))
+        return value, error
+
+    value, error = _in_slices(solve, len(question.frequency), chain.nodes, question.workers)
+    if reactions:
+        value, error = _with_reactions(question, value, error)
+    value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
+    _hold(question, value, error)
+    _add_local(question, value)
+    return value, _relative(value, error)
+
+
+def _in_slices(
+    solve: Callable[[slice], tuple[Complex, Real]], count: int, nodes: int, workers: int
+) -> tuple[Complex, Real]:
+    """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
+    size = max(LANES, SLICE // nodes // LANES * LANES)
+    if count * nodes > SLICE // 16:
+        size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
+    parts = [slice(start, min(start + size, count)) for start in range(0, count, size)]
+    if workers == 1 or len(parts) == 1:
+        solved: Iterator[tuple[Complex, Real]] | list[tuple[Complex, Real]] = map(solve, parts)
+        values, errors = zip(*solved)
+    else:
+        executor = ThreadPoolExecutor(workers)
+        try:
+            values, errors = zip(*executor.map(solve, parts))
+        finally:
+            executor.shutdown(cancel_futures=True)
+    return np.concatenate(values, axis=2), np.concatenate(errors, axis=2)
+
+
+def _hold(question: Question, value: Complex, error: Real) -> None:
+    """Set to 0 what is held, which rounding moves by its last digits."""
+    chain, x, _ = question.cut
+
+    def is_held(point: Point) -> bool:
+        node, between = locate(x, point[1])
+        at = question.component.index(moving(point))
+        held = between is None and not is_force(point)
+        return held and bool(chain.held[chain.term_of[node], at])
+
+    for k, point in enumerate(question.drives):
+        if is_held(point):
+            value[k] = error[k] = 0.0
+    for k, point in enumerate(question.responses):
+        if is_held(point):
+            value[:, k] = error[:, k] = 0.0
+
+
+def _at_start(x: Real, point: Point) -> bool:
+    """Whether an internal force is asked for at the left end, where no element ends."""
+    return is_force(point) and locate(x, point[1])[0] == 0
+
+
+def _hidden(component: tuple[str, ...], x: Real) -> list[Point]:
+    """Return what the force at the left end follows from: motion there, force at node 1."""
+    motion = [(c, float(x[0])) for c in component]
+    force = [(f, float(x[1])) for c in component for f in OF_FORCE if OF_FORCE[f] == c]
+    return motion + force
+
+
+def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Complex, Real]:
+    """Put f_a = F^T f_b - Q u_a of the first element where it was asked for."""
+    component, responses = question.component, question.responses
+    chain, x, _ = question.cut
+    w = len(component)
+    F, _, Q = _core.triple(
+        chain, int(chain.element_of[0]), np.ascontiguousarray(question.factor[:2])
+    )
+    given, motion, force = np.split(np.arange(value.shape[1]), [-2 * w, -w])
+    reaction = np.einsum("kij,dik->djk", F, value[:, force])
+    reaction -= np.einsum("kij,djk->dik", Q, value[:, motion])
+    spread = np.einsum("kij,dik->djk", np.abs(F), error[:, force])
+    spread += np.einsum("kij,djk->dik", np.abs(Q), error[:, motion])
+    shape = (value.shape[0], len(responses), value.shape[2])
+    values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+    direct = iter(given)
+    for k, point in enumerate(responses):
+        if _at_start(x, point):
+            at = component.index(moving(point))
+            values[:, k], errors[:, k] = reaction[:, at], spread[:, at]
+        else:
+            at = next(direct)
+            values[:, k], errors[:, k] = value[:, at], error[:, at]
+    return values, errors
+
+
+# --- the assembled system ---------------------------------------------------------------------
+
+
+def _lapack(question: Question) -> tuple[Complex, Real]:
+    if any(map(is_force, question.responses)):
+        raise SceneError('solver must be "sweep" where an internal force is asked for')
+    if not question.model.separable:
+        raise SceneError(
+            'solver must be "sweep" where tensed elements have stiffness damping and tension, got '
+            '"lapack": sections and tension are one matrix there'
+        )
+    chain, x, _ = question.cut
+    value, rounding, motion, solved = _core.frf(
+        chain,
+        np.ascontiguousarray(question.factor.T),
+        ports(chain, x, question.component, question.drives),
+        ports(chain, x, question.component, question.responses),
+    )
+    if solved < len(question.frequency) or (motion >= 1).any():
+        first = min([solved, *np.flatnonzero((motion[:solved] >= 1).any(axis=1))])
+        raise SolveError(
+            f"{question.resonance(first)}, or {chain.nodes - 1} elements are too many for the "
+            "assembled stiffness"
+        )
+    value = np.ascontiguousarray(value.transpose(1, 2, 0))
+    _add_local(question, value)
+    return value, np.ascontiguousarray(rounding.transpose(1, 2, 0))
+
+
+def _add_local(question: Question, value: Complex) -> None:
+    """Add the flexibility inside a driven element that is not cut."""
+    if question.model.element == "tensed":
+        return
+    for d, pushed in enumerate(question.drives):
+        for r, watched in enumerate(question.responses):
+            which, flexibility = _local(question, pushed, watched)
+            if flexibility != 0:
+                value[d, r] += flexibility / question.factor[which]
+
+
+def _local(question: Question, pushed: Point, watched: Point) -> tuple[int, float]:
+    """Return which factor divides the local flexibility, and that; 0 outside one element."""
+    component, (chain, x, _) = question.component, question.cut
+    which = damping.SECTION if "beta" in component or pushed[0] != "z" else damping.TENSION
+    left, p = locate(x, pushed[1])
+    other, s = locate(x, watched[1])
+    if p is None or s is None or left != other or is_force(watched):
+        return which, 0.0
+    local = _core.local(chain, int(chain.element_of[left]), s, p)
+    return which, float(local[component.index(watched[0]), component.index(pushed[0])])
+
+
+SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+"""What computes the response of one component: value and relative error, (drives, responses, f)."""

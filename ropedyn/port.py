@@ -1,0 +1,135 @@
+"""Where a rope is pushed and watched, as rows over a compiled chain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .chain import Chain
+from .unit import OF_FORCE
+
+Point = tuple[str, float]
+
+NEAR = 1e-9
+"""Positions closer than this part of the length are one node."""
+
+
+class Ports(NamedTuple):
+    """Points as the core takes them; see csrc/ports.h."""
+
+    node: NDArray[np.int32]
+    """(points,) left node."""
+    row: NDArray[np.float64]
+    """(points, 2, width) displacement per displacement of the nodes."""
+    force: NDArray[np.float64] | None
+    """(points, width) share of the internal force at the right end of the element, or None."""
+
+
+def is_force(point: Point) -> bool:
+    """Whether the point asks for an internal force such as ("F_z", 0.3)."""
+    return point[0] in OF_FORCE
+
+
+def moving(point: Point) -> str:
+    """Return the coordinate of a point, of an internal force the one it belongs to."""
+    return OF_FORCE.get(point[0], point[0])
+
+
+def locate(x: NDArray[np.float64], at: float) -> tuple[int, float | None]:
+    """Return the node at a position and None, or the node left of it and the distance [m]."""
+    right = int(np.searchsorted(x, at))
+    margin = NEAR * float(x[-1])
+    for node in (right, right - 1):
+        if 0 <= node < len(x) and abs(x[node] - at) <= margin:
+            return node, None
+    return right - 1, float(at - x[right - 1])
+
+
+def ports(
+    chain: Chain, x: NDArray[np.float64], coordinates: Sequence[str], points: Iterable[Point]
+) -> Ports:
+    """Return the rows of points.
+
+    Parameters
+    ----------
+    chain : Chain
+        Of the coordinates.
+    x : ndarray, shape (nodes,)
+        Where its nodes stand [m].
+    coordinates : sequence of str
+        Of the chain.
+    points : iterable of points
+        On these coordinates; internal forces at nodes other than the first.
+    """
+    points = list(points)
+    node = np.zeros(len(points), dtype=np.int32)
+    row = np.zeros((len(points), 2, len(coordinates)))
+    force = np.zeros((len(points), len(coordinates)))
+    for k, point in enumerate(points):
+        at = list(coordinates).index(moving(point))
+        left, s = locate(x, point[1])
+        if is_force(point):
+            node[k], force[k, at] = left - 1, 1.0
+        elif s is None:
+            last = left == len(x) - 1
+            node[k] = left - last
+            row[k, int(last), at] = 1.0
+        else:
+            node[k] = left
+            row[k] = _core.shape(chain, int(chain.element_of[left]), s)[at]
+    return Ports(node, row, force if force.any() else None)
+
+
+def cut(
+    chain: Chain, x: NDArray[np.float64], positions: Iterable[float]
+) -> tuple[Chain, NDArray[np.float64]]:
+    """Put nodes without mass at positions inside elements.
+
+    Two tensed elements joined there are the one they came from: no other answer changes.
+
+    Parameters
+    ----------
+    chain : Chain
+        To be cut.
+    x : ndarray, shape (nodes,)
+        Where its nodes stand [m].
+    positions : iterable of float
+        Where to cut [m]; nodes are left alone.
+
+    Returns
+    -------
+    Chain
+        With the new nodes, itself where there are none.
+    ndarray
+        Where its nodes stand [m].
+    """
+    inside = sorted({at for at in positions if locate(x, at)[1] is not None})
+    if not inside:
+        return chain, x
+    nodes = np.union1d(x, inside)
+    old = np.searchsorted(x, nodes, side="right") - 1
+    is_new = ~np.isin(nodes, x)
+    cut_element = np.zeros(len(nodes), dtype=bool)
+    cut_element[is_new] = True
+    cut_element[np.flatnonzero(is_new) - 1] = True
+    number = chain.element_of[np.minimum(old[:-1], len(chain.element_of) - 1)].copy()
+    pieces = np.flatnonzero(cut_element[:-1])
+    source = number[pieces]
+    number[pieces] = len(chain.length) + np.arange(len(pieces))
+    width = chain.mass.shape[1]
+    none = np.zeros((1, width, width))
+    term_of = np.where(is_new, len(chain.mass), chain.term_of[old])
+    return chain._replace(
+        length=np.concatenate([chain.length, np.diff(nodes)[pieces]]),
+        tension=np.concatenate([chain.tension, chain.tension[source]]),
+        flexibility=np.concatenate([chain.flexibility, chain.flexibility[source]]),
+        element_of=number,
+        mass=np.concatenate([chain.mass, none]),
+        stiffness=np.concatenate([chain.stiffness, none]),
+        held=np.concatenate([chain.held, np.zeros((1, width), dtype=np.uint8)]),
+        term_of=term_of.astype(np.int32),
+    ), nodes
