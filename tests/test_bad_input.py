@@ -333,10 +333,15 @@ row(
     "element",
     lambda v: scene().compile(elements=4, element=v),
     NOT_A_WORD,
-    {"unknown": "cubic", "empty": "", "tensed": "tensed", "no_geometric_stiffness": "difference"},
+    {
+        "unknown": "cubic",
+        "empty": "",
+        "later": "continuous",
+        "no_geometric_stiffness": "difference",
+    },
 )
 
-SOLVER = (NOT_A_WORD, {"unknown": "magic", "empty": "", "later": "sweep"})
+SOLVER = (NOT_A_WORD, {"unknown": "magic", "empty": "", "later": "newton"})
 row("Model.modes", "number", MODEL.modes, without(NOT_A_COUNT, "none"), BAD_COUNT)
 row(
     "Model.modes",

@@ -36,6 +36,7 @@ SHAPES = np.ones((2, NODES, WIDTH))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
 
 # every entry point that takes a chain
+RUNS = _core.runs(CHAIN)
 ENTRIES = {
     "triples": _core.triples,
     "assemble": _core.assemble,
@@ -44,6 +45,9 @@ ENTRIES = {
     "deflection": lambda chain: _core.deflection(chain, FORCE),
     "modes": lambda chain: _core.modes(chain, 3, 0.0, 1e4),
     "frf": lambda chain: _core.frf(chain, FACTOR, PORT, PORT),
+    "runs": _core.runs,
+    "sweep": lambda chain: _core.sweep(chain, RUNS, FACTOR.T.copy(), PORT, PORT),
+    "triple": lambda chain: _core.triple(chain, 0, FACTOR.T[:2].copy()),
     "energy": lambda chain: _core.energy(chain, SHAPES),
 }
 OTHERS = {
@@ -85,7 +89,7 @@ MALFORMED = {
     "kind of text": (CHAIN._replace(kind="rigid"), TypeError, ""),
     "kind of a float": (CHAIN._replace(kind=1.0), TypeError, ""),
     "kind too large": (CHAIN._replace(kind=2**40), OverflowError, ""),
-    "kind unknown": (CHAIN._replace(kind=2), ValueError, "kind"),
+    "kind unknown": (CHAIN._replace(kind=3), ValueError, "kind"),
     "kind negative": (CHAIN._replace(kind=-1), ValueError, "kind"),
     "no coordinate": (
         CHAIN._replace(coordinate=np.zeros(0, np.int32)),
