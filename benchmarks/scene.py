@@ -1,0 +1,73 @@
+"""The scene of the benchmarks: a rope of 2830 N, damped, uniform or different at every node."""
+
+import dataclasses
+
+import numpy as np
+
+import ropedyn as rd
+from ropedyn import _core
+
+LENGTH, DENSITY, BENDING, TENSION = 1.35, 0.1017, 1.54, 2830.0
+"""[m], [kg/m], [N m^2], [N]."""
+
+TWIST = {"torsional_stiffness": 0.1485, "polar_inertia": 1.4e-7, "lay_slope": 0.01}
+
+KINDS = {
+    "uniform": "nothing on the rope",
+    "masses": "another point mass at every node, elements equal but for rounding",
+    "different": "another point mass at every node, every element of another length",
+}
+
+
+def model(
+    kind: str, elements: int, *, twist: bool, ends: str = "clamped", rotary: bool = False
+) -> rd.Model:
+    """Compile the scene; with `rotary` the elements are rigid bodies, mu (L/n)^2/12."""
+    rope = rd.Rope(
+        LENGTH,
+        DENSITY,
+        bending_stiffness=BENDING,
+        rotary_inertia=DENSITY * (LENGTH / elements) ** 2 / 12 if rotary else None,
+        **(TWIST if twist else {}),
+    )
+    scene = rd.Scene(
+        rope,
+        tension=TENSION,
+        ends=(ends, ends),
+        damping=rd.StiffnessDamping(1e-4),
+        parts=[] if kind == "uniform" else _masses(kind, elements),
+    )
+    return scene.compile(elements=elements, element="rigid")
+
+
+def _masses(kind: str, elements: int) -> list[rd.PointMass]:
+    """Return masses up to that of an element, a quarter of an element off where lengths differ."""
+    random = np.random.default_rng(1)
+    off = random.uniform(-0.25, 0.25, elements - 1) if kind == "different" else 0.0
+    x = LENGTH * (np.arange(1, elements) + off) / elements
+    mass = DENSITY * LENGTH / elements * random.uniform(0, 1, elements - 1)
+    return [rd.PointMass(*pair) for pair in zip(x.tolist(), mass.tolist())]
+
+
+def chain_of_different(elements: int) -> rd.Model:
+    """Put random lengths and masses into a uniform model: no million parts to hold in memory."""
+    uniform = model("uniform", elements, twist=False)
+    random = np.random.default_rng(1)
+    chain = uniform.chain
+    length = random.uniform(0.5, 1.5, elements)
+    length *= LENGTH / length.sum()
+    mass = chain.mass[chain.term_of] * random.uniform(1, 2, (elements + 1, 1, 1))
+    terms = np.arange(elements + 1, dtype=np.int32)
+    different = chain._replace(
+        length=length,
+        tension=np.full(elements, TENSION),
+        flexibility=np.repeat(chain.flexibility, elements, axis=0),
+        element_of=np.arange(elements, dtype=np.int32),
+        mass=mass,
+        stiffness=np.zeros_like(mass),
+        held=chain.held[chain.term_of],
+        term_of=terms,
+    )
+    x = np.concatenate([[0.0], np.cumsum(length)])
+    runs = tuple(_core.runs(different.only(group)) for group in uniform.components)
+    return dataclasses.replace(uniform, x=x, chain=different, runs=runs)
