@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
@@ -127,6 +126,8 @@ class Answer:
         ImportError
             If xarray is missing.
         """
+        import json
+
         from .extra import xarray
 
         variables: dict[str, Any] = {}
@@ -220,6 +221,8 @@ def load(path: str | os.PathLike[str]) -> Answer:
 
 
 def _rebuilt(kind: type[Answer], dataset: Any) -> Answer:
+    import json
+
     arguments: dict[str, Any] = {}
     for item in fields(kind):  # type: ignore[arg-type]
         if "axes" not in item.metadata:
