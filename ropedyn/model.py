@@ -224,7 +224,7 @@ class Model:
             ``"lapack"``: complex band LU of the assembled dynamic stiffness at each frequency;
             loses digits with n as `modes` does. ``"sweep"``: along the chain in scattering form
             (see csrc/sweep.h), nothing assembled, right to nearly the last digits whatever n;
-            uniform stretches cost no more for more elements.
+            uniform stretches are joined by doubling and cost little more for more elements.
         threads : int, optional
             Of the sweep: frequencies are shared out over so many threads; the environment variable
             ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
