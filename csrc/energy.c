@@ -113,8 +113,7 @@ static double quadratic(size_t n, const double *A, const double *u)
     return sum;
 }
 
-enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape,
-                                const double *force, double *strain)
+enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain)
 {
     const size_t w = chain->width;
     struct store store;
@@ -128,10 +127,7 @@ enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shap
                 return status;
         }
         double f[W];
-        if (force == NULL)
-            end_force(&store, shape + i * w, f);
-        else
-            memcpy(f, force + i * w, w * sizeof *f);
+        end_force(&store, shape + i * w, f);
         add_element(&store, shape + i * w, f, strain);
     }
     for (size_t i = 0; i < chain->nodes; i++) {

@@ -15,11 +15,10 @@ enum rd_strain {
     RD_STRAINS
 };
 
-/* strain (RD_STRAINS), twice the energy [J] of shape (nodes, width) with the force (nodes - 1,
-   width) on the right end of each element, or NULL where that is to follow from the shape: then
-   short elements lose digits, being differences of nearly equal motions. */
-enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape,
-                                const double *force, double *strain);
+/* strain (RD_STRAINS), twice the energy [J] of shape (nodes, width). The force on the right end of
+   each element follows from the shape: short elements lose digits, being differences of nearly
+   equal motions. */
+enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain);
 
 /* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape */
 void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double *kinetic);

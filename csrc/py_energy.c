@@ -29,7 +29,7 @@ PyObject *py_energy(PyObject *module, PyObject *arguments)
     enum rd_status status = RD_OK;
     Py_BEGIN_ALLOW_THREADS
     for (size_t k = 0; k < (size_t)count && status == RD_OK; k++) {
-        status = rd_energy_strain(&parsed.chain, u + k * entries, NULL, stored + k * RD_STRAINS);
+        status = rd_energy_strain(&parsed.chain, u + k * entries, stored + k * RD_STRAINS);
         rd_energy_kinetic(&parsed.chain, u + k * entries, moving + k * w);
     }
     Py_END_ALLOW_THREADS

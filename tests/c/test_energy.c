@@ -55,7 +55,7 @@ static void mode_of_one_coordinate_stores_all_in_one_place(const char *coordinat
             shape[j] = j % ELEMENTS == 0 ? 0 : sin(j * k * PI / ELEMENTS);
         const double s = 2 * sin(k * PI / (2 * ELEMENTS));
         const double lambda = stiffness / (l * m) * s * s;
-        CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_OK);
+        CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_OK);
         rd_energy_kinetic(&rope.chain, shape, &kinetic);
         CHECK_REL(kinetic, m * ELEMENTS / 2, 32 * EPS, "sum of sin^2 over nine nodes");
         CHECK_REL(strain[place], lambda * kinetic, 64 * EPS / (s * s) + 32 * EPS,
@@ -100,7 +100,7 @@ static void shares_add_up_to_the_whole(const char *coordinates, enum rd_kind kin
         double strain[RD_STRAINS], kinetic[RD_WIDTH_MAX], size;
         for (size_t i = 0; i < n; i++)
             shape[i] = check_random();
-        CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_OK);
+        CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_OK);
         rd_energy_kinetic(&rope.chain, shape, kinetic);
         double expected = quadratic(K, n, shape, &size);
         CHECK_ABS(sum_of(strain, RD_STRAINS), expected, 4000 * EPS * size,
@@ -140,7 +140,7 @@ static void pure_bending_stores_B_times_curvature_squared(void)
         const double rise = i == 0 ? 0 : shape[3 * i] - shape[3 * (i - 1)];
         tension += T / l * rise * rise;
     }
-    CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_OK);
+    CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_OK);
     CHECK_REL(strain[RD_STRAIN_BENDING], 4 * c * c * (4 * l), 200 * EPS,
               "condition 14 of unit-diagonal G");
     CHECK_REL(strain[RD_STRAIN_TENSION], tension, 8 * EPS, "a sum of four");
@@ -171,7 +171,7 @@ static void extension_and_twist_share_with_the_lay(void)
         shape[2 * i + 1] = t * i * L / 4;
     }
     const double a = 4 * e + 2 * t, q = 2 * e + 2 * t;
-    CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_OK);
+    CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_OK);
     CHECK_REL(strain[RD_STRAIN_STRETCH], 0.5 * a * a * L, 64 * EPS, "a two by two inverse");
     CHECK_REL(strain[RD_STRAIN_TWIST], q * q * L, 64 * EPS, "a two by two inverse");
     CHECK_REL(strain[RD_STRAIN_LAY], -a * q * L, 64 * EPS, "a two by two inverse");
@@ -200,7 +200,7 @@ static void rigid_turn_stores_tension_and_springs_only(void)
         shape[2 * i] = i * 0.5 * 0.25;
         shape[2 * i + 1] = 0.25;
     }
-    CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_OK);
+    CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_OK);
     CHECK_EXACT(strain[RD_STRAIN_BENDING], 0);
     CHECK_REL(strain[RD_STRAIN_TENSION], 8 * 0.25 * 0.25 * 2, 8 * EPS, "a complex step's rounding");
     CHECK_EXACT(strain[RD_STRAIN_SPRING], 16 * 0.5 * 0.5);
@@ -237,7 +237,7 @@ static void strain_of_a_bending_mode_is_lambda_times_its_mass(double tension)
             shape[2 * j] = j % ELEMENTS == 0 ? 0 : sin(j * phi);
             shape[2 * j + 1] = 12 * sin(phi) / (8 + 4 * c) / a * cos(j * phi);
         }
-        CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_OK);
+        CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_OK);
         rd_energy_kinetic(&rope.chain, shape, kinetic);
         CHECK_EXACT(kinetic[1], 0);
         CHECK_REL(kinetic[0], mu * a * ELEMENTS / 2, 32 * EPS, "sum of sin^2 over nine nodes");
@@ -290,7 +290,7 @@ static void section_that_creates_energy_is_refused(void)
     double strain[RD_STRAINS];
     rope.element_of[1] = 1;
     rope.flexibility[9 + 8] = -1;
-    CHECK_INT(rd_energy_strain(&rope.chain, shape, NULL, strain), RD_NOT_POSITIVE_DEFINITE);
+    CHECK_INT(rd_energy_strain(&rope.chain, shape, strain), RD_NOT_POSITIVE_DEFINITE);
     rope_free(&rope);
 }
 
