@@ -19,6 +19,9 @@ COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
 
 
+NEAR = 1e-9
+"""Positions closer than this part of the length are one node."""
+
 HIGHEST = 1e150
 """Of frequencies [Hz], so that squares do not overflow."""
 
@@ -181,7 +184,7 @@ def path(value: Any) -> Path:
 def position(value: Any, name: str, length: float) -> float:
     """Return a position on the rope; within 1e-9 of the length of an end it is that end."""
     x = number(value, name, "m")
-    margin = 1e-9 * length
+    margin = NEAR * length
     if not -margin <= x <= length + margin:
         raise SceneError(
             f"{name} must lie on the rope, between 0 and {length:g} m, got {shown(value)}"

@@ -44,7 +44,7 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
         *_terms(scene, element, stations, counts),
     )
     groups = components(chain, scene.coordinates)
-    runs = tuple(_core.runs(chain.only(group)) for group in groups)
+    parts = [chain.only(group) for group in groups]
     for array in chain[1:]:
         array.flags.writeable = False
     return Model(
@@ -54,7 +54,8 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
         components=groups,
         x=_positions(stations, counts),
         chain=chain,
-        runs=runs,
+        runs=tuple(_core.runs(part) for part in parts),
+        unknowns=tuple(part.free for part in parts),
     )
 
 

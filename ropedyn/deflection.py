@@ -73,7 +73,7 @@ def solve_static(model: Model, load: Mapping[Point, float], *, solver: str) -> D
     force = np.zeros((len(model.x), width))
     unknowns, solved = 0, 0
     start = time.perf_counter()
-    for component in model.components:
+    for component, free in zip(model.components, model.unknowns):
         here = {point: value for point, value in loads.items() if point[0] in component}
         if not here:
             continue
@@ -86,7 +86,7 @@ def solve_static(model: Model, load: Mapping[Point, float], *, solver: str) -> D
                 "rigid motion is free, the compression is critical, or there are too many "
                 "elements for the assembled stiffness"
             ) from error
-        unknowns += model.chain.only(component).free
+        unknowns += free
         solved += 1
     seconds = time.perf_counter() - start
     if not np.isfinite(displacement).all() or not np.isfinite(force).all():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
@@ -123,7 +123,7 @@ def solve_frf(
     error = np.zeros(value.shape)
     unknowns = 0
     start = time.perf_counter()
-    for component in model.components:
+    for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if point[0] in component]
         r = [k for k, point in enumerate(responses) if moving(point) in component]
         if not d or not r:
@@ -133,7 +133,7 @@ def solve_frf(
             model, component, f, [drives[k] for k in d], [responses[k] for k in r], workers
         )
         value[block], error[block] = solve(question)
-        unknowns += model.chain.only(component).free
+        unknowns += free
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
     value *= (2j * np.pi * f) ** QUANTITIES[quantity]
@@ -226,8 +226,7 @@ def _in_slices(
         size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
     parts = [slice(start, min(start + size, count)) for start in range(0, count, size)]
     if workers == 1 or len(parts) == 1:
-        solved: Iterator[tuple[Complex, Real]] | list[tuple[Complex, Real]] = map(solve, parts)
-        values, errors = zip(*solved)
+        values, errors = zip(*(solve(part) for part in parts))
     else:
         executor = ThreadPoolExecutor(workers)
         try:

@@ -8,10 +8,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from .check import NEAR
 from .errors import SceneError
-
-NEAR = 1e-9
-"""Positions closer than this part of the length are one node."""
 
 
 def stations(length: float, positions: Iterable[float]) -> NDArray[np.float64]:

@@ -64,6 +64,8 @@ class Model:
         What the core reads.
     runs : tuple
         Of each component, the uniform stretches that the sweep joins.
+    unknowns : tuple of int
+        Of each component, coordinates that can move.
     """
 
     scene: Scene
@@ -73,6 +75,7 @@ class Model:
     x: NDArray[np.float64]
     chain: Chain
     runs: tuple[tuple[Any, Any], ...]
+    unknowns: tuple[int, ...]
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -81,7 +84,7 @@ class Model:
     @property
     def size(self) -> int:
         """Number of unknowns: coordinates that can move."""
-        return self.chain.free
+        return sum(self.unknowns)
 
     @property
     def separable(self) -> bool:

@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import Chain
+from .check import NEAR
 from .unit import OF_FORCE
 
 Point = tuple[str, float]
-
-NEAR = 1e-9
-"""Positions closer than this part of the length are one node."""
 
 
 class Ports(NamedTuple):
