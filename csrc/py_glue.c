@@ -18,7 +18,9 @@ static const char *text_of(enum rd_status status)
                "mass is indefinite where the stiffness is: there are no lowest modes; give these "
                "coordinates an inertia or use more elements";
     case RD_NO_CONVERGENCE:
-        return "LAPACK's eigensolver did not converge";
+        return "the eigensolver did not converge";
+    case RD_CLUSTER:
+        return "8 modes or more lie within a relative 1e-8 of each other and are not told apart";
     default:
         return "unexpected status of the core";
     }

@@ -70,6 +70,8 @@ PyObject *py_deflection(PyObject *module, PyObject *arguments);
 PyObject *py_modes(PyObject *module, PyObject *arguments);
 PyObject *py_frf(PyObject *module, PyObject *arguments);
 PyObject *py_energy(PyObject *module, PyObject *arguments);
+PyObject *py_count(PyObject *module, PyObject *arguments);
+PyObject *py_certify(PyObject *module, PyObject *arguments);
 PyObject *py_runs(PyObject *module, PyObject *arguments);
 PyObject *py_sweep(PyObject *module, PyObject *arguments);
 PyObject *py_triple(PyObject *module, PyObject *arguments);

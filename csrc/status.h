@@ -9,7 +9,8 @@ enum rd_status {
     RD_CRITICAL_ELEMENT,      /* tension is the critical load of one element: no triple exists */
     RD_SINGULAR,              /* a factorisation met an exact zero */
     RD_UNSTABLE_MASSLESS,     /* stiffness is not positive on coordinates without mass */
-    RD_NO_CONVERGENCE,        /* LAPACK's eigensolver gave up */
+    RD_NO_CONVERGENCE,        /* an eigensolver gave up */
+    RD_CLUSTER,               /* more modes lie closer together than are told apart */
 };
 
 #endif

@@ -7,9 +7,9 @@
 
 enum { W = RD_WIDTH_MAX, TERMS = 12 };
 
-/* tau and P0, P1, P2 of triple.h; less = P0 - 1 without cancellation */
+/* tau and P0, P1, P2 of triple.h */
 struct shape {
-    double _Complex tau, less, P[3];
+    double _Complex tau, P[3];
 };
 
 /* |theta| <= 1: with c = (cosh t - 1)/theta = sum theta^k/(2k + 2)! and
@@ -27,8 +27,8 @@ static struct shape by_series(double _Complex theta)
         factorial = next * (2 * k + 3);
     }
     const double _Complex C = 1 + theta * c;
-    const double _Complex less = -theta * d / C;
-    return (struct shape){.tau = 1 + less, .less = less, .P = {1 + less, c / C, d / C}};
+    const double _Complex tau = 1 - theta * d / C;
+    return (struct shape){.tau = tau, .P = {tau, c / C, d / C}};
 }
 
 /* e = exp(-t), Re t >= 0: tanh t = (1 - e^2)/(1 + e^2), 1 - 1/cosh t = (1 - e)^2/(1 + e^2):
@@ -41,7 +41,6 @@ static struct shape in_closed_form(double _Complex theta)
     const double _Complex tau = (1 - e * e) / (t * f);
     return (struct shape){
         .tau = tau,
-        .less = tau - 1,
         .P = {tau, (1 - e) * (1 - e) / (f * theta), (1 - tau) / theta},
     };
 }
@@ -54,7 +53,6 @@ static struct shape compressed(double theta)
     const double sine = sin(t / 2);
     return (struct shape){
         .tau = tau,
-        .less = tau - 1,
         .P = {tau, -2 * sine * sine / (cos(t) * theta), (1 - tau) / theta},
     };
 }
@@ -65,9 +63,8 @@ static struct shape shape_of(enum rd_kind kind, double _Complex theta)
         return (struct shape){.P = {1, 0.5, 1.0 / 3}};
     if (kind == RD_RIGID) {
         const double _Complex p = 1 + theta / 3;
-        const double _Complex less = -theta / (4 * p);
         return (struct shape){
-            .tau = 1 / p, .less = less, .P = {1 + less, 1 / (2 * p), 1 / (3 * p)}};
+            .tau = 1 / p, .P = {(1 + theta / 12) / p, 1 / (2 * p), 1 / (3 * p)}};
     }
     if (cabs(theta) <= 1)
         return by_series(theta);
@@ -107,8 +104,19 @@ static void rods(const struct rd_element *element, double _Complex section, doub
         }
 }
 
+/* S_cd - S_cb S_bd/S_bb: what of a channel's flexibility is left when the rope does not bend, by a
+   difference of products that keeps its digits (Kahan; Jeannerod, Louvet, Muller 2013) */
+static double unbent(const double *S, int c, int d)
+{
+    const double Scb = S[c * RD_CHANNELS + RD_BENDING], Sdb = S[d * RD_CHANNELS + RD_BENDING];
+    const double Sbb = S[RD_BENDING * RD_CHANNELS + RD_BENDING];
+    const double product = Scb * Sdb;
+    const double rounding = fma(-Scb, Sdb, product);
+    return (fma(S[c * RD_CHANNELS + d], Sbb, -product) + rounding) / Sbb;
+}
+
 static void bend(const struct rd_element *element, double _Complex section, double _Complex tension,
-                 double _Complex *F, double _Complex *G, double _Complex *Q)
+                 double _Complex *D, double _Complex *G, double _Complex *Q)
 {
     const size_t w = element->width;
     const double l = element->length;
@@ -126,47 +134,64 @@ static void bend(const struct rd_element *element, double _Complex section, doub
             const double rj = d == RD_BENDING ? 1 : S[d * RD_CHANNELS + RD_BENDING] / Sbb;
             const int k = lever[element->coordinate[i]] + lever[element->coordinate[j]];
             if (c != RD_BENDING && d != RD_BENDING)
-                G[i * w + j] = l * (S[c * RD_CHANNELS + d] + ri * rj * Sbb * shape.less) / section;
+                G[i * w + j] = l * (unbent(S, c, d) + ri * rj * Sbb * shape.P[0]) / section;
             else
                 G[i * w + j] = ri * rj * Sbb * reach[k] * shape.P[k] / section;
         }
         if (lever[element->coordinate[i]])
-            F[i * w + beta] = l * shape.tau;
+            D[i * w + beta] = l * shape.tau;
         else
-            F[i * w + beta] = (i == beta) - ri * theta * shape.P[1];
+            D[i * w + beta] = -ri * theta * shape.P[1];
     }
     Q[beta * w + beta] = element->tension * tension * l * shape.tau;
 }
 
-enum rd_status rd_triple(const struct rd_element *element, double _Complex section,
-                         double _Complex tension, double _Complex *F, double _Complex *G,
-                         double _Complex *Q)
+/* D = F - I, G, Q */
+static enum rd_status fill(const struct rd_element *element, double _Complex section,
+                           double _Complex tension, double _Complex *D, double _Complex *G,
+                           double _Complex *Q)
 {
     const size_t w = element->width;
-    for (size_t i = 0; i < w * w; i++) {
-        F[i] = i % (w + 1) == 0;
-        G[i] = Q[i] = 0;
-    }
+    for (size_t i = 0; i < w * w; i++)
+        D[i] = G[i] = Q[i] = 0;
     if (!has(element, RD_BETA)) {
         rods(element, section, tension, G);
         return RD_OK;
     }
-    bend(element, section, tension, F, G, Q);
+    bend(element, section, tension, D, G, Q);
     for (size_t i = 0; i < w * w; i++)
         if (!isfinite(creal(G[i])) || !isfinite(cimag(G[i])))
             return RD_CRITICAL_ELEMENT;
     return RD_OK;
 }
 
-enum rd_status rd_triple_real(const struct rd_element *element, double *F, double *G, double *Q)
+enum rd_status rd_triple(const struct rd_element *element, double _Complex section,
+                         double _Complex tension, double _Complex *F, double _Complex *G,
+                         double _Complex *Q)
+{
+    const enum rd_status status = fill(element, section, tension, F, G, Q);
+    for (size_t i = 0; i < element->width; i++)
+        F[i * (element->width + 1)] += 1;
+    return status;
+}
+
+enum rd_status rd_triple_change(const struct rd_element *element, double *D, double *G, double *Q)
 {
     const size_t block = element->width * element->width;
-    double _Complex Fc[W * W], Gc[W * W], Qc[W * W];
-    const enum rd_status status = rd_triple(element, 1, 1, Fc, Gc, Qc);
+    double _Complex Dc[W * W], Gc[W * W], Qc[W * W];
+    const enum rd_status status = fill(element, 1, 1, Dc, Gc, Qc);
     for (size_t i = 0; i < block; i++) {
-        F[i] = creal(Fc[i]);
+        D[i] = creal(Dc[i]);
         G[i] = creal(Gc[i]);
         Q[i] = creal(Qc[i]);
     }
+    return status;
+}
+
+enum rd_status rd_triple_real(const struct rd_element *element, double *F, double *G, double *Q)
+{
+    const enum rd_status status = rd_triple_change(element, F, G, Q);
+    for (size_t i = 0; i < element->width; i++)
+        F[i * (element->width + 1)] += 1;
     return status;
 }

@@ -13,7 +13,7 @@
 
        F = I but F_z,beta = l tau, F_c,beta = -r_c theta P1, F_beta,beta = 1 - theta P1
        G_ij = r_i r_j S_bb l^(1+k) P_k, k the number of z among i, j
-       G_cd = l S_cd + r_c r_d S_bb l (P0 - 1) among the others
+       G_cd = l (S_cd - S_cb S_bd/S_bb) + r_c r_d S_bb l P0 among the others
        Q_beta,beta = T l tau
 
    tensed, t = sqrt(theta): tau = P0 = tanh(t)/t, P1 = (1 - 1/cosh(t))/theta, P2 = (1 - tau)/theta
@@ -26,7 +26,10 @@ enum rd_status rd_triple(const struct rd_element *element, double _Complex secti
                          double _Complex tension, double _Complex *F, double _Complex *G,
                          double _Complex *Q);
 
-/* the same with factors 1, which is real */
+/* D = F - I, G and Q with factors 1, which are real: in D small elements keep their digits */
+enum rd_status rd_triple_change(const struct rd_element *element, double *D, double *G, double *Q);
+
+/* the same with F */
 enum rd_status rd_triple_real(const struct rd_element *element, double *F, double *G, double *Q);
 
 #endif

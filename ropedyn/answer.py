@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import Field, dataclass, fields
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -67,6 +67,11 @@ def freeze(thing: Any) -> None:
                 array.flags.writeable = False
         if isinstance(value, np.ndarray):
             value.flags.writeable = False
+
+
+def nested(kind: type[Any], through: str) -> dict[str, Any]:
+    """Return the metadata of a field that holds a part of this kind, read as another attribute."""
+    return {"nested": kind, "through": through}
 
 
 class Answer:
@@ -132,8 +137,7 @@ class Answer:
 
         variables: dict[str, Any] = {}
         attributes: dict[str, Any] = {KIND: type(self).__name__}
-        for item in fields(self):  # type: ignore[arg-type]
-            value = getattr(self, item.name)
+        for item, value in _leaves(self):
             if "axes" not in item.metadata:
                 attributes[PREFIX + item.name] = json.dumps(_plain(value))
                 continue
@@ -220,12 +224,23 @@ def load(path: str | os.PathLike[str]) -> Answer:
         ) from error
 
 
-def _rebuilt(kind: type[Answer], dataset: Any) -> Answer:
+def _leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
+    """Yield the fields of an answer with their values, those of its nested parts among them."""
+    for item in fields(thing):
+        if "nested" in item.metadata:
+            yield from _leaves(getattr(thing, item.metadata["through"]))
+        else:
+            yield item, getattr(thing, item.name)
+
+
+def _rebuilt(kind: type[Any], dataset: Any) -> Any:
     import json
 
     arguments: dict[str, Any] = {}
-    for item in fields(kind):  # type: ignore[arg-type]
-        if "axes" not in item.metadata:
+    for item in fields(kind):
+        if "nested" in item.metadata:
+            arguments[item.name] = _rebuilt(item.metadata["nested"], dataset)
+        elif "axes" not in item.metadata:
             value = json.loads(dataset.attrs[PREFIX + item.name])
             arguments[item.name] = Cost(**value) if item.name == "cost" else _frozen(value)
         elif item.metadata["keyed"]:

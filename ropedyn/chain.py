@@ -48,6 +48,20 @@ class Chain(NamedTuple):
         free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
         return int(free_of_term[self.term_of].sum())
 
+    @property
+    def spans(self) -> tuple[tuple[int, int], ...]:
+        """First and last node of the stretches between nodes where nothing can move."""
+        fixed = self.held.all(axis=1)[self.term_of]
+        inner = np.flatnonzero(fixed[1:-1]) + 1
+        ends = [0, *inner.tolist(), self.nodes - 1]
+        return tuple(zip(ends[:-1], ends[1:]))
+
+    def between(self, first: int, last: int) -> Chain:
+        """Return the chain of some of the nodes."""
+        return self._replace(
+            element_of=self.element_of[first:last], term_of=self.term_of[first : last + 1]
+        )
+
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
         wanted = [COORDINATES.index(c) for c in coordinates]

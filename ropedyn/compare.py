@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from . import check
 from .answer import Answer, axes
+from .eigen import solve_modes
 from .errors import SceneError
 from .frf import FRF
 from .model import Model
-from .modes import Modes, solve_modes
+from .modes import Modes
 from .peaks import Peaks
 from .table import Table
 
@@ -142,7 +143,7 @@ def _enough_modes(model: Model, measured: Peaks) -> Modes:
         number = max(measured.order)
     else:
         # those below the highest peak, and above it one for each
-        number = len(model.modes(below=float(peaks.max())).frequency) + len(peaks)
+        number = model.count(below=float(peaks.max())) + len(peaks)
     rigid = len(model.coordinates) + 1
     return solve_modes(model, number + rigid, below=None, solver="lapack", strict=False)
 

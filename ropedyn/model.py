@@ -165,12 +165,14 @@ class Model:
             How many of the lowest.
         below : float, optional
             All below this frequency [Hz]; instead of `number`.
-        solver : {"lapack"}
-            Assembles the matrices and reduces them to a dense symmetric problem (see
-            csrc/modes.h). The assembled stiffness loses digits as n^4: of the first frequency of
-            a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
-            grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
-            of a minute for so many, does not stop for Ctrl-C.
+        solver : {"sweep", "lapack"}
+            ``"sweep"``: isolated by counts, refined by inverse iteration along the chain, nothing
+            assembled: right to the last digits whatever n, and certified. ``"lapack"``: assembles
+            the matrices and reduces them to a dense symmetric problem (see csrc/modes.h). The
+            assembled stiffness loses digits as n^4: of the first frequency of a clamped beam
+            about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time grows as n^3;
+            more than 8000 unknowns are refused, and the dense solution itself, most of a minute
+            for so many, does not stop for Ctrl-C.
 
         Returns
         -------
@@ -193,9 +195,40 @@ class Model:
         >>> print(model.modes(2).frequency.round(2))
         [15.81 31.61]
         """
-        from .modes import solve_modes
+        from .eigen import solve_modes
 
         return solve_modes(self, number, below=below, solver=solver)
+
+    def count(self, *, below: float) -> int:
+        """Count the natural frequencies below a limit, by Sturm count.
+
+        Parameters
+        ----------
+        below : float
+            [Hz].
+
+        Returns
+        -------
+        int
+            Motion that grows is counted too.
+
+        Raises
+        ------
+        TypeError
+            If the limit is not a number.
+        SceneError
+            If it is not positive.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=64)
+        >>> model.count(below=40.0)
+        2
+        """
+        from .eigen import count_modes
+
+        return count_modes(self, below)
 
     def frf(
         self,
@@ -277,8 +310,8 @@ class Model:
         ----------
         load : mapping from points to float
             Such as ``{("z", 0.5): 10.0}`` [N, N m].
-        solver : {"lapack", "sweep"}
-            ``"lapack"``: band LU of the assembled stiffness; ``"sweep"``: as `frf` at 0 Hz.
+        solver : {"sweep", "lapack"}
+            ``"sweep"``: as `frf` at 0 Hz; ``"lapack"``: band LU of the assembled stiffness.
 
         Returns
         -------

@@ -1,0 +1,442 @@
+/* The lowest modes of a chain, certified by counts. */
+#include "certify.h"
+
+#include "count.h"
+#include "rigid.h"
+#include "ritz.h"
+#include "search.h"
+
+#include <string.h>
+
+enum { LANES = RD_LANES, ATTEMPTS = 12, POLISH = 3, ROUNDS = 3, WIDER = 3, WIDEST = 11 };
+
+static const double CLUSTER = 1e-8;    /* closer than this, relative, are found together */
+static const double FAR = 1e-4;        /* from where a cluster is looked at first, relative */
+static const double NEAR = 1e-9;       /* and then */
+static const double CONVERGED = 1e-9;  /* step of the quotient by the gap to others: the last one */
+static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
+static const double COUNTED = 1e-13;   /* relative resolution of a count of few steps */
+
+struct work {
+    struct rd_refine *refine;
+    struct rd_certified *modes;
+    struct rd_search search;
+    struct rd_rigid rigid;
+};
+
+static double *shape_of(const struct work *work, size_t i)
+{
+    const struct rd_chain *chain = work->refine->walk->chain;
+    return work->modes->shape + i * chain->nodes * chain->width;
+}
+
+static void keep(const struct work *work, size_t i, const struct rd_quotient *quotient,
+                 const double *lambda, size_t lane)
+{
+    work->modes->lambda[i] = quotient->lambda[lane];
+    work->modes->error[i] = quotient->error[lane];
+    if (work->modes->shape)
+        rd_refine_shape(work->refine, lambda, (int)lane, shape_of(work, i));
+}
+
+/* The quotient of a vector with the share c of a mode g away is wrong by c^2 g, and the step that it
+   led to leaves c times step/g: measured by the nearer end of the bracket, beyond which others are. */
+static bool has_settled(const struct work *work, size_t i, const struct rd_quotient *quotient,
+                        const double *lambda, size_t k)
+{
+    const double value = quotient->lambda[k];
+    const double gap = fmin(value - work->search.low[i], work->search.high[i] - value);
+    return gap >= 0 && fabs(value - lambda[k]) <= fmax(CONVERGED * gap, quotient->error[k]);
+}
+
+/* the next lambda of each lane: the quotient, or the middle of a bracket that was cut because the
+   quotient had left it */
+static void next_shift(struct work *work, const size_t *index, size_t n,
+                       const struct rd_quotient *quotient, double *lambda)
+{
+    size_t lost[LANES], count = 0;
+    for (size_t k = 0; k < n; k++)
+        if (!rd_search_is_inside(&work->search, index[k], quotient->lambda[k]))
+            lost[count++] = index[k];
+    if (count > 0)
+        rd_search_cut(&work->search, count, lost);
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = index[k];
+        const bool inside = rd_search_is_inside(&work->search, i, quotient->lambda[k]);
+        lambda[k] = inside ? quotient->lambda[k] : (work->search.low[i] + work->search.high[i]) / 2;
+    }
+    for (size_t k = n; k < LANES; k++)
+        lambda[k] = lambda[n - 1];
+}
+
+/* Rayleigh quotient iteration of the single modes index[0 .. n - 1], one a lane */
+static enum rd_status refine_singles(struct work *work, const size_t *index, size_t n)
+{
+    struct rd_refine *refine = work->refine;
+    double lambda[LANES];
+    struct rd_quotient quotient;
+    for (size_t k = 0; k < LANES; k++) {
+        const size_t i = index[k < n ? k : n - 1];
+        lambda[k] = (work->search.low[i] + work->search.high[i]) / 2;
+    }
+    const enum rd_status status = rd_refine_plan(refine, lambda);
+    if (status != RD_OK)
+        return status;
+    rd_refine_iterate(refine, lambda, true);
+    for (int attempt = 0;; attempt++) {
+        rd_refine_iterate(refine, lambda, false);
+        work->modes->iterations++;
+        if (attempt == 0)
+            continue;
+        rd_refine_quotient(refine, lambda, &quotient);
+        bool settled = true;
+        for (size_t k = 0; k < n; k++)
+            settled = settled && has_settled(work, index[k], &quotient, lambda, k);
+        if (settled || attempt == ATTEMPTS)
+            break;
+        next_shift(work, index, n, &quotient, lambda);
+    }
+    for (size_t k = 0; k < n; k++)
+        keep(work, index[k], &quotient, lambda, k);
+    return RD_OK;
+}
+
+/* Ritz vectors of the lanes, those n in front whose values are nearest to lambda; false where there
+   are less. */
+static bool ritz_lanes(struct rd_refine *refine, const double *lambda, double near, size_t from,
+                       size_t n)
+{
+    double A[LANES * LANES], M[LANES * LANES], theta[LANES], C[LANES * LANES];
+    double chosen[LANES * LANES] = {0};
+    rd_refine_gram(refine, lambda, A, M);
+    for (size_t i = 0; i < from; i++)
+        for (size_t j = 0; j < from; j++) {
+            A[i * from + j] = A[i * LANES + j];
+            M[i * from + j] = M[i * LANES + j];
+        }
+    const size_t found = rd_ritz(from, A, M, theta, C);
+    if (found < n)
+        return false;
+    size_t start = 0;
+    while (start + n < found &&
+           fabs(theta[start + n] + lambda[0] - near) < fabs(theta[start] + lambda[0] - near))
+        start++;
+    for (size_t i = 0; i < from; i++)
+        for (size_t j = 0; j < n; j++)
+            chosen[i * n + j] = C[i * from + start + j];
+    const size_t w = refine->walk->chain->width;
+    rd_ritz_combine(n, chosen, (refine->steps + 1) * w, refine->u);
+    rd_ritz_combine(n, chosen, refine->steps * w, refine->f);
+    return true;
+}
+
+/* plans a block at one lambda */
+static enum rd_status plan_block(struct rd_refine *refine, double at, double *lambda)
+{
+    for (size_t k = 0; k < LANES; k++)
+        lambda[k] = at;
+    return rd_refine_plan(refine, lambda);
+}
+
+/* The values of the lanes 0 .. n - 1, least, largest and the largest error. */
+struct extent {
+    double low, high, error;
+};
+
+static struct extent extent_of(struct rd_refine *refine, const double *lambda, size_t n,
+                               struct rd_quotient *quotient)
+{
+    struct extent extent = {INFINITY, -INFINITY, 0};
+    rd_refine_quotient(refine, lambda, quotient);
+    for (size_t k = 0; k < n; k++) {
+        extent.low = fmin(extent.low, quotient->lambda[k]);
+        extent.high = fmax(extent.high, quotient->lambda[k]);
+        extent.error = fmax(extent.error, quotient->error[k]);
+    }
+    return extent;
+}
+
+/* Block steps just below a cluster of n modes: Rayleigh-Ritz among all lanes from far, then among
+   those n alone from as near as the cluster is wide, where what pieces and quotients take as linear
+   in lambda is so to the last digit. */
+static enum rd_status refine_cluster(struct work *work, size_t first, size_t n, double low,
+                                     double high)
+{
+    struct rd_refine *refine = work->refine;
+    struct rd_quotient quotient;
+    double lambda[LANES];
+    struct extent extent = {low, high, 0};
+    double width = fmax(high - low, FAR * fmax(fabs(low), fabs(high)));
+    for (int i = 0; i < POLISH; i++) {
+        const enum rd_status status = plan_block(refine, extent.low - width, lambda);
+        if (status != RD_OK)
+            return status;
+        if (i == 0)
+            rd_refine_iterate(refine, lambda, true);
+        rd_refine_iterate(refine, lambda, false);
+        work->modes->iterations++;
+        if (!ritz_lanes(refine, lambda, (low + high) / 2, i == 0 ? LANES : n, n))
+            return RD_NO_CONVERGENCE;
+        extent = extent_of(refine, lambda, n, &quotient);
+        width = fmax(extent.high - extent.low, NEAR * fabs(extent.low));
+        width = fmax(width, 4 * extent.error);
+    }
+    for (size_t k = 0; k < n && first + k < work->search.wanted; k++)
+        keep(work, first + k, &quotient, lambda, k);
+    return RD_OK;
+}
+
+/* What a count can tell apart near lambda: its own rounding grows with the steps it walks. */
+static double resolution(const struct rd_refine *refine, double lambda, double error)
+{
+    return fmax(error, COUNTED * (1 + (double)refine->steps / 1000) * fabs(lambda));
+}
+
+/* Counts at lambda -+ width times the resolution: the modes index (n) are between them, and these
+   become their brackets. */
+static void certify_some(struct work *work, const size_t *index, size_t n, double width)
+{
+    struct rd_certified *modes = work->modes;
+    double lambda[LANES], count[LANES];
+    for (size_t k = 0; k < LANES; k++) {
+        const size_t j = index[k / 2 < n ? k / 2 : n - 1];
+        const double apart = width * resolution(work->refine, modes->lambda[j], modes->error[j]);
+        lambda[k] = modes->lambda[j] + (k % 2 ? apart : -apart);
+    }
+    rd_count(work->refine->walk, LANES, lambda, count);
+    work->search.counts += LANES;
+    for (size_t k = 0; k < n; k++) {
+        const size_t i = index[k];
+        if (!(count[2 * k] <= (double)i && count[2 * k + 1] > (double)i))
+            continue;
+        modes->certified[i] = 1;
+        if (width > 1e2)
+            modes->error[i] = lambda[2 * k + 1] - modes->lambda[i];
+        work->search.low[i] = lambda[2 * k];
+        work->search.high[i] = lambda[2 * k + 1];
+        work->search.below[i] = count[2 * k];
+        work->search.above[i] = count[2 * k + 1];
+    }
+}
+
+/* All that are not certified yet, wider in each pass; true when all are. Where only a wide one holds,
+   rounding has spoilt more than the quotient knows: its width is the error. */
+static bool certify(struct work *work, int passes)
+{
+    bool all_are = true;
+    double width = 1;
+    for (int pass = 0; pass < passes; pass++, width *= 8) {
+        size_t index[LANES / 2], n = 0;
+        for (size_t i = 0; i < work->search.wanted; i++) {
+            if (work->modes->certified[i] == 0)
+                index[n++] = i;
+            if (n == LANES / 2) {
+                certify_some(work, index, n, width);
+                n = 0;
+            }
+        }
+        if (n > 0)
+            certify_some(work, index, n, width);
+        all_are = true;
+        for (size_t i = 0; i < work->search.wanted; i++)
+            all_are = all_are && work->modes->certified[i] != 0;
+        if (all_are)
+            break;
+    }
+    return all_are;
+}
+
+/* the single modes that are not certified yet, as many as there are lanes at a time */
+static enum rd_status refine_round(struct work *work)
+{
+    size_t index[LANES], n = 0;
+    enum rd_status status = RD_OK;
+    for (size_t i = 0; i < work->search.wanted && status == RD_OK; i++) {
+        if (work->modes->certified[i] != 0 || !rd_search_is_single(&work->search, i))
+            continue;
+        if (n == LANES ||
+            (n > 0 && work->search.high[i] > SPREAD * fabs(work->search.high[index[0]]))) {
+            status = refine_singles(work, index, n);
+            n = 0;
+        }
+        index[n++] = i;
+    }
+    return status == RD_OK && n > 0 ? refine_singles(work, index, n) : status;
+}
+
+/* where mode i is: its value, or the bracket that it shares */
+static void locate(const struct work *work, size_t i, double *low, double *high)
+{
+    const bool single = rd_search_is_single(&work->search, i);
+    *low = single ? work->modes->lambda[i] : work->search.low[i];
+    *high = single ? work->modes->lambda[i] : work->search.high[i];
+}
+
+/* from mode i on: how many lie together, and from where to where */
+static size_t group(const struct work *work, size_t i, double *low, double *high)
+{
+    size_t n = 1;
+    double next_low, next_high;
+    locate(work, i, low, high);
+    for (; i + n < work->search.wanted; n++) {
+        locate(work, i + n, &next_low, &next_high);
+        if (next_low - *high > CLUSTER * fmax(fabs(*low), fabs(*high)))
+            break;
+        *high = fmax(*high, next_high);
+    }
+    const double end = rd_search_is_single(&work->search, i + n - 1) ? (double)(i + n)
+                                                                     : work->search.above[i + n - 1];
+    return (size_t)end - i;
+}
+
+/* Modes that lie together, the single ones found, are found once more as a block. */
+static enum rd_status refine_groups(struct work *work)
+{
+    enum rd_status status = RD_OK;
+    double low, high;
+    for (size_t i = 0, n; i < work->search.wanted && status == RD_OK; i += n) {
+        n = group(work, i, &low, &high);
+        bool certified = true;
+        for (size_t k = i; k < i + n && k < work->search.wanted; k++)
+            certified = certified && work->modes->certified[k] != 0;
+        if (n == 1 || certified)
+            continue;
+        status = n < LANES ? refine_cluster(work, i, n, low, high) : RD_CLUSTER;
+    }
+    return status;
+}
+
+/* the modes that are not certified, LANES at most */
+static size_t doubtful(const struct work *work, size_t *index)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < work->search.wanted && n < LANES; i++)
+        if (work->modes->certified[i] == 0)
+            index[n++] = i;
+    return n;
+}
+
+/* An iteration may settle on the wrong mode or between two: the counts tell, the bracket is cut
+   by more each round and the iteration begins again. */
+static enum rd_status refine_all(struct work *work)
+{
+    for (int round = 0; round < ROUNDS; round++) {
+        enum rd_status status = refine_round(work);
+        if (status == RD_OK)
+            status = refine_groups(work);
+        if (status != RD_OK)
+            return status;
+        if (certify(work, WIDER))
+            return RD_OK;
+        size_t index[LANES];
+        const size_t n = doubtful(work, index);
+        for (int cut = 0; cut < 1 << round; cut++)
+            rd_search_cut(&work->search, n, index);
+    }
+    certify(work, WIDEST);
+    return RD_OK;
+}
+
+/* Rigid motions are exactly zero: the counts on both sides must tell as many, as near as they are
+   right, and nearer ones are of rounding. Returns how near [rad^2/s^2]. */
+static double near_zero(struct work *work, double *below)
+{
+    double lambda[LANES], count[LANES];
+    for (size_t k = 0; k < LANES; k++) {
+        const double apart = work->search.size * pow(10, -8 + 2.5 * (double)(k / 2));
+        lambda[k] = k % 2 ? apart : -apart;
+    }
+    rd_count(work->refine->walk, LANES, lambda, count);
+    work->search.counts += LANES;
+    size_t k = 0;
+    while (k + 2 < LANES && count[k + 1] - count[k] != (double)work->rigid.count)
+        k += 2;
+    *below = count[k + 1] - count[k] == (double)work->rigid.count ? count[k] : -1;
+    return lambda[k + 1];
+}
+
+/* below: how many are less than -apart, or -1 where counts have not told */
+static void set_rigid(struct work *work, double apart, double below)
+{
+    struct rd_certified *modes = work->modes;
+    if (below < 0)
+        return;
+    rd_search_learn(&work->search, -apart, below);
+    rd_search_learn(&work->search, apart, below + (double)modes->rigid);
+    for (size_t j = 0; j < modes->rigid; j++) {
+        const size_t i = (size_t)below + j;
+        if (i >= work->search.wanted)
+            break;
+        work->search.low[i] = -apart;
+        work->search.high[i] = apart;
+        work->search.below[i] = (double)i;
+        work->search.above[i] = (double)(i + 1);
+        modes->lambda[i] = modes->error[i] = 0;
+        modes->certified[i] = 1;
+        if (modes->shape)
+            rd_rigid_shape(work->refine->walk, &work->rigid, j, shape_of(work, i));
+    }
+}
+
+/* The brackets of the modes that exist below upper, as many as are wanted. */
+static enum rd_status bracket(struct work *work)
+{
+    struct rd_certified *modes = work->modes;
+    double apart = 1e-10 * work->search.size, unstable = -1;
+    enum rd_status status = rd_rigid_fill(work->refine->walk, &work->rigid);
+    if (status == RD_OK && work->rigid.count > 0)
+        apart = near_zero(work, &unstable);
+    if (status == RD_OK)
+        status = rd_search_bottom(&work->search, apart);
+    if (status != RD_OK)
+        return status;
+    const size_t finite = rd_search_finite(work->refine->walk);
+    modes->rigid = work->rigid.count;
+    if (work->search.wanted > finite)
+        work->search.wanted = finite;
+    if (work->search.wanted == 0) {
+        modes->existing = finite;
+        return RD_OK;
+    }
+    const size_t below = rd_search_top(&work->search, modes->upper);
+    modes->existing = modes->upper < INFINITY && below < finite ? below : finite;
+    if (work->search.wanted > below)
+        work->search.wanted = below;
+    if (modes->rigid > 0)
+        set_rigid(work, apart, unstable);
+    rd_search_isolate(&work->search, CLUSTER);
+    return RD_OK;
+}
+
+enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
+{
+    struct work work = {.refine = refine, .modes = modes};
+    modes->counts = modes->iterations = modes->found = modes->existing = modes->rigid = 0;
+    memset(modes->certified, 0, modes->wanted * sizeof *modes->certified);
+    if (isnan(modes->upper))
+        return RD_NO_CONVERGENCE;
+    rd_search_begin(refine->walk, modes->wanted, modes->bracket, &work.search);
+    enum rd_status status = bracket(&work);
+    if (status == RD_OK)
+        status = refine_all(&work);
+    modes->counts = work.search.counts;
+    modes->found = status == RD_OK ? work.search.wanted : 0;
+    return status;
+}
+
+void rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
+{
+    const size_t elements = walk->chain->nodes - 1;
+    *steps = 16 * (wanted + 4);
+    *pieces = 1;
+    for (size_t r = 0; r < walk->runs; r++) {
+        const size_t count = walk->run[r].count;
+        size_t levels = 0;
+        while (count >> levels > 1)
+            levels++;
+        *steps += count < 4 ? count : 2 + 2 * levels;
+        *pieces += count < 4 ? 0 : levels + 1;
+    }
+    if (*steps > elements)
+        *steps = elements;
+}

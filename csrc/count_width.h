@@ -1,0 +1,199 @@
+/* The count of one width: included once for each RD_WAVE_WIDTH, with WIDTH(name) its own name. */
+#include "count.h"
+#include "piece.h"
+#include "wave.h"
+
+/* a piece in scaled coordinates, G = V diag(g) V^T with V unit lower triangular */
+struct step {
+    lanes D[W][W], Q[W][W], v[W][W], g[W];
+    _Bool tilts; /* D is not zero */
+};
+
+RD_INLINE void step_fill(const struct piece *piece, _Bool doubled, const lanes *z,
+                         const lanes *inverse, struct step *step)
+{
+    lanes L[W][W];
+    step->tilts = doubled;
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            step->D[i][j] = piece->D[i][j] * (z[j] * inverse[i]);
+            step->Q[i][j] = piece->Q[i][j] * (z[i] * z[j]);
+            step->tilts |= piece->D[i][j][0] != 0;
+        }
+    for (int j = 0; j < W; j++) {
+        for (int i = j; i < W; i++) {
+            L[i][j] = piece->G[i][j] * (inverse[i] * inverse[j]);
+            for (int k = 0; k < j; k++)
+                L[i][j] -= L[i][k] * step->v[k][j];
+        }
+        step->g[j] = L[j][j];
+        /* v of column j: (0 .. 1 .. L_ij/g_j), row j of the transposed factor */
+        for (int i = 0; i < W; i++)
+            step->v[j][i] = i < j ? l_fill(0) : i == j ? l_fill(1) : L[i][j] / L[j][j];
+    }
+}
+
+/* N and Q of a node as springs: the diagonal, and V_ij on u_i + u_j */
+RD_INLINE void node(struct wave *wave, const lanes V[W][W])
+{
+    _Bool coupled = 0;
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < i; j++)
+            coupled |= !every(V[i][j] == 0.0);
+    for (int i = 0; i < W; i++) {
+        lanes q = V[i][i];
+        for (int j = 0; coupled && j < W; j++)
+            q -= i == j ? l_fill(0) : V[i][j];
+        add_spring(wave, i, q);
+    }
+    for (int i = 0; coupled && i < W; i++)
+        for (int j = 0; j < i; j++)
+            add_pair(wave, i, j, V[i][j]);
+}
+
+RD_INLINE void step_transfer(struct wave *wave, const struct step *step)
+{
+    if (step->tilts && W > 2)
+        transfer_in_parts(wave, step->D);
+    else if (step->tilts)
+        transfer(wave, step->D);
+}
+
+/* F = T^-1 f T of a strut (strut.h) in these factors: f moves z and beta alone, T: u_i - r_i beta */
+RD_INLINE void strut_transfer(struct wave *wave, const struct rd_chain *chain, int32_t element,
+                              const struct step *step, const lanes *z, const lanes *inverse)
+{
+    const double *S = chain->flexibility + (size_t)element * RD_CHANNELS * RD_CHANNELS;
+    lanes shear[W][W], back[W][W], f[W][W];
+    for (int i = 0; i < W; i++) {
+        const _Bool bends = chain->coordinate[i] == RD_Z || chain->coordinate[i] == RD_BETA;
+        const int channel = chain->coordinate[i] == RD_X ? RD_AXIAL : RD_TORSION;
+        const double r = S[channel * RD_CHANNELS + RD_BENDING] / S[RD_CHANNELS * RD_CHANNELS - 1];
+        for (int j = 0; j < W; j++) {
+            back[i][j] = bends || j < W - 1 ? l_fill(0) : r * z[j] * inverse[i];
+            shear[i][j] = -back[i][j];
+            f[i][j] = bends ? step->D[i][j] : l_fill(0);
+        }
+    }
+    transfer(wave, shear);
+    transfer(wave, f);
+    transfer(wave, back);
+}
+
+RD_INLINE void step_comply(struct wave *wave, const struct step *step)
+{
+    for (int i = 0; i < W; i++)
+        add_compliance(wave, step->v[i], step->g[i]);
+    normalise(wave);
+}
+
+/* node term of a node, scaled; held coordinates are held before */
+RD_INLINE void term_scale(const struct rd_walk *walk, int32_t term, int32_t before, lanes lambda,
+                          const lanes *z, lanes N[W][W])
+{
+    term_load(walk, term, before, lambda, N);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++)
+            N[i][j] *= z[i] * z[j];
+}
+
+RD_INLINE void walk_node(struct wave *wave, const struct rd_walk *walk, int32_t term,
+                         const lanes N[W][W], const struct step *step, _Bool first)
+{
+    const struct rd_chain *chain = walk->chain;
+    lanes V[W][W];
+    for (int i = 0; i < W; i++) {
+        if (!first && chain->held[(size_t)term * W + (size_t)i])
+            hold(wave, i);
+        for (int j = 0; j < W; j++)
+            V[i][j] = N[i][j] + step->Q[i][j];
+    }
+    node(wave, V);
+}
+
+/* a run of equal elements, by pieces of 2^k of them, the largest first */
+RD_INLINE void run_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_stretch *run,
+                        lanes lambda, const lanes *z, const lanes *inverse)
+{
+    struct piece level[LEVELS];
+    struct step step;
+    lanes first[W][W], inner[W][W];
+    const int top = pieces_fill(walk, run, lambda, level);
+    term_scale(walk, run->first, run->before, lambda, z, first);
+    term_scale(walk, run->term, run->element, lambda, z, inner);
+    size_t left = run->count;
+    for (int k = top; k >= 0; k--) {
+        if (left >> k == 0)
+            continue;
+        step_fill(level + k, k > 0, z, inverse, &step);
+        for (; left >> k > 0; left -= (size_t)1 << k) {
+            const _Bool start = left == run->count;
+            walk_node(wave, walk, start ? run->first : run->term, start ? first : inner, &step,
+                      start && run->node == 0);
+            if (W > 2 && walk->strut[run->element])
+                strut_transfer(wave, walk->chain, run->element, &step, z, inverse);
+            else
+                step_transfer(wave, &step);
+            step_comply(wave, &step);
+        }
+    }
+}
+
+/* left end: U = 0 where held; U = 1 and the angle -pi/2 where free */
+RD_INLINE void start(struct wave *wave, const struct rd_walk *walk)
+{
+    const uint8_t *held = walk->chain->held + (size_t)walk->run[0].first * W;
+    wave->e = c_make(l_fill(1), l_fill(0));
+    wave->turns = l_fill(0);
+    for (int i = 0; i < W; i++) {
+        for (int j = 0; j < W; j++)
+            wave->U[i][j] = wave->Y[i][j] = c_make(l_fill(0), l_fill(0));
+        if (held[i])
+            wave->Y[i][i].re += 1;
+        else
+            wave->U[i][i].re += 1;
+        if (!held[i])
+            wave->e = c_make(wave->e.im, -wave->e.re);
+    }
+    /* -pi/2 a coordinate; -pi and beyond is a turn less */
+    wave->e.im += 0;
+    int free = 0;
+    for (int i = 0; i < W; i++)
+        free += !held[i];
+    wave->turns -= free >= 2 ? 1 : 0;
+}
+
+RD_CLONES
+void WIDTH(count)(const struct rd_walk *walk, const double *lambdas, double *counts)
+{
+    const struct rd_chain *chain = walk->chain;
+    lanes lambda, z[W], inverse[W], N[W][W];
+    for (int k = 0; k < RD_LANES; k++) {
+        double scale[RD_WIDTH_MAX];
+        lambda[k] = lambdas[k];
+        rd_walk_scale(walk, lambdas[k], scale);
+        for (int i = 0; i < W; i++)
+            z[i][k] = scale[i];
+    }
+    for (int i = 0; i < W; i++)
+        inverse[i] = 1 / z[i];
+    struct wave wave;
+    start(&wave, walk);
+    for (size_t r = 0; r < walk->runs; r++)
+        run_walk(&wave, walk, walk->run + r, lambda, z, inverse);
+
+    const int32_t last = chain->term_of[chain->nodes - 1];
+    const int32_t before = chain->element_of[chain->nodes - 2];
+    term_scale(walk, last, before, lambda, z, N);
+    for (int i = 0; i < W; i++)
+        if (chain->held[(size_t)last * W + (size_t)i])
+            hold(&wave, i);
+    node(&wave, N);
+    for (int i = 0; i < W; i++)
+        release(&wave, i);
+    for (int k = 0; k < RD_LANES; k++) {
+        const double pi = 3.14159265358979323846;
+        const double angle = atan2(wave.e.im[k] + 0, wave.e.re[k]) / pi;
+        counts[k] = walk->below + round(-angle - 2 * wave.turns[k]);
+    }
+}

@@ -1,0 +1,132 @@
+/* Certified modes and counts by sweeps along the chain. */
+#include "py_glue.h"
+
+#include "certify.h"
+#include "count.h"
+
+/* fills the walk; the workspace then owns its arrays. 0, or -1 and an exception */
+static int prepare(PyObject *module, const struct rd_chain *chain, struct rd_workspace *workspace,
+                   struct rd_walk *walk)
+{
+    rd_walk_fill(chain, workspace, walk);
+    if (py_workspace_allocate(workspace) < 0)
+        return -1;
+    enum rd_status status;
+    Py_BEGIN_ALLOW_THREADS
+    status = rd_walk_fill(chain, workspace, walk);
+    Py_END_ALLOW_THREADS
+    if (status == RD_OK)
+        return 0;
+    py_raise(module, status);
+    return -1;
+}
+
+PyObject *py_count(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    struct rd_workspace workspace = {0};
+    struct rd_walk walk;
+    PyArrayObject *lambda = NULL;
+    PyObject *chain, *object, *counts = NULL, *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OO", &chain, &object))
+        return NULL;
+    if (py_chain_parse(chain, &parsed) < 0)
+        goto done;
+    lambda = py_array(object, NPY_DOUBLE, 1, (npy_intp[]){-1}, "lambda");
+    if (lambda == NULL)
+        goto done;
+    counts = py_new(NPY_DOUBLE, 1, PyArray_DIMS(lambda));
+    if (counts == NULL || prepare(module, &parsed.chain, &workspace, &walk) < 0)
+        goto done;
+    Py_BEGIN_ALLOW_THREADS
+    rd_count(&walk, (size_t)PyArray_SIZE(lambda), PyArray_DATA(lambda),
+             PyArray_DATA((PyArrayObject *)counts));
+    Py_END_ALLOW_THREADS
+    result = Py_NewRef(counts);
+done:
+    PyMem_RawFree(workspace.base);
+    Py_XDECREF(counts);
+    Py_XDECREF(lambda);
+    py_chain_release(&parsed);
+    return result;
+}
+
+enum { LAMBDA, ERROR, CERTIFIED, BRACKET, SHAPE, ARRAYS };
+
+/* solves for the modes; 0, or -1 and an exception */
+static int solve(PyObject *module, const struct rd_walk *walk, struct rd_certified *modes)
+{
+    struct rd_workspace workspace = {0};
+    struct rd_refine refine;
+    size_t steps, pieces;
+    int done = -1;
+    rd_certify_size(walk, modes->wanted, &steps, &pieces);
+    rd_refine_take(walk, steps, pieces, &workspace, &refine);
+    if (py_workspace_allocate(&workspace) == 0) {
+        enum rd_status status;
+        Py_BEGIN_ALLOW_THREADS
+        rd_refine_take(walk, steps, pieces, &workspace, &refine);
+        status = rd_certify(&refine, modes);
+        Py_END_ALLOW_THREADS
+        if (status == RD_OK)
+            done = 0;
+        else
+            py_raise(module, status);
+    }
+    PyMem_RawFree(workspace.base);
+    return done;
+}
+
+PyObject *py_certify(PyObject *module, PyObject *arguments)
+{
+    struct py_chain parsed = {0};
+    struct rd_workspace workspace = {0};
+    struct rd_walk walk;
+    PyObject *object, *array[ARRAYS] = {NULL}, *result = NULL;
+    Py_ssize_t wanted;
+    double upper;
+    int shaped;
+    if (!PyArg_ParseTuple(arguments, "Ondp", &object, &wanted, &upper, &shaped))
+        return NULL;
+    if (wanted < 0) {
+        PyErr_SetString(PyExc_ValueError, "wanted must be >= 0");
+        return NULL;
+    }
+    if (py_chain_parse(object, &parsed) < 0)
+        goto done;
+    const npy_intp nodes = (npy_intp)parsed.chain.nodes;
+    const npy_intp width = (npy_intp)parsed.chain.width;
+    double *data[ARRAYS] = {NULL};
+    for (int k = 0; k < ARRAYS; k++) {
+        const npy_intp lines[] = {wanted};
+        const npy_intp brackets[] = {4, wanted};
+        const npy_intp shapes[] = {shaped ? wanted : 0, nodes, width};
+        const int dimensions = k == SHAPE ? 3 : k == BRACKET ? 2 : 1;
+        array[k] = py_new(NPY_DOUBLE, dimensions,
+                          k == SHAPE ? shapes : k == BRACKET ? brackets : lines);
+        if (array[k] == NULL)
+            goto done;
+        data[k] = PyArray_DATA((PyArrayObject *)array[k]);
+    }
+    if (prepare(module, &parsed.chain, &workspace, &walk) < 0)
+        goto done;
+    struct rd_certified modes = {
+        .wanted = (size_t)wanted,
+        .upper = upper,
+        .lambda = data[LAMBDA],
+        .error = data[ERROR],
+        .certified = data[CERTIFIED],
+        .bracket = data[BRACKET],
+        .shape = shaped ? data[SHAPE] : NULL,
+    };
+    if (solve(module, &walk, &modes) < 0)
+        goto done;
+    result = Py_BuildValue("OOOOnn", array[LAMBDA], array[ERROR], array[CERTIFIED], array[SHAPE],
+                           (Py_ssize_t)modes.found, (Py_ssize_t)modes.counts);
+done:
+    PyMem_RawFree(workspace.base);
+    for (int k = 0; k < ARRAYS; k++)
+        Py_XDECREF(array[k]);
+    py_chain_release(&parsed);
+    return result;
+}

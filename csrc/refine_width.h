@@ -1,0 +1,642 @@
+/* Inverse iteration of one width: included once for each RD_WAVE_WIDTH.
+
+   Going right, u = U s + g and f = -i Y s + i g describe the left part (wave.h). Loads: p at the
+   node, d between the ends of the piece, u_b = F u_a + G f_b + d. With K = (G + i I)^-1, B = K F,
+   Wt = i I + Q + N + F^T B, E = (Wt U - i I)^-1, h = p - B^T d - Wt g:
+       s_a = E (B^T s_b + h)
+       U <- K G + i B U E B^T,  g <- i B (U E h + g) + i K d */
+#include "piece.h"
+#include "refine.h"
+#include "wave.h"
+
+#include <string.h>
+
+
+
+/* a step in scaled coordinates with its change d/dlambda; V = Q + N */
+struct rate {
+    lanes D[W][W], G[W][W], V[W][W], dD[W][W], dG[W][W], dV[W][W];
+};
+
+RD_INLINE void rate_node(const struct rd_refine *r, int32_t term, int32_t before, lanes lambda,
+                         struct rate *rate)
+{
+    const struct rd_chain *chain = r->walk->chain;
+    lanes N[W][W];
+    term_load(r->walk, term, before, lambda, N);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            const double zz = r->z[i] * r->z[j];
+            rate->V[i][j] = N[i][j] * zz;
+            rate->dV[i][j] = l_fill(-chain->mass[((size_t)term * W + (size_t)i) * W + (size_t)j] * zz);
+        }
+}
+
+RD_INLINE void rate_load(const struct rd_refine *r, const struct rd_step *step, lanes lambda,
+                         struct rate *rate)
+{
+    struct piece piece;
+    const struct piece *value = &piece, *change = NULL;
+    if (step->piece >= 0) {
+        value = (const struct piece *)(r->piece + (size_t)step->piece * 6 * W * W);
+        change = value + 1;
+    } else
+        piece_load(r->walk, step->element, &piece);
+    rate_node(r, step->term, step->before, lambda, rate);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            const double zz = r->z[i] * r->z[j];
+            const double ratio = r->z[j] / r->z[i];
+            rate->D[i][j] = value->D[i][j] * ratio;
+            rate->G[i][j] = value->G[i][j] / zz;
+            rate->V[i][j] += value->Q[i][j] * zz;
+            rate->dD[i][j] = change ? change->D[i][j] * ratio : l_fill(0);
+            rate->dG[i][j] = change ? change->G[i][j] / zz : l_fill(0);
+            rate->dV[i][j] += change ? change->Q[i][j] * zz : l_fill(0);
+        }
+}
+
+/* K = (G + i I)^-1, B = K F, Wt = i I + V + F^T B */
+struct kernel {
+    cv K[W][W], B[W][W], Wt[W][W];
+};
+
+RD_INLINE void kernel_fill(const struct rate *rate, struct kernel *k)
+{
+    cv Z[W][W];
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            k->K[i][j] = c_make(l_fill(i == j), l_fill(0));
+            Z[i][j] = c_make(rate->G[i][j], l_fill(i == j));
+        }
+    divide(k->K, Z);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            k->B[i][j] = k->K[i][j];
+            for (int m = 0; m < W; m++)
+                k->B[i][j] = c_add(k->B[i][j], c_scale_lanes(k->K[i][m], rate->D[m][j]));
+        }
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            cv sum = k->B[i][j];
+            for (int m = 0; m < W; m++)
+                sum = c_add(sum, c_scale_lanes(k->B[m][j], rate->D[m][i]));
+            k->Wt[i][j] = c_make(sum.re + rate->V[i][j], sum.im + l_fill(i == j));
+        }
+}
+
+/* the left part at a node */
+struct left {
+    cv U[W][W], g[W];
+};
+
+enum { LEFT = W * (W + 3) };
+
+RD_INLINE void left_store(const struct left *left, lanes *at)
+{
+    for (int i = 0; i < W; i++) {
+        for (int j = 0; j <= i; j++) {
+            *at++ = left->U[i][j].re;
+            *at++ = left->U[i][j].im;
+        }
+        *at++ = left->g[i].re;
+        *at++ = left->g[i].im;
+    }
+}
+
+RD_INLINE void left_load(const lanes *at, struct left *left)
+{
+    for (int i = 0; i < W; i++) {
+        for (int j = 0; j <= i; j++, at += 2)
+            left->U[i][j] = left->U[j][i] = c_make(at[0], at[1]);
+        left->g[i] = c_make(at[0], at[1]);
+        at += 2;
+    }
+}
+
+/* U -= U_j U_j^T/U_jj, g -= U_j g_j/U_jj */
+RD_INLINE void left_hold(struct left *left, int j)
+{
+    cv y[W];
+    const cv inverse = c_invert(left->U[j][j]);
+    const cv gj = c_mul(left->g[j], inverse);
+    for (int i = 0; i < W; i++)
+        y[i] = left->U[i][j];
+    for (int i = 0; i < W; i++) {
+        const cv yi = c_mul(y[i], inverse);
+        for (int k = 0; k < W; k++)
+            left->U[i][k] = i == j || k == j ? c_make(l_fill(0), l_fill(0))
+                                             : c_sub(left->U[i][k], c_mul(yi, y[k]));
+        left->g[i] = i == j ? c_make(l_fill(0), l_fill(0)) : c_sub(left->g[i], c_mul(y[i], gj));
+    }
+}
+
+RD_INLINE const uint8_t *held_at(const struct rd_refine *r, int32_t term)
+{
+    return r->walk->chain->held + (size_t)term * W;
+}
+
+/* A load that no mode is free of, the same for every run: the hash of splitmix64 (Steele, Lea, Flood
+   2014), since what repeats from lane to lane could not tell a cluster's modes apart. */
+RD_INLINE lanes fixed_load(size_t m, int i)
+{
+    lanes p;
+    for (int k = 0; k < RD_LANES; k++) {
+        uint64_t x = ((uint64_t)m * W + (uint64_t)i) * RD_LANES + (uint64_t)k + 1;
+        x *= 0x9E3779B97F4A7C15u;
+        x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+        x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+        x ^= x >> 31;
+        p[k] = (double)(x >> 11) * 0x1p-52 - 1;
+    }
+    return p;
+}
+
+/* the loads of the next iteration, b = -A' x: p = -(dV u_a - dF^T f_b), d = dF u_a + dG f_b */
+RD_INLINE void load(const struct rd_refine *r, size_t m, const struct rate *rate, _Bool begin,
+                    lanes *p, lanes *d)
+{
+    const lanes *u = r->u + m * W, *f = r->f + m * W;
+    for (int i = 0; i < W; i++) {
+        p[i] = begin ? fixed_load(m, i) : l_fill(0);
+        d[i] = l_fill(0);
+        for (int j = 0; !begin && j < W; j++) {
+            p[i] -= rate->dV[i][j] * u[j] - rate->dD[j][i] * f[j];
+            d[i] += rate->dD[i][j] * u[j] + rate->dG[i][j] * f[j];
+        }
+    }
+}
+
+/* E B^T and E h */
+RD_INLINE void solve(const struct kernel *k, const struct left *left, const lanes *p,
+                     const lanes *d, cv EBt[W][W], cv *Eh)
+{
+    cv Z[W][W], X[W][W], h[W];
+    for (int i = 0; i < W; i++) {
+        h[i] = c_make(p[i], l_fill(0));
+        for (int j = 0; j < W; j++) {
+            h[i] = c_sub(h[i], c_scale_lanes(k->B[j][i], d[j]));
+            h[i] = c_sub(h[i], c_mul(k->Wt[i][j], left->g[j]));
+            Z[i][j] = c_make(l_fill(0), l_fill(-(i == j)));
+            for (int m = 0; m < W; m++)
+                Z[i][j] = c_add(Z[i][j], c_mul(k->Wt[i][m], left->U[m][j]));
+            X[i][j] = c_make(l_fill(i == j), l_fill(0));
+        }
+    }
+    divide(X, Z);
+    for (int i = 0; i < W; i++) {
+        Eh[i] = c_make(l_fill(0), l_fill(0));
+        for (int j = 0; j < W; j++) {
+            Eh[i] = c_add(Eh[i], c_mul(X[i][j], h[j]));
+            EBt[i][j] = c_make(l_fill(0), l_fill(0));
+            for (int m = 0; m < W; m++)
+                EBt[i][j] = c_add(EBt[i][j], c_mul(X[i][m], k->B[j][m]));
+        }
+    }
+}
+
+RD_INLINE void left_advance(struct left *left, const struct rate *rate, const struct kernel *k,
+                            const lanes *p, const lanes *d)
+{
+    cv EBt[W][W], Eh[W], UE[W][W], t[W];
+    solve(k, left, p, d, EBt, Eh);
+    for (int i = 0; i < W; i++) {
+        t[i] = left->g[i];
+        for (int j = 0; j < W; j++) {
+            t[i] = c_add(t[i], c_mul(left->U[i][j], Eh[j]));
+            UE[i][j] = c_make(l_fill(0), l_fill(0));
+            for (int m = 0; m < W; m++)
+                UE[i][j] = c_add(UE[i][j], c_mul(left->U[i][m], EBt[m][j]));
+        }
+    }
+    for (int i = 0; i < W; i++) {
+        cv g = c_make(l_fill(0), l_fill(0));
+        for (int j = 0; j < W; j++) {
+            g = c_add(g, c_mul(k->B[i][j], t[j]));
+            g = c_add(g, c_scale_lanes(k->K[i][j], d[j]));
+        }
+        left->g[i] = c_turn(g, l_fill(1));
+        for (int j = 0; j <= i; j++) {
+            cv A = c_make(l_fill(0), l_fill(0)), BU = A;
+            for (int m = 0; m < W; m++) {
+                A = c_add(A, c_scale_lanes(k->K[i][m], rate->G[m][j]));
+                BU = c_add(BU, c_mul(k->B[i][m], UE[m][j]));
+            }
+            left->U[i][j] = left->U[j][i] = c_add(A, c_turn(BU, l_fill(1)));
+        }
+    }
+}
+
+/* The right end: f + N u = p where free, u = 0 where held: row i of (N U - i Y) s = p - N g - i g
+   or of U s = -g; by elimination with pivoting, one lane after another. */
+static void end_solve(const struct rd_refine *r, const struct left *left, const struct rate *rate,
+                      const uint8_t *held, const lanes *p, cv *s)
+{
+    for (int k = 0; k < RD_LANES; k++) {
+        double A[W][W + 1][2];
+        for (int i = 0; i < W; i++) {
+            for (int j = 0; j < W; j++) {
+                A[i][j][0] = held[i] ? left->U[i][j].re[k] : -left->U[i][j].im[k];
+                A[i][j][1] = held[i] ? left->U[i][j].im[k] : left->U[i][j].re[k] - (i == j);
+            }
+            A[i][W][0] = held[i] ? -left->g[i].re[k] : p[i][k] + left->g[i].im[k];
+            A[i][W][1] = held[i] ? -left->g[i].im[k] : -left->g[i].re[k];
+            for (int m = 0; m < W && !held[i]; m++) {
+                for (int j = 0; j < W; j++) {
+                    A[i][j][0] += rate->V[i][m][k] * left->U[m][j].re[k];
+                    A[i][j][1] += rate->V[i][m][k] * left->U[m][j].im[k];
+                }
+                A[i][W][0] -= rate->V[i][m][k] * left->g[m].re[k];
+                A[i][W][1] -= rate->V[i][m][k] * left->g[m].im[k];
+            }
+        }
+        for (int c = 0; c < W; c++) {
+            int best = c;
+            for (int i = c + 1; i < W; i++)
+                if (hypot(A[i][c][0], A[i][c][1]) > hypot(A[best][c][0], A[best][c][1]))
+                    best = i;
+            double row[W + 1][2];
+            memcpy(row, A[c], sizeof row);
+            memmove(A[c], A[best], sizeof row);
+            memcpy(A[best], row, sizeof row);
+            if (hypot(A[c][c][0], A[c][c][1]) < 1e-40)
+                A[c][c][0] = 1e-40;
+            const double size = A[c][c][0] * A[c][c][0] + A[c][c][1] * A[c][c][1];
+            for (int i = 0; i < W; i++) {
+                if (i == c)
+                    continue;
+                const double re = (A[i][c][0] * A[c][c][0] + A[i][c][1] * A[c][c][1]) / size;
+                const double im = (A[i][c][1] * A[c][c][0] - A[i][c][0] * A[c][c][1]) / size;
+                for (int j = c; j <= W; j++) {
+                    A[i][j][0] -= re * A[c][j][0] - im * A[c][j][1];
+                    A[i][j][1] -= re * A[c][j][1] + im * A[c][j][0];
+                }
+            }
+        }
+        for (int c = 0; c < W; c++) {
+            const double size = A[c][c][0] * A[c][c][0] + A[c][c][1] * A[c][c][1];
+            s[c].re[k] = (A[c][W][0] * A[c][c][0] + A[c][W][1] * A[c][c][1]) / size;
+            s[c].im[k] = (A[c][W][1] * A[c][c][0] - A[c][W][0] * A[c][c][1]) / size;
+        }
+    }
+    (void)r;
+}
+
+/* u = Re (U s + g), f = Re (-i Y s + i g) = Re -i (s - u) */
+RD_INLINE void state(const struct left *left, const cv *s, lanes *u, lanes *f)
+{
+    for (int i = 0; i < W; i++) {
+        cv x = left->g[i];
+        for (int j = 0; j < W; j++)
+            x = c_add(x, c_mul(left->U[i][j], s[j]));
+        u[i] = x.re;
+        if (f)
+            f[i] = s[i].im - x.im;
+    }
+}
+
+RD_INLINE lanes lanes_load(const double *x)
+{
+    lanes y;
+    for (int k = 0; k < RD_LANES; k++)
+        y[k] = x[k];
+    return y;
+}
+
+RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
+{
+    int32_t run = -1;
+    for (size_t m = 0; m < r->steps; m++) {
+        const struct rd_step *step = r->step + m;
+        if (step->run == run || step->piece < 0)
+            continue;
+        /* the first step of a run is its largest piece, the last of its levels */
+        run = step->run;
+        lanes N[W][W], dN[W][W];
+        const int32_t term = r->walk->run[run].term;
+        term_load(r->walk, term, step->element, lambda, N);
+        for (int i = 0; i < W; i++)
+            for (int j = 0; j < W; j++)
+                dN[i][j] =
+                    l_fill(-r->walk->chain->mass[((size_t)term * W + (size_t)i) * W + (size_t)j]);
+        struct piece *level =
+            (struct piece *)(r->piece + (size_t)(step->piece - step->level) * 6 * W * W);
+        piece_load(r->walk, step->element, level);
+        memset(level + 1, 0, sizeof *level);
+        for (int32_t k = 0; k < step->level; k++, level += 2) {
+            piece_double(level, N, level + 2);
+            piece_double_change(level, level + 1, N, dN, level + 3);
+        }
+    }
+}
+
+RD_CLONES
+void WIDTH(iterate)(struct rd_refine *r, const double *lambdas, _Bool begin)
+{
+    const lanes lambda = lanes_load(lambdas);
+    struct rate rate;
+    struct kernel kernel;
+    struct left left;
+    lanes p[W], d[W];
+    cv s[W], EBt[W][W], Eh[W];
+    pieces_change(r, lambda);
+    const uint8_t *held = held_at(r, r->step[0].term);
+    memset(&left, 0, sizeof left);
+    for (int i = 0; i < W; i++)
+        left.U[i][i].re += !held[i];
+    for (size_t m = 0; m < r->steps; m++) {
+        const struct rd_step *step = r->step + m;
+        rate_load(r, step, lambda, &rate);
+        kernel_fill(&rate, &kernel);
+        load(r, m, &rate, begin, p, d);
+        held = held_at(r, step->term);
+        left_store(&left, r->receptance + m * LEFT);
+        for (int i = 0; m > 0 && i < W; i++)
+            if (held[i])
+                left_hold(&left, i);
+        left_advance(&left, &rate, &kernel, p, d);
+    }
+    const size_t n = r->steps;
+    const int32_t last = r->walk->chain->term_of[r->walk->chain->nodes - 1];
+    memset(&rate, 0, sizeof rate);
+    rate_node(r, last, r->step[n - 1].element, lambda, &rate);
+    for (int i = 0; i < W; i++) {
+        p[i] = begin ? fixed_load(n, i) : l_fill(0);
+        for (int j = 0; !begin && j < W; j++)
+            p[i] -= rate.dV[i][j] * r->u[n * W + (size_t)j];
+    }
+    end_solve(r, &left, &rate, held_at(r, last), p, s);
+    lanes f[W];
+    state(&left, s, r->u + n * W, f);
+    for (size_t m = n; m-- > 0;) {
+        const struct rd_step *step = r->step + m;
+        rate_load(r, step, lambda, &rate);
+        kernel_fill(&rate, &kernel);
+        load(r, m, &rate, begin, p, d);
+        memcpy(r->f + m * W, f, sizeof f);
+        held = held_at(r, step->term);
+        left_load(r->receptance + m * LEFT, &left);
+        struct left inner = left;
+        for (int i = 0; m > 0 && i < W; i++)
+            if (held[i])
+                left_hold(&inner, i);
+        solve(&kernel, &inner, p, d, EBt, Eh);
+        cv sa[W];
+        for (int i = 0; i < W; i++) {
+            sa[i] = Eh[i];
+            for (int j = 0; j < W; j++)
+                sa[i] = c_add(sa[i], c_mul(EBt[i][j], s[j]));
+        }
+        /* undo the holds, last first: s_j -= (U s + g)_j/U_jj with U, g before each */
+        for (int i = W - 1; m > 0 && i >= 0; i--) {
+            if (!held[i])
+                continue;
+            struct left before = left;
+            for (int j = 0; j < i; j++)
+                if (held[j])
+                    left_hold(&before, j);
+            cv x = before.g[i];
+            for (int j = 0; j < W; j++)
+                x = c_add(x, c_mul(before.U[i][j], sa[j]));
+            sa[i] = c_sub(sa[i], c_mul(x, c_invert(before.U[i][i])));
+        }
+        memcpy(s, sa, sizeof s);
+        state(&left, s, r->u + m * W, f);
+        for (int i = 0; i < W; i++)
+            if (held[i])
+                r->u[m * W + (size_t)i] = l_fill(0);
+    }
+    held = held_at(r, last);
+    for (int i = 0; i < W; i++)
+        if (held[i])
+            r->u[n * W + (size_t)i] = l_fill(0);
+
+    /* largest value 1 */
+    lanes most = l_fill(1e-300);
+    for (size_t i = 0; i < (n + 1) * W; i++)
+        most = l_select(l_abs(r->u[i]) > most, l_abs(r->u[i]), most);
+    most = 1 / most;
+    for (size_t i = 0; i < (n + 1) * W; i++)
+        r->u[i] *= most;
+    for (size_t i = 0; i < n * W; i++)
+        r->f[i] *= most;
+}
+
+/* residuals of a step at x: node a (W) and piece (W), and M x of both */
+RD_INLINE void residual(const struct rd_refine *r, size_t m, const struct rate *rate, lanes *node,
+                        lanes *piece, lanes *mass_node, lanes *mass_piece)
+{
+    const _Bool end = m == r->steps;
+    const lanes *u = r->u + m * W, *f = r->f + m * W;
+    for (int i = 0; i < W; i++) {
+        node[i] = m > 0 ? f[i - W] : l_fill(0);
+        node[i] -= end ? l_fill(0) : f[i];
+        piece[i] = end ? l_fill(0) : u[W + i] - u[i];
+        mass_node[i] = mass_piece[i] = l_fill(0);
+        for (int j = 0; j < W; j++) {
+            node[i] += rate->V[i][j] * u[j];
+            mass_node[i] -= rate->dV[i][j] * u[j];
+            if (end)
+                continue;
+            node[i] -= rate->D[j][i] * f[j];
+            piece[i] -= rate->D[i][j] * u[j] + rate->G[i][j] * f[j];
+            mass_node[i] += rate->dD[j][i] * f[j];
+            mass_piece[i] += rate->dD[i][j] * u[j] + rate->dG[i][j] * f[j];
+        }
+    }
+}
+
+RD_INLINE void rate_at(const struct rd_refine *r, size_t m, lanes lambda, struct rate *rate)
+{
+    if (m < r->steps)
+        rate_load(r, r->step + m, lambda, rate);
+    else {
+        memset(rate, 0, sizeof *rate);
+        rate_node(r, r->walk->chain->term_of[r->walk->chain->nodes - 1], r->step[m - 1].element,
+                  lambda, rate);
+    }
+}
+
+RD_CLONES
+void WIDTH(quotient)(struct rd_refine *r, const double *lambdas, struct rd_quotient *quotient)
+{
+    const lanes lambda = lanes_load(lambdas);
+    lanes xAx = l_fill(0), xMx = l_fill(0), noise = l_fill(0), energy = l_fill(0);
+    struct rate rate;
+    for (size_t m = 0; m <= r->steps; m++) {
+        lanes node[W], piece[W], mn[W], mp[W];
+        const lanes *u = r->u + m * W, *f = r->f + m * W;
+        const int32_t level = m < r->steps ? r->step[m].level : 0;
+        rate_at(r, m, lambda, &rate);
+        residual(r, m, &rate, node, piece, mn, mp);
+        for (int i = 0; i < W; i++) {
+            lanes size = l_fill(0), work = l_fill(0);
+            xAx += u[i] * node[i];
+            xMx += u[i] * mn[i];
+            for (int j = 0; j < W; j++)
+                work += l_abs(u[i] * rate.V[i][j] * u[j]);
+            if (m < r->steps) {
+                xAx += f[i] * piece[i];
+                xMx += f[i] * mp[i];
+                size = l_abs(f[i]) * (l_abs(u[i]) + l_abs(u[W + i]));
+                for (int j = 0; j < W; j++)
+                    work += l_abs(f[i] * rate.G[i][j] * f[j]) +
+                            2 * l_abs(f[i] * rate.D[i][j] * u[j]);
+            }
+            noise += size * size + work * work;
+            energy += work * (1 + level);
+        }
+    }
+    for (int k = 0; k < RD_LANES; k++) {
+        const double eps = 16 * 2.3e-16;
+        quotient->residual[k] = xAx[k] / xMx[k];
+        quotient->lambda[k] = lambdas[k] + quotient->residual[k];
+        quotient->error[k] =
+            eps * ((sqrt(noise[k]) + energy[k]) / fabs(xMx[k]) + fabs(quotient->lambda[k]));
+    }
+}
+
+void WIDTH(gram)(struct rd_refine *r, const double *lambdas, double *A, double *M)
+{
+    const lanes lambda = lanes_load(lambdas);
+    struct rate rate;
+    memset(A, 0, RD_LANES * RD_LANES * sizeof *A);
+    memset(M, 0, RD_LANES * RD_LANES * sizeof *M);
+    for (size_t m = 0; m <= r->steps; m++) {
+        lanes node[W], piece[W], mn[W], mp[W];
+        rate_at(r, m, lambda, &rate);
+        residual(r, m, &rate, node, piece, mn, mp);
+        for (int i = 0; i < W; i++)
+            for (int k = 0; k < RD_LANES; k++)
+                for (int j = 0; j < RD_LANES; j++) {
+                    const double u = r->u[m * W + (size_t)i][k];
+                    const double f = m < r->steps ? r->f[m * W + (size_t)i][k] : 0;
+                    A[k * RD_LANES + j] += u * node[i][j] + f * piece[i][j];
+                    M[k * RD_LANES + j] += u * mn[i][j] + f * mp[i][j];
+                }
+    }
+}
+
+/* What a joint of two equal halves needs to be taken apart again, for one lane. */
+struct joint {
+    double D[W][W], V[W][W], X[W][W], XV[W][W];
+};
+
+static void joint_fill(const struct rd_refine *r, const struct rd_step *step, lanes lambda,
+                       int lane, struct joint *joint)
+{
+    lanes N[W][W];
+    term_load(r->walk, r->walk->run[step->run].term, step->element, lambda, N);
+    const struct piece *half =
+        (const struct piece *)(r->piece + (size_t)(step->piece - step->level) * 6 * W * W);
+    for (int32_t k = 0; k < step->level; k++, half += 2, joint++) {
+        struct middle middle;
+        middle_fill(half, N, &middle);
+        for (int i = 0; i < W; i++)
+            for (int j = 0; j < W; j++) {
+                joint->D[i][j] = half->D[i][j][lane];
+                joint->V[i][j] = middle.V[i][j][lane];
+                joint->X[i][j] = middle.X[i][j][lane];
+                joint->XV[i][j] = middle.XV[i][j][lane];
+            }
+    }
+}
+
+/* Back down the doubling: in the middle of two halves u_m = M F1 u_a + X F2^T f_b with
+   M = I - X V, f_m = F2^T f_b - V u_m. joint[k] is that of two halves of level k. */
+static void descend(const struct joint *joint, int32_t level, const double *ua, const double *fb,
+                    double *u)
+{
+    memcpy(u, ua, W * sizeof *u);
+    if (level == 0)
+        return;
+    const struct joint *half = joint + level - 1;
+    double um[W], fm[W], Fu[W], Ff[W];
+    for (int i = 0; i < W; i++) {
+        Fu[i] = ua[i];
+        Ff[i] = fb[i];
+        for (int j = 0; j < W; j++) {
+            Fu[i] += half->D[i][j] * ua[j];
+            Ff[i] += half->D[j][i] * fb[j];
+        }
+    }
+    for (int i = 0; i < W; i++) {
+        um[i] = Fu[i];
+        for (int j = 0; j < W; j++)
+            um[i] += half->X[i][j] * Ff[j] - half->XV[i][j] * Fu[j];
+    }
+    for (int i = 0; i < W; i++) {
+        fm[i] = Ff[i];
+        for (int j = 0; j < W; j++)
+            fm[i] -= half->V[i][j] * um[j];
+    }
+    descend(joint, level - 1, ua, fm, u);
+    descend(joint, level - 1, um, fb, u + ((size_t)W << (level - 1)));
+}
+
+void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *u)
+{
+    const struct rd_chain *chain = r->walk->chain;
+    const lanes lambda = lanes_load(lambdas);
+    struct joint joint[LEVELS];
+    int32_t run = -1;
+    for (size_t m = 0; m <= r->steps; m++) {
+        double ua[W], fb[W];
+        for (int i = 0; i < W; i++) {
+            ua[i] = r->u[m * W + (size_t)i][lane] * r->z[i];
+            fb[i] = m < r->steps ? r->f[m * W + (size_t)i][lane] / r->z[i] : 0;
+        }
+        if (m == r->steps) {
+            memcpy(u + (chain->nodes - 1) * W, ua, sizeof ua);
+            return;
+        }
+        /* the first step of a run is its largest piece, the last of its levels */
+        const struct rd_step *step = r->step + m;
+        if (step->run != run && step->piece >= 0)
+            joint_fill(r, step, lambda, lane, joint);
+        run = step->run;
+        descend(joint, step->level, ua, fb, u + step->node * W);
+    }
+}
+
+/* Steps of a run: single elements where it is short, pieces of 2^k otherwise. */
+static _Bool plan_run(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
+{
+    const struct rd_stretch *run = r->walk->run + index;
+    struct piece level[LEVELS];
+    const int top = run->count < 4 ? 0 : pieces_fill(r->walk, run, lambda, level);
+    if (top > 0 && (size_t)(*pieces + top + 1) > r->pieces)
+        return 0;
+    size_t node = run->node, left = run->count;
+    for (int k = top; k >= 0; k--)
+        for (; left >> k > 0; left -= (size_t)1 << k, node += (size_t)1 << k) {
+            if (r->steps == r->capacity)
+                return 0;
+            r->step[r->steps++] = (struct rd_step){
+                .node = node,
+                .piece = top > 0 ? *pieces + k : -1,
+                .element = run->element,
+                .term = node == run->node ? run->first : run->term,
+                .before = node == run->node ? run->before : run->element,
+                .level = k,
+                .run = index,
+            };
+        }
+    *pieces += top > 0 ? top + 1 : 0;
+    return 1;
+}
+
+enum rd_status WIDTH(plan)(struct rd_refine *r, const double *lambdas)
+{
+    const lanes lambda = lanes_load(lambdas);
+    double most = 0;
+    int32_t pieces = 0;
+    for (int k = 0; k < RD_LANES; k++)
+        most = fmax(most, fabs(lambdas[k]));
+    rd_walk_scale(r->walk, most, r->z);
+    r->steps = 0;
+    for (size_t i = 0; i < r->walk->runs; i++)
+        if (!plan_run(r, (int32_t)i, lambda, &pieces))
+            return RD_NO_MEMORY;
+    return RD_OK;
+}

@@ -1,0 +1,269 @@
+/* Motions of the whole chain that nothing resists. */
+#include "rigid.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { W = RD_WIDTH_MAX, TURNS = 30 };
+
+/* relative; below it a resistance is rounding of the levers */
+static const double NOTHING = 1e-11;
+
+/* R^T R += row^T row by plane rotations, R upper triangular */
+static void gather(size_t w, double *row, double R[W][W])
+{
+    for (size_t i = 0; i < w; i++) {
+        if (row[i] == 0)
+            continue;
+        const double size = hypot(R[i][i], row[i]);
+        const double c = R[i][i] / size, s = row[i] / size;
+        for (size_t j = i; j < w; j++) {
+            const double x = R[i][j], y = row[j];
+            R[i][j] = c * x + s * y;
+            row[j] = c * y - s * x;
+        }
+        row[i] = 0;
+    }
+}
+
+/* the rows of A T, scaled to 1 */
+static void resist(size_t w, const double *A, const double T[W][W], double R[W][W])
+{
+    for (size_t i = 0; i < w; i++) {
+        double row[W], size = 0;
+        for (size_t j = 0; j < w; j++) {
+            row[j] = 0;
+            for (size_t k = 0; k < w; k++)
+                row[j] += A[i * w + k] * T[k][j];
+            size = fmax(size, fabs(row[j]));
+        }
+        if (size == 0)
+            continue;
+        for (size_t j = 0; j < w; j++)
+            row[j] /= size;
+        gather(w, row, R);
+    }
+}
+
+static void resist_node(const struct rd_chain *chain, int32_t term, const double T[W][W],
+                        double R[W][W])
+{
+    const size_t w = chain->width;
+    double hold[W * W] = {0};
+    for (size_t i = 0; i < w; i++)
+        hold[i * (w + 1)] = chain->held[(size_t)term * w + i];
+    resist(w, hold, T, R);
+    resist(w, chain->stiffness + (size_t)term * w * w, T, R);
+}
+
+/* What an element without end forces makes of a motion: D_z,beta = l, and its tension resists any
+   beta. D, Q (width, width) */
+static void levers(const struct rd_chain *chain, int32_t element, double *D, double *Q)
+{
+    const size_t w = chain->width, beta = w - 1;
+    memset(D, 0, w * w * sizeof *D);
+    memset(Q, 0, w * w * sizeof *Q);
+    if (chain->coordinate[beta] != RD_BETA || chain->kind == RD_DIFFERENCE)
+        return;
+    for (size_t i = 0; i < w; i++)
+        if (chain->coordinate[i] == RD_Z)
+            D[i * w + beta] = chain->length[element];
+    Q[beta * w + beta] = chain->tension[element];
+}
+
+/* DT = D T */
+static void tilt(size_t w, const double *D, const double T[W][W], double DT[W][W])
+{
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            DT[i][j] = 0;
+            for (size_t k = 0; k < w; k++)
+                DT[i][j] += D[i * w + k] * T[k][j];
+        }
+}
+
+/* T <- F^n T, D^2 = 0 */
+static void advance(size_t w, const double *D, size_t n, double T[W][W])
+{
+    double DT[W][W];
+    tilt(w, D, T, DT);
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++)
+            T[i][j] += (double)n * DT[i][j];
+}
+
+/* every direction is resisted for certain, far from rounding */
+static bool is_full(size_t w, const double R[W][W])
+{
+    for (size_t i = 0; i < w; i++)
+        if (!(fabs(R[i][i]) > 0.1))
+            return false;
+    return true;
+}
+
+static void begin(const struct rd_walk *walk, double T[W][W])
+{
+    const struct rd_chain *chain = walk->chain;
+    memset(T, 0, W * sizeof *T);
+    for (size_t i = 0; i < chain->width; i++)
+        T[i][i] = chain->coordinate[i] == RD_BETA ? 1 / walk->length : 1;
+}
+
+/* all that resists the motions T of the left end */
+static void resistance(const struct rd_walk *walk, double R[W][W])
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width;
+    double T[W][W], D[W * W], Q[W * W];
+    begin(walk, T);
+    for (size_t r = 0; r < walk->runs && !is_full(w, R); r++) {
+        const struct rd_stretch *run = walk->run + r;
+        levers(chain, run->element, D, Q);
+        resist_node(chain, run->first, T, R);
+        resist(w, Q, T, R);
+        advance(w, D, 1, T);
+        if (run->count > 1)
+            resist_node(chain, run->term, T, R);
+        advance(w, D, run->count - 1, T);
+        if (run->count > 2)
+            resist_node(chain, run->term, T, R);
+    }
+    resist_node(chain, chain->term_of[chain->nodes - 1], T, R);
+}
+
+/* R V = columns orthogonal to each other, by rotations of two columns at a time; then those of
+   size zero belong to the motions V that nothing resists, c = T V. */
+static size_t null_space(size_t w, double R[W][W], double V[W][W], double motion[W][W])
+{
+    for (int turn = 0; turn < TURNS; turn++)
+        for (size_t p = 0; p < w; p++)
+            for (size_t q = p + 1; q < w; q++) {
+                double pp = 0, qq = 0, pq = 0;
+                for (size_t i = 0; i < w; i++) {
+                    pp += R[i][p] * R[i][p];
+                    qq += R[i][q] * R[i][q];
+                    pq += R[i][p] * R[i][q];
+                }
+                if (pq == 0)
+                    continue;
+                const double t0 = (qq - pp) / (2 * pq);
+                const double t = (t0 >= 0 ? 1 : -1) / (fabs(t0) + hypot(t0, 1));
+                const double c = 1 / hypot(t, 1), s = t * c;
+                for (size_t i = 0; i < w; i++) {
+                    const double x = R[i][p], y = R[i][q], a = V[i][p], b = V[i][q];
+                    R[i][p] = c * x - s * y;
+                    R[i][q] = s * x + c * y;
+                    V[i][p] = c * a - s * b;
+                    V[i][q] = s * a + c * b;
+                }
+            }
+    size_t count = 0;
+    for (size_t p = 0; p < w; p++) {
+        double size = 0;
+        for (size_t i = 0; i < w; i++)
+            size = fmax(size, fabs(R[i][p]));
+        if (size > NOTHING)
+            continue;
+        for (size_t i = 0; i < w; i++)
+            motion[i][count] = V[i][p];
+        count++;
+    }
+    return count;
+}
+
+/* A += factor (B^T M C + C^T M B)/2 */
+static void add_inertia(size_t w, const double *M, const double B[W][W], const double C[W][W],
+                        double factor, double A[W][W])
+{
+    for (size_t a = 0; a < w; a++)
+        for (size_t b = 0; b < w; b++)
+            for (size_t i = 0; i < w; i++)
+                for (size_t j = 0; j < w; j++)
+                    A[a][b] += factor / 2 * M[i * w + j] * (B[i][a] * C[j][b] + C[i][a] * B[j][b]);
+}
+
+/* T^T M T over all nodes; in a run T + k D T, with sums of k and k^2 for k = 1 .. n - 1 */
+static void inertia(const struct rd_walk *walk, double A[W][W])
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width, block = w * w;
+    double T[W][W], DT[W][W], D[W * W], Q[W * W];
+    begin(walk, T);
+    memset(A, 0, W * sizeof *A);
+    for (size_t r = 0; r < walk->runs; r++) {
+        const struct rd_stretch *run = walk->run + r;
+        levers(chain, run->element, D, Q);
+        const double n = (double)run->count;
+        const double *M = chain->mass + (size_t)run->term * block;
+        tilt(w, D, T, DT);
+        add_inertia(w, chain->mass + (size_t)run->first * block, T, T, 1, A);
+        add_inertia(w, M, T, T, n - 1, A);
+        add_inertia(w, M, T, DT, n * (n - 1), A);
+        add_inertia(w, M, DT, DT, (n - 1) * n * (2 * n - 1) / 6, A);
+        advance(w, D, run->count, T);
+    }
+    add_inertia(w, chain->mass + (size_t)chain->term_of[chain->nodes - 1] * block, T, T, 1, A);
+}
+
+/* motion <- motion L^-T with motion^T A motion = L L^T */
+static bool orthonormalise(size_t w, const double A[W][W], struct rd_rigid *rigid)
+{
+    for (size_t k = 0; k < rigid->count; k++)
+        for (size_t pass = 0; pass <= k; pass++) {
+            double size = 0, share = 0, whole = 0;
+            for (size_t i = 0; i < w; i++)
+                for (size_t j = 0; j < w; j++) {
+                    const double x = A[i][j] * rigid->motion[j][k];
+                    size += rigid->motion[i][k] * x;
+                    whole += fabs(rigid->motion[i][k] * x);
+                    share += pass < k ? rigid->motion[i][pass] * x : 0;
+                }
+            for (size_t i = 0; i < w && pass < k; i++)
+                rigid->motion[i][k] -= share * rigid->motion[i][pass];
+            if (pass < k)
+                continue;
+            if (!(size > 1e-14 * whole))
+                return false;
+            for (size_t i = 0; i < w; i++)
+                rigid->motion[i][k] /= sqrt(size);
+        }
+    return true;
+}
+
+enum rd_status rd_rigid_fill(const struct rd_walk *walk, struct rd_rigid *rigid)
+{
+    const size_t w = walk->chain->width;
+    double R[W][W] = {{0}}, V[W][W] = {{0}}, A[W][W];
+    memset(rigid, 0, sizeof *rigid);
+    resistance(walk, R);
+    for (size_t i = 0; i < w; i++)
+        V[i][i] = 1;
+    rigid->count = null_space(w, R, V, rigid->motion);
+    if (rigid->count == 0)
+        return RD_OK;
+    inertia(walk, A);
+    return orthonormalise(w, A, rigid) ? RD_OK : RD_UNSTABLE_MASSLESS;
+}
+
+void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, size_t k, double *u)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width;
+    double T[W][W], DT[W][W], D[W * W], Q[W * W];
+    begin(walk, T);
+    for (size_t r = 0; r <= walk->runs; r++) {
+        const struct rd_stretch last = {.node = chain->nodes - 1, .count = 1};
+        const struct rd_stretch *run = r < walk->runs ? walk->run + r : &last;
+        levers(chain, run->element, D, Q);
+        tilt(w, D, T, DT);
+        for (size_t n = 0; n < run->count; n++)
+            for (size_t i = 0; i < w; i++) {
+                double sum = 0;
+                for (size_t j = 0; j < w; j++)
+                    sum += (T[i][j] + (double)n * DT[i][j]) * rigid->motion[j][k];
+                u[(run->node + n) * w + i] =
+                    chain->held[(size_t)chain->term_of[run->node + n] * w + i] ? 0 : sum;
+            }
+        advance(w, D, run->count, T);
+    }
+}

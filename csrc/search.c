@@ -1,0 +1,234 @@
+/* Brackets of the lowest modes, from counts. */
+#include "search.h"
+
+#include "count.h"
+#include "ritz.h"
+
+#include <math.h>
+
+enum { LANES = RD_LANES, DEEPER = 48, HIGHER = 60, CUTS = 200 };
+
+/* deeper than this times the stiffest there is, a count is of rounding */
+static const double DEEPEST = 1e8;
+
+/* of the size of the first mode; nearer to zero, counts are of rounding */
+static const double ABSOLUTE = 1e-13;
+
+/* 1/(G M) of the coordinate where it is least */
+static double typical(const struct rd_walk *walk)
+{
+    double lambda = INFINITY;
+    for (size_t i = 0; i < walk->chain->width; i++) {
+        const double x = walk->flexibility[i] * walk->mass[i];
+        lambda = x > 0 ? fmin(lambda, 1 / x) : lambda;
+    }
+    return lambda < INFINITY ? lambda : 1;
+}
+
+void rd_search_begin(const struct rd_walk *walk, size_t wanted, double *bracket,
+                     struct rd_search *search)
+{
+    *search = (struct rd_search){
+        .walk = walk,
+        .wanted = wanted,
+        .size = typical(walk),
+        .low = bracket,
+        .high = bracket + wanted,
+        .below = bracket + 2 * wanted,
+        .above = bracket + 3 * wanted,
+    };
+    for (size_t i = 0; i < wanted; i++) {
+        search->low[i] = -INFINITY;
+        search->high[i] = INFINITY;
+        search->below[i] = 0;
+        search->above[i] = INFINITY;
+    }
+}
+
+void rd_search_learn(struct rd_search *search, double lambda, double count)
+{
+    for (size_t i = 0; i < search->wanted; i++) {
+        if (count <= (double)i && lambda > search->low[i]) {
+            search->low[i] = lambda;
+            search->below[i] = count;
+        }
+        if (count > (double)i && lambda < search->high[i]) {
+            search->high[i] = lambda;
+            search->above[i] = count;
+        }
+    }
+}
+
+void rd_search_count(struct rd_search *search, const double *lambda, double *count)
+{
+    rd_count(search->walk, LANES, lambda, count);
+    search->counts += LANES;
+    for (size_t k = 0; k < LANES; k++)
+        rd_search_learn(search, lambda[k], count[k]);
+}
+
+/* An upper bound of all eigenvalues: the largest stiffness over the least mass of a coordinate,
+   times what a node's elements can add up to. */
+static double ceiling_of(const struct rd_walk *walk)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width, block = w * w;
+    double ceiling = 0;
+    for (size_t i = 0; i < w; i++) {
+        double stiffness = 0, springs = 0, mass = INFINITY;
+        for (size_t e = 0; e < chain->distinct; e++)
+            stiffness = fmax(stiffness, rd_walk_stiffness(walk, e, i));
+        for (size_t t = 0; t < chain->terms; t++) {
+            const double m = fabs(chain->mass[t * block + i * (w + 1)]);
+            springs = fmax(springs, fabs(chain->stiffness[t * block + i * (w + 1)]));
+            mass = m > 0 ? fmin(mass, m) : mass;
+        }
+        ceiling = fmax(ceiling, 16 * (double)w * (stiffness + springs) / mass);
+    }
+    return ceiling;
+}
+
+/* Counts at -at, step times deeper in each lane; true where one of them is 0. What is deeper than the
+   first of those is not learnt: an M that is not positive has eigenvalues there that are no modes. */
+static bool look_below(struct rd_search *search, double *at, double step)
+{
+    double lambda[LANES], count[LANES];
+    for (size_t k = 0; k < LANES; k++, *at *= step)
+        lambda[k] = -*at;
+    rd_count(search->walk, LANES, lambda, count);
+    search->counts += LANES;
+    for (size_t k = 0; k < LANES; k++) {
+        rd_search_learn(search, lambda[k], count[k]);
+        if (count[k] == 0)
+            return true;
+    }
+    return false;
+}
+
+/* -nearest at first, or as deep as it needs: an M that is not positive leaves a window */
+enum rd_status rd_search_bottom(struct rd_search *search, double nearest)
+{
+    double at = nearest;
+    if (look_below(search, &at, 16))
+        return RD_OK;
+    const double deepest = DEEPEST * fmax(ceiling_of(search->walk), search->size);
+    at = nearest;
+    for (int pass = 0; pass < DEEPER && at < deepest; pass++)
+        if (look_below(search, &at, 2))
+            return RD_OK;
+    return RD_UNSTABLE_MASSLESS;
+}
+
+/* In small steps at first, since a count costs what lambda has half waves. */
+size_t rd_search_top(struct rd_search *search, double upper)
+{
+    double lambda[LANES], count[LANES];
+    double at = search->size, step = 2.5;
+    for (int pass = 0; pass < HIGHER; pass++) {
+        for (size_t k = 0; k < LANES; k++, at *= step)
+            lambda[k] = fmin(fmin(at, 1e300), upper);
+        rd_search_count(search, lambda, count);
+        if (count[LANES - 1] >= (double)search->wanted || lambda[LANES - 1] >= fmin(upper, 1e300))
+            break;
+        step = pass < 4 ? 2.5 : 16;
+    }
+    return (size_t)fmax(count[LANES - 1], 0);
+}
+
+/* part 0..1 of the way from low to high, by ratio where they differ much */
+static double between(double low, double high, double part)
+{
+    if (low > 0 && high > 4 * low)
+        return low * pow(high / low, part);
+    if (high < 0 && low < 4 * high)
+        return low * pow(high / low, part);
+    return low + part * (high - low);
+}
+
+void rd_search_cut(struct rd_search *search, size_t n, const size_t *index)
+{
+    double lambda[LANES], count[LANES];
+    const size_t cuts = n < LANES ? LANES / n : 1;
+    size_t lane = 0;
+    for (size_t k = 0; k < n && lane < LANES; k++)
+        for (size_t c = 1; c <= cuts && lane < LANES; c++)
+            lambda[lane++] = between(search->low[index[k]], search->high[index[k]],
+                                     (double)c / (double)(cuts + 1));
+    for (; lane < LANES; lane++)
+        lambda[lane] = lambda[lane - 1];
+    rd_search_count(search, lambda, count);
+}
+
+static bool is_open(const struct rd_search *search, size_t i, double narrow)
+{
+    const double size = fmax(fabs(search->low[i]), fabs(search->high[i]));
+    const double least = fmax(narrow * size, ABSOLUTE * search->size);
+    return !rd_search_is_single(search, i) && search->high[i] - search->low[i] > least;
+}
+
+/* one mode of each bracket that is open */
+void rd_search_isolate(struct rd_search *search, double narrow)
+{
+    for (int pass = 0; pass < CUTS; pass++) {
+        size_t index[LANES], n = 0;
+        for (size_t i = 0; i < search->wanted && n < LANES; i++)
+            if (is_open(search, i, narrow) &&
+                (n == 0 || search->low[i] != search->low[index[n - 1]]))
+                index[n++] = i;
+        if (n == 0)
+            return;
+        rd_search_cut(search, n, index);
+    }
+}
+
+/* scale_i^2 = |M_ii|, or where that is zero what makes its largest entry 1 */
+static void equilibrate(size_t n, double *A)
+{
+    double scale[RD_WIDTH_MAX];
+    for (size_t i = 0; i < n; i++)
+        scale[i] = A[i * n + i] != 0 ? 1 / sqrt(fabs(A[i * n + i])) : 0;
+    for (size_t i = 0; i < n; i++) {
+        double most = 0;
+        for (size_t j = 0; j < n; j++)
+            most = fmax(most, fabs(A[i * n + j]) * (scale[j] > 0 ? scale[j] : 1));
+        if (scale[i] == 0 && most > 0)
+            scale[i] = 1 / most;
+    }
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            A[i * n + j] *= scale[i] * scale[j];
+}
+
+/* positive eigenvalues of a node's M over its free coordinates */
+static size_t positive(const struct rd_chain *chain, int32_t term)
+{
+    const size_t w = chain->width;
+    const double *M = chain->mass + (size_t)term * w * w;
+    const uint8_t *held = chain->held + (size_t)term * w;
+    double A[RD_WIDTH_MAX * RD_WIDTH_MAX], V[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
+    size_t free[RD_WIDTH_MAX], n = 0, count = 0;
+    for (size_t i = 0; i < w; i++)
+        if (!held[i])
+            free[n++] = i;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            A[i * n + j] = M[free[i] * w + free[j]];
+    equilibrate(n, A);
+    rd_ritz_rotate(n, A, V);
+    for (size_t i = 0; i < n; i++)
+        count += A[i * (n + 1)] > 1e-13;
+    return count;
+}
+
+size_t rd_search_finite(const struct rd_walk *walk)
+{
+    const struct rd_chain *chain = walk->chain;
+    size_t count = positive(chain, chain->term_of[chain->nodes - 1]);
+    for (size_t r = 0; r < walk->runs; r++) {
+        const struct rd_stretch *run = walk->run + r;
+        count += positive(chain, run->first);
+        if (run->count > 1)
+            count += (run->count - 1) * positive(chain, run->term);
+    }
+    return count;
+}

@@ -1,0 +1,337 @@
+"""Natural frequencies by each solver, and what follows from the shapes."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, check, damping
+from .answer import Cost
+from .chain import CHANNELS, Chain
+from .errors import SceneError, SolveError
+from .model import Model
+from .modes import Modes, Vectors
+from .unit import FAMILY
+
+STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
+"""What stores strain energy, in the core's order."""
+
+LARGEST_DENSE = 8_000
+"""Unknowns above which the dense matrix of the assembled solver, 8 n^2 bytes, is refused."""
+
+HIGHEST = 1e100
+"""Of eigenvalues that are counted [rad^2/s^2], so that their products do not overflow."""
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Found:
+    """Modes of one component, lowest first.
+
+    Attributes
+    ----------
+    eigenvalue, error : ndarray, shape (k,)
+        [rad^2/s^2].
+    shape : ndarray, shape (k, nodes, width) or None
+        Over the component's coordinates, None where it was not asked for.
+    certified : bool
+        Whether none is missing.
+    work : int
+        Factorisations or counts.
+    """
+
+    eigenvalue: Real
+    error: Real
+    shape: Real | None
+    certified: bool
+    work: int
+
+
+def solve_modes(
+    model: Model, number: int | None, *, below: float | None, solver: str, strict: bool = True
+) -> Modes:
+    """Find natural frequencies and shapes; see `Model.modes`.
+
+    Without `strict` fewer modes than asked for are no error.
+    """
+    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    if (number is None) == (below is None):
+        raise SceneError(f"give either number or below, got number={number!r} and below={below!r}")
+    if number is not None:
+        check.count(number, "number", most=np.iinfo(np.int32).max)
+    limit = math.inf if below is None else eigenvalue_of(below)
+    start = time.perf_counter()
+    found = [solve(model, c, number, limit, shaped=False) for c in model.components]
+    seconds = time.perf_counter() - start
+    existing = sum(len(part.eigenvalue) for part in found)
+    if strict and number is not None and number > existing:
+        raise SolveError(
+            f"number must be at most {existing}, the modes this model has, got {number}"
+        )
+    eigenvalue, error, order = _merged(found, number)
+    later = partial(_later, model, solver, number, limit)
+    return Modes(
+        coordinates=model.coordinates,
+        certified=all(part.certified for part in found),
+        x=model.x,
+        frequency=np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi),
+        eigenvalue=eigenvalue,
+        growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
+        rounding_error=_in_hertz(eigenvalue, error),
+        cost=Cost(seconds, solver, len(model.x) - 1, model.size, sum(part.work for part in found)),
+        source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
+    )
+
+
+def eigenvalue_of(below: Any) -> float:
+    """Return the squared angular frequency of a limit in Hz, checked."""
+    highest = min(check.number(below, "below", "Hz", sign="positive"), check.HIGHEST)
+    return (2 * math.pi * highest) ** 2
+
+
+def count_modes(model: Model, below: float) -> int:
+    """Count the natural frequencies below a limit; see `Model.count`."""
+    limit = eigenvalue_of(below)
+    return sum(_count(model.chain.only(c), limit) for c in model.components)
+
+
+def _count(chain: Chain, limit: float) -> int:
+    """Count the eigenvalues of a component below a limit."""
+    return int(_core.count(chain, np.array([min(limit, HIGHEST)]))[0])
+
+
+def _merged(found: Sequence[Found], number: int | None) -> tuple[Real, Real, NDArray[np.intp]]:
+    """Return eigenvalues and errors of all components in order, and that order."""
+    eigenvalue = np.concatenate([part.eigenvalue for part in found])
+    error = np.concatenate([part.error for part in found])
+    # what rounding cannot tell from 0 is rigid-body motion
+    eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
+    order = np.argsort(eigenvalue, kind="stable")[:number]
+    return eigenvalue[order], error[order], order
+
+
+def _in_threads(call: Callable[..., Any], nodes: int, *arguments: Any) -> Any:
+    """Call the core; long calls in a thread of their own, so that Ctrl-C is heard."""
+    if nodes < 10_000:
+        return call(*arguments)
+    executor = ThreadPoolExecutor(1)
+    try:
+        return executor.submit(call, *arguments).result()
+    finally:
+        executor.shutdown(wait=False)
+
+
+# --- by sweeps --------------------------------------------------------------------------------
+
+
+def _sweep(
+    model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
+) -> Found:
+    """Solve each span between nodes that nothing moves for itself."""
+    chain = model.chain.only(component)
+    found = []
+    for first, last in chain.spans:
+        try:
+            found.append(_span(chain.between(first, last), number, limit, shaped=shaped))
+        except SolveError as refusal:
+            raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
+    if len(found) == 1:
+        return found[0]
+    eigenvalue, error, order = _merged(found, number)
+    shape = None
+    if shaped:
+        parts = []
+        for part, (first, last) in zip(found, chain.spans):
+            assert part.shape is not None
+            parts.append(np.zeros((len(part.shape), chain.nodes, part.shape.shape[2])))
+            parts[-1][:, first : last + 1] = part.shape
+        shape = np.concatenate(parts)[order]
+    certified = all(part.certified for part in found)
+    return Found(eigenvalue, error, shape, certified, sum(part.work for part in found))
+
+
+def _span(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
+    wanted = min(number or chain.free, chain.free)
+    if number is None:
+        wanted = min(_count(chain, limit), chain.free)
+    eigenvalue, error, certified, shape, found, counts = _in_threads(
+        _core.certify, chain.nodes, chain, wanted, _upper(limit), shaped
+    )
+    if not np.isfinite(eigenvalue[:found]).all() or not np.isfinite(error[:found]).all():
+        raise SolveError("the numbers of the modes overflow: check the units")
+    return Found(
+        eigenvalue[:found],
+        error[:found],
+        shape[:found] if shaped else None,
+        bool((certified[:found] == 1).all()),
+        counts,
+    )
+
+
+def _upper(limit: float) -> float:
+    """Return the limit as the core takes it: beyond all that is counted there is none."""
+    return limit if limit < HIGHEST else math.inf
+
+
+# --- the assembled system ---------------------------------------------------------------------
+
+
+def _lapack(
+    model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
+) -> Found:
+    chain = model.chain.only(component)
+    if chain.free > LARGEST_DENSE:
+        raise SolveError(
+            f"({', '.join(component)}) has {chain.free} unknowns: solver 'lapack' needs a dense "
+            f"matrix of that size and takes at most {LARGEST_DENSE}; use fewer elements"
+        )
+    try:
+        (eigenvalue, error, shape), _ = _core.modes(
+            chain, number or 0, 0.0 if number else limit, _scale(model, component)
+        )
+    except SolveError as refusal:
+        raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
+    lost = ~np.isfinite(error) | ~np.isfinite(eigenvalue)
+    if lost.any():
+        raise SolveError(
+            f"mode {int(lost.argmax()) + 1} of ({', '.join(component)}) has no correct digit: the "
+            "inertias or stiffnesses differ too much for the assembled solver"
+        )
+    return Found(eigenvalue, error, shape, False, 1)
+
+
+def _scale(model: Model, component: tuple[str, ...]) -> float:
+    """Return the order of the first elastic eigenvalue: half a wave over the uniform rope."""
+    rope, chain = model.scene.rope, model.chain
+    with np.errstate(over="ignore"):
+        wave = float(np.square(np.pi / rope.length))
+    inertia = chain.mass[chain.term_of].sum(axis=0).diagonal() / rope.length
+    with np.errstate(divide="ignore", over="ignore"):
+        own = np.divide(1.0, chain.flexibility[0].diagonal())
+    stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}
+    stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.tension)
+    orders = [
+        stiffness[c] * wave / inertia[k]
+        for k, c in enumerate(model.coordinates)
+        if c in component and inertia[k] > 0 and stiffness[c] > 0
+    ]
+    return float(np.clip(min(orders, default=1.0), 1e-200, 1e200))
+
+
+SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+"""What finds the lowest modes of one component."""
+
+
+# --- what follows from the shapes -------------------------------------------------------------
+
+
+def _later(model: Model, solver: str, number: int | None, limit: float) -> Vectors:
+    """Solve once more, with shapes: the same bits."""
+    found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
+    eigenvalue, _, order = _merged(found, number)
+    return _vectors(model, found, eigenvalue, order)
+
+
+def _vectors(
+    model: Model, found: Sequence[Found], eigenvalue: Real, order: NDArray[np.intp]
+) -> Vectors:
+    shape = _spread(model, found)[order]
+    strain, kinetic = _core.energy(model.chain, shape)
+    own = kinetic.argmax(axis=1)
+    size = _largest(shape, own)
+    shape /= size[:, None, None]
+    strain, kinetic = strain / size[:, None] ** 2, kinetic / size[:, None] ** 2
+    omega = np.sqrt(np.maximum(eigenvalue, 0.0))
+    return Vectors(
+        damping_ratio=_damping_ratio(model, omega, strain, kinetic),
+        family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
+        modal_mass=kinetic.sum(axis=1),
+        shape=shape,
+        energy=_fractions(model, eigenvalue, strain, kinetic),
+    )
+
+
+def _spread(model: Model, found: Sequence[Found]) -> Real:
+    """Return the shapes of all components over all coordinates."""
+    shapes = []
+    for part, component in zip(found, model.components):
+        assert part.shape is not None
+        shape = np.zeros((len(part.shape), len(model.x), len(model.coordinates)))
+        shape[:, :, [model.coordinates.index(c) for c in component]] = part.shape
+        shapes.append(shape)
+    return np.concatenate(shapes)
+
+
+def _largest(shape: Real, own: NDArray[np.intp]) -> Real:
+    """Return the value of the largest component of the family's own coordinate, with its sign.
+
+    Of components that are equally large but for rounding it is the first, so that the sign of an
+    antisymmetric shape does not hang on its last digits.
+    """
+    rows = np.arange(len(shape))
+    moved = shape[rows, :, own]
+    size = np.abs(moved)
+    first = (size >= (1 - 1e-6) * size.max(axis=1, keepdims=True)).argmax(axis=1)
+    return np.copysign(size.max(axis=1), moved[rows, first])
+
+
+def _in_hertz(eigenvalue: NDArray[np.float64], error: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the largest change of frequency (or of growth) while the eigenvalue changes by its error.
+
+    sqrt(a + e) - sqrt(a) = e/(sqrt(a + e) + sqrt(a)), so that no digit is lost.
+    """
+    size = np.abs(eigenvalue)
+    omega, less = np.sqrt(size), np.sqrt(np.maximum(size - error, 0.0))
+    # below zero frequency 0 is as far as a mode can go; a growth rate begins there
+    wide = np.where(error > size, np.sqrt(size + error), 0.0)
+    sum_ = omega + less
+    change = np.divide(np.minimum(error, size), sum_, out=np.zeros_like(size), where=sum_ > 0)
+    return np.maximum(change, wide) / (2 * math.pi)
+
+
+def _damping_ratio(
+    model: Model,
+    omega: NDArray[np.float64],
+    strain: NDArray[np.float64],
+    kinetic: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega."""
+    part = np.stack(
+        [
+            strain[:, : STRAINS.index("tension")].sum(axis=1),
+            strain[:, STRAINS.index("tension")],
+            strain[:, STRAINS.index("spring")],
+            kinetic.sum(axis=1),
+        ],
+        axis=1,
+    )
+    lost = (damping.factors(model.scene.dampings, omega).imag * part).sum(axis=1)
+    return np.divide(lost, 2 * omega**2 * part[:, 3], out=np.zeros_like(omega), where=omega > 0)
+
+
+def _fractions(
+    model: Model,
+    eigenvalue: NDArray[np.float64],
+    strain: NDArray[np.float64],
+    kinetic: NDArray[np.float64],
+) -> dict[str, NDArray[np.float64]]:
+    """Return shares of the strain and of the kinetic energy."""
+    total = strain.sum(axis=1)
+    moves = (eigenvalue != 0) & (total != 0)
+    energy = {}
+    for k, name in enumerate(STRAINS):
+        if name in model.scene.effects:
+            share = np.divide(strain[:, k], total, out=np.zeros_like(total), where=moves)
+            energy[name] = share
+    for k, name in enumerate(model.coordinates):
+        energy[name] = kinetic[:, k] / kinetic.sum(axis=1)
+    return energy
