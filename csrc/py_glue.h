@@ -73,5 +73,7 @@ PyObject *py_energy(PyObject *module, PyObject *arguments);
 PyObject *py_runs(PyObject *module, PyObject *arguments);
 PyObject *py_sweep(PyObject *module, PyObject *arguments);
 PyObject *py_triple(PyObject *module, PyObject *arguments);
+PyObject *py_mixed(PyObject *module, PyObject *arguments);
+PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments);
 
 #endif

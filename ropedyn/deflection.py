@@ -140,6 +140,14 @@ def _sweep(
     return u, _on_nodes(longer, kept, u, right, begins)
 
 
+def _band(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    chain, x, kept = _cut(model, component, loads)
+    u, force = _core.mixed_deflection(chain, _nodal(chain, x, component, loads))
+    return u[kept], _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
+
+
 def _on_nodes(
     chain: Chain,
     kept: NDArray[np.intp],
@@ -176,7 +184,7 @@ def _cut(
     return chain, x, np.flatnonzero(np.isin(x, model.x))
 
 
-SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
 """What finds motion of and forces on the nodes of one component."""
 
 

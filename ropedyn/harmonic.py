@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -19,13 +19,13 @@ from .chain import Chain
 from .errors import SceneError, SolveError
 from .frf import FRF
 from .model import Model
-from .port import Point, cut, is_force, locate, moving, ports
+from .port import Point, Ports, cut, is_force, locate, moving, ports
 from .unit import OF_FORCE, QUANTITIES
 
 LANES = 16
 """Frequencies that the sweep solves side by side."""
 
-SLICE = 1 << 20
+SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Nodes times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 
 Complex = NDArray[np.complex128]
@@ -189,26 +189,38 @@ def _relative(value: Complex, error: Real) -> Real:
     return np.where((size == 0) & (error == 0), 0.0, ratio)
 
 
-# --- the sweep --------------------------------------------------------------------------------
+# --- the chain as it is: nothing assembled ----------------------------------------------------
 
 
 def _sweep(question: Question) -> tuple[Complex, Real]:
+    chain, _, runs = question.cut
+    return _unassembled(question, partial(_core.sweep, chain, runs), SWEEP_SLICE)
+
+
+def _band(question: Question) -> tuple[Complex, Real]:
+    return _unassembled(question, partial(_core.mixed, question.cut[0]), BAND_SLICE)
+
+
+Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
+
+
+def _unassembled(question: Question, core: Core, size: int) -> tuple[Complex, Real]:
+    """Ask the core for motion and internal forces, `size` nodes times frequencies at a time."""
     component, factor = question.component, question.factor
-    chain, x, runs = question.cut
+    chain, x, _ = question.cut
     direct = [p for p in question.responses if not _at_start(x, p)]
     reactions = len(direct) < len(question.responses)
     pushed = ports(chain, x, component, question.drives)
     watched = ports(chain, x, component, direct + (_hidden(component, x) if reactions else []))
 
     def solve(part: slice) -> tuple[Complex, Real]:
-        value, error, solved = _core.sweep(
-            chain, runs, np.ascontiguousarray(factor[:, part]), pushed, watched
-        )
+        value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)
         if solved < value.shape[2]:
             raise SolveError(question.resonance(part.start + solved))
         return value, error
 
-    value, error = _in_slices(solve, len(question.frequency), chain.nodes, question.workers)
+    count = len(question.frequency)
+    value, error = _in_slices(solve, count, chain.nodes, size, question.workers)
     if reactions:
         value, error = _with_reactions(question, value, error)
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
@@ -218,11 +230,11 @@ def _sweep(question: Question) -> tuple[Complex, Real]:
 
 
 def _in_slices(
-    solve: Callable[[slice], tuple[Complex, Real]], count: int, nodes: int, workers: int
+    solve: Callable[[slice], tuple[Complex, Real]], count: int, nodes: int, most: int, workers: int
 ) -> tuple[Complex, Real]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
-    size = max(LANES, SLICE // nodes // LANES * LANES)
-    if count * nodes > SLICE // 16:
+    size = max(LANES, most // nodes // LANES * LANES)
+    if count * nodes > most // 16:
         size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
     parts = [slice(start, min(start + size, count)) for start in range(0, count, size)]
     if workers == 1 or len(parts) == 1:
@@ -297,11 +309,11 @@ def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Co
 
 def _lapack(question: Question) -> tuple[Complex, Real]:
     if any(map(is_force, question.responses)):
-        raise SceneError('solver must be "sweep" where an internal force is asked for')
+        raise SceneError('solver must be "sweep" or "band" where an internal force is asked for')
     if not question.model.separable:
         raise SceneError(
-            'solver must be "sweep" where tensed elements have stiffness damping and tension, got '
-            '"lapack": sections and tension are one matrix there'
+            'solver must be "sweep" or "band" where tensed elements have stiffness damping and '
+            'tension, got "lapack": sections and tension are one matrix there'
         )
     chain, x, _ = question.cut
     value, rounding, motion, solved = _core.frf(
@@ -344,5 +356,5 @@ def _local(question: Question, pushed: Point, watched: Point) -> tuple[int, floa
     return which, float(local[component.index(watched[0]), component.index(pushed[0])])
 
 
-SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
 """What computes the response of one component: value and relative error, (drives, responses, f)."""

@@ -47,6 +47,8 @@ ENTRIES = {
     "frf": lambda chain: _core.frf(chain, FACTOR, PORT, PORT),
     "runs": _core.runs,
     "sweep": lambda chain: _core.sweep(chain, RUNS, FACTOR.T.copy(), PORT, PORT),
+    "mixed": lambda chain: _core.mixed(chain, FACTOR.T.copy(), PORT, PORT),
+    "mixed_deflection": lambda chain: _core.mixed_deflection(chain, FORCE),
     "triple": lambda chain: _core.triple(chain, 0, FACTOR.T[:2].copy()),
     "energy": lambda chain: _core.energy(chain, SHAPES),
 }
