@@ -39,22 +39,12 @@ static void find_scale(const struct rd_chain *chain, double *scale)
     }
 }
 
-static bool is_hinged(const struct rd_chain *chain, size_t node)
-{
-    const size_t w = chain->width;
-    if (chain->hinge)
-        for (size_t a = 0; a < w; a++)
-            if (chain->hinge[(size_t)chain->term_of[node] * w + a] != 0)
-                return true;
-    return false;
-}
-
 enum rd_status rd_mixed_prepare(const struct rd_chain *chain, struct rd_mixed *mixed,
                                 struct rd_workspace *workspace)
 {
     size_t blocks = 2 * chain->nodes - 1;
     for (size_t i = 0; i + 1 < chain->nodes; i++)
-        blocks += is_hinged(chain, i) ? 2 : 0;
+        blocks += rd_chain_is_hinged(chain, i) ? 2 : 0;
     mixed->chain = chain;
     mixed->size = blocks * chain->width;
     mixed->reach = 2 * chain->width - 1;
@@ -68,7 +58,7 @@ enum rd_status rd_mixed_prepare(const struct rd_chain *chain, struct rd_mixed *m
     find_scale(chain, mixed->z);
     for (size_t i = 0, block = 0; i < chain->nodes; i++) {
         mixed->block[i] = block;
-        block += is_hinged(chain, i) ? 4 : 2;
+        block += rd_chain_is_hinged(chain, i) ? 4 : 2;
     }
     return RD_OK;
 }
@@ -156,7 +146,7 @@ static enum rd_status fill(struct rd_mixed *mixed, const double _Complex *factor
             if (status != RD_OK)
                 return status;
         }
-        const bool hinged = is_hinged(chain, i);
+        const bool hinged = rd_chain_is_hinged(chain, i);
         if (hinged)
             add_hinge(mixed, i, factor[2]);
         add_element(mixed, mixed->block[i] + (hinged ? 2 : 0), mixed->block[i + 1], F, G, Q);

@@ -310,11 +310,6 @@ def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Co
 def _lapack(question: Question) -> tuple[Complex, Real]:
     if any(map(is_force, question.responses)):
         raise SceneError('solver must be "sweep" or "band" where an internal force is asked for')
-    if not question.model.separable:
-        raise SceneError(
-            'solver must be "sweep" or "band" where tensed elements have stiffness damping and '
-            'tension, got "lapack": sections and tension are one matrix there'
-        )
     chain, x, _ = question.cut
     value, rounding, motion, solved = _core.frf(
         chain,
@@ -352,7 +347,7 @@ def _local(question: Question, pushed: Point, watched: Point) -> tuple[int, floa
     other, s = locate(x, watched[1])
     if p is None or s is None or left != other or is_force(watched):
         return which, 0.0
-    local = _core.local(chain, int(chain.element_of[left]), s, p)
+    local = _core.local(chain, left, s, p)
     return which, float(local[component.index(watched[0]), component.index(pushed[0])])
 
 

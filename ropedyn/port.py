@@ -78,7 +78,7 @@ def ports(
             row[k, int(last), at] = 1.0
         else:
             node[k] = left
-            row[k] = _core.shape(chain, int(chain.element_of[left]), s)[at]
+            row[k] = _core.shape(chain, left, s)[at]
     return Ports(node, row, force if force.any() else None)
 
 

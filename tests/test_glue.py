@@ -262,13 +262,19 @@ REFUSED = {
         ValueError,
         "shape must have 9 entries along axis 1, got 8",
     ),
-    "element -1": (
+    "span -1": (
         lambda: _core.shape(CHAIN, -1, 0.0),
+        ValueError,
+        r"node must lie in 0 ... 7, got -1",
+    ),
+    "span of the last node": (lambda: _core.local(CHAIN, 8, 0.0, 0.0), ValueError, "got 8"),
+    "element -1": (
+        lambda: _core.triple(CHAIN, -1, FACTOR.T[:2].copy()),
         ValueError,
         r"element must lie in 0 ... \d, got -1",
     ),
     "element beyond": (
-        lambda: _core.local(CHAIN, len(CHAIN.length), 0.0, 0.0),
+        lambda: _core.triple(CHAIN, len(CHAIN.length), FACTOR.T[:2].copy()),
         ValueError,
         f"got {len(CHAIN.length)}",
     ),

@@ -119,7 +119,7 @@ double *rope_dense(const struct rd_chain *chain, const double *part)
     double *dense = zeros(n * n);
     for (size_t i = 0; i + 1 < chain->nodes; i++) {
         double elastic[E * E], tension[E * E];
-        const struct rd_element element = rd_chain_element(chain, (size_t)chain->element_of[i]);
+        const struct rd_element element = rd_chain_span(chain, i);
         rd_element_stiffness(&element, elastic, tension);
         for (size_t a = 0; a < 2 * w; a++)
             for (size_t b = 0; b < 2 * w; b++)
