@@ -72,7 +72,19 @@ __attribute__((optimize("O3"))) static int check_range(PyArrayObject *array, siz
     return -1;
 }
 
-enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, ELEMENT_OF, MASS, STIFFNESS, HELD, TERM_OF };
+enum {
+    COORDINATE,
+    LENGTH,
+    TENSION,
+    FLEXIBILITY,
+    ELEMENT_OF,
+    MASS,
+    STIFFNESS,
+    HELD,
+    TERM_OF,
+    HINGE,
+    ARRAYS
+};
 
 /* what the core asserts of the numbers */
 static int check_values(const struct rd_chain *chain)
@@ -82,6 +94,12 @@ static int check_values(const struct rd_chain *chain)
         string = string || chain->coordinate[k] == RD_Z;
         string = string && chain->coordinate[k] != RD_BETA;
     }
+    for (size_t k = 0; chain->hinge && k < chain->terms * chain->width; k++)
+        if (!(chain->hinge[k] >= 0)) {
+            PyErr_Format(PyExc_ValueError, "hinge[%zd, %zd] must be >= 0",
+                         (Py_ssize_t)(k / chain->width), (Py_ssize_t)(k % chain->width));
+            return -1;
+        }
     for (size_t k = 0; k < chain->distinct; k++) {
         if (!(chain->length[k] > 0)) {
             PyErr_Format(PyExc_ValueError, "length[%zd] must be > 0", (Py_ssize_t)k);
@@ -125,25 +143,25 @@ static int check_indices(const struct py_chain *parsed)
 
 int py_chain_parse(PyObject *object, struct py_chain *parsed)
 {
-    static const char *const name[9] = {"coordinate",  "length",     "tension",
-                                        "flexibility", "element_of", "mass",
-                                        "stiffness",   "held",       "term_of"};
-    static const int type[9] = {NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_INT32,
-                                NPY_DOUBLE, NPY_DOUBLE, NPY_UINT8,  NPY_INT32};
-    static const int dimensions[9] = {1, 1, 1, 3, 1, 3, 3, 2, 1};
+    static const char *const name[ARRAYS] = {"coordinate", "length", "tension",   "flexibility",
+                                             "element_of", "mass",   "stiffness", "held",
+                                             "term_of",    "hinge"};
+    static const int type[ARRAYS] = {NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_INT32,
+                                     NPY_DOUBLE, NPY_DOUBLE, NPY_UINT8,  NPY_INT32,  NPY_DOUBLE};
+    static const int dimensions[ARRAYS] = {1, 1, 1, 3, 1, 3, 3, 2, 1, 2};
     struct rd_chain *chain = &parsed->chain;
     int kind;
-    PyObject *item[9];
+    PyObject *item[ARRAYS];
     if (!PyTuple_Check(object)) {
         PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "iOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3, item + 4,
-                          item + 5, item + 6, item + 7, item + 8))
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
+                          item + 4, item + 5, item + 6, item + 7, item + 8, item + 9))
         return -1;
     npy_intp width = -1, distinct = -1, terms = -1;
-    for (int k = 0; k < 9; k++) {
-        const npy_intp shape[9][3] = {
+    for (int k = 0; k < ARRAYS; k++) {
+        const npy_intp shape[ARRAYS][3] = {
             {-1},
             {-1},
             {distinct},
@@ -153,7 +171,10 @@ int py_chain_parse(PyObject *object, struct py_chain *parsed)
             {terms, width, width},
             {terms, width},
             {-1},
+            {terms, width},
         };
+        if (k == HINGE && item[k] == Py_None)
+            continue;
         parsed->array[k] = py_array(item[k], type[k], dimensions[k], shape[k], name[k]);
         if (parsed->array[k] == NULL)
             return -1;
@@ -177,6 +198,7 @@ int py_chain_parse(PyObject *object, struct py_chain *parsed)
         .stiffness = PyArray_DATA(parsed->array[STIFFNESS]),
         .held = PyArray_DATA(parsed->array[HELD]),
         .term_of = PyArray_DATA(parsed->array[TERM_OF]),
+        .hinge = parsed->array[HINGE] == NULL ? NULL : PyArray_DATA(parsed->array[HINGE]),
     };
     if (PyArray_DIM(parsed->array[ELEMENT_OF], 0) + 1 != (npy_intp)chain->nodes) {
         PyErr_SetString(PyExc_ValueError, "element_of must have one entry fewer than term_of");
@@ -187,7 +209,7 @@ int py_chain_parse(PyObject *object, struct py_chain *parsed)
 
 void py_chain_release(struct py_chain *parsed)
 {
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < ARRAYS; k++)
         Py_XDECREF(parsed->array[k]);
 }
 

@@ -32,7 +32,7 @@ PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_in
 /* a chain and the arrays it views */
 struct py_chain {
     struct rd_chain chain;
-    PyArrayObject *array[9];
+    PyArrayObject *array[10]; /* the last NULL where nothing is hinged */
 };
 
 /* 0, or -1 and an exception; to be released in both cases */

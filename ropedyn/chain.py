@@ -36,6 +36,9 @@ class Chain(NamedTuple):
     """(terms, width)."""
     term_of: NDArray[np.int32]
     """(nodes,) which node term."""
+    hinge: NDArray[np.float64] | None = None
+    """(terms, width) compliance between the node and the element on its right, infinite where
+    free; None where nothing is hinged."""
 
     @property
     def nodes(self) -> int:
@@ -53,11 +56,13 @@ class Chain(NamedTuple):
         wanted = [COORDINATES.index(c) for c in coordinates]
         kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
         square = np.ix_(range(len(self.mass)), kept, kept)
+        hinge = None if self.hinge is None else np.ascontiguousarray(self.hinge[:, kept])
         return self._replace(
             coordinate=np.array(wanted, dtype=np.int32),
             mass=np.ascontiguousarray(self.mass[square]),
             stiffness=np.ascontiguousarray(self.stiffness[square]),
             held=np.ascontiguousarray(self.held[:, kept]),
+            hinge=hinge if hinge is not None and hinge.any() else None,
         )
 
 

@@ -37,16 +37,22 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
             f"elements must be longer than the smallest number, got {elements} on "
             f"{scene.rope.length!r} m"
         )
+    mass, stiffness, held, term_of, hinge = _terms(scene, element, stations, counts)
     chain = Chain(
         kind,
         np.array([check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32),
         *_elements(scene, spans, counts),
-        *_terms(scene, element, stations, counts),
+        mass,
+        stiffness,
+        held,
+        term_of,
+        hinge,
     )
     groups = components(chain, scene.coordinates)
     parts = [chain.only(group) for group in groups]
-    for array in chain[1:]:
-        array.flags.writeable = False
+    for array in chain:
+        if isinstance(array, np.ndarray):
+            array.flags.writeable = False
     return Model(
         scene=scene,
         element=element,
@@ -110,8 +116,14 @@ def _distinct(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
 
 def _terms(
     scene: Scene, element: str, stations: NDArray[np.float64], counts: NDArray[np.intp]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.int32]]:
-    """Return mass, stiffness, held of the distinct node terms and which stands where.
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.uint8],
+    NDArray[np.int32],
+    NDArray[np.float64] | None,
+]:
+    """Return mass, stiffness, held of the distinct node terms, which stands where, and hinges.
 
     Term 2 k is station k's, term 2 k + 1 that of the nodes inside the span right of it.
     """
@@ -126,14 +138,16 @@ def _terms(
         _correct_ends(scene, lengths, mass)
     stiffness = np.zeros((len(beside), width, width))
     held = np.zeros((len(beside), width), dtype=np.uint8)
+    hinge = np.zeros((len(beside), width))
     for station, term in _standing(scene, stations):
         mass[2 * station] += term.mass
         stiffness[2 * station] += term.stiffness
         held[2 * station] |= term.held
+        hinge[2 * station] += term.hinge
     pattern = np.arange(len(beside), dtype=np.int32)
     times = np.ones(len(beside), dtype=np.intp)
     times[1::2] = counts - 1
-    return mass, stiffness, held, np.repeat(pattern, times)
+    return mass, stiffness, held, np.repeat(pattern, times), hinge if hinge.any() else None
 
 
 def _correct_ends(scene: Scene, lengths: NDArray[np.float64], mass: NDArray[np.float64]) -> None:

@@ -160,10 +160,22 @@ def _on_nodes(
     first = chain.element_of[kept[:-1]]
     left_end = np.einsum("nji,nj->ni", F[first], begins)
     left_end -= np.einsum("nij,nj->ni", Q[first], u[:-1])
+    if chain.hinge is not None:
+        left_end *= _kept(chain.hinge[chain.term_of[kept[:-1]]], Q[first])
     force = np.zeros_like(u)
     force[1:] += right
     force[:-1] -= left_end
     return force
+
+
+def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the share 1/(1 + Q C) that a hinge leaves of F^T f_b - Q u, none where it is free.
+
+    f_a = F^T f_b - Q (u + C f_a), and a hinge stands on the one coordinate that Q has.
+    """
+    free = np.isinf(compliance)
+    finite = np.where(free, 0.0, compliance)
+    return np.where(free, 0.0, 1 / (1 + np.einsum("nii->ni", Q) * finite))
 
 
 def _lapack(

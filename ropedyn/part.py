@@ -22,15 +22,21 @@ class NodeTerm:
         Symmetric [kg, kg m, kg m^2] and [N/m, N, N m].
     held : ndarray of bool, shape (width,)
         Coordinates that cannot move.
+    hinge : ndarray, shape (width,)
+        Compliance between the node and the rope on its right [rad/(N m)], infinite where free.
     """
 
     mass: NDArray[np.float64]
     stiffness: NDArray[np.float64]
     held: NDArray[np.bool_]
+    hinge: NDArray[np.float64]
 
     def __add__(self, other: NodeTerm) -> NodeTerm:
         return NodeTerm(
-            self.mass + other.mass, self.stiffness + other.stiffness, self.held | other.held
+            self.mass + other.mass,
+            self.stiffness + other.stiffness,
+            self.held | other.held,
+            self.hinge + other.hinge,
         )
 
 
@@ -40,12 +46,14 @@ def node_term(
     mass: dict[str, float] | None = None,
     stiffness: dict[str, float] | None = None,
     held: Sequence[str] = (),
+    hinge: dict[str, float] | None = None,
 ) -> NodeTerm:
     """Build a diagonal node term from values per coordinate; absent coordinates are ignored."""
     return NodeTerm(
         np.diag([(mass or {}).get(c, 0.0) for c in coordinates]),
         np.diag([(stiffness or {}).get(c, 0.0) for c in coordinates]),
         np.array([c in held for c in coordinates], dtype=bool),
+        np.array([(hinge or {}).get(c, 0.0) for c in coordinates]),
     )
 
 
@@ -224,5 +232,63 @@ class Support:
         return node_term(coordinates, held=(self.coordinate,))
 
 
-KINDS = (PointMass, Spring, Support)
+@dataclass(frozen=True)
+class Hinge:
+    """A place where the bending rotation may jump.
+
+    The node and whatever else stands at the same place (inertia, springs and supports of the
+    rotation) are on the left of the hinge; deflection and force pass through. Hinges at one place
+    are springs in series. The rope's damping of springs damps this one too.
+
+    Parameters
+    ----------
+    x : float
+        Where it is [m], between the ends: at an end ``End(beta="free", spring={"beta": ...})`` is
+        the same thing.
+    stiffness : float
+        Of the rotation spring across it [N m]; 0 is a free hinge, which carries no moment.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or the stiffness is negative; in a scene, if it stands at an end
+        of the rope.
+
+    Examples
+    --------
+    Two cantilevers that meet tip to tip:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(2.0, 0.1, bending_stiffness=4.0)
+    >>> model = rd.Scene(rope, parts=[rd.Hinge(1.0)]).compile(elements=2)
+    >>> print(model.static({("z", 1.0): 24.0}).displacement[1, 0].round(12))
+    1.0
+    """
+
+    kind: ClassVar[str] = "hinge"
+
+    x: float
+    _: KW_ONLY
+    stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        stiffness = check.number(self.stiffness, "stiffness", "N m", sign="nonnegative")
+        object.__setattr__(self, "stiffness", stiffness)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Bending rotation."""
+        return ("beta",)
+
+    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+        """Return the compliance of its spring."""
+        with np.errstate(divide="ignore", over="ignore"):
+            compliance = float(np.float64(1.0) / self.stiffness)
+        return node_term(coordinates, hinge={"beta": compliance})
+
+
+KINDS = (PointMass, Spring, Support, Hinge)
 """Every kind of part."""

@@ -120,6 +120,7 @@ def cut(
     number[pieces] = len(chain.length) + np.arange(len(pieces))
     width = chain.mass.shape[1]
     none = np.zeros((1, width, width))
+    closed = np.zeros((1, width))
     term_of = np.where(is_new, len(chain.mass), chain.term_of[old])
     return chain._replace(
         length=np.concatenate([chain.length, np.diff(nodes)[pieces]]),
@@ -130,4 +131,5 @@ def cut(
         stiffness=np.concatenate([chain.stiffness, none]),
         held=np.concatenate([chain.held, np.zeros((1, width), dtype=np.uint8)]),
         term_of=term_of.astype(np.int32),
+        hinge=None if chain.hinge is None else np.concatenate([chain.hinge, closed]),
     ), nodes

@@ -23,7 +23,7 @@ SCENE = rd.Scene(
     ROPE.replace(rotary_inertia=1e-5, polar_inertia=1e-6),
     tension=100.0,
     ends=("clamped", "free"),
-    parts=[rd.PointMass(0.3, 0.05), rd.Spring(0.6, 100.0)],
+    parts=[rd.PointMass(0.3, 0.05), rd.Spring(0.6, 100.0), rd.Hinge(0.6, stiffness=2.0)],
 )
 MODEL = SCENE.compile(elements=8)
 CHAIN = MODEL.chain  # 9 nodes, width 3
@@ -85,9 +85,9 @@ MALFORMED = {
     "none": (None, TypeError, "chain must be a tuple"),
     "list": (list(CHAIN), TypeError, "chain must be a tuple"),
     "model": (MODEL, TypeError, "chain must be a tuple"),
-    "empty": ((), TypeError, "10 arguments"),
-    "one less": (tuple(CHAIN)[:-1], TypeError, "10 arguments"),
-    "one more": ((*CHAIN, 1), TypeError, "10 arguments"),
+    "empty": ((), TypeError, "11 arguments"),
+    "one less": (tuple(CHAIN)[:-1], TypeError, "11 arguments"),
+    "one more": ((*CHAIN, 1), TypeError, "11 arguments"),
     "kind of text": (CHAIN._replace(kind="rigid"), TypeError, ""),
     "kind of a float": (CHAIN._replace(kind=1.0), TypeError, ""),
     "kind too large": (CHAIN._replace(kind=2**40), OverflowError, ""),
@@ -134,7 +134,12 @@ MALFORMED = {
         "element_of",
     ),
     "no terms": (
-        CHAIN._replace(mass=CHAIN.mass[:0], stiffness=CHAIN.stiffness[:0], held=CHAIN.held[:0]),
+        CHAIN._replace(
+            mass=CHAIN.mass[:0],
+            stiffness=CHAIN.stiffness[:0],
+            held=CHAIN.held[:0],
+            hinge=CHAIN.hinge[:0],
+        ),
         ValueError,
         "term_of",
     ),
@@ -144,6 +149,7 @@ MALFORMED = {
             mass=np.zeros((len(CHAIN.mass), 5, 5)),
             stiffness=np.zeros((len(CHAIN.mass), 5, 5)),
             held=np.zeros((len(CHAIN.mass), 5), np.uint8),
+            hinge=None,
         ),
         ValueError,
         "1 to 4 coordinates",
@@ -165,15 +171,22 @@ for field in FIELDS:
             TypeError,
             "cast",
         )
+del MALFORMED["hinge missing"]  # None: nothing is hinged
+MALFORMED["hinge negative"] = (
+    put("hinge", -1.0, at=7),
+    ValueError,
+    r"hinge\[2, 1\] must be >= 0",
+)
+MALFORMED["hinge of nan"] = (put("hinge", math.nan, at=0), ValueError, r"hinge\[0, 0\]")
 # arrays whose length another one decides
-for field in ("tension", "flexibility", "stiffness", "held"):
+for field in ("tension", "flexibility", "stiffness", "held", "hinge"):
     MALFORMED[f"{field} too short"] = (swapped(field, lambda a: a[1:]), ValueError, field)
     MALFORMED[f"{field} too long"] = (
         swapped(field, lambda a: np.concatenate([a, a])),
         ValueError,
         f"{field} must have {len(getattr(CHAIN, field))} entries along axis 0",
     )
-for field in ("flexibility", "mass", "stiffness", "held"):
+for field in ("flexibility", "mass", "stiffness", "held", "hinge"):
     MALFORMED[f"{field} too narrow"] = (
         swapped(field, lambda a: a[:, 1:]),
         ValueError,

@@ -407,6 +407,61 @@ static void exactly_critical_compression_is_refused(void)
     }
 }
 
+/* ---- the hinge ---- */
+
+/* a beam on a free hinge: 3 B/l^3, 3 B/l^2, 3 B/l, and no moment at the hinge */
+static void free_hinge_leaves_the_propped_beam(void)
+{
+    const double B = 2, l = L, k = B / (l * l * l);
+    const double expected[16] = {
+        3 * k,  0, -3 * k, 3 * l * k,  0,         0, 0,          0,
+        -3 * k, 0, 3 * k,  -3 * l * k, 3 * l * k, 0, -3 * l * k, 3 * l * l * k,
+    };
+    const struct rd_section section = {.bending = B};
+    const double hinge[] = {0, INFINITY};
+    struct piece piece;
+    double K[16], tension[16];
+    piece_make(&piece, "zb", RD_RIGID, 0, &section);
+    piece.element.hinge = hinge;
+    CHECK_INT(rd_element_stiffness(&piece.element, K, tension), RD_OK);
+    for (int i = 0; i < 16; i++)
+        CHECK_ABS(K[i], expected[i], 16 * EPS * fabs(K[i / 4 * 5] + K[i % 4 * 5]),
+                  "12 - 9 in units of k, a few roundings");
+    for (int i = 0; i < 4; i++)
+        CHECK_EXACT(K[4 + i], 0);
+}
+
+/* With compliances C in all coordinates: jump = -C times the force on the left node, and the open
+   element is the closed one at u_a + jump, whatever C from rigid to free */
+static void hinge_opens_by_what_it_carries(const struct example *of, double compliance)
+{
+    struct piece piece;
+    double closed[N * N], open[N * N], tension[N * N], jump[W * N], g[W], hinge[W];
+    example_make(&piece, of);
+    const size_t w = piece.element.width, n = 2 * w;
+    units(&piece.element, g);
+    for (size_t i = 0; i < w; i++)
+        hinge[i] = compliance * g[i] * g[i];
+    CHECK_INT(rd_element_stiffness(&piece.element, closed, tension), RD_OK);
+    for (size_t i = 0; i < n * n; i++)
+        closed[i] += tension[i];
+    piece.element.hinge = hinge;
+    CHECK_INT(rd_element_stiffness(&piece.element, open, tension), RD_OK);
+    CHECK_INT(rd_element_jump(&piece.element, jump), RD_OK);
+    for (size_t i = 0; i < n * n; i++)
+        open[i] += tension[i];
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            double force = closed[i * n + j];
+            for (size_t k = 0; k < w; k++)
+                force += closed[i * n + k] * jump[k * n + j];
+            CHECK_ABS(open[i * n + j], force, LOOSE / (g[i % w] * g[j % w]), condition);
+            if (i < w)
+                CHECK_ABS(jump[i * n + j], -hinge[i] * open[i * n + j],
+                          LOOSE * g[i] / g[j % w] * (1 + compliance), condition);
+        }
+}
+
 /* ---- between the nodes ---- */
 
 static void shape_ends_at_the_nodes(const struct example *of)
@@ -613,6 +668,8 @@ int main(void)
         half_a_turn_reverses_the_element(example + k);
         shape_ends_at_the_nodes(example + k);
         local_flexibility_is_symmetric(example + k);
+        for (double c = 1e-12; c < 1e2; c *= 100)
+            hinge_opens_by_what_it_carries(example + k, c);
         /* the study's element, cut in two, is not the study's element */
         if (example[k].kind == RD_RIGID || strchr(example[k].coordinates, 'b') == NULL)
             for (int part = 1; part < 4; part++)
@@ -620,6 +677,7 @@ int main(void)
     }
     tensed_triple_and_stiffness_agree();
     stiffness_is_homogeneous_in_its_factors();
+    free_hinge_leaves_the_propped_beam();
     exactly_critical_compression_is_refused();
     bending_shape_is_the_cubic();
     string_and_twist_shapes_are_straight();
