@@ -234,9 +234,9 @@ class Scene:
             between stations share the elements as equally as can be.
         element : {"rigid", "tensed", "difference"}
             ``"rigid"``: beam elements between rigid node frames, tension as a string in parallel;
-            second order in the length of elements. ``"tensed"``: the exact static tensed beam,
-            with end-corrected lumping; fourth order where there is bending. ``"difference"``: the
-            kinematics of the 2015 study.
+            second order in the length of elements. ``"tensed"``: the exact static tensed beam, with
+            end-corrected lumping; fourth order where there is bending (second with a hinge that
+            moves). ``"difference"``: the kinematics of the 2015 study.
 
         Returns
         -------
