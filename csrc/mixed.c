@@ -97,8 +97,8 @@ static void add_node(struct rd_mixed *mixed, size_t node, const double _Complex 
     const size_t p = mixed->block[node];
     for (size_t a = 0; a < w; a++)
         for (size_t b = 0; b < w; b++) {
-            const double _Complex N = factor[2] * chain->stiffness[term + a * w + b] +
-                                      factor[3] * chain->mass[term + a * w + b];
+            const double _Complex N = factor[RD_SPRINGS] * chain->stiffness[term + a * w + b] +
+                                      factor[RD_MASS] * chain->mass[term + a * w + b];
             add(mixed, p, a, p, b, N * mixed->z[a] * mixed->z[b]);
         }
 }
@@ -142,13 +142,14 @@ static enum rd_status fill(struct rd_mixed *mixed, const double _Complex *factor
         if (chain->element_of[i] != last) {
             last = chain->element_of[i];
             const struct rd_element element = rd_chain_element(chain, (size_t)last);
-            const enum rd_status status = rd_triple(&element, factor[0], factor[1], F, G, Q);
+            const enum rd_status status =
+                rd_triple(&element, factor[RD_ELASTIC], factor[RD_STRING], F, G, Q);
             if (status != RD_OK)
                 return status;
         }
         const bool hinged = rd_chain_is_hinged(chain, i);
         if (hinged)
-            add_hinge(mixed, i, factor[2]);
+            add_hinge(mixed, i, factor[RD_SPRINGS]);
         add_element(mixed, mixed->block[i] + (hinged ? 2 : 0), mixed->block[i + 1], F, G, Q);
     }
     for (size_t i = 0; i < chain->nodes; i++)

@@ -2,9 +2,8 @@
 #ifndef RD_MIXED_H
 #define RD_MIXED_H
 
-#include "chain.h"
+#include "assemble.h"
 #include "ports.h"
-#include "status.h"
 #include "workspace.h"
 
 #include <complex.h>
@@ -33,15 +32,12 @@ struct rd_mixed {
     int32_t *pivot;          /* (size) */
 };
 
-/* factors of the four parts of the dynamic stiffness: section, tension, spring, inertia */
-enum { RD_FACTORS = 4 };
-
 /* Takes the arrays and fills what does not depend on frequency. */
 enum rd_status rd_mixed_prepare(const struct rd_chain *chain, struct rd_mixed *mixed,
                                 struct rd_workspace *workspace);
 
-/* Fills and factorises. RD_SINGULAR where that meets an exact zero, RD_CRITICAL_ELEMENT where an
-   element has no triple. */
+/* Fills at the factors (RD_PARTS) of sections, tension, springs and inertia, and factorises.
+   RD_SINGULAR where that meets an exact zero, RD_CRITICAL_ELEMENT where an element has no triple. */
 enum rd_status rd_mixed_factorise(struct rd_mixed *mixed, const double _Complex *factor);
 
 /* x (columns, size) <- solution for the right-hand side b (columns, size), refined once: small

@@ -33,7 +33,7 @@ enum rd_status rd_mixed_deflection_solve(struct rd_mixed_deflection *deflection,
 {
     struct rd_mixed *mixed = &deflection->mixed;
     const size_t nodes = mixed->chain->nodes, w = mixed->chain->width;
-    const double _Complex at_rest[RD_FACTORS] = {1, 1, 1, 0};
+    const double _Complex at_rest[RD_PARTS] = {[RD_ELASTIC] = 1, [RD_STRING] = 1, [RD_SPRINGS] = 1};
     const enum rd_status status = rd_mixed_factorise(mixed, at_rest);
     if (status != RD_OK)
         return status;

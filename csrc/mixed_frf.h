@@ -19,7 +19,7 @@ enum rd_status rd_mixed_frf_prepare(const struct rd_chain *chain, const struct r
                                     const struct rd_ports *responses, struct rd_mixed_frf *frf,
                                     struct rd_workspace *workspace);
 
-/* At one frequency, with its factors (RD_FACTORS); row r of drive d is entry stride (d responses +
+/* At one frequency, with its factors (RD_PARTS); row r of drive d is entry stride (d responses +
    r) of both arrays:
        value   displacement or force per force
        error   its estimated absolute rounding error

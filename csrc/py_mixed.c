@@ -10,7 +10,7 @@ struct task {
     const struct rd_ports *drives;
     const struct rd_ports *responses;
     npy_intp count;                /* frequencies */
-    const double _Complex *factor; /* (RD_FACTORS, count) */
+    const double _Complex *factor; /* (RD_PARTS, count) */
     double _Complex *value;        /* (drives, responses, count) */
     double *error;
 };
@@ -19,8 +19,8 @@ struct task {
 static npy_intp solve_each(struct task *task, enum rd_status *status)
 {
     for (npy_intp i = 0; i < task->count; i++) {
-        double _Complex factor[RD_FACTORS];
-        for (int k = 0; k < RD_FACTORS; k++)
+        double _Complex factor[RD_PARTS];
+        for (int k = 0; k < RD_PARTS; k++)
             factor[k] = task->factor[k * task->count + i];
         *status = rd_mixed_frf_solve(&task->frf, factor, (size_t)task->count, task->value + i,
                                      task->error + i);
@@ -64,7 +64,7 @@ PyObject *py_mixed(PyObject *module, PyObject *arguments)
         py_ports_parse(object[2], &parsed.chain, "drives", &drives) < 0 ||
         py_ports_parse(object[3], &parsed.chain, "responses", &responses) < 0)
         goto done;
-    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_FACTORS, -1}, "factor");
+    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
     if (factor == NULL)
         goto done;
     const npy_intp count = PyArray_DIM(factor, 1);

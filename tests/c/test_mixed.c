@@ -32,7 +32,7 @@ static enum rd_status solve(const struct line *line, int32_t drive, int32_t resp
               RD_NO_MEMORY);
     struct rd_workspace workspace = exact_workspace(measure.used);
     CHECK_INT(rd_mixed_frf_prepare(&line->chain, &drives, &responses, &frf, &workspace), RD_OK);
-    const complex_t factor[RD_FACTORS] = {1, 1, 1, -omega * omega};
+    const complex_t factor[RD_PARTS] = {1, 1, 1, -omega * omega};
     const enum rd_status status = rd_mixed_frf_solve(&frf, factor, 1, value, error);
     free(workspace.base);
     return status;
@@ -155,7 +155,7 @@ static void dislocations_and_forces_are_reciprocal(void)
     rd_mixed_frf_prepare(&line.chain, &ports, &ports, &frf, &measure);
     struct rd_workspace workspace = exact_workspace(measure.used);
     CHECK_INT(rd_mixed_frf_prepare(&line.chain, &ports, &ports, &frf, &workspace), RD_OK);
-    const complex_t factor[RD_FACTORS] = {CMPLX(1, 0.01), 1, 1, -400.0};
+    const complex_t factor[RD_PARTS] = {CMPLX(1, 0.01), 1, 1, -400.0};
     complex_t h[4];
     double error[4];
     CHECK_INT(rd_mixed_frf_solve(&frf, factor, 1, h, error), RD_OK);
