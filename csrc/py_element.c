@@ -49,7 +49,7 @@ PyObject *py_triples(PyObject *module, PyObject *arguments)
     PyObject *object, *F = NULL, *G = NULL, *Q = NULL, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "O", &object))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0)
+    if (py_chain_view(object, &parsed) < 0)
         goto done;
     const size_t w = parsed.chain.width;
     const npy_intp shape[] = {(npy_intp)parsed.chain.distinct, (npy_intp)w, (npy_intp)w};
@@ -109,7 +109,7 @@ PyObject *py_triple(PyObject *module, PyObject *arguments)
     Py_ssize_t index;
     if (!PyArg_ParseTuple(arguments, "OnO", &object, &index, &factors))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+    if (py_chain_view(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
         goto done;
     factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){2, -1}, "factor");
     if (factor == NULL)
@@ -151,7 +151,7 @@ PyObject *py_shape(PyObject *module, PyObject *arguments)
     double s;
     if (!PyArg_ParseTuple(arguments, "Ond", &object, &index, &s))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
+    if (py_chain_view(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
         check_distance(&element, s, "s") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;
@@ -178,7 +178,7 @@ PyObject *py_local(PyObject *module, PyObject *arguments)
     double s, p;
     if (!PyArg_ParseTuple(arguments, "Ondd", &object, &index, &s, &p))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
+    if (py_chain_view(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
         check_distance(&element, s, "s") < 0 || check_distance(&element, p, "p") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;

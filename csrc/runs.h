@@ -9,12 +9,13 @@
    where nothing is held. Only stretches of RD_RUN_LEAST elements or more are runs. */
 struct rd_run {
     size_t first, last;
+    int32_t element, term;
 };
 
 enum { RD_RUN_LEAST = 8 };
 
 struct rd_runs {
-    size_t count, longest;
+    size_t count;
     const struct rd_run *run;        /* (count) */
     double length;                   /* [m] of the chain */
     double tension;                  /* [N] mean over the length */

@@ -50,10 +50,11 @@ struct sweep_walk {
 /* The part behind the walk: u = U s, f = i (I - U) s, and responses in it as rows over s. */
 struct sweep_state {
     cv U[RD_PAIRS_MAX];
-    int absorbed; /* the node ahead is part of U already */
-    size_t rows;  /* of E that are under way */
-    cv *E;        /* (rows, width), inside E_all */
-    cv *E_all;    /* (all carried ports, width) */
+    size_t stretch; /* of the node ahead */
+    int absorbed;   /* the node ahead is part of U already */
+    size_t rows;    /* of E that are under way */
+    cv *E;          /* (rows, width), inside E_all */
+    cv *E_all;      /* (all carried ports, width) */
 };
 
 struct sweep_kernel {
@@ -64,8 +65,9 @@ struct sweep_kernel {
     void (*walk_plain)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
     void (*join)(const struct rd_chain *, const struct sweep_way *, size_t term, const cv *one,
                  const cv *two, cv *joined);
-    void (*walk)(const struct sweep_walk *, const cv *piece, int32_t term, size_t node,
-                 size_t count, struct sweep_state *);
+    void (*walk)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
+    void (*walk_pieces)(const struct sweep_walk *, const cv *piece, int32_t term, size_t count,
+                        struct sweep_state *);
     void (*absorb)(const struct sweep_walk *, size_t term, struct sweep_state *);
     void (*open)(const struct sweep_walk *, size_t term, struct sweep_state *);
     void (*listen)(const struct sweep_walk *, const double *motion, const double *force,

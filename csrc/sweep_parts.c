@@ -21,11 +21,11 @@ static void listen(struct sweep *s, int way, const struct tap *tap)
    much more there, 1 + |N| z^2 of the watched coordinates. */
 static lanes weight(const struct sweep *s, const struct tap *tap)
 {
-    const size_t w = s->chain->width, term = (size_t)s->chain->term_of[tap->node];
+    const size_t w = s->chain->width;
     const lanes spring = c_size(s->block.spring), inertia = c_size(s->block.inertia);
     lanes most = l_fill(1.0);
     for (size_t i = 0; tap->motion && i < w; i++) {
-        const size_t at = (term * w + i) * w + i;
+        const size_t at = (tap->term * w + i) * w + i;
         if (tap->motion[i] == 0.0)
             continue;
         const lanes N = spring * fabs(s->chain->stiffness[at]) + inertia * fabs(s->chain->mass[at]);
@@ -35,16 +35,16 @@ static lanes weight(const struct sweep *s, const struct tap *tap)
     return most;
 }
 
-/* the same for all taps of a carried port */
-static lanes weight_of(const struct sweep *s, size_t port)
+/* the largest among all taps of each carried port */
+static void weigh(struct sweep *s)
 {
-    lanes most = l_fill(1.0);
-    for (size_t c = 0; c < s->carry.count; c++)
-        if (s->carry.tap[c].port == port) {
-            const lanes own = weight(s, s->carry.tap + c);
-            most = l_select(own > most, own, most);
-        }
-    return most;
+    for (size_t port = 0; port < s->carried; port++)
+        s->weight[port] = l_fill(1.0);
+    for (size_t c = 0; c < s->carry.count; c++) {
+        const lanes own = weight(s, s->carry.tap + c);
+        lanes *most = s->weight + s->carry.tap[c].port;
+        *most = l_select(own > *most, own, *most);
+    }
 }
 
 /* the left parts at the nodes where parts will meet, with the rows carried so far */
@@ -53,8 +53,7 @@ void rd_sweep_left(struct sweep *s)
     const size_t w = s->chain->width, size = s->sym + s->carried * w;
     size_t c = 0, m = 0, node = 0, run = 0;
     rd_sweep_begin(s);
-    for (size_t port = 0; port < s->carried; port++)
-        s->weight[port] = weight_of(s, port);
+    weigh(s);
     for (size_t record = 0; record < s->records; record++) {
         const size_t stop = s->meet.tap[m].node;
         for (; c < s->carry.count && s->carry.tap[c].node <= stop; c++) {
@@ -132,7 +131,7 @@ void rd_sweep_right(struct sweep *s, size_t count, size_t all, double *value, do
 {
     const size_t w = s->chain->width;
     size_t c = s->carry.count, m = s->meet.count, node = s->chain->nodes - 1;
-    size_t run = s->runs->count;
+    size_t run = s->runs.count;
     rd_sweep_begin(s);
     s->state.E = s->rows + s->carried * w;
     for (size_t record = s->records; record-- > 0;) {

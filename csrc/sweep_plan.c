@@ -21,10 +21,11 @@ static void *take_lanes(struct rd_workspace *workspace, size_t count, size_t siz
     return p ? p + (ALIGN - (uintptr_t)p % ALIGN) % ALIGN : NULL;
 }
 
-static size_t levels_most(const struct rd_runs *runs)
+/* pieces of 1, 2, 4, .. elements, up to all of the chain */
+static size_t levels_most(const struct rd_chain *chain)
 {
     size_t levels = 1;
-    for (size_t n = runs->longest; n > 1; n /= 2)
+    for (size_t n = chain->nodes - 1; n > 1; n /= 2)
         levels++;
     return levels;
 }
@@ -50,9 +51,9 @@ static uint8_t trait_of(const struct rd_chain *chain, size_t t)
     return (uint8_t)trait;
 }
 
-struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *runs,
-                            const struct rd_factors *factors, const struct rd_ports *drives,
-                            const struct rd_ports *responses, struct rd_workspace *workspace)
+struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factors *factors,
+                            const struct rd_ports *drives, const struct rd_ports *responses,
+                            struct rd_workspace *workspace)
 {
     const size_t w = chain->width, sym = w * (w + 1) / 2, coefs = w * w + 2 * sym;
     const int swapped = drives->count < responses->count;
@@ -60,13 +61,14 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
     const struct rd_ports *meet = swapped ? responses : drives;
     struct sweep *s = take_lanes(workspace, 1, sizeof *s);
     struct taps carried, meeting;
-    rd_taps_find(carry, w, &carried, workspace);
-    rd_taps_find(meet, w, &meeting, workspace);
+    rd_taps_find(carry, chain, &carried, workspace);
+    rd_taps_find(meet, chain, &meeting, workspace);
+    struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
     size_t *rank = rd_take(workspace, carry->count, sizeof *rank);
     const size_t records = meeting.tap ? rd_taps_nodes(&meeting) : meeting.count;
     cv *record = take_lanes(workspace, records * (sym + carry->count * w), sizeof *record);
     cv *rows = take_lanes(workspace, carry->count * w, sizeof *rows);
-    cv *table = take_lanes(workspace, levels_most(runs) * coefs, sizeof *table);
+    cv *table = take_lanes(workspace, levels_most(chain) * coefs, sizeof *table);
     cv *triple = take_lanes(workspace, 2 * coefs, sizeof *triple);
     cv *value = take_lanes(workspace, carry->count, sizeof *value);
     lanes *error = take_lanes(workspace, carry->count, sizeof *error);
@@ -83,7 +85,6 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
         return NULL;
     *s = (struct sweep){
         .chain = chain,
-        .runs = runs,
         .kernel = kernels[w - 1],
         .coefs = coefs,
         .sym = sym,
@@ -106,6 +107,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
         .order = order,
         .failed = factors->count,
     };
+    rd_runs_find(chain, run, &s->runs);
     rd_taps_rank(&s->carry, s->carried, rank);
     for (size_t t = 0; t < chain->terms; t++)
         trait[t] = trait_of(chain, t);

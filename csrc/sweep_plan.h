@@ -9,7 +9,7 @@
 
 struct sweep {
     const struct rd_chain *chain;
-    const struct rd_runs *runs;
+    struct rd_runs runs;
     const struct sweep_kernel *kernel;
     size_t coefs;   /* complex lanes in the coefficients of an element */
     size_t sym;     /* and in U */
@@ -44,9 +44,9 @@ struct sweep {
 };
 
 /* NULL: the workspace measures or is too small */
-struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *runs,
-                            const struct rd_factors *factors, const struct rd_ports *drives,
-                            const struct rd_ports *responses, struct rd_workspace *workspace);
+struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factors *factors,
+                            const struct rd_ports *drives, const struct rd_ports *responses,
+                            struct rd_workspace *workspace);
 
 /* at a free end, with nothing behind the walk */
 void rd_sweep_begin(struct sweep *s);

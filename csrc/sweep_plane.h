@@ -100,11 +100,15 @@ static RD_CLONES void K_(walk_plain)(const struct sweep_walk *s, size_t node, si
     struct K_(plane) p = K_(plane_of)(state->U);
     cv own[RD_PLAIN];
     const cv *plain = own;
-    const int apart = s->way->backward ? RD_COUPLED : RD_COUPLED | RD_HINGED;
+    const size_t backward = (size_t)s->way->backward;
+    const int apart = backward ? RD_COUPLED : RD_COUPLED | RD_HINGED;
+    size_t stretch = state->stretch;
     int32_t made = -1;
     for (size_t k = 0; k < count; k++) {
-        const size_t i = s->way->backward ? node - k : node + k;
-        const int32_t e = chain->element_of[s->way->backward ? i - 1 : i];
+        const size_t i = backward ? node - k : node + k, t = (size_t)chain->term[stretch];
+        stretch -= backward && (size_t)chain->first[stretch] == i;
+        const int32_t e = chain->element[stretch];
+        stretch += !backward && (size_t)chain->first[stretch + 1] == i + 1;
         if (s->plain) {
             plain = s->plain + (size_t)e * RD_PLAIN;
         } else if (e != made) {
@@ -112,7 +116,6 @@ static RD_CLONES void K_(walk_plain)(const struct sweep_walk *s, size_t node, si
             made = e;
         }
         cv n0 = c_zero(), n1 = plain[6];
-        const size_t t = (size_t)chain->term_of[i];
         const int absorbed = k == 0 && state->absorbed;
         if (s->trait[t] & apart) {
             K_(scatter)(&p, state->U);
@@ -132,14 +135,13 @@ static RD_CLONES void K_(walk_plain)(const struct sweep_walk *s, size_t node, si
         K_(plane_element)(&p, plain);
         if (k % 4 == 3)
             K_(plane_level)(&p);
-        if (!s->way->backward)
-            continue;
-        const size_t next = (size_t)chain->term_of[i - 1];
-        if (s->trait[next] & RD_HINGED) {
+        const size_t next = (size_t)chain->term[stretch];
+        if (backward && (s->trait[next] & RD_HINGED)) {
             K_(scatter)(&p, state->U);
             K_(open_all)(s, next, state);
             p = K_(plane_of)(state->U);
         }
     }
+    state->stretch = stretch;
     K_(scatter)(&p, state->U);
 }

@@ -184,3 +184,15 @@ size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t 
     }
     return level;
 }
+
+size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
+{
+    size_t steps = 1;
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const size_t e = (size_t)chain->element[k], t = (size_t)chain->term[k];
+        const size_t count = (size_t)(chain->first[k + 1] - chain->first[k]);
+        const size_t level = rd_sweep_levels(chain, e, t, count, extent);
+        steps += (count >> level) + 2 * level;
+    }
+    return steps;
+}

@@ -58,6 +58,7 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
 #endif
     .join = K_(join),
     .walk = K_(walk),
+    .walk_pieces = K_(walk_pieces),
     .absorb = K_(absorb),
     .open = K_(open_all),
     .listen = K_(listen),

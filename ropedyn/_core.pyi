@@ -8,7 +8,6 @@ from .chain import Chain
 _Real = NDArray[np.float64]
 _Ports = tuple[NDArray[np.int32], _Real, _Real | None]
 _Complex = NDArray[np.complex128]
-_Runs = tuple[NDArray[np.uintp], _Real]
 
 def section(
     axial: float, torsion: float, bending: float, coupling: float, slope: float, /
@@ -25,9 +24,9 @@ def modes(
 def frf(
     chain: Chain, factor: NDArray[np.complex128], drives: _Ports, responses: _Ports, /
 ) -> tuple[NDArray[np.complex128], _Real, _Real, int]: ...
-def runs(chain: Chain, /) -> _Runs: ...
+def steps(chain: Chain, factor: _Complex, /) -> int: ...
 def sweep(
-    chain: Chain, runs: _Runs, factor: _Complex, drives: _Ports, responses: _Ports, /
+    chain: Chain, factor: _Complex, drives: _Ports, responses: _Ports, /
 ) -> tuple[_Complex, _Real, int]: ...
 def triple(
     chain: Chain, element: int, factor: _Complex, /

@@ -15,7 +15,11 @@ CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 
 
 class Chain(NamedTuple):
-    """A chain as the core takes it; see csrc/chain.h."""
+    """A chain as the core takes it; see csrc/chain.h.
+
+    Nodes with the same term and the same element on their right are a stretch; the last node is
+    one alone.
+    """
 
     kind: int
     coordinate: NDArray[np.int32]
@@ -26,31 +30,49 @@ class Chain(NamedTuple):
     """(distinct,) [N]."""
     flexibility: NDArray[np.float64]
     """(distinct, 3, 3) of the section: axial, torsion, bending."""
-    element_of: NDArray[np.int32]
-    """(nodes - 1,) which distinct element."""
+    first: NDArray[np.int32]
+    """(stretches,) first node, increasing from 0 to the last node."""
+    element: NDArray[np.int32]
+    """(stretches - 1,) which distinct element stands right of each node."""
     mass: NDArray[np.float64]
     """(terms, width, width)."""
     stiffness: NDArray[np.float64]
     """(terms, width, width)."""
     held: NDArray[np.uint8]
     """(terms, width)."""
-    term_of: NDArray[np.int32]
-    """(nodes,) which node term."""
+    term: NDArray[np.int32]
+    """(stretches,) which node term."""
 
     @property
     def nodes(self) -> int:
         """How many nodes there are."""
-        return len(self.term_of)
+        return int(self.first[-1]) + 1
+
+    @property
+    def element_of(self) -> NDArray[np.int32]:
+        """Which distinct element stands right of each node, shape (nodes - 1,)."""
+        return np.repeat(self.element, np.diff(self.first))
+
+    @property
+    def term_of(self) -> NDArray[np.int32]:
+        """Which node term each node has, shape (nodes,)."""
+        return np.repeat(self.term, np.diff(self.first, append=self.nodes))
 
     @property
     def free(self) -> int:
         """How many coordinates can move."""
         free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
-        return int(free_of_term[self.term_of].sum())
+        return int(free_of_term[self.term] @ np.diff(self.first, append=self.nodes))
+
+    def stretch(self, node: int) -> int:
+        """Return the stretch that a node belongs to."""
+        return int(np.searchsorted(self.first, node, side="right")) - 1
 
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
         wanted = [COORDINATES.index(c) for c in coordinates]
+        if wanted == self.coordinate.tolist():
+            return self
         kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
         square = np.ix_(range(len(self.mass)), kept, kept)
         return self._replace(

@@ -109,7 +109,6 @@ def _sweep(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return motion of the nodes and what the surroundings put on them."""
     longer, finer, kept = _cut(model, component, loads)
-    runs = _core.runs(longer)
     pushed = ports(longer, finer, component, loads)
     amount = np.array(list(loads.values()))
     factor = np.array([[1.0], [1.0], [1.0], [0.0]], dtype=np.complex128)
@@ -124,7 +123,7 @@ def _sweep(
             side = np.repeat(node - left, w)
             rows[np.arange(len(rows)), side] = np.tile(np.eye(w), (len(node), 1))
         watched = Ports(np.repeat(left, w).astype(np.int32), rows, force)
-        value, _, solved = _core.sweep(longer, runs, factor, pushed, watched)
+        value, _, solved = _core.sweep(longer, factor, pushed, watched)
         if solved == 0:
             raise SolveError("singular")
         answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)

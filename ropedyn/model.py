@@ -62,8 +62,6 @@ class Model:
         Where the nodes stand [m].
     chain : Chain
         What the core reads.
-    runs : tuple
-        Of each component, the uniform stretches that the sweep joins.
     unknowns : tuple of int
         Of each component, coordinates that can move.
     """
@@ -74,7 +72,6 @@ class Model:
     components: tuple[tuple[str, ...], ...]
     x: NDArray[np.float64]
     chain: Chain
-    runs: tuple[tuple[Any, Any], ...]
     unknowns: tuple[int, ...]
 
     def __setstate__(self, state: dict[str, Any]) -> None:

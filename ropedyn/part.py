@@ -2,51 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from types import MappingProxyType
+from typing import ClassVar, NamedTuple, Protocol
 
 from . import check
 
 
-@dataclass(frozen=True)
-class NodeTerm:
-    """What stands at one node, over the coordinates of a chain.
+class NodeTerm(NamedTuple):
+    """What stands at one node, per coordinate."""
 
-    Attributes
-    ----------
-    mass, stiffness : ndarray, shape (width, width)
-        Symmetric [kg, kg m, kg m^2] and [N/m, N, N m].
-    held : ndarray of bool, shape (width,)
-        Coordinates that cannot move.
-    """
-
-    mass: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
-    held: NDArray[np.bool_]
-
-    def __add__(self, other: NodeTerm) -> NodeTerm:
-        return NodeTerm(
-            self.mass + other.mass, self.stiffness + other.stiffness, self.held | other.held
-        )
-
-
-def node_term(
-    coordinates: Sequence[str],
-    *,
-    mass: dict[str, float] | None = None,
-    stiffness: dict[str, float] | None = None,
-    held: Sequence[str] = (),
-) -> NodeTerm:
-    """Build a diagonal node term from values per coordinate; absent coordinates are ignored."""
-    return NodeTerm(
-        np.diag([(mass or {}).get(c, 0.0) for c in coordinates]),
-        np.diag([(stiffness or {}).get(c, 0.0) for c in coordinates]),
-        np.array([c in held for c in coordinates], dtype=bool),
-    )
+    mass: Mapping[str, float] = MappingProxyType({})
+    """[kg, kg m^2]; inertia on an absent coordinate is ignored."""
+    stiffness: Mapping[str, float] = MappingProxyType({})
+    """To the ground [N/m, N m]."""
+    held: Sequence[str] = ()
+    """Coordinates that cannot move."""
 
 
 class Part(Protocol):
@@ -63,7 +35,7 @@ class Part(Protocol):
     def stands_on(self) -> tuple[str, ...]:
         """Coordinates without which it has no meaning."""
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Return what it adds to its node."""
 
 
@@ -117,7 +89,7 @@ class PointMass:
         """Nothing: inertia on an absent coordinate is ignored."""
         return ()
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Inertia on the diagonal."""
         mass = {
             "x": self.mass,
@@ -125,7 +97,7 @@ class PointMass:
             "alpha": self.polar_inertia,
             "beta": self.rotary_inertia,
         }
-        return node_term(coordinates, mass=mass)
+        return NodeTerm(mass=mass)
 
 
 @dataclass(frozen=True)
@@ -174,9 +146,9 @@ class Spring:
         """Its coordinate."""
         return (self.coordinate,)
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Stiffness on the diagonal."""
-        return node_term(coordinates, stiffness={self.coordinate: self.stiffness})
+        return NodeTerm(stiffness={self.coordinate: self.stiffness})
 
 
 @dataclass(frozen=True)
@@ -219,9 +191,9 @@ class Support:
         """Its coordinate."""
         return (self.coordinate,)
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Return the held coordinate."""
-        return node_term(coordinates, held=(self.coordinate,))
+        return NodeTerm(held=(self.coordinate,))
 
 
 KINDS = (PointMass, Spring, Support)
