@@ -19,7 +19,7 @@ static void begin_block(struct sweep *s, const struct rd_factors *factors, size_
     s->steps = 1.0;
     for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)
         s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);
-    for (size_t e = 0; s->plain && e < s->chain->distinct; e++)
+    for (size_t e = 0; s->plain && s->planar && e < s->chain->distinct; e++)
         s->kernel->make_plain(s->chain, &s->block, e, s->plain + e * RD_PLAIN);
 }
 

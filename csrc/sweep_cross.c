@@ -83,7 +83,7 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
     if (count == 0)
         return;
     s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
-    if (s->kernel->walk_plain && s->state.rows == 0)
+    if (s->planar && s->state.rows == 0)
         s->kernel->walk_plain(&s->walk[way], node, count, &s->state);
     else
         s->kernel->walk(&s->walk[way], node, count, &s->state);

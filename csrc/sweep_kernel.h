@@ -4,30 +4,33 @@
 
 #include "chain.h"
 #include "lanes.h"
+#include "shape.h"
 
-enum { RD_PLAIN = 7 }; /* complex lanes of an element in a walk without rows */
+enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
 
 /* what a node term needs besides adding masses */
 enum rd_trait {
     RD_COUPLED = 1, /* a coordinate is held or two are coupled */
     RD_SPRUNG = 2,  /* it has stiffness */
     RD_HINGED = 4,  /* a hinge on its right */
+    RD_SKEW = 8,    /* its mass couples z and beta, far from an eccentric one */
 };
 
 enum { RD_PAIRS_MAX = RD_WIDTH_MAX * (RD_WIDTH_MAX + 1) / 2 };
 
 /* What RD_LANES frequencies share with every element: scales and complex factors. */
 struct sweep_block {
-    int bends;                 /* the chain has bending: z, beta and F_z,beta exist */
-    int channel[RD_WIDTH_MAX]; /* enum rd_channel of each coordinate */
-    int arm[RD_WIDTH_MAX];     /* 1 for z in bending */
-    lanes z[RD_WIDTH_MAX];     /* scale of each coordinate: u = z u^, f = f^/z */
-    lanes ratio[RD_WIDTH_MAX]; /* z_beta/z_i */
-    cv flex[RD_PAIRS_MAX];     /* 1/(section z_i z_j) */
-    cv phi;                    /* tension/section */
-    cv pull;                   /* tension z_beta^2 */
-    cv slack;                  /* 1/(tension z_z^2) */
-    cv spring, inertia;        /* factors of node stiffness and mass */
+    int bends;                  /* the chain has bending: z, beta and F_z,beta exist */
+    int channel[RD_WIDTH_MAX];  /* enum rd_channel of each coordinate */
+    int arm[RD_WIDTH_MAX];      /* 1 for z in bending */
+    lanes z[RD_WIDTH_MAX];      /* scale of each coordinate: u = z u^, f = f^/z */
+    lanes ratio[RD_WIDTH_MAX];  /* z_beta/z_i */
+    cv flex[RD_PAIRS_MAX];      /* 1/(section z_i z_j) */
+    struct shape_series series; /* of phi = tension/section */
+    cv pull;                    /* tension z_beta^2 */
+    cv slack;                   /* 1/(tension z_z^2) */
+    cv spring, inertia;         /* factors of node stiffness and mass */
+    int real;                   /* spring and inertia are */
 };
 
 /* What depends on the direction of the walk as well: backward all is seen with u -> D u. */

@@ -3,6 +3,9 @@
 
 #include "sweep_order.h"
 
+#include <math.h>
+#include <stdbool.h>
+
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 enum {
@@ -30,6 +33,16 @@ static size_t levels_most(const struct rd_chain *chain)
     return levels;
 }
 
+/* Mass that couples z and beta and whose determinant does not cancel, such as the end correction of
+   tensed elements. The one of an eccentric mass does: it needs its rank-one parts. */
+static bool is_skew(const struct rd_chain *chain, const double *mass, size_t i, size_t j)
+{
+    const size_t w = chain->width;
+    const double both = mass[i * w + j] * mass[i * w + j];
+    return chain->coordinate[i] == RD_Z && chain->coordinate[j] == RD_BETA &&
+           fabs(mass[i * (w + 1)] * mass[j * (w + 1)] - both) >= 0.5 * both;
+}
+
 /* what a node term needs besides adding masses */
 static uint8_t trait_of(const struct rd_chain *chain, size_t t)
 {
@@ -44,8 +57,11 @@ static uint8_t trait_of(const struct rd_chain *chain, size_t t)
             const size_t at = (t * w + i) * w + j;
             if (chain->stiffness[at] != 0.0)
                 trait |= RD_SPRUNG;
-            if (i != j && (chain->stiffness[at] != 0.0 || chain->mass[at] != 0.0))
-                trait |= RD_COUPLED;
+            if (i < j && (chain->stiffness[at] != 0.0 || chain->mass[at] != 0.0))
+                trait |=
+                    chain->stiffness[at] == 0.0 && is_skew(chain, chain->mass + t * w * w, i, j)
+                        ? RD_SKEW
+                        : RD_COUPLED;
         }
     }
     return (uint8_t)trait;
@@ -77,7 +93,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
     if (chain->distinct <= DISTINCT_MOST)
         coefficients = take_lanes(workspace, chain->distinct * coefs, sizeof *coefficients);
     cv *plain = NULL;
-    if (chain->distinct <= DISTINCT_MOST && w == 2)
+    if (chain->distinct <= DISTINCT_MOST && kernels[w - 1]->walk_plain)
         plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *plain);
     uint8_t *trait = rd_take(workspace, chain->terms, sizeof *trait);
     size_t *order = rd_take(workspace, factors->count, sizeof *order);
@@ -90,6 +106,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
         .sym = sym,
         .carried = carry->count,
         .swapped = swapped,
+        .planar = kernels[w - 1]->walk_plain && (w == 2 || chain->coordinate[w - 1] == RD_BETA),
         .carry = carried,
         .meet = meeting,
         .rank = rank,

@@ -15,6 +15,7 @@ struct sweep {
     size_t sym;     /* and in U */
     size_t carried; /* ports whose rows are carried: the fewer */
     int swapped;    /* the carried ports are the drives */
+    int planar;     /* without rows the walk goes by minors */
     struct taps carry, meet;
     size_t *rank;           /* (carried) */
     size_t records;         /* different nodes where parts meet */

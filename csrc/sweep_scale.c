@@ -124,7 +124,11 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
     }
     block->spring = spring;
     block->inertia = inertia;
-    block->phi = c_mul(tension, soft);
+    if (block->bends)
+        shape_prepare(c_mul(tension, soft), &block->series);
+    block->real = 1;
+    for (size_t lane = 0; lane < RD_LANES; lane++)
+        block->real = block->real && spring.im[lane] == 0.0 && inertia.im[lane] == 0.0;
     block->pull = times(tension, last * last);
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++) {

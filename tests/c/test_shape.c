@@ -31,7 +31,9 @@ static void near(cv value, double complex exact)
 static void test_tensed(double complex theta)
 {
     struct shape_lanes p;
-    shape_functions(RD_TENSED, lanes_of(theta), &p);
+    struct shape_series series;
+    shape_prepare(lanes_of(theta), &series);
+    shape_functions(RD_TENSED, &series, 1.0, &p);
     const long double complex x = theta, t = csqrtl(x);
     const long double complex tau = ctanhl(t) / t;
     near(p.tau, (double complex)tau);
@@ -50,7 +52,9 @@ static void test_tensed(double complex theta)
 static void test_rigid(double complex theta)
 {
     struct shape_lanes p;
-    shape_functions(RD_RIGID, lanes_of(theta), &p);
+    struct shape_series series;
+    shape_prepare(lanes_of(theta), &series);
+    shape_functions(RD_RIGID, &series, 1.0, &p);
     const double complex q = 1.0 + theta / 3.0;
     near(p.tau, 1.0 / q);
     near(p.P0, (1.0 + theta / 12.0) / q);
