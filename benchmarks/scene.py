@@ -19,7 +19,13 @@ KINDS = {
 
 
 def model(
-    kind: str, elements: int, *, twist: bool, ends: str = "clamped", rotary: bool = False
+    kind: str,
+    elements: int,
+    *,
+    twist: bool,
+    ends: str = "clamped",
+    rotary: bool = False,
+    element: str = "rigid",
 ) -> rd.Model:
     """Compile the scene; with `rotary` the elements are rigid bodies, mu (L/n)^2/12."""
     rope = rd.Rope(
@@ -36,7 +42,7 @@ def model(
         damping=rd.StiffnessDamping(1e-4),
         parts=[] if kind == "uniform" else _masses(kind, elements),
     )
-    return scene.compile(elements=elements, element="rigid")
+    return scene.compile(elements=elements, element=element)
 
 
 def _masses(kind: str, elements: int) -> list[rd.PointMass]:
@@ -55,7 +61,8 @@ def chain_of_different(elements: int) -> rd.Model:
     chain = uniform.chain
     length = random.uniform(0.5, 1.5, elements)
     length *= LENGTH / length.sum()
-    mass = chain.mass[chain.term_of] * random.uniform(1, 2, (elements + 1, 1, 1))
+    mass = chain.mass[chain.term_of]
+    mass *= random.uniform(1, 2, (elements + 1, 1, 1))
     different = chain._replace(
         length=length,
         tension=np.full(elements, TENSION),
@@ -63,7 +70,7 @@ def chain_of_different(elements: int) -> rd.Model:
         first=np.arange(elements + 1, dtype=np.int32),
         element=np.arange(elements, dtype=np.int32),
         mass=mass,
-        stiffness=np.zeros_like(mass),
+        stiffness=np.zeros(mass.shape),
         held=chain.held[chain.term_of],
         term=np.arange(elements + 1, dtype=np.int32),
     )

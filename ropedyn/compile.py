@@ -77,8 +77,9 @@ def section(rope: Rope) -> NDArray[np.float64]:
 
 def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArray[np.float64]:
     nodes, begins = np.append(counts, 1), np.append(0, np.cumsum(counts))
-    x = np.arange(begins[-1] + 1) - np.repeat(begins, nodes)
-    x = x * np.repeat(np.append(np.diff(stations) / counts, 0.0), nodes)
+    x = np.arange(begins[-1] + 1, dtype=np.float64)
+    x -= np.repeat(begins, nodes)
+    x *= np.repeat(np.append(np.diff(stations) / counts, 0.0), nodes)
     x += np.repeat(stations, nodes)
     x.flags.writeable = False
     return x
@@ -106,13 +107,17 @@ def _chain(
     """Return the chain with so many equal elements between stations."""
     length, which = _distinct(np.diff(stations), counts)
     # a station is a stretch of its own, and so are the nodes of a span if there are any
-    nodes = np.ones(2 * len(counts) + 1, dtype=np.intp)
+    nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
     nodes[1::2] = counts - 1
     present = nodes > 0
     inside, term_inside = np.unique(which[counts > 1], return_inverse=True)
     term = np.empty(len(nodes), dtype=np.int32)
     term[::2] = np.arange(len(stations))
     term[1::2][counts > 1] = len(stations) + term_inside
+    first = (np.cumsum(nodes, dtype=np.int32) - nodes)[present]
+    element = np.repeat(which, 2)[present[:-1]]
+    term = term[present]
+    del nodes, present
     mass, stiffness, held = _terms(scene, kind, stations, length[which], length[inside])
     return Chain(
         kind=kind,
@@ -122,12 +127,12 @@ def _chain(
         length=length,
         tension=np.full(len(length), scene.tension),
         flexibility=np.tile(section(scene.rope), (len(length), 1, 1)),
-        first=(np.cumsum(nodes) - nodes)[present].astype(np.int32),
-        element=np.repeat(which, 2)[present[:-1]],
+        first=first,
+        element=element,
         mass=mass,
         stiffness=stiffness,
         held=held,
-        term=term[present],
+        term=term,
     )
 
 
@@ -144,14 +149,15 @@ def _terms(
     are those of the elements of all spans.
     """
     width = len(scene.coordinates)
-    beside = np.concatenate([lengths / 2, [0.0], inside])
-    beside[1 : len(stations)] += lengths / 2
+    beside = np.concatenate([lengths, [0.0], inside])
+    beside[1 : len(stations)] += lengths
+    beside[: len(stations)] /= 2
     mass = np.zeros((len(beside), width, width))
-    diagonal = np.arange(width)
-    mass[:, diagonal, diagonal] = np.outer(beside, _inertia(scene))
+    for k, inertia in enumerate(_inertia(scene)):
+        np.multiply(beside, inertia, out=mass[:, k, k])
     if kind == KINDS.index("tensed") and "beta" in scene.coordinates:
         _correct_ends(scene, lengths, mass[: len(stations)])
-    stiffness = np.zeros_like(mass)
+    stiffness = np.zeros(mass.shape)
     held = np.zeros((len(beside), width), dtype=np.uint8)
     number = {c: k for k, c in enumerate(scene.coordinates)}
     for station, term in _standing(scene, stations):
@@ -197,5 +203,5 @@ def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int
         yield station, NodeTerm(stiffness=end.spring, held=held)
     between = (stations[1:] + stations[:-1]) / 2
     nearest = np.searchsorted(between, [part.x for part in scene.parts])
-    for station, part in zip(nearest.tolist(), scene.parts):
+    for station, part in zip(nearest, scene.parts):
         yield station, part.term()

@@ -484,6 +484,32 @@ def test_chain_with_parts_responds_as_the_exact_discrete_one(element, parts, f):
     check(model, f, "beta", int(np.abs(model.x - 0.8).argmin()), bound=BOUND)
 
 
+HANGING = {
+    "light and heavy": [rd.PointMass(0.31, 1e4, polar_inertia=20.0), rd.PointMass(0.8, 1e-5)],
+    "of every kind": [
+        rd.PointMass(0.2, 0.05, rotary_inertia=1e-4, polar_inertia=1e-5),
+        rd.Spring(0.55, 300.0),
+        rd.Spring(0.71, -0.2, coordinate="alpha"),
+        rd.Support(0.9, coordinate="alpha"),
+        rd.PointMass(1.13, 0.2, rotary_inertia=1e-3),
+    ],
+}
+
+
+@pytest.mark.parametrize("f", [1.0, 111.0, 1111.0])
+@pytest.mark.parametrize("damping", DAMPINGS)
+@pytest.mark.parametrize("parts", HANGING)
+@pytest.mark.parametrize("element", ["rigid", "tensed"])
+def test_laid_rope_of_different_elements_responds_as_the_exact_discrete_one(
+    element, parts, damping, f
+):
+    rope = WIDE.replace(axial_stiffness=None, lay_slope=0.3)
+    laid = rd.Scene(rope, tension=40.0, damping=DAMPINGS[damping], parts=HANGING[parts])
+    model = laid.compile(elements=9, element=element)
+    for drive in ("z", "alpha"):
+        check(model, f, drive, 4, bound=BOUND)
+
+
 # resonances ------------------------------------------------------------------------------------
 
 
