@@ -187,6 +187,7 @@ def resident(name: str) -> float:
 def report(rows: list[Row], numbers: str, peak: dict[str, float]) -> str:
     kinds = "\n".join(f"- {name}: {text}." for name, text in scene.KINDS.items())
     count = ", ".join(f"{fewer(n)} at n = {n}" for n in ELEMENTS)
+    bare = peak["bare"]
     return f"""# Frequency response
 
 {timing.machine()}. T = 2830 N, B = 1.54 N m^2, 1.35 m, 0.1017 kg/m, clamped,
@@ -200,8 +201,8 @@ The sweep answers {len(FREQUENCY)} frequencies; SciPy is given fewer, filling th
 included:
 {count}.
 Medians of the thread's time of calls in turn, assembly of the model left out. Errors are the
-largest relative ones over SciPy's frequencies: at n = 8 against 40 digits at every tenth of them, beyond against the sweep,
-whose own bound (`rounding_error`) stands beside them.
+largest relative ones over SciPy's frequencies: at n = 8 against 40 digits at every tenth of them,
+beyond against the sweep, whose own bound (`rounding_error`) stands beside them.
 
 ## Time per node and frequency
 
@@ -223,8 +224,8 @@ Exponent p of time ~ n^p between n = {ELEMENTS[-2]} and {ELEMENTS[-1]}:
 ## Memory
 
 {LARGEST} different elements x {len(FREQUENCY)} frequencies, width 2, in a fresh process: resident
-memory peaks {peak["peak"] - peak["bare"]:.0f} MB above the {peak["bare"]:.0f} MB of Python and its imports;
-{peak["model"] - peak["bare"]:.0f} MB are the model, {peak["peak"] - peak["model"]:.0f} MB the call, which
+memory peaks {peak["peak"] - bare:.0f} MB above the {bare:.0f} MB of Python and its imports;
+{peak["model"] - bare:.0f} MB are the model, {peak["peak"] - peak["model"]:.0f} MB the call, which
 takes {peak["seconds"]:.1f} s.
 """
 
