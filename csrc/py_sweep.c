@@ -3,14 +3,15 @@
 
 #include "sweep.h"
 
-/* the tuple (run (count, 2), average (5 + width)) that py_runs made, as a view */
+/* the tuple (run (count, 2), average) that py_runs made, as a view; the averages are length,
+   tension, flexibility, mass (width) and the rigid body's sums */
 struct py_runs {
     struct rd_runs runs;
     PyArrayObject *run;
     PyArrayObject *average;
 };
 
-enum { AVERAGES = 2 + RD_CHANNELS };
+enum { AVERAGES = 2 + RD_CHANNELS, BODY = sizeof(struct rd_body) / sizeof(double) };
 
 static int runs_parse(PyObject *object, const struct rd_chain *chain, struct py_runs *parsed)
 {
@@ -25,7 +26,7 @@ static int runs_parse(PyObject *object, const struct rd_chain *chain, struct py_
     if (parsed->run == NULL)
         return -1;
     parsed->average = py_array(average, NPY_DOUBLE, 1,
-                               (npy_intp[]){AVERAGES + (npy_intp)chain->width}, "average");
+                               (npy_intp[]){AVERAGES + BODY + (npy_intp)chain->width}, "average");
     if (parsed->average == NULL)
         return -1;
     struct rd_runs *runs = &parsed->runs;
@@ -36,6 +37,7 @@ static int runs_parse(PyObject *object, const struct rd_chain *chain, struct py_
     runs->tension = value[1];
     memcpy(runs->flexibility, value + 2, sizeof runs->flexibility);
     memcpy(runs->mass, value + AVERAGES, chain->width * sizeof *runs->mass);
+    memcpy(&runs->body, value + AVERAGES + chain->width, sizeof runs->body);
     runs->longest = 0;
     size_t end = 0;
     for (size_t k = 0; k < runs->count; k++) {
@@ -71,7 +73,7 @@ PyObject *py_runs(PyObject *module, PyObject *arguments)
     rd_runs_find(&parsed.chain, found, &runs);
     Py_END_ALLOW_THREADS
     run = py_new(NPY_UINTP, 2, (npy_intp[]){(npy_intp)runs.count, 2});
-    average = py_new(NPY_DOUBLE, 1, (npy_intp[]){AVERAGES + (npy_intp)parsed.chain.width});
+    average = py_new(NPY_DOUBLE, 1, (npy_intp[]){AVERAGES + BODY + (npy_intp)parsed.chain.width});
     if (run == NULL || average == NULL)
         goto done;
     memcpy(PyArray_DATA((PyArrayObject *)run), found, runs.count * sizeof *found);
@@ -80,6 +82,7 @@ PyObject *py_runs(PyObject *module, PyObject *arguments)
     value[1] = runs.tension;
     memcpy(value + 2, runs.flexibility, sizeof runs.flexibility);
     memcpy(value + AVERAGES, runs.mass, parsed.chain.width * sizeof *runs.mass);
+    memcpy(value + AVERAGES + parsed.chain.width, &runs.body, sizeof runs.body);
     result = PyTuple_Pack(2, run, average);
 done:
     PyMem_RawFree(found);

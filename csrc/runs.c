@@ -83,4 +83,5 @@ void rd_runs_find(const struct rd_chain *chain, struct rd_run *run, struct rd_ru
     *runs = (struct rd_runs){.count = count, .longest = longest, .run = run};
     average(chain, runs);
     average_mass(chain, runs);
+    rd_body_find(chain, &runs->body);
 }

@@ -2,6 +2,7 @@
 #ifndef RD_RUNS_H
 #define RD_RUNS_H
 
+#include "body.h"
 #include "chain.h"
 #include "status.h"
 
@@ -20,6 +21,7 @@ struct rd_runs {
     double tension;                  /* [N] mean over the length */
     double flexibility[RD_CHANNELS]; /* mean S_cc over the length */
     double mass[RD_WIDTH_MAX];       /* per length, geometric mean of nodes that have any */
+    struct rd_body body;
 };
 
 /* places needed for the runs of a chain */

@@ -1,0 +1,75 @@
+/* A chain as a rigid body: how its nodes resist its motion as a whole. */
+#include "body.h"
+
+#include <math.h>
+
+static void add_node(const struct rd_chain *chain, size_t t, double x, struct rd_body *body)
+{
+    const size_t w = chain->width;
+    for (size_t i = 0; i < w; i++) {
+        const size_t at = (t * w + i) * w + i;
+        const double n[2] = {fabs(chain->mass[at]), fabs(chain->stiffness[at])};
+        const int held = chain->held[t * w + i];
+        body->sum[i][0] += n[0];
+        body->sum[i][1] += held ? INFINITY : n[1];
+        if (chain->coordinate[i] != RD_Z)
+            continue;
+        for (int k = 0; k < 2 && !held; k++) {
+            body->moment[0][k] += n[k];
+            body->moment[1][k] += x * n[k];
+            body->moment[2][k] += x * x * n[k];
+        }
+        body->pins += held;
+        body->pin = held ? x : body->pin;
+    }
+}
+
+void rd_body_find(const struct rd_chain *chain, struct rd_body *body)
+{
+    *body = (struct rd_body){.length = 0.0};
+    for (size_t i = 0; i < chain->nodes; i++) {
+        add_node(chain, (size_t)chain->term_of[i], body->length, body);
+        if (i + 1 < chain->nodes)
+            body->length += chain->length[chain->element_of[i]];
+    }
+}
+
+/* spring = 0 on something held is still held */
+static double total(const double *pair, double lambda, double spring)
+{
+    return lambda * pair[0] + (pair[1] > 0.0 ? spring * pair[1] : 0.0);
+}
+
+static double inverse_of(double resistance)
+{
+    return resistance > 0.0 ? 1.0 / resistance : 0.0;
+}
+
+/* about the pin, or about the centre of what resists: sum x^2 n - (sum x n)^2/sum n */
+static double moment_of(const struct rd_body *body, double lambda, double spring)
+{
+    double n[3];
+    for (int k = 0; k < 3; k++)
+        n[k] = total(body->moment[k], lambda, spring);
+    if (body->pins > 1.0)
+        return INFINITY;
+    if (body->pins == 1.0)
+        return n[2] - body->pin * (2.0 * n[1] - body->pin * n[0]);
+    return n[2] - n[1] * n[1] * inverse_of(n[0]);
+}
+
+double rd_body_receptance(const struct rd_body *body, const struct rd_chain *chain, size_t i,
+                          double lambda, double spring, double tension)
+{
+    const size_t last = chain->width - 1;
+    const double L = body->length, alone = inverse_of(total(body->sum[i], lambda, spring));
+    const int32_t c = chain->coordinate[i];
+    const int turns = chain->coordinate[last] == RD_BETA && chain->kind != RD_DIFFERENCE;
+    if (!turns || (c != RD_Z && c != RD_BETA))
+        return alone;
+    const double turned =
+        inverse_of(total(body->sum[last], lambda, spring) +
+                   fmax(moment_of(body, lambda, spring), 0.0) + fabs(tension) * L);
+    /* the ends of a body that turns about its middle */
+    return c == RD_BETA ? turned : alone + 0.25 * L * L * turned;
+}
