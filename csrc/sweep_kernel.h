@@ -52,8 +52,8 @@ struct sweep_state {
     cv U[RD_PAIRS_MAX];
     int absorbed; /* the node ahead is part of U already */
     size_t rows;  /* of E that are under way */
-    cv *E;        /* (rows, width), inside E_all */
-    cv *E_all;    /* (all carried ports, width) */
+    cv *E;        /* (rows, width), inside E_all: a port's row, its companion, .. */
+    cv *E_all;    /* (all carried ports, 2, width) */
 };
 
 struct sweep_kernel {

@@ -64,8 +64,8 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
     rd_taps_find(meet, w, &meeting, workspace);
     size_t *rank = rd_take(workspace, carry->count, sizeof *rank);
     const size_t records = meeting.tap ? rd_taps_nodes(&meeting) : meeting.count;
-    cv *record = take_lanes(workspace, records * (sym + carry->count * w), sizeof *record);
-    cv *rows = take_lanes(workspace, carry->count * w, sizeof *rows);
+    cv *record = take_lanes(workspace, records * (sym + 2 * carry->count * w), sizeof *record);
+    cv *rows = take_lanes(workspace, 2 * carry->count * w, sizeof *rows);
     cv *table = take_lanes(workspace, levels_most(runs) * coefs, sizeof *table);
     cv *triple = take_lanes(workspace, 2 * coefs, sizeof *triple);
     cv *value = take_lanes(workspace, carry->count, sizeof *value);
