@@ -114,6 +114,17 @@ def tensed(coordinates, S, length, tension):
     if tension == 0:
         zero = [[mpf(0)] * w for _ in range(w)]
         return transfer(coordinates, length), cantilever(coordinates, S, length), zero
+    # from pieces shorter than 1/kappa: the exponential of a long one is all growth
+    halvings = max(0, int(mpmath.ceil(mpmath.log(abs(tension * S[2][2]) * length**2, 4))))
+    piece = exponential(coordinates, S, length / 2**halvings, tension)
+    for _ in range(halvings):
+        piece = joined(piece, piece)
+    return piece
+
+
+def exponential(coordinates, S, length, tension):
+    """(F, G, Q) from exp(l E), E of the state (u, f) with the static section and tension."""
+    w = len(coordinates)
     E = mpmath.zeros(2 * w)
     for i, a in enumerate(coordinates):
         for j, b in enumerate(coordinates):
@@ -127,6 +138,15 @@ def tensed(coordinates, S, length, tension):
     )
     back = inverse(e22)
     return turned(back), times(e12, back), times(back, e21)
+
+
+def joined(one, two):
+    """M = (I + G1 Q2)^-1: F2 M F1, G2 + F2 M G1 F2^T, Q1 + F1^T Q2 M F1."""
+    (F1, G1, Q1), (F2, G2, Q2) = one, two
+    M = inverse(plus(identity(len(F1)), times(G1, Q2)))
+    F = times(F2, times(M, F1))
+    G = plus(G2, times(F2, times(times(M, G1), turned(F2))))
+    return F, G, plus(Q1, times(turned(F1), times(Q2, times(M, F1))))
 
 
 @dataclasses.dataclass
@@ -172,6 +192,9 @@ class Exact:
             return [[mpf(1)]], [[length / T]], [[mpf(0)]]
         if self.model.element == "tensed":
             return tensed(c, S, length, T)
+        if self.model.element == "difference":
+            zero = [[mpf(0)] * len(c) for _ in c]
+            return identity(len(c)), cantilever(c, S, length), zero
         F, G = transfer(c, length), cantilever(c, S, length)
         if T == 0:
             return F, G, [[mpf(0)] * len(c) for _ in c]
@@ -283,8 +306,23 @@ def omega_of(f):
     return 2 * mpmath.pi * mpf(f)
 
 
+def response(exact, f, drive, at):
+    """The response at (coordinate, node) per unit force at (coordinate, node); f in Hz.
+
+    At 0 Hz a part of the chain may be a mechanism though the whole is none, and has no inverse:
+    there it is the response at 1e-60 rad/s, which differs from the one at rest by 1e-100.
+    """
+    try:
+        return exact.receptance(omega_of(f), drive, [at])[0]
+    except ZeroDivisionError:
+        if f != 0:
+            raise
+        with mpmath.workdps(300):
+            return exact.receptance(mpf(10) ** -60, drive, [at])[0]
+
+
 def relative(value, exact):
-    """|value/exact - 1|, 0 where both are 0."""
+    """|value - exact|/|exact|, 0 where both are 0."""
     if exact == 0:
         return 0.0 if value == 0 else float("inf")
     return float(abs(mpmath.mpmathify(complex(value)) / exact - 1))
