@@ -3,6 +3,17 @@
 
 #include <math.h>
 
+/* one weight more: all terms are positive, so that a heavy node costs no digit (Welford) */
+static void add_weight(double n, double x, double *weight, double *centre, double *moment)
+{
+    if (n == 0.0)
+        return;
+    const double away = x - *centre;
+    *weight += n;
+    *centre += away * (n / *weight);
+    *moment += n * away * (x - *centre);
+}
+
 static void add_node(const struct rd_chain *chain, size_t t, double x, struct rd_body *body)
 {
     const size_t w = chain->width;
@@ -14,11 +25,8 @@ static void add_node(const struct rd_chain *chain, size_t t, double x, struct rd
         body->sum[i][1] += held ? INFINITY : n[1];
         if (chain->coordinate[i] != RD_Z)
             continue;
-        for (int k = 0; k < 2 && !held; k++) {
-            body->moment[0][k] += n[k];
-            body->moment[1][k] += x * n[k];
-            body->moment[2][k] += x * x * n[k];
-        }
+        for (int k = 0; k < 2 && !held; k++)
+            add_weight(n[k], x, body->weight + k, body->centre + k, body->moment + k);
         body->pins += held;
         body->pin = held ? x : body->pin;
     }
@@ -45,17 +53,20 @@ static double inverse_of(double resistance)
     return resistance > 0.0 ? 1.0 / resistance : 0.0;
 }
 
-/* about the pin, or about the centre of what resists: sum x^2 n - (sum x n)^2/sum n */
+/* about the pin, or about the common centre of masses m and springs k:
+       J_m + J_k + m k/(m + k) (x_m - x_k)^2 */
 static double moment_of(const struct rd_body *body, double lambda, double spring)
 {
-    double n[3];
-    for (int k = 0; k < 3; k++)
-        n[k] = total(body->moment[k], lambda, spring);
+    const double m = lambda * body->weight[0], k = spring * body->weight[1];
+    const double own = lambda * body->moment[0] + spring * body->moment[1];
     if (body->pins > 1.0)
         return INFINITY;
-    if (body->pins == 1.0)
-        return n[2] - body->pin * (2.0 * n[1] - body->pin * n[0]);
-    return n[2] - n[1] * n[1] * inverse_of(n[0]);
+    if (body->pins == 1.0) {
+        const double a = body->centre[0] - body->pin, b = body->centre[1] - body->pin;
+        return own + m * a * a + k * b * b;
+    }
+    const double apart = body->centre[0] - body->centre[1];
+    return own + m * inverse_of(m + k) * k * apart * apart;
 }
 
 double rd_body_receptance(const struct rd_body *body, const struct rd_chain *chain, size_t i,
@@ -67,9 +78,8 @@ double rd_body_receptance(const struct rd_body *body, const struct rd_chain *cha
     const int turns = chain->coordinate[last] == RD_BETA && chain->kind != RD_DIFFERENCE;
     if (!turns || (c != RD_Z && c != RD_BETA))
         return alone;
-    const double turned =
-        inverse_of(total(body->sum[last], lambda, spring) +
-                   fmax(moment_of(body, lambda, spring), 0.0) + fabs(tension) * L);
+    const double turned = inverse_of(total(body->sum[last], lambda, spring) +
+                                     moment_of(body, lambda, spring) + fabs(tension) * L);
     /* the ends of a body that turns about its middle */
     return c == RD_BETA ? turned : alone + 0.25 * L * L * turned;
 }

@@ -4,15 +4,17 @@
 
 #include "chain.h"
 
-/* Sums over the nodes of |mass| (first of a pair) and |stiffness| (second) of each coordinate, and
-   of z times powers of the distance x from the left end. */
+/* |mass| (first of a pair) and |stiffness| (second) of the nodes: sums of each coordinate, and of z
+   where it is not held their centre and moment about it. */
 struct rd_body {
     double sum[RD_WIDTH_MAX]
-              [2];       /* [kg, kg m^2], [N/m, N m]; stiffness INFINITY where one is held */
-    double moment[3][2]; /* n, x n, x^2 n of z where it is not held */
-    double pins;         /* nodes where z is held */
-    double pin;          /* x of the last of them [m] */
-    double length;       /* [m] */
+              [2];    /* [kg, kg m^2], [N/m, N m]; stiffness INFINITY where one is held */
+    double weight[2]; /* sum n [kg, N/m] */
+    double centre[2]; /* sum n x/sum n [m] from the left end */
+    double moment[2]; /* sum n (x - centre)^2 [kg m^2, N m] */
+    double pins;      /* nodes where z is held */
+    double pin;       /* x of the last of them [m] */
+    double length;    /* [m] */
 };
 
 void rd_body_find(const struct rd_chain *chain, struct rd_body *body);

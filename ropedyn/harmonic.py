@@ -182,10 +182,13 @@ def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:
 
 
 def _relative(value: Complex, error: Real) -> Real:
-    """Return the relative error: 0 where both are 0, infinite where only the value is."""
+    """Return the relative error: 0 where both are 0, infinite where only the value is.
+
+    Below the smallest normal number digits vanish however small the error is.
+    """
     size = np.abs(value)
     ratio = np.full(size.shape, np.inf)
-    np.divide(error, size, out=ratio, where=size > 0)
+    np.divide(error + np.finfo(float).tiny, size, out=ratio, where=size > 0)
     return np.where((size == 0) & (error == 0), 0.0, ratio)
 
 
