@@ -106,11 +106,14 @@ def tensed(coordinates, S, length, tension):
         bb = S[2][2]
         kappa = mpmath.sqrt(tension * bb)
         t = kappa * length
-        tanh, sech = mpmath.tanh(t), mpmath.sech(t)
-        F = [[mpf(1), tanh / kappa], [mpf(0), sech]]
+        tau, sech = mpmath.tanh(t) / kappa, mpmath.sech(t)
+        if mpmath.im(kappa**2) == 0:
+            # tan and cos under compression
+            tau, sech = mpmath.re(tau), mpmath.re(sech)
+        F = [[mpf(1), tau], [mpf(0), sech]]
         cross = (1 - sech) / tension
-        G = [[(length - tanh / kappa) / tension, cross], [cross, bb * tanh / kappa]]
-        return F, G, [[mpf(0), mpf(0)], [mpf(0), tension * tanh / kappa]]
+        G = [[(length - tau) / tension, cross], [cross, bb * tau]]
+        return F, G, [[mpf(0), mpf(0)], [mpf(0), tension * tau]]
     if tension == 0:
         zero = [[mpf(0)] * w for _ in range(w)]
         return transfer(coordinates, length), cantilever(coordinates, S, length), zero

@@ -49,7 +49,8 @@ def error_and_estimate(seed):
             return 0.0, 1.0
         h = response(exact, line.frequency, line.drive, line.response)
         if value == 0:
-            return (0.0 if h == 0 else np.inf), estimate
+            # 0, or less than there are numbers
+            return (0.0 if abs(h) < np.finfo(float).tiny else np.inf), estimate
         return float(abs(h / mpmath.mpmathify(complex(value)) - 1)), estimate
 
 
