@@ -15,7 +15,7 @@ from .answer import Answer, Cost, axes
 from .chain import Chain
 from .errors import SceneError, SolveError
 from .model import Model
-from .port import Point, Ports, cut, ports
+from .port import Point, Ports, cut, ports, stops
 from .table import Table
 from .unit import FORCE, FORCE_UNIT, UNIT
 
@@ -172,7 +172,7 @@ def _cut(
     """Return the chain with nodes under the loads, where they stand, and which the model has."""
     chain, x = model.chain.only(component), model.x
     if model.element == "tensed":
-        chain, x = cut(chain, x, [point[1] for point in loads])
+        chain, x = cut(chain, x, [*(point[1] for point in loads), *stops(chain, x)])
     return chain, x, np.flatnonzero(np.isin(x, model.x))
 
 

@@ -19,7 +19,7 @@ from .chain import Chain
 from .errors import SceneError, SolveError
 from .frf import FRF
 from .model import Model
-from .port import Point, cut, is_force, locate, moving, ports
+from .port import Point, cut, is_force, locate, moving, ports, stops
 from .unit import OF_FORCE, QUANTITIES
 
 LANES = 16
@@ -89,7 +89,10 @@ class Question:
                     f'"tensed", got {point} between nodes of {model.element!r} elements'
                 )
             between = []
-        longer, x = cut(chain, model.x, [p[1] for p in between])
+        positions = [p[1] for p in between]
+        if model.element == "tensed":
+            positions += stops(chain, model.x)
+        longer, x = cut(chain, model.x, positions)
         if longer is chain:
             return chain, x, model.runs[model.components.index(self.component)]
         return longer, x, _core.runs(longer)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import Chain
-from .check import NEAR
+from .check import COORDINATES, NEAR
 from .unit import OF_FORCE
 
 Point = tuple[str, float]
@@ -80,6 +80,30 @@ def ports(
             node[k] = left
             row[k] = _core.shape(chain, int(chain.element_of[left]), s)[at]
     return Ports(node, row, force if force.any() else None)
+
+
+def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
+    """Return where tensed elements are cut so that none is near its own critical load.
+
+    Under compression an element of kappa l = pi/2, kappa^2 = |T| S_bb, buckles as a cantilever
+    though the rope may not: F, G and Q have no digits around it. Pieces have kappa l <= 1.
+
+    Parameters
+    ----------
+    chain : Chain
+        Of tensed elements; without bending nothing buckles.
+    x : ndarray, shape (nodes,)
+        Where its nodes stand [m].
+    """
+    if COORDINATES.index("beta") not in chain.coordinate:
+        return []
+    kappa = np.sqrt(np.maximum(-chain.tension * chain.flexibility[:, 2, 2], 0.0))
+    pieces = np.ceil(kappa * chain.length).astype(np.intp)[chain.element_of]
+    return [
+        float(at)
+        for e in np.flatnonzero(pieces > 1)
+        for at in np.linspace(x[e], x[e + 1], pieces[e] + 1)[1:-1]
+    ]
 
 
 def cut(

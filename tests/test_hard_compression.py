@@ -57,20 +57,32 @@ def test_response_next_to_and_beyond_the_critical_load(share, n, element, claim)
     )
 
 
+@pytest.mark.parametrize("away", [1e-2, -1e-4, 1e-6, 1e-9, -1e-12])
+@pytest.mark.claim(
+    "FRF and static answer of tensed elements next to their own cantilever critical load, "
+    "pi^2 B/4 l^2: error / condition",
+    reference="mpmath, 60 digits: tests/exact_chain.py",
+    accepted=1e-13,
+)
+def test_tensed_element_next_to_its_own_critical_load_keeps_its_digits(away, claim):
+    # four elements between clamps: the load is the rope's own too
+    model = pushed("tensed", 4, EULER * (1 + away))
+    claim(max(error_over_condition(model, f, ("z", 2))[0] for f in (0.0, 5.0)))
+
+
 @pytest.mark.parametrize("away", [1e-4, -1e-4])
 @pytest.mark.claim(
-    "An element near its own cantilever critical load, pi^2 B/4 l^2, loses digits as the square "
+    "A rigid element near its own cantilever critical load, 3 B/l^2, loses digits as the square "
     "of the distance, and rounding_error does not know: FRF error / condition at 1e-4; use more "
-    "elements",
+    "or tensed elements",
     reference="mpmath, 60 digits: tests/exact_chain.py",
     accepted=1e-7,
     limit=True,
 )
-def test_element_next_to_its_own_critical_load_loses_digits(away, claim):
-    # four elements between clamps: the load is the rope's own too. F, G and Q are 1e4 times their
-    # size and as much less exact: eps 1e8 = 2e-8, and a few
-    model = pushed("tensed", 4, EULER * (1 + away))
-    claim(error_over_condition(model, 5.0, ("z", 2))[0])
+def test_rigid_element_next_to_its_own_critical_load_loses_digits(away, claim):
+    # F, G and Q are 1e4 times their size and as much less exact: eps 1e8 = 2e-8, and a few
+    model = pushed("rigid", 4, 48 / (4 * math.pi**2) * EULER * (1 + away))
+    claim(max(error_over_condition(model, f, ("z", 2))[0] for f in (0.0, 5.0)))
 
 
 @pytest.mark.parametrize(("n", "times"), [(4, 1.216), (8, 1.052), (64, 1.0008)])
