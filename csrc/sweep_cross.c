@@ -112,6 +112,14 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
         s->kernel->open(&s->walk[way], end, &s->state);
 }
 
+/* A heavy node lies between two stretches: rows lose most digits there. */
+static void accompany(struct sweep *s)
+{
+    const size_t w = s->chain->width;
+    for (size_t r = 0; r < s->state.rows; r += 2)
+        sweep_accompany(s->state.E + r * w, (int)w, s->state.E + (r + 1) * w);
+}
+
 /* from node a to a later node b, runs by pieces and the rest element by element; r is the first
    run that ends behind a */
 void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
@@ -132,6 +140,7 @@ void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
                 cross_each(s, 0, a, end - a);
             a = end;
         }
+        accompany(s);
     }
 }
 
@@ -154,5 +163,6 @@ void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
                 cross_each(s, 1, b, b - end);
             b = end;
         }
+        accompany(s);
     }
 }

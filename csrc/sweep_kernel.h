@@ -56,6 +56,21 @@ struct sweep_state {
     cv *E_all;    /* (all carried ports, 2, width) */
 };
 
+/* Rounding moves a row E by eps of its largest entry m in every coordinate: m times 1, -1, i, -i is
+   added to its companion, signs that do not cancel where the terms of E s do. */
+RD_INLINE void sweep_accompany(const cv *E, int width, cv *companion)
+{
+    lanes most = {0};
+    for (int j = 0; j < width; j++) {
+        const lanes size = c_size(E[j]);
+        most = l_select(size > most, size, most);
+    }
+    for (int j = 0; j < width; j++) {
+        const lanes m = j % 2 ? -most : most;
+        companion[j] = c_add(companion[j], j < 2 ? (cv){m, (lanes){0}} : (cv){(lanes){0}, m});
+    }
+}
+
 struct sweep_kernel {
     void (*make_element)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *triple);
     void (*make_coefficients)(const cv *triple, cv *coef);

@@ -3,13 +3,11 @@
 
 /* A response begins: E <- E + motion U + force V,  V = i (I - U), in the walk's coordinates;
    the force is the one on the part to the left of the node, so its sign turns with the walk.
-   Rounding of U moves E by eps of its largest entry m in every coordinate: the companion of E has
-   m times 1, -1, i, -i added, signs that do not cancel where the terms of E s do. */
+   Rounding of U moves E by eps of its largest entry in every coordinate, which its companion says. */
 static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motion,
                                  const double *force, const cv *U, cv *row)
 {
     cv E[W];
-    lanes most = {0};
     KEEP for (int j = 0; j < W; j++)
         E[j] = c_zero();
     KEEP for (int i = 0; i < W; i++) {
@@ -22,15 +20,9 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
             E[j] = c_add(E[j], c_add(c_scale_lanes(u, a), c_scale_lanes(v, b)));
         }
     }
-    KEEP for (int j = 0; j < W; j++) {
-        const lanes size = c_size(E[j]);
-        most = l_select(size > most, size, most);
+    KEEP for (int j = 0; j < W; j++)
         row[j] = c_add(row[j], E[j]);
-    }
-    KEEP for (int j = 0; j < W; j++) {
-        const lanes m = j % 2 ? -most : most;
-        row[W + j] = c_add(row[W + j], j < 2 ? (cv){m, (lanes){0}} : (cv){(lanes){0}, m});
-    }
+    sweep_accompany(E, W, row + W);
 }
 
 /* the solution where both parts meet, and the sizes its rounding grows with */
