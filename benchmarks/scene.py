@@ -5,7 +5,6 @@ import dataclasses
 import numpy as np
 
 import ropedyn as rd
-from ropedyn import _core
 
 LENGTH, DENSITY, BENDING, TENSION = 1.35, 0.1017, 1.54, 2830.0
 """[m], [kg/m], [N m^2], [N]."""
@@ -20,7 +19,13 @@ KINDS = {
 
 
 def model(
-    kind: str, elements: int, *, twist: bool, ends: str = "clamped", rotary: bool = False
+    kind: str,
+    elements: int,
+    *,
+    twist: bool,
+    ends: str = "clamped",
+    rotary: bool = False,
+    element: str = "rigid",
 ) -> rd.Model:
     """Compile the scene; with `rotary` the elements are rigid bodies, mu (L/n)^2/12."""
     rope = rd.Rope(
@@ -37,7 +42,7 @@ def model(
         damping=rd.StiffnessDamping(1e-4),
         parts=[] if kind == "uniform" else _masses(kind, elements),
     )
-    return scene.compile(elements=elements, element="rigid")
+    return scene.compile(elements=elements, element=element)
 
 
 def _masses(kind: str, elements: int) -> list[rd.PointMass]:
@@ -56,18 +61,18 @@ def chain_of_different(elements: int) -> rd.Model:
     chain = uniform.chain
     length = random.uniform(0.5, 1.5, elements)
     length *= LENGTH / length.sum()
-    mass = chain.mass[chain.term_of] * random.uniform(1, 2, (elements + 1, 1, 1))
-    terms = np.arange(elements + 1, dtype=np.int32)
+    mass = chain.mass[chain.term_of]
+    mass *= random.uniform(1, 2, (elements + 1, 1, 1))
     different = chain._replace(
         length=length,
         tension=np.full(elements, TENSION),
         flexibility=np.repeat(chain.flexibility, elements, axis=0),
-        element_of=np.arange(elements, dtype=np.int32),
+        first=np.arange(elements + 1, dtype=np.int32),
+        element=np.arange(elements, dtype=np.int32),
         mass=mass,
-        stiffness=np.zeros_like(mass),
+        stiffness=np.zeros(mass.shape),
         held=chain.held[chain.term_of],
-        term_of=terms,
+        term=np.arange(elements + 1, dtype=np.int32),
     )
     x = np.concatenate([[0.0], np.cumsum(length)])
-    runs = tuple(_core.runs(different.only(group)) for group in uniform.components)
-    return dataclasses.replace(uniform, x=x, chain=different, runs=runs)
+    return dataclasses.replace(uniform, x=x, chain=different)

@@ -21,37 +21,58 @@ static void add_element(const struct rd_blocks *blocks, size_t i, size_t width, 
         }
 }
 
-static enum rd_status add_elements(const struct rd_chain *chain, struct rd_assembly *assembly)
+/* real and imaginary part at complex factors; with factor NULL the elastic and the tension part */
+static enum rd_status find_element(const struct rd_element *element, const double _Complex *factor,
+                                   double *elastic, double *string)
+{
+    double _Complex K[N * N];
+    if (factor == NULL)
+        return rd_element_stiffness(element, elastic, string);
+    const enum rd_status status =
+        rd_element_matrix(element, factor[RD_ELASTIC], factor[RD_STRING], factor[RD_SPRINGS], K);
+    for (size_t k = 0; k < 4 * element->width * element->width; k++) {
+        elastic[k] = creal(K[k]);
+        string[k] = cimag(K[k]);
+    }
+    return status;
+}
+
+static enum rd_status add_elements(const struct rd_chain *chain, const double _Complex *factor,
+                                   struct rd_assembly *assembly)
 {
     double elastic[N * N], string[N * N];
-    int32_t last = -1;
-    for (size_t i = 0; i + 1 < chain->nodes; i++) {
-        if (chain->element_of[i] != last) {
-            last = chain->element_of[i];
-            const struct rd_element element = rd_chain_element(chain, (size_t)last);
-            const enum rd_status status = rd_element_stiffness(&element, elastic, string);
-            if (status != RD_OK)
-                return status;
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const struct rd_element element = rd_chain_span(chain, k);
+        const enum rd_status status = find_element(&element, factor, elastic, string);
+        if (status != RD_OK)
+            return status;
+        for (size_t i = (size_t)chain->first[k]; i < (size_t)chain->first[k + 1]; i++) {
+            add_element(&assembly->elastic, i, chain->width, elastic);
+            add_element(&assembly->string, i, chain->width, string);
         }
-        add_element(&assembly->elastic, i, chain->width, elastic);
-        add_element(&assembly->string, i, chain->width, string);
     }
     return RD_OK;
+}
+
+enum rd_status rd_assemble_elements(const struct rd_chain *chain, const double _Complex *factor,
+                                    struct rd_assembly *assembly)
+{
+    const size_t bytes = chain->nodes * chain->width * chain->width * sizeof(double);
+    memset(assembly->elastic.diagonal, 0, bytes);
+    memset(assembly->string.diagonal, 0, bytes);
+    return add_elements(chain, factor, assembly);
 }
 
 enum rd_status rd_assemble(const struct rd_chain *chain, struct rd_assembly *assembly)
 {
     const size_t block = chain->width * chain->width;
     assert(chain->nodes > 1 && chain->width > 0 && chain->width <= RD_WIDTH_MAX);
-    const size_t bytes = chain->nodes * block * sizeof(double);
     assembly->nodes = chain->nodes;
     assembly->width = chain->width;
-    memset(assembly->elastic.diagonal, 0, bytes);
-    memset(assembly->string.diagonal, 0, bytes);
     for (size_t i = 0; i < chain->nodes; i++) {
         const size_t term = (size_t)chain->term_of[i] * block;
         memcpy(assembly->springs + i * block, chain->stiffness + term, block * sizeof(double));
         memcpy(assembly->mass + i * block, chain->mass + term, block * sizeof(double));
     }
-    return add_elements(chain, assembly);
+    return rd_assemble_elements(chain, NULL, assembly);
 }

@@ -5,6 +5,8 @@
 #include "chain.h"
 #include "status.h"
 
+#include <complex.h>
+
 /* symmetric block tridiagonal matrix: node i meets itself and node i + 1 */
 struct rd_blocks {
     double *diagonal; /* (nodes, width, width) */
@@ -25,5 +27,10 @@ struct rd_assembly {
 
 /* Fills every array of the assembly, all of them the caller's. */
 enum rd_status rd_assemble(const struct rd_chain *chain, struct rd_assembly *assembly);
+
+/* Fills the elements again, at complex factors (RD_PARTS) of which the first three count: the real
+   part into `elastic`, the imaginary one into `string`. With factor NULL as rd_assemble does. */
+enum rd_status rd_assemble_elements(const struct rd_chain *chain, const double _Complex *factor,
+                                    struct rd_assembly *assembly);
 
 #endif

@@ -429,8 +429,8 @@ void rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
     const size_t elements = walk->chain->nodes - 1;
     *steps = 16 * (wanted + 4);
     *pieces = 1;
-    for (size_t r = 0; r < walk->runs; r++) {
-        const size_t count = walk->run[r].count;
+    for (size_t r = 0; r < walk->legs; r++) {
+        const size_t count = walk->leg[r].count;
         size_t levels = 0;
         while (count >> levels > 1)
             levels++;

@@ -15,8 +15,11 @@ enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED };
 
 enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
 
+/* Nodes first[k] .. first[k + 1] - 1 are a stretch: the same term and the same element on their
+   right. The last node, which has no element on its right, is the last stretch. */
 struct rd_chain {
     size_t nodes;              /* elements + 1 */
+    size_t stretches;          /* 2 to nodes */
     size_t width;              /* coordinates of a node, 1 to 4 */
     size_t distinct;           /* different elements */
     size_t terms;              /* different node terms */
@@ -25,14 +28,27 @@ struct rd_chain {
     const double *length;      /* (distinct)              [m] */
     const double *tension;     /* (distinct)              [N] */
     const double *flexibility; /* (distinct, 3, 3)        S, absent channels zero */
-    const int32_t *element_of; /* (nodes - 1)             distinct element right of node i */
+    const int32_t *first;      /* (stretches)             node, increasing from 0 to nodes - 1 */
+    const int32_t *element;    /* (stretches - 1)         distinct element right of its nodes */
+    const int32_t *term;       /* (stretches)             node term at its nodes */
     const double *mass;        /* (terms, width, width)   [kg, kg m, kg m^2] */
     const double *stiffness;   /* (terms, width, width)   [N/m, N, N m] */
     const uint8_t *held;       /* (terms, width)          1: the coordinate cannot move */
-    const int32_t *term_of;    /* (nodes)                 node term at node i */
     const double *hinge;       /* (terms, width) or NULL   compliance between the node and the
                                                            element on its right [rad/(N m), m/N],
                                                            INFINITY: free */
+    const int32_t *element_of; /* (nodes - 1)             element node by node: right of node i */
+    const int32_t *term_of; /* (nodes)                 term node by node; a sweep reads neither */
 };
+
+/* the stretch that a node belongs to, sought from a near one */
+static inline size_t rd_stretch_of(const struct rd_chain *chain, size_t node, size_t near)
+{
+    while ((size_t)chain->first[near] > node)
+        near--;
+    while (near + 1 < chain->stretches && (size_t)chain->first[near + 1] <= node)
+        near++;
+    return near;
+}
 
 #endif

@@ -29,7 +29,9 @@ RD_INLINE void step_fill(const struct piece *piece, _Bool doubled, const lanes *
         step->g[j] = L[j][j];
         /* v of column j: (0 .. 1 .. L_ij/g_j), row j of the transposed factor */
         for (int i = 0; i < W; i++)
-            step->v[j][i] = i < j ? l_fill(0) : i == j ? l_fill(1) : L[i][j] / L[j][j];
+            step->v[j][i] = i < j    ? l_fill(0)
+                            : i == j ? l_fill(1)
+                                     : l_select(L[j][j] == 0.0, l_fill(0), L[i][j] / L[j][j]);
     }
 }
 
@@ -100,10 +102,10 @@ RD_INLINE void term_scale(const struct rd_walk *walk, int32_t term, int32_t befo
 RD_INLINE void walk_node(struct wave *wave, const struct rd_walk *walk, int32_t term,
                          const lanes N[W][W], const struct step *step, _Bool first)
 {
-    const struct rd_chain *chain = walk->chain;
+    const uint8_t *held = rd_walk_held(walk, term);
     lanes V[W][W];
     for (int i = 0; i < W; i++) {
-        if (!first && chain->held[(size_t)term * W + (size_t)i])
+        if (!first && held[i])
             hold(wave, i);
         for (int j = 0; j < W; j++)
             V[i][j] = N[i][j] + step->Q[i][j];
@@ -111,27 +113,27 @@ RD_INLINE void walk_node(struct wave *wave, const struct rd_walk *walk, int32_t 
     node(wave, V);
 }
 
-/* a run of equal elements, by pieces of 2^k of them, the largest first */
-RD_INLINE void run_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_stretch *run,
+/* a leg of equal elements, by pieces of 2^k of them, the largest first */
+RD_INLINE void leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
                         lanes lambda, const lanes *z, const lanes *inverse)
 {
     struct piece level[LEVELS];
     struct step step;
     lanes first[W][W], inner[W][W];
-    const int top = pieces_fill(walk, run, lambda, level);
-    term_scale(walk, run->first, run->before, lambda, z, first);
-    term_scale(walk, run->term, run->element, lambda, z, inner);
-    size_t left = run->count;
+    const int top = pieces_fill(walk, leg, lambda, level);
+    term_scale(walk, leg->first, leg->before, lambda, z, first);
+    term_scale(walk, leg->term, leg->element, lambda, z, inner);
+    size_t left = leg->count;
     for (int k = top; k >= 0; k--) {
         if (left >> k == 0)
             continue;
         step_fill(level + k, k > 0, z, inverse, &step);
         for (; left >> k > 0; left -= (size_t)1 << k) {
-            const _Bool start = left == run->count;
-            walk_node(wave, walk, start ? run->first : run->term, start ? first : inner, &step,
-                      start && run->node == 0);
-            if (W > 2 && walk->strut[run->element])
-                strut_transfer(wave, walk->chain, run->element, &step, z, inverse);
+            const _Bool start = left == leg->count;
+            walk_node(wave, walk, start ? leg->first : leg->term, start ? first : inner, &step,
+                      start && leg == walk->leg);
+            if (W > 2 && walk->strut[leg->element] && (size_t)leg->element < walk->chain->distinct)
+                strut_transfer(wave, walk->chain, leg->element, &step, z, inverse);
             else
                 step_transfer(wave, &step);
             step_comply(wave, &step);
@@ -142,7 +144,7 @@ RD_INLINE void run_walk(struct wave *wave, const struct rd_walk *walk, const str
 /* left end: U = 0 where held; U = 1 and the angle -pi/2 where free */
 RD_INLINE void start(struct wave *wave, const struct rd_walk *walk)
 {
-    const uint8_t *held = walk->chain->held + (size_t)walk->run[0].first * W;
+    const uint8_t *held = rd_walk_held(walk, walk->leg[0].first);
     wave->e = c_make(l_fill(1), l_fill(0));
     wave->turns = l_fill(0);
     for (int i = 0; i < W; i++) {
@@ -166,7 +168,6 @@ RD_INLINE void start(struct wave *wave, const struct rd_walk *walk)
 RD_CLONES
 void WIDTH(count)(const struct rd_walk *walk, const double *lambdas, double *counts)
 {
-    const struct rd_chain *chain = walk->chain;
     lanes lambda, z[W], inverse[W], N[W][W];
     for (int k = 0; k < RD_LANES; k++) {
         double scale[RD_WIDTH_MAX];
@@ -179,14 +180,12 @@ void WIDTH(count)(const struct rd_walk *walk, const double *lambdas, double *cou
         inverse[i] = 1 / z[i];
     struct wave wave;
     start(&wave, walk);
-    for (size_t r = 0; r < walk->runs; r++)
-        run_walk(&wave, walk, walk->run + r, lambda, z, inverse);
+    for (size_t r = 0; r < walk->legs; r++)
+        leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse);
 
-    const int32_t last = chain->term_of[chain->nodes - 1];
-    const int32_t before = chain->element_of[chain->nodes - 2];
-    term_scale(walk, last, before, lambda, z, N);
+    term_scale(walk, walk->last, walk->behind, lambda, z, N);
     for (int i = 0; i < W; i++)
-        if (chain->held[(size_t)last * W + (size_t)i])
+        if (rd_walk_held(walk, walk->last)[i])
             hold(&wave, i);
     node(&wave, N);
     for (int i = 0; i < W; i++)

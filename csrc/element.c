@@ -1,14 +1,14 @@
 /* Elements: massless pieces of rope between two nodes. */
 #include "element.h"
 
+#include "cantilever.h"
 #include "dense.h"
-#include "triple.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-enum { W = RD_WIDTH_MAX };
+enum { W = RD_WIDTH_MAX, N = 2 * RD_WIDTH_MAX };
 
 /* The section force a coordinate's end force causes at the distance s from that end is
    s^power in one channel: axial: F_x; torque: M_alpha; moment: s F_z + M_beta. */
@@ -26,6 +26,24 @@ struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i)
         .tension = chain->tension[i],
         .flexibility = chain->flexibility + i * RD_CHANNELS * RD_CHANNELS,
     };
+}
+
+bool rd_chain_is_hinged(const struct rd_chain *chain, int32_t term)
+{
+    const size_t w = chain->width;
+    for (size_t a = 0; chain->hinge && a < w; a++)
+        if (chain->hinge[(size_t)term * w + a] != 0)
+            return true;
+    return false;
+}
+
+struct rd_element rd_chain_span(const struct rd_chain *chain, size_t stretch)
+{
+    assert(stretch + 1 < chain->stretches);
+    struct rd_element element = rd_chain_element(chain, (size_t)chain->element[stretch]);
+    if (rd_chain_is_hinged(chain, chain->term[stretch]))
+        element.hinge = chain->hinge + (size_t)chain->term[stretch] * chain->width;
+    return element;
 }
 
 /* index of a coordinate in the element, or its width where absent */
@@ -84,60 +102,211 @@ static void transfer(const struct rd_element *element, double s, double *F)
         F[z * w + beta] = s;
 }
 
-bool rd_element_grip(const struct rd_element *element, double *F, double *inverse)
+/* K (n, n) <- K + k v v^T, symmetric to the last bit where each v is 0, +-1 or one other number */
+static void add_square(size_t n, double _Complex k, const double *v, double _Complex *K)
 {
-    transfer(element, element->length, F);
-    cantilever(element, element->length, element->length, inverse);
-    return rd_dense_invert(element->width, inverse);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            K[i * n + j] += k * v[i] * v[j];
 }
 
-/* K (2 width, 2 width) <- [[Q + F^T G^-1 F, -F^T G^-1], [-G^-1 F, G^-1]] */
-static void assemble(size_t w, const double *F, const double *Gi, const double *Q, double *K)
+/* row (2 width) <- factor (u_b - u_a) of coordinate i */
+static void add_change(size_t w, size_t i, double factor, double *row)
 {
-    double Ft[W * W], GiF[W * W], FtGiF[W * W];
-    rd_dense_transpose(w, w, F, Ft);
-    rd_dense_multiply(w, w, w, Gi, F, GiF);
-    rd_dense_multiply(w, w, w, Ft, GiF, FtGiF);
-    const size_t n = 2 * w;
+    row[i] -= factor;
+    row[w + i] += factor;
+}
+
+/* The channels that are constant along the element, torque and axial force: with
+   S^ = S_cc - S_cb S_bc/S_bb,  r = S_cb/S_bb and  e = (u_b - u_a)_c - r (beta_b - beta_a):
+
+       K += e^T S^^-1 e section/l */
+static bool add_rods(const struct rd_element *element, double _Complex section, double _Complex *K)
+{
+    const size_t w = element->width;
+    const double *S = element->flexibility;
+    const double Sbb = S[RD_BENDING * (RD_CHANNELS + 1)];
+    const bool bends = find(element, RD_BETA) < w;
+    double change[2][N] = {{0}}, inverse[4];
+    size_t at[2], rods = 0;
     for (size_t i = 0; i < w; i++)
-        for (size_t j = 0; j < w; j++) {
-            K[i * n + j] = Q[i * w + j] + (FtGiF[i * w + j] + FtGiF[j * w + i]) / 2;
-            K[i * n + w + j] = -GiF[j * w + i];
-            K[(w + i) * n + j] = -GiF[i * w + j];
-            K[(w + i) * n + w + j] = Gi[i * w + j];
+        if (channel[element->coordinate[i]] != RD_BENDING)
+            at[rods++] = i;
+    for (size_t i = 0; i < rods; i++) {
+        const double *row = S + channel[element->coordinate[at[i]]] * RD_CHANNELS;
+        const double r = bends ? row[RD_BENDING] / Sbb : 0;
+        add_change(w, at[i], 1, change[i]);
+        if (bends)
+            add_change(w, w - 1, -r, change[i]);
+        for (size_t j = 0; j < rods; j++) {
+            const int d = channel[element->coordinate[at[j]]];
+            inverse[i * rods + j] = row[d] - r * S[d * RD_CHANNELS + RD_BENDING];
         }
+    }
+    if (!rd_dense_invert(rods, inverse))
+        return false;
+    for (size_t i = 0; i < rods; i++)
+        for (size_t j = 0; j < rods; j++)
+            for (size_t p = 0; p < 2 * w; p++)
+                for (size_t q = 0; q < 2 * w; q++)
+                    K[p * 2 * w + q] += section / element->length * inverse[i * rods + j] *
+                                        change[i][p] * change[j][q];
+    return true;
 }
 
-/* sections and tension are one in a tensed element that bends */
+/* The element bends symmetrically by delta = beta_b - beta_a and antisymmetrically by
+   sigma = z_b - z_a - (beta_b + beta_a) l/2 (the study's: - (beta_b - beta_a) l/2). Each half is a
+   cantilever of theta/4 loaded by a moment alone or by a force alone:
+
+       K += (delta^2/tau + (2 sigma/l)^2 tau/P2) section/(S_bb l)
+
+   with tau = 1, P2 = 1/3 where the tension is a string beside the element. The poles are the
+   buckling loads of the element held at both ends; none where it is critical as a cantilever.
+   The levers l/2 multiply one rounded force, so that turning the element as a whole costs no more
+   than its last bit: n^4 times that is what an assembled chain loses. */
+static bool add_bending(const struct rd_element *element, double _Complex section,
+                        double _Complex tension, double _Complex *K)
+{
+    const size_t w = element->width, z = find(element, RD_Z), beta = w - 1;
+    const double l = element->length;
+    const double Sbb = element->flexibility[RD_BENDING * (RD_CHANNELS + 1)];
+    if (!(Sbb > 0))
+        return false;
+    struct rd_cantilever half = {.tau = 1, .P = {1, 1.0 / 2, 1.0 / 3}};
+    if (element->kind == RD_TENSED)
+        half =
+            rd_cantilever_at(RD_TENSED, element->tension * Sbb * l * l * tension / (4 * section));
+    double delta[N] = {0}, sigma[N] = {0};
+    add_change(w, beta, 1, delta);
+    add_change(w, z, 1, sigma);
+    sigma[beta] = element->kind == RD_DIFFERENCE ? l / 2 : -l / 2;
+    sigma[w + beta] = -l / 2;
+    add_square(2 * w, section / (Sbb * l) / half.tau, delta, K);
+    add_square(2 * w, 4 * section / (Sbb * l * l * l) * (half.tau / half.P[2]), sigma, K);
+    return true;
+}
+
+static void add_string(const struct rd_element *element, double _Complex tension,
+                       double _Complex *K)
+{
+    const size_t w = element->width, z = find(element, RD_Z);
+    double change[N] = {0};
+    if (z == w)
+        return;
+    add_change(w, z, 1, change);
+    add_square(2 * w, element->tension * tension / element->length, change, K);
+}
+
+/* A hinge opens between the left node and the element by jump = -share row u. */
+struct opening {
+    size_t coordinate;
+    double _Complex share, row[N];
+};
+
+/* Opens the hinge of a coordinate in K, with C its compliance and k the row of the coordinate:
+   K <- K - k^T k C/(1 + C K_ee), 1/K_ee where free. False where there is nothing to open. */
+static bool open_hinge(const struct rd_element *element, size_t e, double _Complex spring,
+                       double _Complex *K, struct opening *opening)
+{
+    const size_t n = 2 * element->width;
+    const double _Complex own = K[e * n + e];
+    if (!element->hinge || element->hinge[e] == 0 || own == 0)
+        return false;
+    const bool free = isinf(element->hinge[e]);
+    const double _Complex C = free ? 0 : element->hinge[e] / spring;
+    const double _Complex kept = free ? 0 : 1 / (1 + C * own);
+    opening->coordinate = e;
+    opening->share = free ? 1 / own : C * kept;
+    memcpy(opening->row, K + e * n, n * sizeof *K);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            if (i == e || j == e)
+                K[i * n + j] *= kept;
+            else
+                K[i * n + j] -= opening->share * opening->row[i] * opening->row[j];
+    return true;
+}
+
+/* rows (count, 2 width) over the motion of the element itself <- over that of its nodes */
+static void follow(const struct rd_element *element, const struct opening *opening, size_t count,
+                   double *rows)
+{
+    const size_t n = 2 * element->width;
+    for (size_t r = 0; r < count; r++) {
+        const double jump = creal(opening->share) * rows[r * n + opening->coordinate];
+        for (size_t j = 0; j < n; j++)
+            rows[r * n + j] -= jump * creal(opening->row[j]);
+    }
+}
+
+/* without its hinge */
+static enum rd_status closed_matrix(const struct rd_element *element, double _Complex section,
+                                    double _Complex tension, double _Complex *K)
+{
+    const size_t w = element->width;
+    memset(K, 0, 4 * w * w * sizeof *K);
+    if (!add_rods(element, section, K))
+        return RD_NOT_POSITIVE_DEFINITE;
+    if (find(element, RD_BETA) < w && !add_bending(element, section, tension, K))
+        return RD_NOT_POSITIVE_DEFINITE;
+    add_string(element, tension, K);
+    return RD_OK;
+}
+
+enum rd_status rd_element_matrix(const struct rd_element *element, double _Complex section,
+                                 double _Complex tension, double _Complex spring,
+                                 double _Complex *K)
+{
+    const size_t w = element->width;
+    const enum rd_status status = closed_matrix(element, section, tension, K);
+    struct opening opening;
+    for (size_t e = 0; e < w; e++)
+        open_hinge(element, e, spring, K, &opening);
+    for (size_t i = 0; i < 4 * w * w; i++)
+        if (status == RD_OK && !(isfinite(creal(K[i])) && isfinite(cimag(K[i]))))
+            return RD_CRITICAL_ELEMENT;
+    return status;
+}
+
+enum rd_status rd_element_jump(const struct rd_element *element, double *jump)
+{
+    const size_t w = element->width, n = 2 * w;
+    double _Complex K[N * N];
+    struct opening opening;
+    const enum rd_status status = closed_matrix(element, 1, 1, K);
+    memset(jump, 0, w * n * sizeof *jump);
+    for (size_t e = 0; e < w; e++) {
+        if (!open_hinge(element, e, 1, K, &opening))
+            continue;
+        follow(element, &opening, w, jump);
+        for (size_t j = 0; j < n; j++)
+            jump[e * n + j] -= creal(opening.share) * creal(opening.row[j]);
+    }
+    return status;
+}
+
+/* sections and tension are one in a tensed element that bends, and where a hinge opens in z */
 static bool is_inseparable(const struct rd_element *element)
 {
-    return element->kind == RD_TENSED && find(element, RD_BETA) < element->width;
+    const size_t z = find(element, RD_Z);
+    const bool opens = element->hinge && z < element->width && element->hinge[z] != 0;
+    return opens || (element->kind == RD_TENSED && find(element, RD_BETA) < element->width);
 }
 
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
                                     double *tension)
 {
-    const size_t w = element->width;
-    const size_t n = 2 * w;
-    double F[W * W], Gi[W * W], Q[W * W] = {0};
-    memset(tension, 0, n * n * sizeof *tension);
-    if (is_inseparable(element)) {
-        const enum rd_status status = rd_triple_real(element, F, Gi, Q);
-        if (status != RD_OK)
-            return status;
-        if (!rd_dense_invert(w, Gi))
-            return RD_CRITICAL_ELEMENT;
-    } else if (!rd_element_grip(element, F, Gi)) {
-        return RD_NOT_POSITIVE_DEFINITE;
+    const size_t entries = 4 * element->width * element->width;
+    const bool apart = !is_inseparable(element);
+    double _Complex K[N * N], T[N * N] = {0};
+    enum rd_status status = rd_element_matrix(element, 1, apart ? 0 : 1, 1, K);
+    if (status == RD_OK && apart)
+        status = rd_element_matrix(element, 0, 1, 1, T);
+    for (size_t i = 0; i < entries; i++) {
+        elastic[i] = creal(K[i]);
+        tension[i] = creal(T[i]);
     }
-    assemble(w, F, Gi, Q, elastic);
-    const size_t z = find(element, RD_Z);
-    if (z < w && !is_inseparable(element)) {
-        const double t = element->tension / element->length;
-        tension[z * n + z] = tension[(w + z) * n + w + z] = t;
-        tension[z * n + w + z] = tension[(w + z) * n + z] = -t;
-    }
-    return RD_OK;
+    return status;
 }
 
 /* G(s, l) G^-1, with s/l for the z of a string */
@@ -156,14 +325,13 @@ static bool tip_share(const struct rd_element *element, double s, double *share)
     return true;
 }
 
-/* u(s) = F(s) u_a + G(s, l) G^-1 (u_b - F u_a) */
-enum rd_status rd_element_shape(const struct rd_element *element, double s, double *shape)
+/* shape without the hinge: u(s) = F(s) u_a + G(s, l) G^-1 (u_b - F u_a) */
+static bool closed_shape(const struct rd_element *element, double s, double *shape)
 {
-    assert(0 <= s && s <= element->length);
     const size_t w = element->width;
     double F[W * W], Fs[W * W], share[W * W], carried[W * W];
     if (!tip_share(element, s, share))
-        return RD_NOT_POSITIVE_DEFINITE;
+        return false;
     transfer(element, element->length, F);
     transfer(element, s, Fs);
     rd_dense_multiply(w, w, w, share, F, carried);
@@ -172,16 +340,17 @@ enum rd_status rd_element_shape(const struct rd_element *element, double s, doub
             shape[i * 2 * w + j] = Fs[i * w + j] - carried[i * w + j];
             shape[i * 2 * w + w + j] = share[i * w + j];
         }
-    return RD_OK;
+    return true;
 }
 
-/* G(s, p) - G(s, l) G^-1 G(l, p); for a string (min(s, p) - s p/l)/T */
-enum rd_status rd_element_local(const struct rd_element *element, double s, double p, double *local)
+/* local flexibility without the hinge: G(s, p) - G(s, l) G^-1 G(l, p); for a string
+   (min(s, p) - s p/l)/T */
+static bool closed_local(const struct rd_element *element, double s, double p, double *local)
 {
     const size_t w = element->width;
     double share[W * W], Glp[W * W], carried[W * W];
     if (!tip_share(element, s, share))
-        return RD_NOT_POSITIVE_DEFINITE;
+        return false;
     cantilever(element, s, p, local);
     cantilever(element, element->length, p, Glp);
     rd_dense_multiply(w, w, w, share, Glp, carried);
@@ -190,5 +359,47 @@ enum rd_status rd_element_local(const struct rd_element *element, double s, doub
     const size_t z = find(element, RD_Z);
     if (is_string(element))
         local[z * w + z] = (fmin(s, p) - s * p / element->length) / element->tension;
+    return true;
+}
+
+/* the stiffness that belongs to the static shape: tension is a string beside the element */
+static bool shape_matrix(const struct rd_element *element, double _Complex *K)
+{
+    return closed_matrix(element, 1, is_string(element) ? 1 : 0, K) == RD_OK;
+}
+
+enum rd_status rd_element_shape(const struct rd_element *element, double s, double *shape)
+{
+    assert(0 <= s && s <= element->length);
+    double _Complex K[N * N];
+    struct opening opening;
+    if (!closed_shape(element, s, shape) || !shape_matrix(element, K))
+        return RD_NOT_POSITIVE_DEFINITE;
+    for (size_t e = 0; e < element->width; e++)
+        if (open_hinge(element, e, 1, K, &opening))
+            follow(element, &opening, element->width, shape);
+    return RD_OK;
+}
+
+/* a force at p presses on the held nodes by its shape there, and opens the hinge by that */
+enum rd_status rd_element_local(const struct rd_element *element, double s, double p, double *local)
+{
+    const size_t w = element->width;
+    double at_s[W * N], at_p[W * N];
+    double _Complex K[N * N];
+    struct opening opening;
+    if (!closed_local(element, s, p, local) || !closed_shape(element, s, at_s) ||
+        !closed_shape(element, p, at_p) || !shape_matrix(element, K))
+        return RD_NOT_POSITIVE_DEFINITE;
+    for (size_t e = 0; e < w; e++) {
+        if (!open_hinge(element, e, 1, K, &opening))
+            continue;
+        for (size_t i = 0; i < w; i++)
+            for (size_t j = 0; j < w; j++)
+                local[i * w + j] +=
+                    creal(opening.share) * at_s[i * 2 * w + e] * at_p[j * 2 * w + e];
+        follow(element, &opening, w, at_s);
+        follow(element, &opening, w, at_p);
+    }
     return RD_OK;
 }

@@ -5,6 +5,7 @@
 #include "chain.h"
 #include "status.h"
 
+#include <complex.h>
 #include <stdbool.h>
 
 /* One element of a chain: its kind, its coordinates and the numbers of its piece of rope. */
@@ -15,20 +16,35 @@ struct rd_element {
     double length;             /* [m] */
     double tension;            /* [N] */
     const double *flexibility; /* (3, 3) S */
+    const double *hinge; /* (width) compliance between the left node and the element, or NULL */
 };
 
-/* the distinct element i of a chain */
+/* the distinct element i of a chain, without a hinge */
 struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i);
 
-/* The assembled element over (u_a, u_b), its elastic and its tension part apart:
-   elastic, tension (2 width, 2 width). A tensed element that bends has both in `elastic`.
-   RD_NOT_POSITIVE_DEFINITE where G is not, RD_CRITICAL_ELEMENT where compression makes it so. */
+/* the element on the right of each node of a stretch, with the hinge between them */
+struct rd_element rd_chain_span(const struct rd_chain *chain, size_t stretch);
+
+/* whether nodes with this term have one */
+bool rd_chain_is_hinged(const struct rd_chain *chain, int32_t term);
+
+/* K_e = [[Q + F^T G^-1 F, -F^T G^-1], [-G^-1 F, G^-1]] of the triple (see triple.h), over the motion
+   (u_a, u_b) of the nodes: K (2 width, 2 width), with sections, tension and the spring in a hinge
+   times complex factors. It exists where the triple does not, at the critical load of the
+   cantilever. RD_NOT_POSITIVE_DEFINITE where a section would create energy, RD_CRITICAL_ELEMENT at
+   the critical load of the element held at both ends. */
+enum rd_status rd_element_matrix(const struct rd_element *element, double _Complex section,
+                                 double _Complex tension, double _Complex spring,
+                                 double _Complex *K);
+
+/* The same with factors 1, its elastic and its tension part apart. A tensed element that bends has
+   both in `elastic`. */
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
                                     double *tension);
 
-/* The untensed element's F and G^-1: its end force is G^-1 (u_b - F u_a). False where G is not
-   positive definite. */
-bool rd_element_grip(const struct rd_element *element, double *F, double *inverse);
+/* how far the hinge opens: the element's left end moves by u_a + jump (u_a, u_b),
+   jump (width, 2 width) */
+enum rd_status rd_element_jump(const struct rd_element *element, double *jump);
 
 /* The element's static shape: u(s) = shape (u_a, u_b) at the distance s from its left node,
    shape (width, 2 width). */

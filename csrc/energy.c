@@ -15,17 +15,20 @@ static const double STEP = 0x1p-100;
 struct store {
     struct rd_element element;
     double K[N * N];                              /* assembled, sections and tension */
+    double jump[W * N];                           /* of its hinge */
     double _Complex F[W * W], G[W * W], Q[W * W]; /* at T (1 + i STEP) */
 };
 
-static enum rd_status prepare(const struct rd_chain *chain, size_t which, struct store *store)
+static enum rd_status prepare(const struct rd_chain *chain, size_t stretch, struct store *store)
 {
     double string[N * N];
-    store->element = rd_chain_element(chain, which);
+    store->element = rd_chain_span(chain, stretch);
     const size_t n = 2 * chain->width;
-    const enum rd_status status = rd_element_stiffness(&store->element, store->K, string);
+    enum rd_status status = rd_element_stiffness(&store->element, store->K, string);
     for (size_t i = 0; i < n * n; i++)
         store->K[i] += string[i];
+    if (status == RD_OK)
+        status = rd_element_jump(&store->element, store->jump);
     if (status != RD_OK)
         return status;
     return rd_triple(&store->element, 1, CMPLX(1, STEP), store->F, store->G, store->Q);
@@ -113,22 +116,50 @@ static double quadratic(size_t n, const double *A, const double *u)
     return sum;
 }
 
+/* moves u (2, width) from the left node to the left end of the element, across the hinge, and
+   returns twice the energy of its spring */
+static double open_hinge(const struct store *store, double *u)
+{
+    const size_t w = store->element.width;
+    double jump[W], energy = 0;
+    for (size_t i = 0; i < w; i++) {
+        jump[i] = 0;
+        for (size_t j = 0; j < 2 * w; j++)
+            jump[i] += store->jump[i * 2 * w + j] * u[j];
+    }
+    for (size_t i = 0; i < w; i++) {
+        u[i] += jump[i];
+        if (store->element.hinge[i] > 0)
+            energy += jump[i] * (jump[i] / store->element.hinge[i]);
+    }
+    return energy;
+}
+
+/* adds the energies of the elements of a stretch */
+static void add_stretch(const struct rd_chain *chain, size_t k, const struct store *store,
+                        const double *shape, double *strain)
+{
+    const size_t w = chain->width;
+    for (size_t i = (size_t)chain->first[k]; i < (size_t)chain->first[k + 1]; i++) {
+        double u[2 * W], f[W];
+        memcpy(u, shape + i * w, 2 * w * sizeof *u);
+        end_force(store, u, f);
+        if (store->element.hinge)
+            strain[RD_STRAIN_SPRING] += open_hinge(store, u);
+        add_element(store, u, f, strain);
+    }
+}
+
 enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain)
 {
     const size_t w = chain->width;
     struct store store;
-    int32_t last = -1;
     memset(strain, 0, RD_STRAINS * sizeof *strain);
-    for (size_t i = 0; i + 1 < chain->nodes; i++) {
-        if (chain->element_of[i] != last) {
-            last = chain->element_of[i];
-            const enum rd_status status = prepare(chain, (size_t)last, &store);
-            if (status != RD_OK)
-                return status;
-        }
-        double f[W];
-        end_force(&store, shape + i * w, f);
-        add_element(&store, shape + i * w, f, strain);
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const enum rd_status status = prepare(chain, k, &store);
+        if (status != RD_OK)
+            return status;
+        add_stretch(chain, k, &store, shape, strain);
     }
     for (size_t i = 0; i < chain->nodes; i++) {
         const double *spring = chain->stiffness + (size_t)chain->term_of[i] * w * w;

@@ -14,6 +14,7 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
     const enum rd_status status = rd_system_prepare(chain, &frf->system, workspace);
     const size_t n = chain->nodes * chain->width;
     const size_t columns = drives->count + responses->count;
+    frf->chain = chain;
     frf->drives = *drives;
     frf->responses = *responses;
     frf->matrix = rd_take(workspace, n * (3 * frf->system.reach + 1), sizeof *frf->matrix);
@@ -24,16 +25,25 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
     return rd_workspace_fits(workspace) ? status : RD_NO_MEMORY;
 }
 
+/* The elements are assembled again at each frequency, since sections and tension of a tensed element
+   are one matrix: what is `elastic` elsewhere is their real part here, `string` the imaginary one.
+   part: what of the four makes the real and the imaginary part of D */
 static enum rd_status factorise(struct rd_frf *frf, const double _Complex *factor)
 {
     const struct rd_system *system = &frf->system;
     const size_t reach = system->reach;
     const size_t leading = 3 * reach + 1;
-    double part[2][RD_PARTS];
-    for (int p = 0; p < RD_PARTS; p++) {
-        part[0][p] = creal(factor[p]);
-        part[1][p] = cimag(factor[p]);
-    }
+    const double part[2][RD_PARTS] = {
+        {[RD_ELASTIC] = 1,
+         [RD_SPRINGS] = creal(factor[RD_SPRINGS]),
+         [RD_MASS] = creal(factor[RD_MASS])},
+        {[RD_STRING] = 1,
+         [RD_SPRINGS] = cimag(factor[RD_SPRINGS]),
+         [RD_MASS] = cimag(factor[RD_MASS])},
+    };
+    const enum rd_status status = rd_assemble_elements(frf->chain, factor, &frf->system.assembly);
+    if (status != RD_OK)
+        return status;
     memset(frf->matrix, 0, system->free * leading * sizeof *frf->matrix);
     for (size_t k = 0; k < 2; k++) {
         const struct rd_band band = {
@@ -116,9 +126,12 @@ enum rd_status rd_frf_solve(struct rd_frf *frf, const double _Complex *factor,
         return status;
     if (frf->system.free > 0)
         solve(frf);
-    double size[RD_PARTS];
-    for (int p = 0; p < RD_PARTS; p++)
-        size[p] = cabs(factor[p]);
+    const double size[RD_PARTS] = {
+        [RD_ELASTIC] = 1,
+        [RD_STRING] = 1,
+        [RD_SPRINGS] = cabs(factor[RD_SPRINGS]),
+        [RD_MASS] = cabs(factor[RD_MASS]),
+    };
     const size_t responses = frf->responses.count;
     for (size_t d = 0; d < frf->drives.count; d++) {
         const double *u = (const double *)(frf->solution + d * frf->system.free);

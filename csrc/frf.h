@@ -7,7 +7,8 @@
 #include <complex.h>
 
 struct rd_frf {
-    struct rd_system system;
+    const struct rd_chain *chain;
+    struct rd_system system; /* its elements at the last frequency solved */
     struct rd_ports drives;
     struct rd_ports responses;
     double _Complex *matrix;   /* (free, 3 reach + 1) band, then its factors */
@@ -27,7 +28,8 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
        rounding (drives, responses)  its estimated relative error
        motion (drives)               the estimated relative error of the whole motion: 1 or more
                                      where no digit is left, as on an undamped resonance
-   RD_SINGULAR where the factorisation meets an exact zero. */
+   RD_SINGULAR where the factorisation meets an exact zero, RD_CRITICAL_ELEMENT where an element has
+   no stiffness. */
 enum rd_status rd_frf_solve(struct rd_frf *frf, const double _Complex *factor,
                             double _Complex *value, double *rounding, double *motion);
 

@@ -41,9 +41,8 @@ RD_INLINE void piece_load(const struct rd_walk *walk, int32_t element, struct pi
 RD_INLINE void term_load(const struct rd_walk *walk, int32_t term, int32_t before, lanes lambda,
                          lanes N[W][W])
 {
-    const struct rd_chain *chain = walk->chain;
-    const double *stiffness = chain->stiffness + (size_t)term * W * W;
-    const double *mass = chain->mass + (size_t)term * W * W;
+    const double *stiffness = rd_walk_springs(walk, term);
+    const double *mass = rd_walk_mass(walk, term);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++)
             N[i][j] = stiffness[i * W + j] - lambda * mass[i * W + j];
@@ -203,19 +202,19 @@ RD_INLINE lane_mask piece_double(const struct piece *half, const lanes N[W][W],
 }
 
 /* level[k] of 2^k elements; returns the last k with 2^k <= count and every joint safe */
-RD_INLINE int pieces_fill(const struct rd_walk *walk, const struct rd_stretch *run, lanes lambda,
+RD_INLINE int pieces_fill(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda,
                           struct piece *level)
 {
     lanes N[W][W];
     int top = 0;
-    piece_load(walk, run->element, level);
-    if (walk->strut[run->element])
+    piece_load(walk, leg->element, level);
+    if (walk->strut[leg->element])
         return 0;
     for (int i = 0; i < W; i++)
-        if (walk->chain->held[(size_t)run->term * W + (size_t)i])
+        if (rd_walk_held(walk, leg->term)[i])
             return 0;
-    term_load(walk, run->term, run->element, lambda, N);
-    while (top + 1 < LEVELS && (run->count >> (top + 1)) > 0 &&
+    term_load(walk, leg->term, leg->element, lambda, N);
+    while (top + 1 < LEVELS && (leg->count >> (top + 1)) > 0 &&
            every(piece_double(level + top, N, level + top + 1)))
         top++;
     return top;

@@ -30,7 +30,7 @@ PyObject *py_count(PyObject *module, PyObject *arguments)
     PyObject *chain, *object, *counts = NULL, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "OO", &chain, &object))
         return NULL;
-    if (py_chain_parse(chain, &parsed) < 0)
+    if (py_chain_view(chain, &parsed) < 0)
         goto done;
     lambda = py_array(object, NPY_DOUBLE, 1, (npy_intp[]){-1}, "lambda");
     if (lambda == NULL)
@@ -92,7 +92,7 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
         PyErr_SetString(PyExc_ValueError, "wanted must be >= 0");
         return NULL;
     }
-    if (py_chain_parse(object, &parsed) < 0)
+    if (py_chain_view(object, &parsed) < 0)
         goto done;
     const npy_intp nodes = (npy_intp)parsed.chain.nodes;
     const npy_intp width = (npy_intp)parsed.chain.width;

@@ -49,7 +49,7 @@ PyObject *py_triples(PyObject *module, PyObject *arguments)
     PyObject *object, *F = NULL, *G = NULL, *Q = NULL, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "O", &object))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0)
+    if (py_chain_view(object, &parsed) < 0)
         goto done;
     const size_t w = parsed.chain.width;
     const npy_intp shape[] = {(npy_intp)parsed.chain.distinct, (npy_intp)w, (npy_intp)w};
@@ -79,7 +79,7 @@ done:
     return result;
 }
 
-/* the element a position lies in, checked */
+/* the distinct element of a number, checked */
 static int element_at(const struct rd_chain *chain, Py_ssize_t index, struct rd_element *element)
 {
     if (index < 0 || (size_t)index >= chain->distinct) {
@@ -88,6 +88,18 @@ static int element_at(const struct rd_chain *chain, Py_ssize_t index, struct rd_
         return -1;
     }
     *element = rd_chain_element(chain, (size_t)index);
+    return 0;
+}
+
+/* the element on the right of a node and the hinge between them, checked */
+static int span_at(const struct rd_chain *chain, Py_ssize_t node, struct rd_element *element)
+{
+    if (node < 0 || (size_t)node + 1 >= chain->nodes) {
+        PyErr_Format(PyExc_ValueError, "node must lie in 0 ... %zd, got %zd",
+                     (Py_ssize_t)chain->nodes - 2, node);
+        return -1;
+    }
+    *element = rd_chain_span(chain, rd_stretch_of(chain, (size_t)node, 0));
     return 0;
 }
 
@@ -109,7 +121,7 @@ PyObject *py_triple(PyObject *module, PyObject *arguments)
     Py_ssize_t index;
     if (!PyArg_ParseTuple(arguments, "OnO", &object, &index, &factors))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
+    if (py_chain_view(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
         goto done;
     factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){2, -1}, "factor");
     if (factor == NULL)
@@ -147,11 +159,11 @@ PyObject *py_shape(PyObject *module, PyObject *arguments)
     struct py_chain parsed = {0};
     struct rd_element element;
     PyObject *object, *shape = NULL;
-    Py_ssize_t index;
+    Py_ssize_t node;
     double s;
-    if (!PyArg_ParseTuple(arguments, "Ond", &object, &index, &s))
+    if (!PyArg_ParseTuple(arguments, "Ond", &object, &node, &s))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
+    if (py_chain_view(object, &parsed) < 0 || span_at(&parsed.chain, node, &element) < 0 ||
         check_distance(&element, s, "s") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;
@@ -174,11 +186,11 @@ PyObject *py_local(PyObject *module, PyObject *arguments)
     struct py_chain parsed = {0};
     struct rd_element element;
     PyObject *object, *local = NULL;
-    Py_ssize_t index;
+    Py_ssize_t node;
     double s, p;
-    if (!PyArg_ParseTuple(arguments, "Ondd", &object, &index, &s, &p))
+    if (!PyArg_ParseTuple(arguments, "Ondd", &object, &node, &s, &p))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0 ||
+    if (py_chain_view(object, &parsed) < 0 || span_at(&parsed.chain, node, &element) < 0 ||
         check_distance(&element, s, "s") < 0 || check_distance(&element, p, "p") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;

@@ -74,7 +74,7 @@ __attribute__((optimize("O3"))) static int check_range(PyArrayObject *array, siz
     return -1;
 }
 
-enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, ELEMENT_OF, MASS, STIFFNESS, HELD, TERM_OF };
+enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, FIRST, ELEMENT, MASS, STIFFNESS, HELD, TERM, HINGE };
 
 /* what the core asserts of the numbers */
 static int check_values(const struct rd_chain *chain)
@@ -84,6 +84,12 @@ static int check_values(const struct rd_chain *chain)
         string = string || chain->coordinate[k] == RD_Z;
         string = string && chain->coordinate[k] != RD_BETA;
     }
+    for (size_t k = 0; chain->hinge && k < chain->terms * chain->width; k++)
+        if (!(chain->hinge[k] >= 0)) {
+            PyErr_Format(PyExc_ValueError, "hinge[%zd, %zd] must be >= 0",
+                         (Py_ssize_t)(k / chain->width), (Py_ssize_t)(k % chain->width));
+            return -1;
+        }
     for (size_t k = 0; k < chain->distinct; k++) {
         if (!(chain->length[k] > 0)) {
             PyErr_Format(PyExc_ValueError, "length[%zd] must be > 0", (Py_ssize_t)k);
@@ -96,6 +102,19 @@ static int check_values(const struct rd_chain *chain)
         }
     }
     return 0;
+}
+
+/* stretches follow each other, the last node alone */
+static int check_stretches(const struct rd_chain *chain)
+{
+    const int32_t *first = chain->first;
+    bool increase = first[0] == 0;
+    for (size_t k = 1; k < chain->stretches; k++)
+        increase = increase && first[k] > first[k - 1];
+    if (increase)
+        return 0;
+    PyErr_SetString(PyExc_ValueError, "first must increase from 0");
+    return -1;
 }
 
 static int check_indices(const struct py_chain *parsed)
@@ -118,54 +137,60 @@ static int check_indices(const struct py_chain *parsed)
     }
     if (check_range(parsed->array[COORDINATE], RD_WIDTH_MAX, "coordinate") < 0)
         return -1;
-    if (check_range(parsed->array[ELEMENT_OF], chain->distinct, "element_of") < 0)
+    if (check_range(parsed->array[ELEMENT], chain->distinct, "element") < 0)
         return -1;
-    if (check_range(parsed->array[TERM_OF], chain->terms, "term_of") < 0)
+    if (check_range(parsed->array[TERM], chain->terms, "term") < 0)
         return -1;
-    return check_values(chain);
+    return check_stretches(chain) < 0 ? -1 : check_values(chain);
 }
 
-int py_chain_parse(PyObject *object, struct py_chain *parsed)
+int py_chain_view(PyObject *object, struct py_chain *parsed)
 {
-    static const char *const name[9] = {"coordinate",  "length",     "tension",
-                                        "flexibility", "element_of", "mass",
-                                        "stiffness",   "held",       "term_of"};
-    static const int type[9] = {NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE, NPY_INT32,
-                                NPY_DOUBLE, NPY_DOUBLE, NPY_UINT8,  NPY_INT32};
-    static const int dimensions[9] = {1, 1, 1, 3, 1, 3, 3, 2, 1};
+    static const char *const name[PY_CHAIN_ARRAYS] = {
+        "coordinate", "length",    "tension", "flexibility", "first", "element",
+        "mass",       "stiffness", "held",    "term",        "hinge"};
+    static const int type[PY_CHAIN_ARRAYS] = {NPY_INT32, NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE,
+                                              NPY_INT32, NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE,
+                                              NPY_UINT8, NPY_INT32,  NPY_DOUBLE};
+    static const int dimensions[PY_CHAIN_ARRAYS] = {1, 1, 1, 3, 1, 1, 3, 3, 2, 1, 2};
     struct rd_chain *chain = &parsed->chain;
     int kind;
-    PyObject *item[9];
+    PyObject *item[PY_CHAIN_ARRAYS];
     if (!PyTuple_Check(object)) {
         PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "iOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3, item + 4,
-                          item + 5, item + 6, item + 7, item + 8))
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
+                          item + 4, item + 5, item + 6, item + 7, item + 8, item + 9, item + 10))
         return -1;
-    npy_intp width = -1, distinct = -1, terms = -1;
-    for (int k = 0; k < 9; k++) {
-        const npy_intp shape[9][3] = {
+    npy_intp width = -1, distinct = -1, stretches = -1, terms = -1;
+    for (int k = 0; k < PY_CHAIN_ARRAYS; k++) {
+        const npy_intp shape[PY_CHAIN_ARRAYS][3] = {
             {-1},
             {-1},
             {distinct},
             {distinct, 3, 3},
             {-1},
+            {stretches > 0 ? stretches - 1 : 0},
             {-1, width, width},
             {terms, width, width},
             {terms, width},
-            {-1},
+            {stretches},
+            {terms, width},
         };
+        if (k == HINGE && item[k] == Py_None)
+            continue;
         parsed->array[k] = py_array(item[k], type[k], dimensions[k], shape[k], name[k]);
         if (parsed->array[k] == NULL)
             return -1;
         const npy_intp entries = PyArray_DIM(parsed->array[k], 0);
         width = k == COORDINATE ? entries : width;
         distinct = k == LENGTH ? entries : distinct;
+        stretches = k == FIRST ? entries : stretches;
         terms = k == MASS ? entries : terms;
     }
     *chain = (struct rd_chain){
-        .nodes = (size_t)PyArray_DIM(parsed->array[TERM_OF], 0),
+        .stretches = (size_t)stretches,
         .width = (size_t)width,
         .distinct = (size_t)distinct,
         .terms = (size_t)terms,
@@ -174,22 +199,48 @@ int py_chain_parse(PyObject *object, struct py_chain *parsed)
         .length = PyArray_DATA(parsed->array[LENGTH]),
         .tension = PyArray_DATA(parsed->array[TENSION]),
         .flexibility = PyArray_DATA(parsed->array[FLEXIBILITY]),
-        .element_of = PyArray_DATA(parsed->array[ELEMENT_OF]),
+        .first = PyArray_DATA(parsed->array[FIRST]),
+        .element = PyArray_DATA(parsed->array[ELEMENT]),
         .mass = PyArray_DATA(parsed->array[MASS]),
         .stiffness = PyArray_DATA(parsed->array[STIFFNESS]),
         .held = PyArray_DATA(parsed->array[HELD]),
-        .term_of = PyArray_DATA(parsed->array[TERM_OF]),
+        .term = PyArray_DATA(parsed->array[TERM]),
+        .hinge = parsed->array[HINGE] == NULL ? NULL : PyArray_DATA(parsed->array[HINGE]),
     };
-    if (PyArray_DIM(parsed->array[ELEMENT_OF], 0) + 1 != (npy_intp)chain->nodes) {
-        PyErr_SetString(PyExc_ValueError, "element_of must have one entry fewer than term_of");
+    chain->nodes = stretches > 0 ? (size_t)(uint32_t)chain->first[stretches - 1] + 1 : 0;
+    return check_indices(parsed);
+}
+
+/* element_of and term_of from the stretches */
+static int chain_expand(struct py_chain *parsed)
+{
+    struct rd_chain *chain = &parsed->chain;
+    parsed->each = PyMem_RawMalloc(2 * chain->nodes * sizeof *parsed->each);
+    if (parsed->each == NULL) {
+        PyErr_NoMemory();
         return -1;
     }
-    return check_indices(parsed);
+    int32_t *element = parsed->each, *term = element + chain->nodes;
+    for (size_t k = 0; k + 1 < chain->stretches; k++)
+        for (size_t i = (size_t)chain->first[k]; i < (size_t)chain->first[k + 1]; i++) {
+            element[i] = chain->element[k];
+            term[i] = chain->term[k];
+        }
+    term[chain->nodes - 1] = chain->term[chain->stretches - 1];
+    chain->element_of = element;
+    chain->term_of = term;
+    return 0;
+}
+
+int py_chain_parse(PyObject *object, struct py_chain *parsed)
+{
+    return py_chain_view(object, parsed) < 0 ? -1 : chain_expand(parsed);
 }
 
 void py_chain_release(struct py_chain *parsed)
 {
-    for (int k = 0; k < 9; k++)
+    PyMem_RawFree(parsed->each);
+    for (int k = 0; k < PY_CHAIN_ARRAYS; k++)
         Py_XDECREF(parsed->array[k]);
 }
 

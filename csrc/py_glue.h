@@ -29,14 +29,19 @@ PyObject *py_raise(PyObject *module, enum rd_status status);
 PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_intp *shape,
                         const char *name);
 
+enum { PY_CHAIN_ARRAYS = 11 };
+
 /* a chain and the arrays it views */
 struct py_chain {
     struct rd_chain chain;
-    PyArrayObject *array[9];
+    PyArrayObject *array[PY_CHAIN_ARRAYS]; /* the last NULL where nothing is hinged */
+    int32_t *each;                         /* element_of and term_of */
 };
 
-/* 0, or -1 and an exception; to be released in both cases */
+/* 0, or -1 and an exception; to be released in both cases. py_chain_view leaves element_of and
+   term_of NULL: its time grows with the stretches of the chain, not with its nodes. */
 int py_chain_parse(PyObject *object, struct py_chain *parsed);
+int py_chain_view(PyObject *object, struct py_chain *parsed);
 void py_chain_release(struct py_chain *parsed);
 
 /* ports and the arrays they view, from the tuple (node (count), row (count, 2, width), force (count,
@@ -72,8 +77,10 @@ PyObject *py_frf(PyObject *module, PyObject *arguments);
 PyObject *py_energy(PyObject *module, PyObject *arguments);
 PyObject *py_count(PyObject *module, PyObject *arguments);
 PyObject *py_certify(PyObject *module, PyObject *arguments);
-PyObject *py_runs(PyObject *module, PyObject *arguments);
+PyObject *py_steps(PyObject *module, PyObject *arguments);
 PyObject *py_sweep(PyObject *module, PyObject *arguments);
 PyObject *py_triple(PyObject *module, PyObject *arguments);
+PyObject *py_mixed(PyObject *module, PyObject *arguments);
+PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments);
 
 #endif

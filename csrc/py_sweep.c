@@ -1,97 +1,45 @@
-/* Frequency response by the sweep, and the runs it needs to know. */
+/* Frequency response by the sweep, and what it costs. */
 #include "py_glue.h"
 
 #include "sweep.h"
 
-/* the tuple (run (count, 2), average (5 + width)) that py_runs made, as a view */
-struct py_runs {
-    struct rd_runs runs;
-    PyArrayObject *run;
-    PyArrayObject *average;
-};
-
-enum { AVERAGES = 2 + RD_CHANNELS };
-
-static int runs_parse(PyObject *object, const struct rd_chain *chain, struct py_runs *parsed)
+/* the factors (4, count) as views of an array's rows */
+static struct rd_factors factors_of(PyArrayObject *factor)
 {
-    PyObject *run, *average;
-    if (!PyTuple_Check(object)) {
-        PyErr_SetString(PyExc_TypeError, "runs must be a tuple");
-        return -1;
-    }
-    if (!PyArg_ParseTuple(object, "OO", &run, &average))
-        return -1;
-    parsed->run = py_array(run, NPY_UINTP, 2, (npy_intp[]){-1, 2}, "run");
-    if (parsed->run == NULL)
-        return -1;
-    parsed->average = py_array(average, NPY_DOUBLE, 1,
-                               (npy_intp[]){AVERAGES + (npy_intp)chain->width}, "average");
-    if (parsed->average == NULL)
-        return -1;
-    struct rd_runs *runs = &parsed->runs;
-    const double *value = PyArray_DATA(parsed->average);
-    runs->count = (size_t)PyArray_DIM(parsed->run, 0);
-    runs->run = PyArray_DATA(parsed->run);
-    runs->length = value[0];
-    runs->tension = value[1];
-    memcpy(runs->flexibility, value + 2, sizeof runs->flexibility);
-    memcpy(runs->mass, value + AVERAGES, chain->width * sizeof *runs->mass);
-    runs->longest = 0;
-    size_t end = 0;
-    for (size_t k = 0; k < runs->count; k++) {
-        const struct rd_run run_k = runs->run[k];
-        if (run_k.first < end || run_k.last <= run_k.first || run_k.last >= chain->nodes) {
-            PyErr_SetString(PyExc_ValueError, "run must hold increasing stretches of the chain");
-            return -1;
-        }
-        end = run_k.last;
-        const size_t length = run_k.last - run_k.first;
-        runs->longest = length > runs->longest ? length : runs->longest;
-    }
-    return 0;
+    const size_t count = (size_t)PyArray_DIM(factor, 1);
+    const double *row = PyArray_DATA(factor);
+    return (struct rd_factors){count, row, row + 2 * count, row + 4 * count, row + 6 * count};
 }
 
-PyObject *py_runs(PyObject *module, PyObject *arguments)
+PyObject *py_steps(PyObject *module, PyObject *arguments)
 {
     (void)module;
     struct py_chain parsed = {0};
-    PyObject *object, *run = NULL, *average = NULL, *result = NULL;
-    struct rd_run *found = NULL;
-    if (!PyArg_ParseTuple(arguments, "O", &object))
+    PyArrayObject *factor = NULL;
+    PyObject *object[2], *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0)
+    if (py_chain_view(object[0], &parsed) < 0)
         goto done;
-    found = PyMem_RawMalloc(rd_runs_capacity(&parsed.chain) * sizeof *found);
-    if (found == NULL) {
-        PyErr_NoMemory();
+    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){4, -1}, "factor");
+    if (factor == NULL)
         goto done;
+    const struct rd_factors factors = factors_of(factor);
+    size_t most = 0;
+    for (size_t i = 0; i < factors.count; i++) {
+        const struct sweep_extent extent = rd_sweep_extent(&factors, i);
+        const size_t steps = rd_sweep_steps(&parsed.chain, &extent);
+        most = steps > most ? steps : most;
     }
-    struct rd_runs runs;
-    Py_BEGIN_ALLOW_THREADS
-    rd_runs_find(&parsed.chain, found, &runs);
-    Py_END_ALLOW_THREADS
-    run = py_new(NPY_UINTP, 2, (npy_intp[]){(npy_intp)runs.count, 2});
-    average = py_new(NPY_DOUBLE, 1, (npy_intp[]){AVERAGES + (npy_intp)parsed.chain.width});
-    if (run == NULL || average == NULL)
-        goto done;
-    memcpy(PyArray_DATA((PyArrayObject *)run), found, runs.count * sizeof *found);
-    double *value = PyArray_DATA((PyArrayObject *)average);
-    value[0] = runs.length;
-    value[1] = runs.tension;
-    memcpy(value + 2, runs.flexibility, sizeof runs.flexibility);
-    memcpy(value + AVERAGES, runs.mass, parsed.chain.width * sizeof *runs.mass);
-    result = PyTuple_Pack(2, run, average);
+    result = PyLong_FromSize_t(most);
 done:
-    PyMem_RawFree(found);
-    Py_XDECREF(average);
-    Py_XDECREF(run);
+    Py_XDECREF(factor);
     py_chain_release(&parsed);
     return result;
 }
 
 struct sweep_task {
     const struct rd_chain *chain;
-    const struct rd_runs *runs;
     const struct rd_ports *drives;
     const struct rd_ports *responses;
     struct rd_factors factors;
@@ -106,13 +54,13 @@ static npy_intp solve(PyObject *module, const struct sweep_task *task)
     struct rd_workspace workspace = {0};
     size_t failed = 0;
     npy_intp solved = -1;
-    enum rd_status status = rd_frf_sweep(task->chain, task->runs, &task->factors, task->drives,
-                                         task->responses, &workspace, NULL, NULL, &failed);
+    enum rd_status status = rd_frf_sweep(task->chain, &task->factors, task->drives, task->responses,
+                                         &workspace, NULL, NULL, &failed);
     if (py_workspace_allocate(&workspace) < 0)
         goto done;
     Py_BEGIN_ALLOW_THREADS
-    status = rd_frf_sweep(task->chain, task->runs, &task->factors, task->drives, task->responses,
-                          &workspace, task->value, task->error, &failed);
+    status = rd_frf_sweep(task->chain, &task->factors, task->drives, task->responses, &workspace,
+                          task->value, task->error, &failed);
     Py_END_ALLOW_THREADS
     if (status == RD_OK)
         solved = (npy_intp)task->factors.count;
@@ -128,18 +76,16 @@ done:
 PyObject *py_sweep(PyObject *module, PyObject *arguments)
 {
     struct py_chain parsed = {0};
-    struct py_runs runs = {0};
     struct py_ports drives = {0}, responses = {0};
     PyArrayObject *factor = NULL;
-    PyObject *object[5], *value = NULL, *error = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OOOOO", object, object + 1, object + 2, object + 3,
-                          object + 4))
+    PyObject *object[4], *value = NULL, *error = NULL, *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OOOO", object, object + 1, object + 2, object + 3))
         return NULL;
-    if (py_chain_parse(object[0], &parsed) < 0 || runs_parse(object[1], &parsed.chain, &runs) < 0 ||
-        py_ports_parse(object[3], &parsed.chain, "drives", &drives) < 0 ||
-        py_ports_parse(object[4], &parsed.chain, "responses", &responses) < 0)
+    if (py_chain_view(object[0], &parsed) < 0 ||
+        py_ports_parse(object[2], &parsed.chain, "drives", &drives) < 0 ||
+        py_ports_parse(object[3], &parsed.chain, "responses", &responses) < 0)
         goto done;
-    factor = py_array(object[2], NPY_COMPLEX128, 2, (npy_intp[]){4, -1}, "factor");
+    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){4, -1}, "factor");
     if (factor == NULL)
         goto done;
     const npy_intp count = PyArray_DIM(factor, 1);
@@ -148,13 +94,11 @@ PyObject *py_sweep(PyObject *module, PyObject *arguments)
     error = py_new(NPY_DOUBLE, 3, shape);
     if (value == NULL || error == NULL)
         goto done;
-    const double *row = PyArray_DATA(factor);
     const struct sweep_task task = {
         .chain = &parsed.chain,
-        .runs = &runs.runs,
         .drives = &drives.ports,
         .responses = &responses.ports,
-        .factors = {(size_t)count, row, row + 2 * count, row + 4 * count, row + 6 * count},
+        .factors = factors_of(factor),
         .value = PyArray_DATA((PyArrayObject *)value),
         .error = PyArray_DATA((PyArrayObject *)error),
     };
@@ -167,8 +111,6 @@ done:
     Py_XDECREF(factor);
     py_ports_release(&responses);
     py_ports_release(&drives);
-    Py_XDECREF(runs.average);
-    Py_XDECREF(runs.run);
     py_chain_release(&parsed);
     return result;
 }

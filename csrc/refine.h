@@ -13,7 +13,7 @@ struct rd_step {
     int32_t term;   /* node term at the first node */
     int32_t before; /* element on its left, -1: none */
     int32_t level;
-    int32_t run;
+    int32_t leg;
 };
 
 /* What an iteration works in. */

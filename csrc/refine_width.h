@@ -21,14 +21,14 @@ struct rate {
 RD_INLINE void rate_node(const struct rd_refine *r, int32_t term, int32_t before, lanes lambda,
                          struct rate *rate)
 {
-    const struct rd_chain *chain = r->walk->chain;
+    const double *mass = rd_walk_mass(r->walk, term);
     lanes N[W][W];
     term_load(r->walk, term, before, lambda, N);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
             const double zz = r->z[i] * r->z[j];
             rate->V[i][j] = N[i][j] * zz;
-            rate->dV[i][j] = l_fill(-chain->mass[((size_t)term * W + (size_t)i) * W + (size_t)j] * zz);
+            rate->dV[i][j] = l_fill(-mass[i * W + j] * zz);
         }
 }
 
@@ -133,7 +133,7 @@ RD_INLINE void left_hold(struct left *left, int j)
 
 RD_INLINE const uint8_t *held_at(const struct rd_refine *r, int32_t term)
 {
-    return r->walk->chain->held + (size_t)term * W;
+    return rd_walk_held(r->walk, term);
 }
 
 /* A load that no mode is free of, the same for every run: the hash of splitmix64 (Steele, Lea, Flood
@@ -305,20 +305,20 @@ RD_INLINE lanes lanes_load(const double *x)
 
 RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
 {
-    int32_t run = -1;
+    int32_t leg = -1;
     for (size_t m = 0; m < r->steps; m++) {
         const struct rd_step *step = r->step + m;
-        if (step->run == run || step->piece < 0)
+        if (step->leg == leg || step->piece < 0)
             continue;
-        /* the first step of a run is its largest piece, the last of its levels */
-        run = step->run;
+        /* the first step of a leg is its largest piece, the last of its levels */
+        leg = step->leg;
         lanes N[W][W], dN[W][W];
-        const int32_t term = r->walk->run[run].term;
+        const int32_t term = r->walk->leg[leg].term;
         term_load(r->walk, term, step->element, lambda, N);
         for (int i = 0; i < W; i++)
             for (int j = 0; j < W; j++)
                 dN[i][j] =
-                    l_fill(-r->walk->chain->mass[((size_t)term * W + (size_t)i) * W + (size_t)j]);
+                    l_fill(-rd_walk_mass(r->walk, term)[i * W + j]);
         struct piece *level =
             (struct piece *)(r->piece + (size_t)(step->piece - step->level) * 6 * W * W);
         piece_load(r->walk, step->element, level);
@@ -357,9 +357,9 @@ void WIDTH(iterate)(struct rd_refine *r, const double *lambdas, _Bool begin)
         left_advance(&left, &rate, &kernel, p, d);
     }
     const size_t n = r->steps;
-    const int32_t last = r->walk->chain->term_of[r->walk->chain->nodes - 1];
+    const int32_t last = r->walk->last;
     memset(&rate, 0, sizeof rate);
-    rate_node(r, last, r->step[n - 1].element, lambda, &rate);
+    rate_node(r, last, r->walk->behind, lambda, &rate);
     for (int i = 0; i < W; i++) {
         p[i] = begin ? fixed_load(n, i) : l_fill(0);
         for (int j = 0; !begin && j < W; j++)
@@ -452,8 +452,7 @@ RD_INLINE void rate_at(const struct rd_refine *r, size_t m, lanes lambda, struct
         rate_load(r, r->step + m, lambda, rate);
     else {
         memset(rate, 0, sizeof *rate);
-        rate_node(r, r->walk->chain->term_of[r->walk->chain->nodes - 1], r->step[m - 1].element,
-                  lambda, rate);
+        rate_node(r, r->walk->last, r->walk->behind, lambda, rate);
     }
 }
 
@@ -526,7 +525,7 @@ static void joint_fill(const struct rd_refine *r, const struct rd_step *step, la
                        int lane, struct joint *joint)
 {
     lanes N[W][W];
-    term_load(r->walk, r->walk->run[step->run].term, step->element, lambda, N);
+    term_load(r->walk, r->walk->leg[step->leg].term, step->element, lambda, N);
     const struct piece *half =
         (const struct piece *)(r->piece + (size_t)(step->piece - step->level) * 6 * W * W);
     for (int32_t k = 0; k < step->level; k++, half += 2, joint++) {
@@ -579,7 +578,7 @@ void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *
     const struct rd_chain *chain = r->walk->chain;
     const lanes lambda = lanes_load(lambdas);
     struct joint joint[LEVELS];
-    int32_t run = -1;
+    int32_t leg = -1;
     for (size_t m = 0; m <= r->steps; m++) {
         double ua[W], fb[W];
         for (int i = 0; i < W; i++) {
@@ -590,24 +589,25 @@ void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *
             memcpy(u + (chain->nodes - 1) * W, ua, sizeof ua);
             return;
         }
-        /* the first step of a run is its largest piece, the last of its levels */
+        /* the first step of a leg is its largest piece, the last of its levels */
         const struct rd_step *step = r->step + m;
-        if (step->run != run && step->piece >= 0)
+        if (step->leg != leg && step->piece >= 0)
             joint_fill(r, step, lambda, lane, joint);
-        run = step->run;
-        descend(joint, step->level, ua, fb, u + step->node * W);
+        leg = step->leg;
+        if (step->term != RD_NO_TERM) /* the node's own motion is that on the left of its hinge */
+            descend(joint, step->level, ua, fb, u + step->node * W);
     }
 }
 
-/* Steps of a run: single elements where it is short, pieces of 2^k otherwise. */
-static _Bool plan_run(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
+/* Steps of a leg: single elements where it is short, pieces of 2^k otherwise. */
+static _Bool plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
 {
-    const struct rd_stretch *run = r->walk->run + index;
+    const struct rd_leg *leg = r->walk->leg + index;
     struct piece level[LEVELS];
-    const int top = run->count < 4 ? 0 : pieces_fill(r->walk, run, lambda, level);
+    const int top = leg->count < 4 ? 0 : pieces_fill(r->walk, leg, lambda, level);
     if (top > 0 && (size_t)(*pieces + top + 1) > r->pieces)
         return 0;
-    size_t node = run->node, left = run->count;
+    size_t node = leg->node, left = leg->count;
     for (int k = top; k >= 0; k--)
         for (; left >> k > 0; left -= (size_t)1 << k, node += (size_t)1 << k) {
             if (r->steps == r->capacity)
@@ -615,11 +615,11 @@ static _Bool plan_run(struct rd_refine *r, int32_t index, lanes lambda, int32_t 
             r->step[r->steps++] = (struct rd_step){
                 .node = node,
                 .piece = top > 0 ? *pieces + k : -1,
-                .element = run->element,
-                .term = node == run->node ? run->first : run->term,
-                .before = node == run->node ? run->before : run->element,
+                .element = leg->element,
+                .term = node == leg->node ? leg->first : leg->term,
+                .before = node == leg->node ? leg->before : leg->element,
                 .level = k,
-                .run = index,
+                .leg = index,
             };
         }
     *pieces += top > 0 ? top + 1 : 0;
@@ -635,8 +635,8 @@ enum rd_status WIDTH(plan)(struct rd_refine *r, const double *lambdas)
         most = fmax(most, fabs(lambdas[k]));
     rd_walk_scale(r->walk, most, r->z);
     r->steps = 0;
-    for (size_t i = 0; i < r->walk->runs; i++)
-        if (!plan_run(r, (int32_t)i, lambda, &pieces))
+    for (size_t i = 0; i < r->walk->legs; i++)
+        if (!plan_leg(r, (int32_t)i, lambda, &pieces))
             return RD_NO_MEMORY;
     return RD_OK;
 }

@@ -45,15 +45,16 @@ static void resist(size_t w, const double *A, const double T[W][W], double R[W][
     }
 }
 
-static void resist_node(const struct rd_chain *chain, int32_t term, const double T[W][W],
+static void resist_node(const struct rd_walk *walk, int32_t term, const double T[W][W],
                         double R[W][W])
 {
-    const size_t w = chain->width;
+    const size_t w = walk->chain->width;
+    const uint8_t *held = rd_walk_held(walk, term);
     double hold[W * W] = {0};
     for (size_t i = 0; i < w; i++)
-        hold[i * (w + 1)] = chain->held[(size_t)term * w + i];
+        hold[i * (w + 1)] = held[i];
     resist(w, hold, T, R);
-    resist(w, chain->stiffness + (size_t)term * w * w, T, R);
+    resist(w, rd_walk_springs(walk, term), T, R);
 }
 
 /* What an element without end forces makes of a motion: D_z,beta = l, and its tension resists any
@@ -63,7 +64,8 @@ static void levers(const struct rd_chain *chain, int32_t element, double *D, dou
     const size_t w = chain->width, beta = w - 1;
     memset(D, 0, w * w * sizeof *D);
     memset(Q, 0, w * w * sizeof *Q);
-    if (chain->coordinate[beta] != RD_BETA || chain->kind == RD_DIFFERENCE)
+    const bool hinge = (size_t)element >= chain->distinct;
+    if (hinge || chain->coordinate[beta] != RD_BETA || chain->kind == RD_DIFFERENCE)
         return;
     for (size_t i = 0; i < w; i++)
         if (chain->coordinate[i] == RD_Z)
@@ -116,19 +118,19 @@ static void resistance(const struct rd_walk *walk, double R[W][W])
     const size_t w = chain->width;
     double T[W][W], D[W * W], Q[W * W];
     begin(walk, T);
-    for (size_t r = 0; r < walk->runs && !is_full(w, R); r++) {
-        const struct rd_stretch *run = walk->run + r;
-        levers(chain, run->element, D, Q);
-        resist_node(chain, run->first, T, R);
+    for (size_t r = 0; r < walk->legs && !is_full(w, R); r++) {
+        const struct rd_leg *leg = walk->leg + r;
+        levers(chain, leg->element, D, Q);
+        resist_node(walk, leg->first, T, R);
         resist(w, Q, T, R);
         advance(w, D, 1, T);
-        if (run->count > 1)
-            resist_node(chain, run->term, T, R);
-        advance(w, D, run->count - 1, T);
-        if (run->count > 2)
-            resist_node(chain, run->term, T, R);
+        if (leg->count > 1)
+            resist_node(walk, leg->term, T, R);
+        advance(w, D, leg->count - 1, T);
+        if (leg->count > 2)
+            resist_node(walk, leg->term, T, R);
     }
-    resist_node(chain, chain->term_of[chain->nodes - 1], T, R);
+    resist_node(walk, walk->last, T, R);
 }
 
 /* R V = columns orthogonal to each other, by rotations of two columns at a time; then those of
@@ -186,23 +188,23 @@ static void add_inertia(size_t w, const double *M, const double B[W][W], const d
 static void inertia(const struct rd_walk *walk, double A[W][W])
 {
     const struct rd_chain *chain = walk->chain;
-    const size_t w = chain->width, block = w * w;
+    const size_t w = chain->width;
     double T[W][W], DT[W][W], D[W * W], Q[W * W];
     begin(walk, T);
     memset(A, 0, W * sizeof *A);
-    for (size_t r = 0; r < walk->runs; r++) {
-        const struct rd_stretch *run = walk->run + r;
-        levers(chain, run->element, D, Q);
-        const double n = (double)run->count;
-        const double *M = chain->mass + (size_t)run->term * block;
+    for (size_t r = 0; r < walk->legs; r++) {
+        const struct rd_leg *leg = walk->leg + r;
+        levers(chain, leg->element, D, Q);
+        const double n = (double)leg->count;
+        const double *M = rd_walk_mass(walk, leg->term);
         tilt(w, D, T, DT);
-        add_inertia(w, chain->mass + (size_t)run->first * block, T, T, 1, A);
+        add_inertia(w, rd_walk_mass(walk, leg->first), T, T, 1, A);
         add_inertia(w, M, T, T, n - 1, A);
         add_inertia(w, M, T, DT, n * (n - 1), A);
         add_inertia(w, M, DT, DT, (n - 1) * n * (2 * n - 1) / 6, A);
-        advance(w, D, run->count, T);
+        advance(w, D, leg->count, T);
     }
-    add_inertia(w, chain->mass + (size_t)chain->term_of[chain->nodes - 1] * block, T, T, 1, A);
+    add_inertia(w, rd_walk_mass(walk, walk->last), T, T, 1, A);
 }
 
 /* motion <- motion L^-T with motion^T A motion = L L^T */
@@ -251,19 +253,20 @@ void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, si
     const size_t w = chain->width;
     double T[W][W], DT[W][W], D[W * W], Q[W * W];
     begin(walk, T);
-    for (size_t r = 0; r <= walk->runs; r++) {
-        const struct rd_stretch last = {.node = chain->nodes - 1, .count = 1};
-        const struct rd_stretch *run = r < walk->runs ? walk->run + r : &last;
-        levers(chain, run->element, D, Q);
+    for (size_t r = 0; r <= walk->legs; r++) {
+        const struct rd_leg last = {.node = chain->nodes - 1, .count = 1, .first = walk->last};
+        const struct rd_leg *leg = r < walk->legs ? walk->leg + r : &last;
+        levers(chain, leg->element, D, Q);
         tilt(w, D, T, DT);
-        for (size_t n = 0; n < run->count; n++)
+        for (size_t n = 0; n < leg->count; n++) {
+            const uint8_t *held = rd_walk_held(walk, n == 0 ? leg->first : leg->term);
             for (size_t i = 0; i < w; i++) {
                 double sum = 0;
                 for (size_t j = 0; j < w; j++)
                     sum += (T[i][j] + (double)n * DT[i][j]) * rigid->motion[j][k];
-                u[(run->node + n) * w + i] =
-                    chain->held[(size_t)chain->term_of[run->node + n] * w + i] ? 0 : sum;
+                u[(leg->node + n) * w + i] = held[i] ? 0 : sum;
             }
-        advance(w, D, run->count, T);
+        }
+        advance(w, D, leg->count, T);
     }
 }

@@ -5,7 +5,8 @@
 
 size_t rd_runs_capacity(const struct rd_chain *chain)
 {
-    return chain->nodes / RD_RUN_LEAST + 1;
+    const size_t most = chain->nodes / RD_RUN_LEAST + 1;
+    return chain->stretches < most ? chain->stretches : most;
 }
 
 /* a node that pieces cannot be joined across */
@@ -18,26 +19,18 @@ static int parts(const struct rd_chain *chain, int32_t term)
     return any;
 }
 
-/* the end of the uniform stretch that begins with element `first` */
-static size_t run_end(const struct rd_chain *chain, size_t first)
+/* nodes of a stretch */
+static size_t nodes_of(const struct rd_chain *chain, size_t k)
 {
-    const size_t elements = chain->nodes - 1;
-    const int32_t e = chain->element_of[first];
-    size_t last = first + 1;
-    if (last >= elements || parts(chain, chain->term_of[last]))
-        return last;
-    const int32_t t = chain->term_of[last];
-    while (last < elements && chain->element_of[last] == e && chain->term_of[last] == t)
-        last++;
-    return last;
+    return (size_t)(k + 1 < chain->stretches ? chain->first[k + 1] - chain->first[k] : 1);
 }
 
 static void average(const struct rd_chain *chain, struct rd_runs *runs)
 {
     double length = 0.0, tension = 0.0, flexibility[RD_CHANNELS] = {0};
-    for (size_t i = 0; i + 1 < chain->nodes; i++) {
-        const size_t e = (size_t)chain->element_of[i];
-        const double l = chain->length[e];
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const size_t e = (size_t)chain->element[k];
+        const double l = (double)nodes_of(chain, k) * chain->length[e];
         length += l;
         tension += l * chain->tension[e];
         for (size_t c = 0; c < RD_CHANNELS; c++)
@@ -49,38 +42,49 @@ static void average(const struct rd_chain *chain, struct rd_runs *runs)
         runs->flexibility[c] = flexibility[c] / length;
 }
 
-/* one mass of 1e12 among many must not set the scale of all: a geometric mean */
+/* One mass of 1e12 among many must not set the scale of all: a geometric mean. Few logarithms of
+   long products, which stay away from overflow. */
 static void average_mass(const struct rd_chain *chain, struct rd_runs *runs)
 {
     const size_t w = chain->width;
     for (size_t c = 0; c < w; c++) {
-        double sum = 0.0, nodes = 0.0, last = 0.0;
-        int32_t before = -1;
-        for (size_t i = 0; i < chain->nodes; i++) {
-            const int32_t t = chain->term_of[i];
-            const double m = fabs(chain->mass[(size_t)t * w * w + c * (w + 1)]);
-            if (t != before)
-                last = m > 0.0 ? log(m) : 0.0;
-            before = t;
-            sum += last;
-            nodes += m > 0.0;
+        double sum = 0.0, nodes = 0.0, product = 1.0;
+        for (size_t k = 0; k < chain->stretches; k++) {
+            const double n = (double)nodes_of(chain, k);
+            const double m = fabs(chain->mass[(size_t)chain->term[k] * w * w + c * (w + 1)]);
+            if (m == 0.0)
+                continue;
+            nodes += n;
+            const double next = product * m;
+            if (n == 1.0 && next > 1e-300 && next < 1e300) {
+                product = next;
+            } else {
+                sum += log(product) + n * log(m);
+                product = 1.0;
+            }
         }
+        sum += log(product);
         runs->mass[c] = nodes > 0.0 ? exp(sum / nodes) * nodes / runs->length : 0.0;
     }
 }
 
+/* a stretch, and the node before it where the element on its right is the same */
 void rd_runs_find(const struct rd_chain *chain, struct rd_run *run, struct rd_runs *runs)
 {
-    size_t count = 0, longest = 0;
-    for (size_t first = 0; first + 1 < chain->nodes;) {
-        const size_t last = run_end(chain, first);
-        if (last - first >= RD_RUN_LEAST) {
-            run[count++] = (struct rd_run){first, last};
-            longest = last - first > longest ? last - first : longest;
-        }
-        first = last;
+    size_t count = 0, end = 0;
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const int32_t e = chain->element[k], t = chain->term[k];
+        size_t first = (size_t)chain->first[k];
+        const size_t last = (size_t)chain->first[k + 1];
+        if (first > end && chain->element[k - 1] == e)
+            first--;
+        if (last - first < RD_RUN_LEAST || parts(chain, t))
+            continue;
+        run[count++] = (struct rd_run){first, last, e, t};
+        end = last;
     }
-    *runs = (struct rd_runs){.count = count, .longest = longest, .run = run};
+    *runs = (struct rd_runs){.count = count, .run = run};
     average(chain, runs);
     average_mass(chain, runs);
+    rd_body_find(chain, &runs->body);
 }

@@ -2,6 +2,7 @@
 #ifndef RD_RUNS_H
 #define RD_RUNS_H
 
+#include "body.h"
 #include "chain.h"
 #include "status.h"
 
@@ -9,17 +10,19 @@
    where nothing is held. Only stretches of RD_RUN_LEAST elements or more are runs. */
 struct rd_run {
     size_t first, last;
+    int32_t element, term;
 };
 
 enum { RD_RUN_LEAST = 8 };
 
 struct rd_runs {
-    size_t count, longest;
+    size_t count;
     const struct rd_run *run;        /* (count) */
     double length;                   /* [m] of the chain */
     double tension;                  /* [N] mean over the length */
     double flexibility[RD_CHANNELS]; /* mean S_cc over the length */
     double mass[RD_WIDTH_MAX];       /* per length, geometric mean of nodes that have any */
+    struct rd_body body;
 };
 
 /* places needed for the runs of a chain */

@@ -200,11 +200,11 @@ static void equilibrate(size_t n, double *A)
 }
 
 /* positive eigenvalues of a node's M over its free coordinates */
-static size_t positive(const struct rd_chain *chain, int32_t term)
+static size_t positive(const struct rd_walk *walk, int32_t term)
 {
-    const size_t w = chain->width;
-    const double *M = chain->mass + (size_t)term * w * w;
-    const uint8_t *held = chain->held + (size_t)term * w;
+    const size_t w = walk->chain->width;
+    const double *M = rd_walk_mass(walk, term);
+    const uint8_t *held = rd_walk_held(walk, term);
     double A[RD_WIDTH_MAX * RD_WIDTH_MAX], V[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
     size_t free[RD_WIDTH_MAX], n = 0, count = 0;
     for (size_t i = 0; i < w; i++)
@@ -222,13 +222,12 @@ static size_t positive(const struct rd_chain *chain, int32_t term)
 
 size_t rd_search_finite(const struct rd_walk *walk)
 {
-    const struct rd_chain *chain = walk->chain;
-    size_t count = positive(chain, chain->term_of[chain->nodes - 1]);
-    for (size_t r = 0; r < walk->runs; r++) {
-        const struct rd_stretch *run = walk->run + r;
-        count += positive(chain, run->first);
-        if (run->count > 1)
-            count += (run->count - 1) * positive(chain, run->term);
+    size_t count = positive(walk, walk->last);
+    for (size_t r = 0; r < walk->legs; r++) {
+        const struct rd_leg *leg = walk->leg + r;
+        count += positive(walk, leg->first);
+        if (leg->count > 1)
+            count += (leg->count - 1) * positive(walk, leg->term);
     }
     return count;
 }

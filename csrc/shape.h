@@ -29,43 +29,87 @@ static const double shape_lag[SHAPE_TERMS] = {
     1.0 / 3,       1.0 / 30,        1.0 / 840,           1.0 / 45360,
     1.0 / 3991680, 1.0 / 518918400, 1.0 / 93405312000.0, 1.0 / 22230464256000.0};
 
+/* theta = phi s: phi of the frequencies, s real and of the element. What the series of all elements
+   share is shape_cosh[k] phi^k and shape_lag[k] phi^k. */
+struct shape_series {
+    cv phi, cosh[SHAPE_TERMS], lag[SHAPE_TERMS];
+    lane_mask large; /* |phi| > 1, which no damping makes it */
+    double most;     /* largest |phi|^2 */
+    int any_large;
+};
+
+RD_INLINE void shape_prepare(cv phi, struct shape_series *series)
+{
+    const lanes square = phi.re * phi.re + phi.im * phi.im;
+    cv power = c_real(1.0);
+    for (int k = 0; k < SHAPE_TERMS; k++) {
+        series->cosh[k] = c_scale(power, shape_cosh[k]);
+        series->lag[k] = c_scale(power, shape_lag[k]);
+        power = c_mul(power, phi);
+    }
+    series->phi = phi;
+    series->large = square > 1.0 + 1e-12;
+    series->most = 0.0;
+    series->any_large = 0;
+    for (int i = 0; i < RD_LANES; i++) {
+        series->most = square[i] > series->most ? square[i] : series->most;
+        series->any_large |= series->large[i] != 0;
+    }
+}
+
+/* so many terms leave less than 2^-55 of the sum for |phi| <= 1: the next one of the lag, which
+   decides, is (2k + 2)!/(2k + 3)! ... = 7.5e-7 s^4 for 4 and 5.8e-9 s^5 for 5 of them */
+RD_INLINE int shape_terms(double s)
+{
+    const double size = s < 0.0 ? -s : s;
+    return size <= 1.0 / 512 ? 4 : size <= 1.0 / 64 ? 5 : SHAPE_TERMS;
+}
+
+RD_INLINE cv shape_sum(const cv *term, int terms, double s)
+{
+    const lanes step = l_fill(s);
+    cv sum = term[terms - 1];
+    for (int k = terms - 2; k >= 0; k--)
+        sum = c_add(c_scale_lanes(sum, step), term[k]);
+    return sum;
+}
+
 /* |theta| <= 1: with c = (cosh t - 1)/theta, d = (cosh t - sinh(t)/t)/theta, C = 1 + theta c:
        P1 = c/C,  P2 = d/C,  tau = 1 - theta P2 */
-RD_INLINE void shape_series(cv theta, struct shape_lanes *p)
+RD_INLINE void shape_by_series(const struct shape_series *series, double s, struct shape_lanes *p)
 {
-    cv c = c_real(shape_cosh[SHAPE_TERMS - 1]), d = c_real(shape_lag[SHAPE_TERMS - 1]);
-#pragma GCC unroll 8
-    for (int k = SHAPE_TERMS - 2; k >= 0; k--) {
-        c = c_mul(c, theta);
-        d = c_mul(d, theta);
-        c.re += shape_cosh[k];
-        d.re += shape_lag[k];
+    const cv theta = c_scale(series->phi, s);
+    const int terms = shape_terms(s);
+    cv c = shape_sum(series->cosh, terms, s), d = shape_sum(series->lag, terms, s);
+    if (series->any_large) {
+        const cv all_c = shape_sum(series->cosh, SHAPE_TERMS, s);
+        const cv all_d = shape_sum(series->lag, SHAPE_TERMS, s);
+        c.re = l_select(series->large, all_c.re, c.re);
+        c.im = l_select(series->large, all_c.im, c.im);
+        d.re = l_select(series->large, all_d.re, d.re);
+        d.im = l_select(series->large, all_d.im, d.im);
     }
     cv C = c_mul(theta, c);
     C.re += 1.0;
-    const cv s = c_inverse(C);
-    p->P1 = c_mul(c, s);
-    p->P2 = c_mul(d, s);
+    const cv inverse = c_inverse(C);
+    p->P1 = c_mul(c, inverse);
+    p->P2 = c_mul(d, inverse);
     p->less = c_neg(c_mul(theta, p->P2));
     p->tau = p->less;
     p->tau.re += 1.0;
     p->P0 = p->tau;
 }
 
-RD_INLINE void shape_tensed(cv theta, struct shape_lanes *p)
+RD_INLINE void shape_tensed(const struct shape_series *series, double s, struct shape_lanes *p)
 {
-    const lane_mask far = theta.re * theta.re + theta.im * theta.im > 1.0;
-    long long any = 0;
-    for (int i = 0; i < RD_LANES; i++)
-        any |= far[i];
-    cv near = theta;
-    if (any) {
-        near.re = l_select(far, (lanes){0}, theta.re);
-        near.im = l_select(far, (lanes){0}, theta.im);
+    shape_by_series(series, s, p);
+    if (s * s * series->most > 1.0) {
+        const cv theta = c_scale(series->phi, s);
+        const lane_mask far = theta.re * theta.re + theta.im * theta.im > 1.0;
+        struct shape_lanes beyond = *p;
+        rd_shape_closed(&theta, &far, &beyond);
+        *p = beyond;
     }
-    shape_series(near, p);
-    if (any)
-        rd_shape_closed(&theta, &far, p);
 }
 
 RD_INLINE void shape_rigid(cv theta, struct shape_lanes *p)
@@ -80,12 +124,13 @@ RD_INLINE void shape_rigid(cv theta, struct shape_lanes *p)
     p->P0.re += 1.0;
 }
 
-RD_INLINE void shape_functions(enum rd_kind kind, cv theta, struct shape_lanes *p)
+RD_INLINE void shape_functions(enum rd_kind kind, const struct shape_series *series, double s,
+                               struct shape_lanes *p)
 {
     if (kind == RD_TENSED) {
-        shape_tensed(theta, p);
+        shape_tensed(series, s, p);
     } else if (kind == RD_RIGID) {
-        shape_rigid(theta, p);
+        shape_rigid(c_scale(series->phi, s), p);
     } else {
         *p = (struct shape_lanes){c_real(1.0), c_real(0.5), c_real(1.0 / 3.0), c_zero(), c_zero()};
     }

@@ -12,14 +12,14 @@
 /* the frequencies order[first] .. that fit together */
 static void begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
 {
-    s->used = rd_sweep_block_from(s->chain, s->runs, factors, s->order, first, s->index);
+    s->used = rd_sweep_block_from(s->chain, &s->runs, factors, s->order, first, s->index);
     s->extent = rd_sweep_extent(factors, s->index[0]);
-    rd_sweep_scale(s->chain, s->runs, factors, s->index, &s->block, s->way);
+    rd_sweep_scale(s->chain, &s->runs, factors, s->index, &s->block, s->way);
     s->levels = 0;
     s->steps = 1.0;
     for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)
         s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);
-    for (size_t e = 0; s->plain && e < s->chain->distinct; e++)
+    for (size_t e = 0; s->plain && s->planar && e < s->chain->distinct; e++)
         s->kernel->make_plain(s->chain, &s->block, e, s->plain + e * RD_PLAIN);
 }
 
@@ -32,12 +32,12 @@ static void find_infinite(const double *x, size_t rows, size_t count, size_t wid
                 *failed = i / width;
 }
 
-enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_runs *runs,
-                            const struct rd_factors *factors, const struct rd_ports *drives,
-                            const struct rd_ports *responses, struct rd_workspace *workspace,
-                            double *value, double *error, size_t *failed)
+enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_factors *factors,
+                            const struct rd_ports *drives, const struct rd_ports *responses,
+                            struct rd_workspace *workspace, double *value, double *error,
+                            size_t *failed)
 {
-    struct sweep *s = rd_sweep_plan(chain, runs, factors, drives, responses, workspace);
+    struct sweep *s = rd_sweep_plan(chain, factors, drives, responses, workspace);
     if (!s)
         return RD_NO_MEMORY;
     const size_t count = factors->count, rows = drives->count * responses->count;

@@ -2,7 +2,6 @@
 #ifndef RD_SWEEP_H
 #define RD_SWEEP_H
 
-#include "runs.h"
 #include "status.h"
 #include "sweep_scale.h"
 #include "taps.h"
@@ -18,9 +17,9 @@
    is u = U s, f = i (I - U) s, |I - 2U| <= 1, from a free end U = I on.
    RD_NO_MEMORY: the workspace measures too small (base NULL: `used` says what is needed).
    RD_SINGULAR: frequency *failed is a resonance to the last digit; it has no response. */
-enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_runs *runs,
-                            const struct rd_factors *factors, const struct rd_ports *drives,
-                            const struct rd_ports *responses, struct rd_workspace *workspace,
-                            double *value, double *error, size_t *failed);
+enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_factors *factors,
+                            const struct rd_ports *drives, const struct rd_ports *responses,
+                            struct rd_workspace *workspace, double *value, double *error,
+                            size_t *failed);
 
 #endif

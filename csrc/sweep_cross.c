@@ -12,16 +12,24 @@ void rd_sweep_begin(struct sweep *s)
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++)
             s->state.U[p] = c_real(i == j ? 1.0 : 0.0);
-    memset(s->rows, 0, s->carried * w * sizeof *s->rows);
+    memset(s->rows, 0, 2 * s->carried * w * sizeof *s->rows);
+    s->state.stretch = 0;
     s->state.absorbed = 0;
     s->state.rows = 0;
     s->state.E = s->state.E_all = s->rows;
 }
 
+/* the term of a node, near to which the walk stands */
+static size_t term_at(struct sweep *s, size_t node)
+{
+    s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
+    return (size_t)s->chain->term[s->state.stretch];
+}
+
 void rd_sweep_absorb(struct sweep *s, int way, size_t node)
 {
     if (!s->state.absorbed)
-        s->kernel->absorb(&s->walk[way], (size_t)s->chain->term_of[node], &s->state);
+        s->kernel->absorb(&s->walk[way], term_at(s, node), &s->state);
 }
 
 /* a node term that half a turn about z changes makes the pieces differ with the direction */
@@ -62,11 +70,11 @@ static void make_table(struct sweep *s, int32_t e, int32_t t, int way, size_t le
 /* the node term at the near end of the first piece may differ from the run's */
 static void first_piece(struct sweep *s, int way, const cv *piece, size_t node)
 {
-    const size_t term = (size_t)s->chain->term_of[node];
+    const size_t term = term_at(s, node);
     rd_sweep_absorb(s, way, node);
     if (!way && (s->trait[term] & RD_HINGED))
         s->kernel->open(&s->walk[way], term, &s->state);
-    s->kernel->walk(&s->walk[way], piece, -1, node, 1, &s->state);
+    s->kernel->walk_pieces(&s->walk[way], piece, -1, 1, &s->state);
     s->state.absorbed = 0;
 }
 
@@ -74,10 +82,11 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 {
     if (count == 0)
         return;
-    if (s->kernel->walk_plain && s->state.rows == 0)
+    s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
+    if (s->planar && s->state.rows == 0)
         s->kernel->walk_plain(&s->walk[way], node, count, &s->state);
     else
-        s->kernel->walk(&s->walk[way], NULL, -1, node, count, &s->state);
+        s->kernel->walk(&s->walk[way], node, count, &s->state);
     s->state.absorbed = 0;
     s->steps += (double)count;
 }
@@ -85,7 +94,7 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
-    const int32_t e = s->chain->element_of[run->first], t = s->chain->term_of[run->first + 1];
+    const int32_t e = run->element, t = run->term;
     size_t top = rd_sweep_levels(s->chain, (size_t)e, (size_t)t, count, &s->extent);
     if (top == 0) {
         cross_each(s, way, node, count);
@@ -105,11 +114,19 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
             begun = 1;
             pieces--;
         }
-        s->kernel->walk(&s->walk[way], piece, t, node, pieces, &s->state);
+        s->kernel->walk_pieces(&s->walk[way], piece, t, pieces, &s->state);
     }
-    const size_t end = (size_t)s->chain->term_of[way ? node - count : node + count];
+    const size_t end = term_at(s, way ? node - count : node + count);
     if (way && (s->trait[end] & RD_HINGED))
         s->kernel->open(&s->walk[way], end, &s->state);
+}
+
+/* A heavy node lies between two stretches: rows lose most digits there. */
+static void accompany(struct sweep *s)
+{
+    const size_t w = s->chain->width;
+    for (size_t r = 0; r < s->state.rows; r += 2)
+        sweep_accompany(s->state.E + r * w, (int)w, s->state.E + (r + 1) * w);
 }
 
 /* from node a to a later node b, runs by pieces and the rest element by element; r is the first
@@ -117,9 +134,9 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
 void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
 {
     while (a < b) {
-        while (*r < s->runs->count && s->runs->run[*r].last <= a)
+        while (*r < s->runs.count && s->runs.run[*r].last <= a)
             ++*r;
-        const struct rd_run *run = *r < s->runs->count ? s->runs->run + *r : NULL;
+        const struct rd_run *run = *r < s->runs.count ? s->runs.run + *r : NULL;
         const size_t until = !run || run->first > b ? b : run->first;
         if (a < until) {
             cross_each(s, 0, a, until - a);
@@ -132,6 +149,7 @@ void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
                 cross_each(s, 0, a, end - a);
             a = end;
         }
+        accompany(s);
     }
 }
 
@@ -139,9 +157,9 @@ void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
 void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
 {
     while (a < b) {
-        while (*r > 0 && s->runs->run[*r - 1].first >= b)
+        while (*r > 0 && s->runs.run[*r - 1].first >= b)
             --*r;
-        const struct rd_run *run = *r > 0 ? s->runs->run + *r - 1 : NULL;
+        const struct rd_run *run = *r > 0 ? s->runs.run + *r - 1 : NULL;
         const size_t until = !run || run->last < a ? a : run->last;
         if (until < b) {
             cross_each(s, 1, b, b - until);
@@ -154,5 +172,6 @@ void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
                 cross_each(s, 1, b, b - end);
             b = end;
         }
+        accompany(s);
     }
 }

@@ -29,9 +29,10 @@ RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct 
         return;
     }
     const double Sbb = S[3 * RD_BENDING + RD_BENDING];
-    const cv theta = c_scale(b->phi, T * Sbb * l * l);
+    const double s = T * Sbb * l * l;
+    const cv theta = c_scale(b->series.phi, s);
     struct shape_lanes p;
-    shape_functions(chain->kind, theta, &p);
+    shape_functions(chain->kind, &b->series, s, &p);
     const cv bent[3] = {c_scale(p.P0, Sbb * l), c_scale(p.P1, Sbb * l * l),
                         c_scale(p.P2, Sbb * l * l * l)};
     UNROLL for (int i = 0; i < W; i++)

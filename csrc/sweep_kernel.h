@@ -4,30 +4,33 @@
 
 #include "chain.h"
 #include "lanes.h"
+#include "shape.h"
 
-enum { RD_PLAIN = 7 }; /* complex lanes of an element in a walk without rows */
+enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
 
 /* what a node term needs besides adding masses */
 enum rd_trait {
     RD_COUPLED = 1, /* a coordinate is held or two are coupled */
     RD_SPRUNG = 2,  /* it has stiffness */
     RD_HINGED = 4,  /* a hinge on its right */
+    RD_SKEW = 8,    /* its mass couples z and beta, far from an eccentric one */
 };
 
 enum { RD_PAIRS_MAX = RD_WIDTH_MAX * (RD_WIDTH_MAX + 1) / 2 };
 
 /* What RD_LANES frequencies share with every element: scales and complex factors. */
 struct sweep_block {
-    int bends;                 /* the chain has bending: z, beta and F_z,beta exist */
-    int channel[RD_WIDTH_MAX]; /* enum rd_channel of each coordinate */
-    int arm[RD_WIDTH_MAX];     /* 1 for z in bending */
-    lanes z[RD_WIDTH_MAX];     /* scale of each coordinate: u = z u^, f = f^/z */
-    lanes ratio[RD_WIDTH_MAX]; /* z_beta/z_i */
-    cv flex[RD_PAIRS_MAX];     /* 1/(section z_i z_j) */
-    cv phi;                    /* tension/section */
-    cv pull;                   /* tension z_beta^2 */
-    cv slack;                  /* 1/(tension z_z^2) */
-    cv spring, inertia;        /* factors of node stiffness and mass */
+    int bends;                  /* the chain has bending: z, beta and F_z,beta exist */
+    int channel[RD_WIDTH_MAX];  /* enum rd_channel of each coordinate */
+    int arm[RD_WIDTH_MAX];      /* 1 for z in bending */
+    lanes z[RD_WIDTH_MAX];      /* scale of each coordinate: u = z u^, f = f^/z */
+    lanes ratio[RD_WIDTH_MAX];  /* z_beta/z_i */
+    cv flex[RD_PAIRS_MAX];      /* 1/(section z_i z_j) */
+    struct shape_series series; /* of phi = tension/section */
+    cv pull;                    /* tension z_beta^2 */
+    cv slack;                   /* 1/(tension z_z^2) */
+    cv spring, inertia;         /* factors of node stiffness and mass */
+    int real;                   /* spring and inertia are */
 };
 
 /* What depends on the direction of the walk as well: backward all is seen with u -> D u. */
@@ -50,11 +53,27 @@ struct sweep_walk {
 /* The part behind the walk: u = U s, f = i (I - U) s, and responses in it as rows over s. */
 struct sweep_state {
     cv U[RD_PAIRS_MAX];
-    int absorbed; /* the node ahead is part of U already */
-    size_t rows;  /* of E that are under way */
-    cv *E;        /* (rows, width), inside E_all */
-    cv *E_all;    /* (all carried ports, width) */
+    size_t stretch; /* of the node ahead */
+    int absorbed;   /* the node ahead is part of U already */
+    size_t rows;    /* of E that are under way */
+    cv *E;          /* (rows, width), inside E_all: a port's row, its companion, .. */
+    cv *E_all;      /* (all carried ports, 2, width) */
 };
+
+/* Rounding moves a row E by eps of its largest entry m in every coordinate: m times 1, -1, i, -i is
+   added to its companion, signs that do not cancel where the terms of E s do. */
+RD_INLINE void sweep_accompany(const cv *E, int width, cv *companion)
+{
+    lanes most = {0};
+    for (int j = 0; j < width; j++) {
+        const lanes size = c_size(E[j]);
+        most = l_select(size > most, size, most);
+    }
+    for (int j = 0; j < width; j++) {
+        const lanes m = j % 2 ? -most : most;
+        companion[j] = c_add(companion[j], j < 2 ? (cv){m, (lanes){0}} : (cv){(lanes){0}, m});
+    }
+}
 
 struct sweep_kernel {
     void (*make_element)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *triple);
@@ -64,8 +83,9 @@ struct sweep_kernel {
     void (*walk_plain)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
     void (*join)(const struct rd_chain *, const struct sweep_way *, size_t term, const cv *one,
                  const cv *two, cv *joined);
-    void (*walk)(const struct sweep_walk *, const cv *piece, int32_t term, size_t node,
-                 size_t count, struct sweep_state *);
+    void (*walk)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
+    void (*walk_pieces)(const struct sweep_walk *, const cv *piece, int32_t term, size_t count,
+                        struct sweep_state *);
     void (*absorb)(const struct sweep_walk *, size_t term, struct sweep_state *);
     void (*open)(const struct sweep_walk *, size_t term, struct sweep_state *);
     void (*listen)(const struct sweep_walk *, const double *motion, const double *force,

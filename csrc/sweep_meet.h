@@ -2,10 +2,14 @@
    Included by sweep_width.h, once per width. */
 
 /* A response begins: E <- E + motion U + force V,  V = i (I - U), in the walk's coordinates;
-   the force is the one on the part to the left of the node, so its sign turns with the walk. */
+   the force is the one on the part to the left of the node, so its sign turns with the walk.
+   Rounding of U moves E by eps of its largest entry in every coordinate, which its companion says. */
 static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motion,
                                  const double *force, const cv *U, cv *row)
 {
+    cv E[W];
+    KEEP for (int j = 0; j < W; j++)
+        E[j] = c_zero();
     KEEP for (int i = 0; i < W; i++) {
         const double d = s->way->sign[i];
         const lanes z = s->block->z[i];
@@ -13,9 +17,12 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
         const lanes a = z * (motion ? d * motion[i] : 0.0), b = (force ? turn * force[i] : 0.0) / z;
         KEEP for (int j = 0; j < W; j++) {
             const cv u = U[at(i, j)], v = {u.im, (i == j ? 1.0 : 0.0) - u.re};
-            row[j] = c_add(row[j], c_add(c_scale_lanes(u, a), c_scale_lanes(v, b)));
+            E[j] = c_add(E[j], c_add(c_scale_lanes(u, a), c_scale_lanes(v, b)));
         }
     }
+    KEEP for (int j = 0; j < W; j++)
+        row[j] = c_add(row[j], E[j]);
+    sweep_accompany(E, W, row + W);
 }
 
 /* the solution where both parts meet, and the sizes its rounding grows with */
@@ -110,7 +117,7 @@ RD_INLINE void K_(load)(const struct sweep_walk *s, const double *motion, const 
 /* Left and right part meet at a node that force p and dislocation g (right minus left) load:
        h_r = E_L,r b_L + E_R,r b_R
    and rounding of relative size 1 in U_L, U_R and E changes h_r by at most
-       |E| |H^-1| (|H| |b| + |rhs|) + |E| |b|.
+       |E| |H^-1| (|H| |b| + |rhs|) + |E| |b| + |companion b|.
    singular: the largest diagonal entry of |H^-1| |H|, which no scaling changes. */
 static RD_CLONES void K_(meet)(const struct sweep_walk *s, const double *motion,
                                const double *force, const cv *left, const struct sweep_state *right,
@@ -122,15 +129,18 @@ static RD_CLONES void K_(meet)(const struct sweep_walk *s, const double *motion,
     K_(load)(s, motion, force, left, &m);
     *singular = K_(singular)(&m);
     KEEP for (size_t r = 0; r < rows; r++) {
-        cv sum = c_zero();
+        const cv *left_row = EL + 2 * r * W, *right_row = ER + 2 * r * W;
+        cv sum = c_zero(), apart = c_zero();
         lanes size = {0};
         KEEP for (int i = 0; i < W; i++) {
-            const cv l = EL[r * W + (size_t)i];
-            const cv e = c_scale(ER[r * W + (size_t)i], s->way->sign[i]);
+            const double d = s->way->sign[i];
+            const cv l = left_row[i], e = c_scale(right_row[i], d);
             sum = c_add(sum, c_add(c_mul(l, m.bL[i]), c_mul(e, m.bR[i])));
+            apart = c_add(apart, c_add(c_mul(left_row[W + i], m.bL[i]),
+                                       c_mul(c_scale(right_row[W + i], d), m.bR[i])));
             size += c_size(l) * m.cL[i] + c_size(e) * m.cR[i];
         }
         value[r] = sum;
-        error[r] = size;
+        error[r] = size + c_size(apart);
     }
 }

@@ -215,10 +215,10 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
     state->absorbed = 1;
 }
 
-/* A hinge of compliance h in coordinate e: with V = I - U, k = i h/(1 + i h V_ee),
+/* A hinge of complex compliance h in coordinate e: with V = I - U, k = i h/(1 + i h V_ee),
        U <- U + k V_e V_e^T,  E <- E (I - k e V_e^T)
    and k = 1/V_ee for a free hinge. V_ee = 0 only where all of V_e is. */
-RD_INLINE void K_(open)(int e, lanes h, int free, cv *U, cv *E, size_t rows)
+RD_INLINE void K_(open)(int e, cv h, int free, cv *U, cv *E, size_t rows)
 {
     cv V[W], k;
     KEEP for (int i = 0; i < W; i++)
@@ -230,9 +230,9 @@ RD_INLINE void K_(open)(int e, lanes h, int free, cv *U, cv *E, size_t rows)
         d.re = l_select(none, (lanes){0} + 1.0, d.re);
         k = c_inverse(d);
     } else {
-        cv d = c_times_i(c_scale_lanes(V[e], h));
+        cv d = c_times_i(c_mul(V[e], h));
         d.re += 1.0;
-        k = c_times_i(c_scale_lanes(c_inverse(d), h));
+        k = c_times_i(c_mul(c_inverse(d), h));
     }
     KEEP for (size_t r = 0; r < rows; r++) {
         cv *row = E + r * W;
@@ -245,14 +245,17 @@ RD_INLINE void K_(open)(int e, lanes h, int free, cv *U, cv *E, size_t rows)
             U[at(i, j)] = c_add(U[at(i, j)], c_mul(c_mul(V[i], V[j]), k));
 }
 
-/* all hinges on the right of a node */
+/* all hinges on the right of a node; each is a spring, and damped as one */
 static RD_CLONES void K_(open_all)(const struct sweep_walk *s, size_t t, struct sweep_state *state)
 {
     const double *hinge = s->chain->hinge + t * W;
+    const cv soft = c_inverse(s->block->spring);
     KEEP for (int e = 0; e < W; e++)
         if (hinge[e] != 0.0) {
             const lanes z = s->block->z[e];
-            K_(open)(e, hinge[e] / (z * z), isinf(hinge[e]), state->U, state->E, state->rows);
+            const int free = isinf(hinge[e]);
+            const cv h = c_scale_lanes(soft, free ? (lanes){0} : hinge[e] / (z * z));
+            K_(open)(e, h, free, state->U, state->E, state->rows);
         }
 }
 

@@ -35,8 +35,7 @@ static bool same_levels(const struct rd_chain *chain, const struct rd_runs *runs
 {
     for (size_t r = 0; r < runs->count; r++) {
         const struct rd_run *run = runs->run + r;
-        const size_t e = (size_t)chain->element_of[run->first], n = run->last - run->first;
-        const size_t t = (size_t)chain->term_of[run->first + 1];
+        const size_t e = (size_t)run->element, t = (size_t)run->term, n = run->last - run->first;
         if (rd_sweep_levels(chain, e, t, n, x) != rd_sweep_levels(chain, e, t, n, y))
             return false;
     }

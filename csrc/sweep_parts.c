@@ -14,18 +14,18 @@ static const double ROUNDING = 20.0;
 static void listen(struct sweep *s, int way, const struct tap *tap)
 {
     s->kernel->listen(&s->walk[way], tap->motion, tap->force, s->state.U,
-                      s->rows + tap->rank * s->chain->width);
+                      s->rows + 2 * tap->rank * s->chain->width);
 }
 
 /* A heavy node moves by the small difference of what the parts beside it do: rounding counts for so
    much more there, 1 + |N| z^2 of the watched coordinates. */
 static lanes weight(const struct sweep *s, const struct tap *tap)
 {
-    const size_t w = s->chain->width, term = (size_t)s->chain->term_of[tap->node];
+    const size_t w = s->chain->width;
     const lanes spring = c_size(s->block.spring), inertia = c_size(s->block.inertia);
     lanes most = l_fill(1.0);
     for (size_t i = 0; tap->motion && i < w; i++) {
-        const size_t at = (term * w + i) * w + i;
+        const size_t at = (tap->term * w + i) * w + i;
         if (tap->motion[i] == 0.0)
             continue;
         const lanes N = spring * fabs(s->chain->stiffness[at]) + inertia * fabs(s->chain->mass[at]);
@@ -35,26 +35,25 @@ static lanes weight(const struct sweep *s, const struct tap *tap)
     return most;
 }
 
-/* the same for all taps of a carried port */
-static lanes weight_of(const struct sweep *s, size_t port)
+/* the largest among all taps of each carried port */
+static void weigh(struct sweep *s)
 {
-    lanes most = l_fill(1.0);
-    for (size_t c = 0; c < s->carry.count; c++)
-        if (s->carry.tap[c].port == port) {
-            const lanes own = weight(s, s->carry.tap + c);
-            most = l_select(own > most, own, most);
-        }
-    return most;
+    for (size_t port = 0; port < s->carried; port++)
+        s->weight[port] = l_fill(1.0);
+    for (size_t c = 0; c < s->carry.count; c++) {
+        const lanes own = weight(s, s->carry.tap + c);
+        lanes *most = s->weight + s->carry.tap[c].port;
+        *most = l_select(own > *most, own, *most);
+    }
 }
 
 /* the left parts at the nodes where parts will meet, with the rows carried so far */
 void rd_sweep_left(struct sweep *s)
 {
-    const size_t w = s->chain->width, size = s->sym + s->carried * w;
+    const size_t w = s->chain->width, size = s->sym + 2 * s->carried * w;
     size_t c = 0, m = 0, node = 0, run = 0;
     rd_sweep_begin(s);
-    for (size_t port = 0; port < s->carried; port++)
-        s->weight[port] = weight_of(s, port);
+    weigh(s);
     for (size_t record = 0; record < s->records; record++) {
         const size_t stop = s->meet.tap[m].node;
         for (; c < s->carry.count && s->carry.tap[c].node <= stop; c++) {
@@ -62,13 +61,14 @@ void rd_sweep_left(struct sweep *s)
             rd_sweep_forward(s, node, tap->node, &run);
             node = tap->node;
             listen(s, 0, tap);
-            s->state.rows = tap->rank + 1 > s->state.rows ? tap->rank + 1 : s->state.rows;
+            if (s->state.rows < 2 * (tap->rank + 1))
+                s->state.rows = 2 * (tap->rank + 1);
         }
         rd_sweep_forward(s, node, stop, &run);
         node = stop;
         cv *to = s->record + record * size;
         memcpy(to, s->state.U, s->sym * sizeof *to);
-        memcpy(to + s->sym, s->rows, s->carried * w * sizeof *to);
+        memcpy(to + s->sym, s->rows, 2 * s->carried * w * sizeof *to);
         while (m < s->meet.count && s->meet.tap[m].node == stop)
             m++;
     }
@@ -113,7 +113,7 @@ static void dislocate(struct sweep *s, const struct tap *tap, size_t before)
 static void meet(struct sweep *s, const struct tap *tap, size_t record, size_t before, size_t count,
                  size_t all, double *value, double *error)
 {
-    const size_t size = s->sym + s->carried * s->chain->width;
+    const size_t size = s->sym + 2 * s->carried * s->chain->width;
     const double c = ROUNDING * DBL_EPSILON * sqrt(s->steps);
     lanes singular;
     s->kernel->meet(&s->walk[1], tap->motion, tap->force, s->record + record * size, &s->state,
@@ -132,21 +132,21 @@ void rd_sweep_right(struct sweep *s, size_t count, size_t all, double *value, do
 {
     const size_t w = s->chain->width;
     size_t c = s->carry.count, m = s->meet.count, node = s->chain->nodes - 1;
-    size_t run = s->runs->count;
+    size_t run = s->runs.count;
     rd_sweep_begin(s);
-    s->state.E = s->rows + s->carried * w;
+    s->state.E = s->rows + 2 * s->carried * w;
     for (size_t record = s->records; record-- > 0;) {
         const size_t stop = s->meet.tap[m - 1].node;
         for (; c > 0 && s->carry.tap[c - 1].node > stop; c--) {
             const struct tap *tap = s->carry.tap + c - 1;
-            const size_t begun = (size_t)(s->state.E - s->rows) / w;
+            const size_t begun = (size_t)(s->state.E - s->rows) / (2 * w);
             const size_t from = tap->rank < begun ? tap->rank : begun;
             rd_sweep_backward(s, node, tap->node, &run);
             node = tap->node;
             rd_sweep_absorb(s, 1, node);
             listen(s, 1, tap);
-            s->state.E = s->rows + from * w;
-            s->state.rows = s->carried - from;
+            s->state.E = s->rows + 2 * from * w;
+            s->state.rows = 2 * (s->carried - from);
         }
         rd_sweep_backward(s, node, stop, &run);
         node = stop;

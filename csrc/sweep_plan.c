@@ -3,6 +3,9 @@
 
 #include "sweep_order.h"
 
+#include <math.h>
+#include <stdbool.h>
+
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 enum {
@@ -21,12 +24,23 @@ static void *take_lanes(struct rd_workspace *workspace, size_t count, size_t siz
     return p ? p + (ALIGN - (uintptr_t)p % ALIGN) % ALIGN : NULL;
 }
 
-static size_t levels_most(const struct rd_runs *runs)
+/* pieces of 1, 2, 4, .. elements, up to all of the chain */
+static size_t levels_most(const struct rd_chain *chain)
 {
     size_t levels = 1;
-    for (size_t n = runs->longest; n > 1; n /= 2)
+    for (size_t n = chain->nodes - 1; n > 1; n /= 2)
         levels++;
     return levels;
+}
+
+/* Mass that couples z and beta and whose determinant does not cancel, such as the end correction of
+   tensed elements. The one of an eccentric mass does: it needs its rank-one parts. */
+static bool is_skew(const struct rd_chain *chain, const double *mass, size_t i, size_t j)
+{
+    const size_t w = chain->width;
+    const double both = mass[i * w + j] * mass[i * w + j];
+    return chain->coordinate[i] == RD_Z && chain->coordinate[j] == RD_BETA &&
+           fabs(mass[i * (w + 1)] * mass[j * (w + 1)] - both) >= 0.5 * both;
 }
 
 /* what a node term needs besides adding masses */
@@ -43,16 +57,19 @@ static uint8_t trait_of(const struct rd_chain *chain, size_t t)
             const size_t at = (t * w + i) * w + j;
             if (chain->stiffness[at] != 0.0)
                 trait |= RD_SPRUNG;
-            if (i != j && (chain->stiffness[at] != 0.0 || chain->mass[at] != 0.0))
-                trait |= RD_COUPLED;
+            if (i < j && (chain->stiffness[at] != 0.0 || chain->mass[at] != 0.0))
+                trait |=
+                    chain->stiffness[at] == 0.0 && is_skew(chain, chain->mass + t * w * w, i, j)
+                        ? RD_SKEW
+                        : RD_COUPLED;
         }
     }
     return (uint8_t)trait;
 }
 
-struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *runs,
-                            const struct rd_factors *factors, const struct rd_ports *drives,
-                            const struct rd_ports *responses, struct rd_workspace *workspace)
+struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factors *factors,
+                            const struct rd_ports *drives, const struct rd_ports *responses,
+                            struct rd_workspace *workspace)
 {
     const size_t w = chain->width, sym = w * (w + 1) / 2, coefs = w * w + 2 * sym;
     const int swapped = drives->count < responses->count;
@@ -60,13 +77,14 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
     const struct rd_ports *meet = swapped ? responses : drives;
     struct sweep *s = take_lanes(workspace, 1, sizeof *s);
     struct taps carried, meeting;
-    rd_taps_find(carry, w, &carried, workspace);
-    rd_taps_find(meet, w, &meeting, workspace);
+    rd_taps_find(carry, chain, &carried, workspace);
+    rd_taps_find(meet, chain, &meeting, workspace);
+    struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
     size_t *rank = rd_take(workspace, carry->count, sizeof *rank);
     const size_t records = meeting.tap ? rd_taps_nodes(&meeting) : meeting.count;
-    cv *record = take_lanes(workspace, records * (sym + carry->count * w), sizeof *record);
-    cv *rows = take_lanes(workspace, carry->count * w, sizeof *rows);
-    cv *table = take_lanes(workspace, levels_most(runs) * coefs, sizeof *table);
+    cv *record = take_lanes(workspace, records * (sym + 2 * carry->count * w), sizeof *record);
+    cv *rows = take_lanes(workspace, 2 * carry->count * w, sizeof *rows);
+    cv *table = take_lanes(workspace, levels_most(chain) * coefs, sizeof *table);
     cv *triple = take_lanes(workspace, 2 * coefs, sizeof *triple);
     cv *value = take_lanes(workspace, carry->count, sizeof *value);
     lanes *error = take_lanes(workspace, carry->count, sizeof *error);
@@ -75,7 +93,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
     if (chain->distinct <= DISTINCT_MOST)
         coefficients = take_lanes(workspace, chain->distinct * coefs, sizeof *coefficients);
     cv *plain = NULL;
-    if (chain->distinct <= DISTINCT_MOST && w == 2)
+    if (chain->distinct <= DISTINCT_MOST && kernels[w - 1]->walk_plain)
         plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *plain);
     uint8_t *trait = rd_take(workspace, chain->terms, sizeof *trait);
     size_t *order = rd_take(workspace, factors->count, sizeof *order);
@@ -83,12 +101,12 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
         return NULL;
     *s = (struct sweep){
         .chain = chain,
-        .runs = runs,
         .kernel = kernels[w - 1],
         .coefs = coefs,
         .sym = sym,
         .carried = carry->count,
         .swapped = swapped,
+        .planar = kernels[w - 1]->walk_plain && (w == 2 || chain->coordinate[w - 1] == RD_BETA),
         .carry = carried,
         .meet = meeting,
         .rank = rank,
@@ -106,6 +124,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *
         .order = order,
         .failed = factors->count,
     };
+    rd_runs_find(chain, run, &s->runs);
     rd_taps_rank(&s->carry, s->carried, rank);
     for (size_t t = 0; t < chain->terms; t++)
         trait[t] = trait_of(chain, t);

@@ -9,17 +9,18 @@
 
 struct sweep {
     const struct rd_chain *chain;
-    const struct rd_runs *runs;
+    struct rd_runs runs;
     const struct sweep_kernel *kernel;
     size_t coefs;   /* complex lanes in the coefficients of an element */
     size_t sym;     /* and in U */
     size_t carried; /* ports whose rows are carried: the fewer */
     int swapped;    /* the carried ports are the drives */
+    int planar;     /* without rows the walk goes by minors */
     struct taps carry, meet;
     size_t *rank;           /* (carried) */
     size_t records;         /* different nodes where parts meet */
-    cv *record;             /* (records, sym + carried width) left parts there */
-    cv *rows;               /* (carried, width) */
+    cv *record;             /* (records, sym + 2 carried width) left parts there */
+    cv *rows;               /* (carried, 2, width) each with its companion */
     cv *table;              /* (levels, coefs) of the pieces of one run */
     cv *triple;             /* (2, coefs) */
     cv *coefficients;       /* (distinct, coefs) or NULL */
@@ -44,9 +45,9 @@ struct sweep {
 };
 
 /* NULL: the workspace measures or is too small */
-struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_runs *runs,
-                            const struct rd_factors *factors, const struct rd_ports *drives,
-                            const struct rd_ports *responses, struct rd_workspace *workspace);
+struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factors *factors,
+                            const struct rd_ports *drives, const struct rd_ports *responses,
+                            struct rd_workspace *workspace);
 
 /* at a free end, with nothing behind the walk */
 void rd_sweep_begin(struct sweep *s);

@@ -21,47 +21,45 @@ static void wavenumbers(double B, double T, double q, double *k2, double *a2)
     }
 }
 
-/* Below `least` the rope is static and its length is the scale. */
-static double at_least(double k2, double least)
+static double size_of(const double *factor)
 {
-    return k2 > least ? k2 : least;
+    return sqrt(factor[0] * factor[0] + factor[1] * factor[1]);
 }
 
 /* z^2 = 1/(B k (k^2 + a^2)), 1/(B a) for z, beta; 1/(T k) without bending; 1/(C k) for twist,
-   and so for x: receptances of the endless rope; a rigid element has no less than l/4B for beta */
-static void characteristic(const struct rd_chain *chain, const struct rd_runs *runs, double section,
-                           double tension, double lambda, double *z)
+   and so for x: receptances of the endless rope; a rigid element has no less than l/4B for beta.
+   Below its first resonance a rope that can move as a rigid body does: where that receptance is the
+   larger, I - U = -i f of the parts would be the small difference of large numbers without it. */
+static void characteristic(const struct rd_chain *chain, const struct rd_runs *runs,
+                           const struct rd_factors *factors, size_t f, double *z)
 {
-    const double L = runs->length, least = (lambda > 0.0 ? 1e-8 : 1.0) / (L * L);
-    const double S = runs->flexibility[RD_BENDING], T = runs->tension * tension;
-    const double l = L / (double)(chain->nodes - 1);
+    const double section = size_of(factors->section + 2 * f);
+    const double T = runs->tension * size_of(factors->tension + 2 * f);
+    const double spring = size_of(factors->spring + 2 * f);
+    const double lambda = size_of(factors->inertia + 2 * f);
+    const double L = runs->length, least = 1.0 / (L * L);
+    const double S = runs->flexibility[RD_BENDING], l = L / (double)(chain->nodes - 1);
     double mu = 0.0;
     for (size_t i = 0; i < chain->width; i++)
         if (chain->coordinate[i] == RD_Z)
             mu = runs->mass[i];
     for (size_t i = 0; i < chain->width; i++) {
         const int32_t c = chain->coordinate[i];
+        double endless;
         if (S > 0.0 && (c == RD_Z || c == RD_BETA)) {
             double k2, a2;
             wavenumbers(section / S, T, mu * lambda, &k2, &a2);
-            k2 = at_least(k2, least);
-            a2 = at_least(a2, k2 < 1.0 / (L * L) ? k2 : 1.0 / (L * L));
+            k2 = fmax(k2, least);
+            a2 = fmax(a2, least);
             if (c == RD_BETA && chain->kind == RD_RIGID)
                 a2 = fmin(a2, 16.0 / (l * l));
-            z[i] = c == RD_Z ? sqrt(S / (section * sqrt(k2) * (k2 + a2)))
-                             : sqrt(S / (section * sqrt(a2)));
+            endless = c == RD_Z ? S / (section * sqrt(k2) * (k2 + a2)) : S / (section * sqrt(a2));
         } else {
             const double C = c == RD_Z ? fabs(T) : section / runs->flexibility[channel_of[c]];
-            const double k2 =
-                runs->mass[i] > 0.0 ? at_least(lambda * runs->mass[i] / C, least) : 1.0 / (L * L);
-            z[i] = sqrt(1.0 / (C * sqrt(k2)));
+            endless = 1.0 / (C * sqrt(fmax(lambda * runs->mass[i] / C, least)));
         }
+        z[i] = sqrt(fmax(endless, rd_body_receptance(&runs->body, chain, i, lambda, spring, T)));
     }
-}
-
-static double size_of(const double *factor)
-{
-    return sqrt(factor[0] * factor[0] + factor[1] * factor[1]);
 }
 
 static cv times(cv a, lanes s)
@@ -102,8 +100,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
         const size_t i = index[lane];
         double z[RD_WIDTH_MAX];
         load(factors, lane, i, &section, &tension, &spring, &inertia);
-        characteristic(chain, runs, size_of(factors->section + 2 * i),
-                       size_of(factors->tension + 2 * i), size_of(factors->inertia + 2 * i), z);
+        characteristic(chain, runs, factors, i, z);
         for (size_t c = 0; c < w; c++)
             block->z[c][lane] = z[c];
     }
@@ -124,7 +121,11 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
     }
     block->spring = spring;
     block->inertia = inertia;
-    block->phi = c_mul(tension, soft);
+    if (block->bends)
+        shape_prepare(c_mul(tension, soft), &block->series);
+    block->real = 1;
+    for (size_t lane = 0; lane < RD_LANES; lane++)
+        block->real = block->real && spring.im[lane] == 0.0 && inertia.im[lane] == 0.0;
     block->pull = times(tension, last * last);
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++) {
@@ -183,4 +184,16 @@ size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t 
         length *= 2.0;
     }
     return level;
+}
+
+size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
+{
+    size_t steps = 1;
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const size_t e = (size_t)chain->element[k], t = (size_t)chain->term[k];
+        const size_t count = (size_t)(chain->first[k + 1] - chain->first[k]);
+        const size_t level = rd_sweep_levels(chain, e, t, count, extent);
+        steps += (count >> level) + 2 * level;
+    }
+    return steps;
 }

@@ -32,4 +32,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
 size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t count,
                        const struct sweep_extent *extent);
 
+/* steps of a walk through all of the chain, runs by pieces */
+size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent);
+
 #endif

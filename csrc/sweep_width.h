@@ -1,7 +1,6 @@
 /* The sweep's kernel for the width RD_WIDTH: included by one source file per width.
    Everything is scaled: u = z u^, f = f^/z. Symmetric matrices are packed by rows. */
 
-#include "shape.h"
 #include "sweep_kernel.h"
 
 #include <math.h>
@@ -44,7 +43,7 @@ RD_INLINE int K_(at)(int i, int j)
 
 #include "sweep_meet.h"
 
-#if RD_WIDTH == 2
+#if RD_WIDTH == 2 || RD_WIDTH == 3
 #include "sweep_plane.h"
 #endif
 
@@ -52,12 +51,13 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_element = K_(make_element),
     .make_coefficients = K_(make_coefficients),
     .make_single = K_(make_single),
-#if RD_WIDTH == 2
+#if RD_WIDTH == 2 || RD_WIDTH == 3
     .make_plain = K_(make_plain),
     .walk_plain = K_(walk_plain),
 #endif
     .join = K_(join),
     .walk = K_(walk),
+    .walk_pieces = K_(walk_pieces),
     .absorb = K_(absorb),
     .open = K_(open_all),
     .listen = K_(listen),

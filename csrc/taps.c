@@ -41,9 +41,20 @@ static void sort_taps(struct tap *tap, size_t count)
         }
 }
 
-void rd_taps_find(const struct rd_ports *ports, size_t width, struct taps *taps,
+/* the taps stand in order, so one walk along the stretches finds all terms */
+static void find_terms(const struct rd_chain *chain, struct taps *taps)
+{
+    size_t k = 0;
+    for (size_t i = 0; i < taps->count; i++) {
+        k = rd_stretch_of(chain, taps->tap[i].node, k);
+        taps->tap[i].term = (size_t)chain->term[k];
+    }
+}
+
+void rd_taps_find(const struct rd_ports *ports, const struct rd_chain *chain, struct taps *taps,
                   struct rd_workspace *workspace)
 {
+    const size_t width = chain->width;
     struct tap tap;
     size_t count = 0;
     for (size_t p = 0; p < ports->count; p++)
@@ -59,6 +70,7 @@ void rd_taps_find(const struct rd_ports *ports, size_t width, struct taps *taps,
             if (tap_of(ports, width, p, half, &tap))
                 taps->tap[count++] = tap;
     sort_taps(taps->tap, count);
+    find_terms(chain, taps);
 }
 
 void rd_taps_rank(struct taps *taps, size_t ports, size_t *rank)

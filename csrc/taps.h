@@ -9,6 +9,7 @@
 /* one port at one node; the force is the one on the part to the left of the node */
 struct tap {
     size_t node;
+    size_t term; /* the node's */
     size_t port;
     size_t rank;          /* row of a carried port: ranks increase with the node */
     const double *motion; /* (width) or NULL */
@@ -21,7 +22,7 @@ struct taps {
 };
 
 /* Takes and fills the taps of the ports. While measuring only counts them. */
-void rd_taps_find(const struct rd_ports *ports, size_t width, struct taps *taps,
+void rd_taps_find(const struct rd_ports *ports, const struct rd_chain *chain, struct taps *taps,
                   struct rd_workspace *workspace);
 
 /* numbers the ports by their first tap; `rank` (ports) is filled too */

@@ -9,22 +9,61 @@
 #include <math.h>
 #include <string.h>
 
-/* elements from node i on that are equal, with equal node terms between them */
-static size_t run_length(const struct rd_chain *chain, size_t i)
+static size_t nodes_of(const struct rd_chain *chain, size_t k)
 {
-    size_t n = 1;
-    while (i + n + 1 < chain->nodes && chain->element_of[i + n] == chain->element_of[i] &&
-           (n == 1 || chain->term_of[i + n] == chain->term_of[i + 1]))
-        n++;
-    return n;
+    return (size_t)(k + 1 < chain->stretches ? chain->first[k + 1] - chain->first[k] : 1);
 }
 
-static size_t number_of_runs(const struct rd_chain *chain)
+/* a node, its hinge as an element of no length, and the element on its right */
+static size_t hinged_legs(const struct rd_chain *chain, size_t k, size_t node, int32_t before,
+                          struct rd_leg *leg)
 {
-    size_t runs = 0;
-    for (size_t i = 0; i + 1 < chain->nodes; i += run_length(chain, i))
-        runs++;
-    return runs;
+    const int32_t hinge = (int32_t)chain->distinct + chain->term[k];
+    if (leg) {
+        leg[0] = (struct rd_leg){.node = node, .count = 1, .element = hinge, .before = before};
+        leg[0].first = leg[0].term = chain->term[k];
+        leg[1] = (struct rd_leg){
+            .node = node, .count = 1, .element = chain->element[k], .before = hinge};
+        leg[1].first = leg[1].term = RD_NO_TERM;
+    }
+    return 2;
+}
+
+/* legs of the chain, written where leg is not NULL; a single node takes the stretch on its right
+   along where that goes on with the same element */
+static size_t make_legs(const struct rd_chain *chain, struct rd_leg *leg)
+{
+    size_t legs = 0, next;
+    for (size_t k = 0; k + 1 < chain->stretches; k = next) {
+        const size_t node = (size_t)chain->first[k];
+        const int32_t before = k > 0 ? chain->element[k - 1] : -1;
+        size_t count = nodes_of(chain, k);
+        next = k + 1;
+        if (rd_chain_is_hinged(chain, chain->term[k])) {
+            for (size_t i = 0; i < count; i++)
+                legs += hinged_legs(chain, k, node + i, i > 0 ? chain->element[k] : before,
+                                    leg ? leg + legs : NULL);
+            continue;
+        }
+        const bool goes_on = count == 1 && k + 2 < chain->stretches &&
+                             chain->element[k + 1] == chain->element[k] &&
+                             !rd_chain_is_hinged(chain, chain->term[k + 1]);
+        if (goes_on) {
+            next = k + 2;
+            count += nodes_of(chain, k + 1);
+        }
+        if (leg)
+            leg[legs] = (struct rd_leg){
+                .node = node,
+                .count = count,
+                .element = chain->element[k],
+                .before = before,
+                .first = chain->term[k],
+                .term = chain->term[next - 1],
+            };
+        legs++;
+    }
+    return legs;
 }
 
 /* of the symmetric A = L diag(g) L^T */
@@ -63,12 +102,31 @@ static enum rd_status fill_triples(struct rd_walk *walk, int32_t *below)
     return RD_OK;
 }
 
+/* A hinge: G = its compliance. A free one has G = g and P = -1/g, which cancel, for any g. */
+static void fill_hinge(struct rd_walk *walk, size_t term, double g)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width, block = w * w;
+    double *D = walk->triple + 4 * block * (chain->distinct + term);
+    memset(D, 0, 4 * block * sizeof *D);
+    walk->strut[chain->distinct + term] = 0;
+    for (size_t i = 0; i < w; i++) {
+        const double compliance = chain->hinge[term * w + i];
+        const bool free = isinf(compliance);
+        D[i * (w + 1)] = free ? -1 : 0;
+        D[block + i * (w + 1)] = free ? g : compliance;
+        D[3 * block + i * (w + 1)] = free ? -1 / g : 0;
+        walk->strut[chain->distinct + term] |= free;
+    }
+}
+
 /* heavy parts count once each in the mean: what waves meet is the rope between them */
 static void add_mass(struct rd_walk *walk, int32_t term, double n, double *with_mass)
 {
     const size_t w = walk->chain->width;
+    const double *M = rd_walk_mass(walk, term);
     for (size_t i = 0; i < w; i++) {
-        const double m = fabs(walk->chain->mass[((size_t)term * w + i) * w + i]);
+        const double m = fabs(M[i * (w + 1)]);
         walk->mass[i] += n * m;
         if (m > 0 && n > 0) {
             walk->carried[i] += n * log(m);
@@ -77,25 +135,26 @@ static void add_mass(struct rd_walk *walk, int32_t term, double n, double *with_
     }
 }
 
-static void add_run(struct rd_walk *walk, const struct rd_stretch *run, bool bends,
-                    double *with_mass)
+static void add_leg(struct rd_walk *walk, const struct rd_leg *leg, bool bends, double *with_mass)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width, block = w * w;
-    const size_t e = (size_t)run->element;
-    const double n = (double)run->count;
+    const size_t e = (size_t)leg->element;
+    const double n = (double)leg->count;
     const double *G = walk->triple + 4 * block * e + block;
+    add_mass(walk, leg->first, 1, with_mass);
+    add_mass(walk, leg->term, n - 1, with_mass);
+    if (e >= chain->distinct)
+        return;
     for (size_t i = 0; i < w; i++)
         walk->flexibility[i] += n * fabs(G[i * (w + 1)]);
-    add_mass(walk, run->first, 1, with_mass);
-    add_mass(walk, run->term, n - 1, with_mass);
     walk->length += n * chain->length[e];
     walk->tension += n * chain->length[e] * chain->tension[e];
     if (bends)
         walk->bend += n * chain->length[e] * chain->flexibility[e * 9 + 8];
 }
 
-static void add_runs(struct rd_walk *walk, const int32_t *below)
+static void add_legs(struct rd_walk *walk, const int32_t *below)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width;
@@ -105,21 +164,14 @@ static void add_runs(struct rd_walk *walk, const int32_t *below)
         beta = beta || chain->coordinate[i] == RD_BETA;
     }
     double with_mass[RD_WIDTH_MAX] = {0};
-    size_t node = 0;
-    for (size_t r = 0; r < walk->runs; r++) {
-        struct rd_stretch *run = walk->run + r;
-        run->node = node;
-        run->count = run_length(chain, node);
-        run->element = chain->element_of[node];
-        run->before = node > 0 ? chain->element_of[node - 1] : -1;
-        run->first = chain->term_of[node];
-        run->term = chain->term_of[node + (run->count > 1)];
-        walk->below += (double)run->count * below[run->element];
-        add_run(walk, run, z && beta && chain->kind != RD_DIFFERENCE, with_mass);
-        node += run->count;
+    for (size_t r = 0; r < walk->legs; r++) {
+        const struct rd_leg *leg = walk->leg + r;
+        if ((size_t)leg->element < chain->distinct)
+            walk->below += (double)leg->count * below[leg->element];
+        add_leg(walk, leg, z && beta && chain->kind != RD_DIFFERENCE, with_mass);
     }
-    add_mass(walk, chain->term_of[node], 1, with_mass);
-    for (size_t i = 0; i < w && node > 0; i++)
+    add_mass(walk, walk->last, 1, with_mass);
+    for (size_t i = 0; i < w; i++)
         walk->carried[i] =
             with_mass[i] > 0 ? with_mass[i] * exp(walk->carried[i] / with_mass[i]) : 0;
     walk->tension /= walk->length;
@@ -146,19 +198,29 @@ enum rd_status rd_walk_fill(const struct rd_chain *chain, struct rd_workspace *w
                             struct rd_walk *walk)
 {
     const size_t block = chain->width * chain->width;
-    *walk = (struct rd_walk){.chain = chain, .runs = number_of_runs(chain)};
-    walk->run = rd_take(workspace, walk->runs, sizeof *walk->run);
-    walk->triple = rd_take(workspace, chain->distinct * 4 * block, sizeof *walk->triple);
-    walk->strut = rd_take(workspace, chain->distinct, 1);
+    const size_t elements = chain->distinct + (chain->hinge ? chain->terms : 0);
+    *walk = (struct rd_walk){
+        .chain = chain,
+        .legs = make_legs(chain, NULL),
+        .last = chain->term[chain->stretches - 1],
+        .behind = chain->element[chain->stretches - 2],
+    };
+    walk->leg = rd_take(workspace, walk->legs, sizeof *walk->leg);
+    walk->triple = rd_take(workspace, elements * 4 * block, sizeof *walk->triple);
+    walk->strut = rd_take(workspace, elements, 1);
     int32_t *below = rd_take(workspace, chain->distinct, sizeof *below);
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     if (!is_finite(chain))
         return RD_NOT_POSITIVE_DEFINITE;
     const enum rd_status status = fill_triples(walk, below);
-    if (status == RD_OK)
-        add_runs(walk, below);
-    return status;
+    if (status != RD_OK)
+        return status;
+    make_legs(chain, walk->leg);
+    add_legs(walk, below);
+    for (size_t t = 0; chain->hinge && t < chain->terms; t++)
+        fill_hinge(walk, t, walk->bend > 0 ? walk->bend : 1);
+    return RD_OK;
 }
 
 /* h = T/2B, r = sqrt(h^2 + mu lambda/B), a^2 = r + h, k^2 = mu lambda/(B (r + h)) */

@@ -6,22 +6,27 @@
 #include "status.h"
 #include "workspace.h"
 
-/* equal elements one after another, equal node terms between them */
-struct rd_stretch {
-    size_t node;  /* first node */
-    size_t count; /* elements */
+/* Equal elements one after another, equal node terms between them; or a hinge, alone: the element
+   chain->distinct + its term. */
+struct rd_leg {
+    size_t node;    /* first node */
+    size_t count;   /* elements */
     int32_t element;
     int32_t before; /* element on the left of the first node, -1: none */
     int32_t first;  /* node term at the first node */
     int32_t term;   /* node term at the inner nodes */
 };
 
+enum { RD_NO_TERM = -1 }; /* on the right of a hinge */
+
 struct rd_walk {
     const struct rd_chain *chain;
-    size_t runs;
-    struct rd_stretch *run; /* (runs) */
-    double *triple;         /* (distinct, 4, width, width)  D, G, Q and P of strut.h */
-    uint8_t *strut;         /* (distinct)  1: P is not zero */
+    size_t legs;
+    struct rd_leg *leg;     /* (legs) */
+    int32_t last;           /* node term at the last node */
+    int32_t behind;         /* element on its left */
+    double *triple;         /* (elements, 4, width, width)  D, G, Q and P of strut.h */
+    uint8_t *strut;         /* (elements)  1: P is not zero */
     double below;           /* eigenvalues below zero of the elements themselves */
     double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held: sum of G_ii */
     double mass[RD_WIDTH_MAX];        /* sum of |M_ii| */
@@ -36,6 +41,27 @@ struct rd_walk {
    or infinite, RD_CRITICAL_ELEMENT as rd_strut_fill. */
 enum rd_status rd_walk_fill(const struct rd_chain *chain, struct rd_workspace *workspace,
                             struct rd_walk *walk);
+
+static const double rd_walk_nothing[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
+
+/* M and K (width, width) of a node term, and what it holds (width) */
+static inline const double *rd_walk_mass(const struct rd_walk *walk, int32_t term)
+{
+    const size_t w = walk->chain->width;
+    return term == RD_NO_TERM ? rd_walk_nothing : walk->chain->mass + (size_t)term * w * w;
+}
+
+static inline const double *rd_walk_springs(const struct rd_walk *walk, int32_t term)
+{
+    const size_t w = walk->chain->width;
+    return term == RD_NO_TERM ? rd_walk_nothing : walk->chain->stiffness + (size_t)term * w * w;
+}
+
+static inline const uint8_t *rd_walk_held(const struct rd_walk *walk, int32_t term)
+{
+    static const uint8_t nothing[RD_WIDTH_MAX] = {0};
+    return term == RD_NO_TERM ? nothing : walk->chain->held + (size_t)term * walk->chain->width;
+}
 
 /* z (width): scales of the coordinates, u = z u^, f = f^/z: z^2 is the receptance of a long rope,
    1/(B k (k^2 + a^2)) and 1/(B a) for z and beta together, 1/sqrt(|lambda| mu T) for others. */

@@ -14,7 +14,7 @@ from .errors import RopedynError, SceneError, SolveError
 from .frf import FRF
 from .model import Model
 from .modes import Modes
-from .part import PointMass, Spring, Support
+from .part import Hinge, PointMass, Spring, Support
 from .peaks import Peaks
 from .resonance import Resonances
 from .rope import Rope
@@ -30,6 +30,7 @@ __all__ = [
     "Cost",
     "Deflection",
     "End",
+    "Hinge",
     "Model",
     "Modes",
     "Peaks",

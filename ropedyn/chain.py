@@ -15,7 +15,11 @@ CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 
 
 class Chain(NamedTuple):
-    """A chain as the core takes it; see csrc/chain.h."""
+    """A chain as the core takes it; see csrc/chain.h.
+
+    Nodes with the same term and the same element on their right are a stretch; the last node is
+    one alone.
+    """
 
     kind: int
     coordinate: NDArray[np.int32]
@@ -26,52 +30,84 @@ class Chain(NamedTuple):
     """(distinct,) [N]."""
     flexibility: NDArray[np.float64]
     """(distinct, 3, 3) of the section: axial, torsion, bending."""
-    element_of: NDArray[np.int32]
-    """(nodes - 1,) which distinct element."""
+    first: NDArray[np.int32]
+    """(stretches,) first node, increasing from 0 to the last node."""
+    element: NDArray[np.int32]
+    """(stretches - 1,) which distinct element stands right of each node."""
     mass: NDArray[np.float64]
     """(terms, width, width)."""
     stiffness: NDArray[np.float64]
     """(terms, width, width)."""
     held: NDArray[np.uint8]
     """(terms, width)."""
-    term_of: NDArray[np.int32]
-    """(nodes,) which node term."""
+    term: NDArray[np.int32]
+    """(stretches,) which node term."""
+    hinge: NDArray[np.float64] | None = None
+    """(terms, width) compliance between the node and the element on its right, infinite where
+    free; None where nothing is hinged."""
 
     @property
     def nodes(self) -> int:
         """How many nodes there are."""
-        return len(self.term_of)
+        return int(self.first[-1]) + 1
+
+    @property
+    def element_of(self) -> NDArray[np.int32]:
+        """Which distinct element stands right of each node, shape (nodes - 1,)."""
+        return np.repeat(self.element, np.diff(self.first))
+
+    @property
+    def term_of(self) -> NDArray[np.int32]:
+        """Which node term each node has, shape (nodes,)."""
+        return np.repeat(self.term, np.diff(self.first, append=self.nodes))
 
     @property
     def free(self) -> int:
         """How many coordinates can move."""
         free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
-        return int(free_of_term[self.term_of].sum())
+        return int(free_of_term[self.term] @ np.diff(self.first, append=self.nodes))
+
+    def stretch(self, node: int) -> int:
+        """Return the stretch that a node belongs to."""
+        return int(np.searchsorted(self.first, node, side="right")) - 1
 
     @property
     def spans(self) -> tuple[tuple[int, int], ...]:
-        """First and last node of the stretches between nodes where nothing can move."""
-        fixed = self.held.all(axis=1)[self.term_of]
-        inner = np.flatnonzero(fixed[1:-1]) + 1
-        ends = [0, *inner.tolist(), self.nodes - 1]
+        """First and last node of what lies between nodes where nothing can move."""
+        still = self.held.all(axis=1)[self.term]
+        still[[0, -1]] = False
+        nodes = [
+            np.arange(self.first[k], self.first[k + 1], dtype=np.int64)
+            for k in np.flatnonzero(still)
+        ]
+        ends = np.concatenate([[0], *nodes, [self.nodes - 1]]).tolist()
         return tuple(zip(ends[:-1], ends[1:]))
 
     def between(self, first: int, last: int) -> Chain:
         """Return the chain of some of the nodes."""
+        if (first, last) == (0, self.nodes - 1):
+            return self
+        begin, end = self.stretch(first), self.stretch(last - 1)
+        nodes = np.append(np.maximum(self.first[begin : end + 1], first), last) - first
+        term = np.append(self.term[begin : end + 1], self.term[self.stretch(last)])
         return self._replace(
-            element_of=self.element_of[first:last], term_of=self.term_of[first : last + 1]
+            first=nodes.astype(np.int32), element=self.element[begin : end + 1], term=term
         )
 
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
         wanted = [COORDINATES.index(c) for c in coordinates]
+        if wanted == self.coordinate.tolist():
+            return self
         kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
         square = np.ix_(range(len(self.mass)), kept, kept)
+        hinge = None if self.hinge is None else np.ascontiguousarray(self.hinge[:, kept])
         return self._replace(
             coordinate=np.array(wanted, dtype=np.int32),
             mass=np.ascontiguousarray(self.mass[square]),
             stiffness=np.ascontiguousarray(self.stiffness[square]),
             held=np.ascontiguousarray(self.held[:, kept]),
+            hinge=hinge if hinge is not None and hinge.any() else None,
         )
 
 

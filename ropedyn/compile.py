@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, mesh
 from .chain import Chain, components
-from .end import End, end_of
+from .end import end_of
 from .errors import SceneError
 from .model import Model
-from .part import NodeTerm, node_term
+from .part import NodeTerm
 from .rope import Rope
 from .scene import Scene
 
@@ -18,6 +20,9 @@ KINDS = ("difference", "rigid", "tensed")
 """Kinds of element, in the core's order."""
 
 MOST_ELEMENTS = 10_000_000
+
+ROUNDING = 4 * np.finfo(float).eps
+"""Positions are known to so much of the rope's length."""
 
 
 def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
@@ -37,16 +42,11 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
             f"elements must be longer than the smallest number, got {elements} on "
             f"{scene.rope.length!r} m"
         )
-    chain = Chain(
-        kind,
-        np.array([check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32),
-        *_elements(scene, spans, counts),
-        *_terms(scene, element, stations, counts),
-    )
+    chain = _chain(scene, kind, stations, counts)
     groups = components(chain, scene.coordinates)
-    parts = [chain.only(group) for group in groups]
-    for array in chain[1:]:
-        array.flags.writeable = False
+    for array in chain:
+        if isinstance(array, np.ndarray):
+            array.flags.writeable = False
     return Model(
         scene=scene,
         element=element,
@@ -54,8 +54,7 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
         components=groups,
         x=_positions(stations, counts),
         chain=chain,
-        runs=tuple(_core.runs(part) for part in parts),
-        unknowns=tuple(part.free for part in parts),
+        unknowns=tuple(chain.only(group).free for group in groups),
     )
 
 
@@ -78,62 +77,106 @@ def section(rope: Rope) -> NDArray[np.float64]:
 
 
 def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArray[np.float64]:
-    pieces = [
-        np.linspace(a, b, n, endpoint=False) for a, b, n in zip(stations, stations[1:], counts)
-    ]
-    x = np.concatenate([*pieces, stations[-1:]])
+    nodes, begins = np.append(counts, 1), np.append(0, np.cumsum(counts))
+    x = np.arange(begins[-1] + 1, dtype=np.float64)
+    x -= np.repeat(begins, nodes)
+    x *= np.repeat(np.append(np.diff(stations) / counts, 0.0), nodes)
+    x += np.repeat(stations, nodes)
     x.flags.writeable = False
     return x
 
 
-def _elements(
-    scene: Scene, spans: NDArray[np.float64], counts: NDArray[np.intp]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.int32]]:
-    """Return length, tension, flexibility of the distinct elements and which stands where."""
-    length, which = _distinct(spans / counts)
-    return (
-        length,
-        np.full(len(length), scene.tension),
-        np.tile(section(scene.rope), (len(length), 1, 1)),
-        np.repeat(which.astype(np.int32), counts),
+def _distinct(
+    spans: NDArray[np.float64], counts: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return the different lengths of elements in the order they come in, and which each span has.
+
+    Lengths that differ by the rounding of positions are one, their mean.
+    """
+    each = spans / counts
+    order = np.argsort(each, kind="stable")
+    group = np.empty(len(each), dtype=np.intp)
+    group[order] = np.cumsum(np.diff(each[order], prepend=0.0) > ROUNDING * spans.sum())
+    _, first, group = np.unique(group, return_index=True, return_inverse=True)
+    which = np.argsort(np.argsort(first))[group]
+    return np.bincount(which, spans) / np.bincount(which, counts), which.astype(np.int32)
+
+
+def _chain(
+    scene: Scene, kind: int, stations: NDArray[np.float64], counts: NDArray[np.intp]
+) -> Chain:
+    """Return the chain with so many equal elements between stations."""
+    length, which = _distinct(np.diff(stations), counts)
+    # a station is a stretch of its own, and so are the nodes of a span if there are any
+    nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
+    nodes[1::2] = counts - 1
+    present = nodes > 0
+    inside, term_inside = np.unique(which[counts > 1], return_inverse=True)
+    term = np.empty(len(nodes), dtype=np.int32)
+    term[::2] = np.arange(len(stations))
+    term[1::2][counts > 1] = len(stations) + term_inside
+    first = (np.cumsum(nodes, dtype=np.int32) - nodes)[present]
+    element = np.repeat(which, 2)[present[:-1]]
+    term = term[present]
+    del nodes, present
+    mass, stiffness, held, hinge = _terms(scene, kind, stations, length[which], length[inside])
+    return Chain(
+        kind=kind,
+        coordinate=np.array(
+            [check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32
+        ),
+        length=length,
+        tension=np.full(len(length), scene.tension),
+        flexibility=np.tile(section(scene.rope), (len(length), 1, 1)),
+        first=first,
+        element=element,
+        mass=mass,
+        stiffness=stiffness,
+        held=held,
+        term=term,
+        hinge=hinge,
     )
 
 
-def _distinct(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Return different values in the order they come in, and which of them each is."""
-    _, first, which = np.unique(values, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return values[first[order]], rank[which]
-
-
 def _terms(
-    scene: Scene, element: str, stations: NDArray[np.float64], counts: NDArray[np.intp]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.int32]]:
-    """Return mass, stiffness, held of the distinct node terms and which stands where.
+    scene: Scene,
+    kind: int,
+    stations: NDArray[np.float64],
+    lengths: NDArray[np.float64],
+    inside: NDArray[np.float64],
+) -> tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None
+]:
+    """Return mass, stiffness, held of the distinct node terms, and hinges.
 
-    Term 2 k is station k's, term 2 k + 1 that of the nodes inside the span right of it.
+    Those of the stations, then those inside spans, one for each of the lengths `inside`; `lengths`
+    are those of the elements of all spans.
     """
     width = len(scene.coordinates)
-    lengths = np.diff(stations) / counts
-    beside = np.zeros(2 * len(stations) - 1)
-    beside[1::2] = lengths
-    beside[2::2] += lengths / 2
-    beside[:-1:2] += lengths / 2
-    mass = beside[:, None, None] * np.diag(_inertia(scene))
-    if element == "tensed" and "beta" in scene.coordinates:
-        _correct_ends(scene, lengths, mass)
-    stiffness = np.zeros((len(beside), width, width))
+    beside = np.concatenate([lengths, [0.0], inside])
+    beside[1 : len(stations)] += lengths
+    beside[: len(stations)] /= 2
+    mass = np.zeros((len(beside), width, width))
+    for k, inertia in enumerate(_inertia(scene)):
+        np.multiply(beside, inertia, out=mass[:, k, k])
+    if kind == KINDS.index("tensed") and "beta" in scene.coordinates:
+        _correct_ends(scene, lengths, mass[: len(stations)])
+    stiffness = np.zeros(mass.shape)
     held = np.zeros((len(beside), width), dtype=np.uint8)
+    hinge = None
+    number = {c: k for k, c in enumerate(scene.coordinates)}
     for station, term in _standing(scene, stations):
-        mass[2 * station] += term.mass
-        stiffness[2 * station] += term.stiffness
-        held[2 * station] |= term.held
-    pattern = np.arange(len(beside), dtype=np.int32)
-    times = np.ones(len(beside), dtype=np.intp)
-    times[1::2] = counts - 1
-    return mass, stiffness, held, np.repeat(pattern, times)
+        for values, into in ((term.mass, mass), (term.stiffness, stiffness)):
+            for coordinate, value in values.items():
+                if value != 0.0 and coordinate in number:
+                    k = number[coordinate]
+                    into[station, k, k] += value
+        for coordinate in term.held:
+            held[station, number[coordinate]] = 1
+        for coordinate, compliance in term.hinge.items():
+            hinge = np.zeros((len(beside), width)) if hinge is None else hinge
+            hinge[station, number[coordinate]] += compliance
+    return mass, stiffness, held, hinge
 
 
 def _correct_ends(scene: Scene, lengths: NDArray[np.float64], mass: NDArray[np.float64]) -> None:
@@ -145,8 +188,8 @@ def _correct_ends(scene: Scene, lengths: NDArray[np.float64], mass: NDArray[np.f
     squares = np.concatenate([[0.0], lengths**2, [0.0]])
     correction = -scene.rope.linear_density * (squares[:-1] - squares[1:]) / 12
     z, beta = scene.coordinates.index("z"), scene.coordinates.index("beta")
-    mass[::2, z, beta] += correction
-    mass[::2, beta, z] += correction
+    mass[:, z, beta] += correction
+    mass[:, beta, z] += correction
 
 
 def _inertia(scene: Scene) -> NDArray[np.float64]:
@@ -161,20 +204,12 @@ def _inertia(scene: Scene) -> NDArray[np.float64]:
     return np.array([inertia[c] for c in scene.coordinates])
 
 
-def _standing(scene: Scene, stations: NDArray[np.float64]) -> list[tuple[int, NodeTerm]]:
+def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
     """Return what stands at which station."""
-    standing = [
-        (0, _end_term(end_of(scene.ends[0]), scene.coordinates)),
-        (len(stations) - 1, _end_term(end_of(scene.ends[1]), scene.coordinates)),
-    ]
+    for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
+        held = [c for c in scene.coordinates if end.holds(c)]
+        yield station, NodeTerm(stiffness=end.spring, held=held)
     between = (stations[1:] + stations[:-1]) / 2
-    standing += [
-        (int(np.searchsorted(between, part.x)), part.term(scene.coordinates))
-        for part in scene.parts
-    ]
-    return standing
-
-
-def _end_term(end: End, coordinates: tuple[str, ...]) -> NodeTerm:
-    held = [c for c in coordinates if end.holds(c)]
-    return node_term(coordinates, stiffness=dict(end.spring), held=held)
+    nearest = np.searchsorted(between, [part.x for part in scene.parts])
+    for station, part in zip(nearest, scene.parts):
+        yield station, part.term()

@@ -15,7 +15,7 @@ from .answer import Answer, Cost, axes
 from .chain import Chain
 from .errors import SceneError, SolveError
 from .model import Model
-from .port import Point, Ports, cut, ports
+from .port import Point, Ports, cut, ports, stops
 from .table import Table
 from .unit import FORCE, FORCE_UNIT, UNIT
 
@@ -109,7 +109,6 @@ def _sweep(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return motion of the nodes and what the surroundings put on them."""
     longer, finer, kept = _cut(model, component, loads)
-    runs = _core.runs(longer)
     pushed = ports(longer, finer, component, loads)
     amount = np.array(list(loads.values()))
     factor = np.array([[1.0], [1.0], [1.0], [0.0]], dtype=np.complex128)
@@ -124,7 +123,7 @@ def _sweep(
             side = np.repeat(node - left, w)
             rows[np.arange(len(rows)), side] = np.tile(np.eye(w), (len(node), 1))
         watched = Ports(np.repeat(left, w).astype(np.int32), rows, force)
-        value, _, solved = _core.sweep(longer, runs, factor, pushed, watched)
+        value, _, solved = _core.sweep(longer, factor, pushed, watched)
         if solved == 0:
             raise SolveError("singular")
         answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)
@@ -140,6 +139,14 @@ def _sweep(
     return u, _on_nodes(longer, kept, u, right, begins)
 
 
+def _band(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    chain, x, kept = _cut(model, component, loads)
+    u, force = _core.mixed_deflection(chain, _nodal(chain, x, component, loads))
+    return u[kept], _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
+
+
 def _on_nodes(
     chain: Chain,
     kept: NDArray[np.intp],
@@ -152,10 +159,22 @@ def _on_nodes(
     first = chain.element_of[kept[:-1]]
     left_end = np.einsum("nji,nj->ni", F[first], begins)
     left_end -= np.einsum("nij,nj->ni", Q[first], u[:-1])
+    if chain.hinge is not None:
+        left_end *= _kept(chain.hinge[chain.term_of[kept[:-1]]], Q[first])
     force = np.zeros_like(u)
     force[1:] += right
     force[:-1] -= left_end
     return force
+
+
+def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the share 1/(1 + Q C) that a hinge leaves of F^T f_b - Q u, none where it is free.
+
+    f_a = F^T f_b - Q (u + C f_a), and a hinge stands on the one coordinate that Q has.
+    """
+    free = np.isinf(compliance)
+    finite = np.where(free, 0.0, compliance)
+    return np.where(free, 0.0, 1 / (1 + np.einsum("nii->ni", Q) * finite))
 
 
 def _lapack(
@@ -172,11 +191,11 @@ def _cut(
     """Return the chain with nodes under the loads, where they stand, and which the model has."""
     chain, x = model.chain.only(component), model.x
     if model.element == "tensed":
-        chain, x = cut(chain, x, [point[1] for point in loads])
+        chain, x = cut(chain, x, [*(point[1] for point in loads), *stops(chain, x)])
     return chain, x, np.flatnonzero(np.isin(x, model.x))
 
 
-SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
 """What finds motion of and forces on the nodes of one component."""
 
 

@@ -328,8 +328,9 @@ def _fractions(
     total = strain.sum(axis=1)
     moves = (eigenvalue != 0) & (total != 0)
     energy = {}
+    stores = {"spring": {"spring", "hinge"}}
     for k, name in enumerate(STRAINS):
-        if name in model.scene.effects:
+        if stores.get(name, {name}) & set(model.scene.effects):
             share = np.divide(strain[:, k], total, out=np.zeros_like(total), where=moves)
             energy[name] = share
     for k, name in enumerate(model.coordinates):

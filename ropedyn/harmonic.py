@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -19,14 +19,14 @@ from .chain import Chain
 from .errors import SceneError, SolveError
 from .frf import FRF
 from .model import Model
-from .port import Point, cut, is_force, locate, moving, ports
+from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .unit import OF_FORCE, QUANTITIES
 
 LANES = 16
 """Frequencies that the sweep solves side by side."""
 
-SLICE = 1 << 20
-"""Nodes times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
+SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
+"""Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
@@ -77,8 +77,8 @@ class Question:
         return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
 
     @cached_property
-    def cut(self) -> tuple[Chain, Real, tuple[Any, Any]]:
-        """The component's chain with nodes where points need them, where they stand, its runs."""
+    def cut(self) -> tuple[Chain, Real]:
+        """The component's chain with nodes where points need them, and where they stand."""
         model, points = self.model, [*self.drives, *self.responses]
         chain = model.chain.only(self.component)
         between = [p for p in points if locate(model.x, p[1])[1] is not None]
@@ -89,10 +89,10 @@ class Question:
                     f'"tensed", got {point} between nodes of {model.element!r} elements'
                 )
             between = []
-        longer, x = cut(chain, model.x, [p[1] for p in between])
-        if longer is chain:
-            return chain, x, model.runs[model.components.index(self.component)]
-        return longer, x, _core.runs(longer)
+        positions = [p[1] for p in between]
+        if model.element == "tensed":
+            positions += stops(chain, model.x)
+        return cut(chain, model.x, positions)
 
     def resonance(self, k: int) -> str:
         """Say that frequency k has no answer."""
@@ -182,33 +182,52 @@ def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:
 
 
 def _relative(value: Complex, error: Real) -> Real:
-    """Return the relative error: 0 where both are 0, infinite where only the value is."""
+    """Return the relative error: 0 where both are 0, infinite where only the value is.
+
+    Below the smallest normal number digits vanish however small the error is.
+    """
     size = np.abs(value)
     ratio = np.full(size.shape, np.inf)
-    np.divide(error, size, out=ratio, where=size > 0)
+    np.divide(error + np.finfo(float).tiny, size, out=ratio, where=size > 0)
     return np.where((size == 0) & (error == 0), 0.0, ratio)
 
 
-# --- the sweep --------------------------------------------------------------------------------
+# --- the chain as it is: nothing assembled ----------------------------------------------------
 
 
 def _sweep(question: Question) -> tuple[Complex, Real]:
+    chain, _ = question.cut
+    factor = question.factor
+    fastest = [np.argmax(np.abs(factor[damping.INERTIA]))] if factor.size else []
+    steps = _core.steps(chain, np.ascontiguousarray(factor[:, fastest]))
+    return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)
+
+
+def _band(question: Question) -> tuple[Complex, Real]:
+    chain, _ = question.cut
+    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE)
+
+
+Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
+
+
+def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple[Complex, Real]:
+    """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     component, factor = question.component, question.factor
-    chain, x, runs = question.cut
+    chain, x = question.cut
     direct = [p for p in question.responses if not _at_start(x, p)]
     reactions = len(direct) < len(question.responses)
     pushed = ports(chain, x, component, question.drives)
     watched = ports(chain, x, component, direct + (_hidden(component, x) if reactions else []))
 
     def solve(part: slice) -> tuple[Complex, Real]:
-        value, error, solved = _core.sweep(
-            chain, runs, np.ascontiguousarray(factor[:, part]), pushed, watched
-        )
+        value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)
         if solved < value.shape[2]:
             raise SolveError(question.resonance(part.start + solved))
         return value, error
 
-    value, error = _in_slices(solve, len(question.frequency), chain.nodes, question.workers)
+    count = len(question.frequency)
+    value, error = _in_slices(solve, count, steps, size, question.workers)
     if reactions:
         value, error = _with_reactions(question, value, error)
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
@@ -218,11 +237,11 @@ def _sweep(question: Question) -> tuple[Complex, Real]:
 
 
 def _in_slices(
-    solve: Callable[[slice], tuple[Complex, Real]], count: int, nodes: int, workers: int
+    solve: Callable[[slice], tuple[Complex, Real]], count: int, steps: int, most: int, workers: int
 ) -> tuple[Complex, Real]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
-    size = max(LANES, SLICE // nodes // LANES * LANES)
-    if count * nodes > SLICE // 16:
+    size = max(LANES, most // max(steps, 1) // LANES * LANES)
+    if count * steps > most // 16:
         size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
     parts = [slice(start, min(start + size, count)) for start in range(0, count, size)]
     if workers == 1 or len(parts) == 1:
@@ -238,13 +257,13 @@ def _in_slices(
 
 def _hold(question: Question, value: Complex, error: Real) -> None:
     """Set to 0 what is held, which rounding moves by its last digits."""
-    chain, x, _ = question.cut
+    chain, x = question.cut
 
     def is_held(point: Point) -> bool:
         node, between = locate(x, point[1])
         at = question.component.index(moving(point))
         held = between is None and not is_force(point)
-        return held and bool(chain.held[chain.term_of[node], at])
+        return held and bool(chain.held[chain.term[chain.stretch(node)], at])
 
     for k, point in enumerate(question.drives):
         if is_held(point):
@@ -269,11 +288,9 @@ def _hidden(component: tuple[str, ...], x: Real) -> list[Point]:
 def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Complex, Real]:
     """Put f_a = F^T f_b - Q u_a of the first element where it was asked for."""
     component, responses = question.component, question.responses
-    chain, x, _ = question.cut
+    chain, x = question.cut
     w = len(component)
-    F, _, Q = _core.triple(
-        chain, int(chain.element_of[0]), np.ascontiguousarray(question.factor[:2])
-    )
+    F, _, Q = _core.triple(chain, int(chain.element[0]), np.ascontiguousarray(question.factor[:2]))
     given, motion, force = np.split(np.arange(value.shape[1]), [-2 * w, -w])
     reaction = np.einsum("kij,dik->djk", F, value[:, force])
     reaction -= np.einsum("kij,djk->dik", Q, value[:, motion])
@@ -297,13 +314,8 @@ def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Co
 
 def _lapack(question: Question) -> tuple[Complex, Real]:
     if any(map(is_force, question.responses)):
-        raise SceneError('solver must be "sweep" where an internal force is asked for')
-    if not question.model.separable:
-        raise SceneError(
-            'solver must be "sweep" where tensed elements have stiffness damping and tension, got '
-            '"lapack": sections and tension are one matrix there'
-        )
-    chain, x, _ = question.cut
+        raise SceneError('solver must be "sweep" or "band" where an internal force is asked for')
+    chain, x = question.cut
     value, rounding, motion, solved = _core.frf(
         chain,
         np.ascontiguousarray(question.factor.T),
@@ -334,15 +346,15 @@ def _add_local(question: Question, value: Complex) -> None:
 
 def _local(question: Question, pushed: Point, watched: Point) -> tuple[int, float]:
     """Return which factor divides the local flexibility, and that; 0 outside one element."""
-    component, (chain, x, _) = question.component, question.cut
+    component, (chain, x) = question.component, question.cut
     which = damping.SECTION if "beta" in component or pushed[0] != "z" else damping.TENSION
     left, p = locate(x, pushed[1])
     other, s = locate(x, watched[1])
     if p is None or s is None or left != other or is_force(watched):
         return which, 0.0
-    local = _core.local(chain, int(chain.element_of[left]), s, p)
+    local = _core.local(chain, left, s, p)
     return which, float(local[component.index(watched[0]), component.index(pushed[0])])
 
 
-SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
 """What computes the response of one component: value and relative error, (drives, responses, f)."""

@@ -64,9 +64,11 @@ def shares(lengths: NDArray[np.float64], elements: int) -> NDArray[np.intp]:
     # every span has at least this many in the end
     counts = np.floor(lengths / lengths.sum() * (elements - len(lengths))).astype(np.intp)
     counts = np.maximum(counts, 1)
-    heap = [(-float(length / n), i) for i, (length, n) in enumerate(zip(lengths, counts))]
-    heapq.heapify(heap)
-    for _ in range(elements - int(counts.sum())):
+    left = elements - int(counts.sum())
+    # only so many of the longest can have one more
+    longest = np.argsort(-lengths / counts, kind="stable")[:left]
+    heap = [(-float(lengths[i] / counts[i]), int(i)) for i in longest]
+    for _ in range(left):
         _, i = heap[0]
         counts[i] += 1
         heapq.heapreplace(heap, (-float(lengths[i] / counts[i]), i))

@@ -62,8 +62,6 @@ class Model:
         Where the nodes stand [m].
     chain : Chain
         What the core reads.
-    runs : tuple
-        Of each component, the uniform stretches that the sweep joins.
     unknowns : tuple of int
         Of each component, coordinates that can move.
     """
@@ -74,7 +72,6 @@ class Model:
     components: tuple[tuple[str, ...], ...]
     x: NDArray[np.float64]
     chain: Chain
-    runs: tuple[tuple[Any, Any], ...]
     unknowns: tuple[int, ...]
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -253,17 +250,20 @@ class Model:
             What is watched; the drive points where left out. Also internal forces such as
             ``("F_z", 0.3)`` or ``("M_beta", 0.0)``: what the rope right of the position puts on
             the rope left of it, just left of a load or mass that stands there; these need the
-            sweep.
+            sweep or the band.
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration per force.
-        solver : {"lapack", "sweep"}
+        solver : {"lapack", "sweep", "band"}
             ``"lapack"``: complex band LU of the assembled dynamic stiffness at each frequency;
             loses digits with n as `modes` does. ``"sweep"``: along the chain in scattering form
             (see csrc/sweep.h), nothing assembled, right to nearly the last digits whatever n;
             uniform stretches are joined by doubling and cost little more for more elements.
+            ``"band"``: complex band LU of the mixed form, forces of elements beside motion of
+            nodes (see csrc/mixed.h); its error grows as n at most, it shares no step with the
+            sweep, and it takes hundreds of times as long.
         threads : int, optional
-            Of the sweep: frequencies are shared out over so many threads; the environment variable
-            ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
+            Of sweep and band: frequencies are shared out over so many threads; the environment
+            variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
 
         Returns
         -------
@@ -310,8 +310,9 @@ class Model:
         ----------
         load : mapping from points to float
             Such as ``{("z", 0.5): 10.0}`` [N, N m].
-        solver : {"sweep", "lapack"}
-            ``"sweep"``: as `frf` at 0 Hz; ``"lapack"``: band LU of the assembled stiffness.
+        solver : {"lapack", "sweep", "band"}
+            ``"lapack"``: band LU of the assembled stiffness; ``"sweep"`` and ``"band"``: as `frf`
+            at 0 Hz.
 
         Returns
         -------

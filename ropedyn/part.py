@@ -2,51 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from types import MappingProxyType
+from typing import ClassVar, NamedTuple, Protocol
 
 from . import check
 
 
-@dataclass(frozen=True)
-class NodeTerm:
-    """What stands at one node, over the coordinates of a chain.
+class NodeTerm(NamedTuple):
+    """What stands at one node, per coordinate."""
 
-    Attributes
-    ----------
-    mass, stiffness : ndarray, shape (width, width)
-        Symmetric [kg, kg m, kg m^2] and [N/m, N, N m].
-    held : ndarray of bool, shape (width,)
-        Coordinates that cannot move.
-    """
-
-    mass: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
-    held: NDArray[np.bool_]
-
-    def __add__(self, other: NodeTerm) -> NodeTerm:
-        return NodeTerm(
-            self.mass + other.mass, self.stiffness + other.stiffness, self.held | other.held
-        )
-
-
-def node_term(
-    coordinates: Sequence[str],
-    *,
-    mass: dict[str, float] | None = None,
-    stiffness: dict[str, float] | None = None,
-    held: Sequence[str] = (),
-) -> NodeTerm:
-    """Build a diagonal node term from values per coordinate; absent coordinates are ignored."""
-    return NodeTerm(
-        np.diag([(mass or {}).get(c, 0.0) for c in coordinates]),
-        np.diag([(stiffness or {}).get(c, 0.0) for c in coordinates]),
-        np.array([c in held for c in coordinates], dtype=bool),
-    )
+    mass: Mapping[str, float] = MappingProxyType({})
+    """[kg, kg m^2]; inertia on an absent coordinate is ignored."""
+    stiffness: Mapping[str, float] = MappingProxyType({})
+    """To the ground [N/m, N m]."""
+    held: Sequence[str] = ()
+    """Coordinates that cannot move."""
+    hinge: Mapping[str, float] = MappingProxyType({})
+    """Compliance between the node and the rope on its right [rad/(N m)], infinite where free."""
 
 
 class Part(Protocol):
@@ -63,7 +37,7 @@ class Part(Protocol):
     def stands_on(self) -> tuple[str, ...]:
         """Coordinates without which it has no meaning."""
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Return what it adds to its node."""
 
 
@@ -117,7 +91,7 @@ class PointMass:
         """Nothing: inertia on an absent coordinate is ignored."""
         return ()
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Inertia on the diagonal."""
         mass = {
             "x": self.mass,
@@ -125,7 +99,7 @@ class PointMass:
             "alpha": self.polar_inertia,
             "beta": self.rotary_inertia,
         }
-        return node_term(coordinates, mass=mass)
+        return NodeTerm(mass=mass)
 
 
 @dataclass(frozen=True)
@@ -174,9 +148,9 @@ class Spring:
         """Its coordinate."""
         return (self.coordinate,)
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Stiffness on the diagonal."""
-        return node_term(coordinates, stiffness={self.coordinate: self.stiffness})
+        return NodeTerm(stiffness={self.coordinate: self.stiffness})
 
 
 @dataclass(frozen=True)
@@ -219,10 +193,69 @@ class Support:
         """Its coordinate."""
         return (self.coordinate,)
 
-    def term(self, coordinates: Sequence[str]) -> NodeTerm:
+    def term(self) -> NodeTerm:
         """Return the held coordinate."""
-        return node_term(coordinates, held=(self.coordinate,))
+        return NodeTerm(held=(self.coordinate,))
 
 
-KINDS = (PointMass, Spring, Support)
+@dataclass(frozen=True)
+class Hinge:
+    """A place where the bending rotation may jump.
+
+    The node and whatever else stands at the same place (inertia, springs and supports of the
+    rotation) are on the left of the hinge; deflection and force pass through. Hinges at one place
+    are springs in series. The rope's damping of springs damps this one too. Where a hinge moves,
+    the inertia of tensed elements is lumped to second order; held by a `Support`, to fourth.
+
+    Parameters
+    ----------
+    x : float
+        Where it is [m], between the ends: at an end ``End(beta="free", spring={"beta": ...})`` is
+        the same thing.
+    stiffness : float
+        Of the rotation spring across it [N m]; 0 is a free hinge, which carries no moment.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or the stiffness is negative; in a scene, if it stands at an end
+        of the rope.
+
+    Examples
+    --------
+    Two cantilevers that meet tip to tip:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(2.0, 0.1, bending_stiffness=4.0)
+    >>> model = rd.Scene(rope, parts=[rd.Hinge(1.0)]).compile(elements=2)
+    >>> print(model.static({("z", 1.0): 24.0}).displacement[1, 0].round(12))
+    1.0
+    """
+
+    kind: ClassVar[str] = "hinge"
+
+    x: float
+    _: KW_ONLY
+    stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        stiffness = check.number(self.stiffness, "stiffness", "N m", sign="nonnegative")
+        object.__setattr__(self, "stiffness", stiffness)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Bending rotation."""
+        return ("beta",)
+
+    def term(self) -> NodeTerm:
+        """Return the compliance of its spring."""
+        with np.errstate(divide="ignore", over="ignore"):
+            compliance = float(np.float64(1.0) / self.stiffness)
+        return NodeTerm(hinge={"beta": compliance})
+
+
+KINDS = (PointMass, Spring, Support, Hinge)
 """Every kind of part."""

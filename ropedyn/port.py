@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import Chain
-from .check import NEAR
+from .check import COORDINATES, NEAR
 from .unit import OF_FORCE
 
 Point = tuple[str, float]
@@ -78,8 +78,32 @@ def ports(
             row[k, int(last), at] = 1.0
         else:
             node[k] = left
-            row[k] = _core.shape(chain, int(chain.element_of[left]), s)[at]
+            row[k] = _core.shape(chain, left, s)[at]
     return Ports(node, row, force if force.any() else None)
+
+
+def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
+    """Return where tensed elements are cut so that none is near its own critical load.
+
+    Under compression an element of kappa l = pi/2, kappa^2 = |T| S_bb, buckles as a cantilever
+    though the rope may not: F, G and Q have no digits around it. Pieces have kappa l <= 1.
+
+    Parameters
+    ----------
+    chain : Chain
+        Of tensed elements; without bending nothing buckles.
+    x : ndarray, shape (nodes,)
+        Where its nodes stand [m].
+    """
+    if COORDINATES.index("beta") not in chain.coordinate:
+        return []
+    kappa = np.sqrt(np.maximum(-chain.tension * chain.flexibility[:, 2, 2], 0.0))
+    pieces = np.ceil(kappa * chain.length).astype(np.intp)[chain.element_of]
+    return [
+        float(at)
+        for e in np.flatnonzero(pieces > 1)
+        for at in np.linspace(x[e], x[e + 1], pieces[e] + 1)[1:-1]
+    ]
 
 
 def cut(
@@ -108,26 +132,32 @@ def cut(
     inside = sorted({at for at in positions if locate(x, at)[1] is not None})
     if not inside:
         return chain, x
-    nodes = np.union1d(x, inside)
-    old = np.searchsorted(x, nodes, side="right") - 1
-    is_new = ~np.isin(nodes, x)
-    cut_element = np.zeros(len(nodes), dtype=bool)
-    cut_element[is_new] = True
-    cut_element[np.flatnonzero(is_new) - 1] = True
-    number = chain.element_of[np.minimum(old[:-1], len(chain.element_of) - 1)].copy()
-    pieces = np.flatnonzero(cut_element[:-1])
-    source = number[pieces]
-    number[pieces] = len(chain.length) + np.arange(len(pieces))
+    left = np.searchsorted(x, inside) - 1
+    nodes = np.insert(x, left + 1, inside)
+    # stretches begin where they did, at both ends of an element that is cut, and at new nodes
+    old = np.unique(np.concatenate([chain.first, left, left + 1]))
+    stretch = np.searchsorted(chain.first, old, side="right") - 1
+    start = np.concatenate([old + np.searchsorted(left, old), left + 1 + np.arange(len(left))])
+    order = np.argsort(start)
+    new_term = np.full(len(left), len(chain.mass))
+    around = np.searchsorted(chain.first, left, side="right") - 1
+    term = np.concatenate([chain.term[stretch], new_term])[order]
+    element = np.append(chain.element, 0)[np.concatenate([stretch, around])][order]
+    pieces = np.flatnonzero(np.concatenate([np.isin(old, left), np.ones(len(left), bool)])[order])
+    first, source = start[order], element[pieces]
+    element[pieces] = len(chain.length) + np.arange(len(pieces))
     width = chain.mass.shape[1]
     none = np.zeros((1, width, width))
-    term_of = np.where(is_new, len(chain.mass), chain.term_of[old])
+    closed = np.zeros((1, width))
     return chain._replace(
-        length=np.concatenate([chain.length, np.diff(nodes)[pieces]]),
+        length=np.concatenate([chain.length, nodes[first[pieces] + 1] - nodes[first[pieces]]]),
         tension=np.concatenate([chain.tension, chain.tension[source]]),
         flexibility=np.concatenate([chain.flexibility, chain.flexibility[source]]),
-        element_of=number,
+        first=first.astype(np.int32),
+        element=element[:-1].astype(np.int32),
         mass=np.concatenate([chain.mass, none]),
         stiffness=np.concatenate([chain.stiffness, none]),
         held=np.concatenate([chain.held, np.zeros((1, width), dtype=np.uint8)]),
-        term_of=term_of.astype(np.int32),
+        term=term.astype(np.int32),
+        hinge=None if chain.hinge is None else np.concatenate([chain.hinge, closed]),
     ), nodes

@@ -58,7 +58,7 @@ class Scene:
         Left and right end.
     damping : StiffnessDamping, RayleighDamping or tuple of them, optional
         A tuple is their sum.
-    parts : sequence of PointMass, Spring, Support
+    parts : sequence of PointMass, Spring, Support, Hinge
         What stands on the rope.
 
     Raises
@@ -114,10 +114,13 @@ class Scene:
             check.position(part.x, f"parts[{i}].x", self.rope.length)
             for coordinate in part.stands_on:
                 if coordinate not in self.coordinates:
+                    chosen = hasattr(part, "coordinate")
+                    name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
                     raise SceneError(
-                        f"parts[{i}].coordinate must be one the scene has ({present}), "
-                        f"got {coordinate!r}"
+                        f"{name} must be one the scene has ({present}), got {coordinate!r}"
                     )
+            if isinstance(part, _part.Hinge):
+                self._check_hinge(i, part.x)
         for i, end in enumerate(self.ends):
             for coordinate in _end.end_of(end).spring:
                 if coordinate not in self.coordinates:
@@ -125,6 +128,14 @@ class Scene:
                         f"ends[{i}].spring must stand on coordinates the scene has "
                         f"({present}), got {coordinate!r}"
                     )
+
+    def _check_hinge(self, i: int, x: float) -> None:
+        margin = check.NEAR * self.rope.length
+        if not margin < x < self.rope.length - margin:
+            raise SceneError(
+                f"parts[{i}].x must lie between the ends of the rope for a hinge, got {x!r} m: "
+                'there say End(beta="free", spring={"beta": stiffness})'
+            )
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -223,9 +234,9 @@ class Scene:
             between stations share the elements as equally as can be.
         element : {"rigid", "tensed", "difference"}
             ``"rigid"``: beam elements between rigid node frames, tension as a string in parallel;
-            second order in the length of elements. ``"tensed"``: the exact static tensed beam,
-            with end-corrected lumping; fourth order where there is bending. ``"difference"``: the
-            kinematics of the 2015 study.
+            second order in the length of elements. ``"tensed"``: the exact static tensed beam, with
+            end-corrected lumping; fourth order where there is bending (second with a hinge that
+            moves). ``"difference"``: the kinematics of the 2015 study.
 
         Returns
         -------

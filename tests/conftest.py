@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+from claims import claim  # noqa: F401 - a fixture
 from hypothesis import settings
 
 import ropedyn as rd

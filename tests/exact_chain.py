@@ -1,169 +1,388 @@
-"""Chains in many digits: eigenvalue counts and errors, with nothing of the core.
+"""The exact discrete system of a model, eliminated in 60 digits: the reference of the sweep."""
 
-The triple of each distinct element is written out from csrc/triple.h's formulas in mpmath, the
-assembled K - lambda M is reduced node by node, and the signs of its pivots are counted (Sylvester).
-Numbers of the compiled chain are taken as exact.
-"""
-
-from functools import lru_cache
+import dataclasses
 
 import mpmath
 import numpy as np
 from mpmath import mpf
 
-DIFFERENCE, RIGID, TENSED = range(3)
-CHANNEL = {0: 0, 1: 2, 2: 1, 3: 2}
-X, Z, ALPHA, BETA = range(4)
+import ropedyn as rd
+
+DIGITS = 60
+CHANNEL = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 
 
-def shape_functions(kind, theta):
-    """Return tau, P0, P1, P2 of csrc/triple.h."""
-    if kind == DIFFERENCE or theta == 0:
-        tau = mpf(0) if kind == DIFFERENCE else mpf(1)
-        return tau, mpf(1), mpf(1) / 2, mpf(1) / 3
-    if kind == RIGID:
-        p = 1 + theta / 3
-        return 1 / p, (1 + theta / 12) / p, 1 / (2 * p), 1 / (3 * p)
-    t = mpmath.sqrt(theta)
-    tau = mpmath.re(mpmath.tanh(t) / t)
-    return tau, tau, mpmath.re((1 - 1 / mpmath.cosh(t)) / theta), (1 - tau) / theta
+def section(rope):
+    """Flexibility of the section over (axial, torsion, bending), from the rope's numbers."""
+    EA, C, B, D, H = (
+        mpf(value or 0)
+        for value in (
+            rope.axial_stiffness,
+            rope.torsional_stiffness,
+            rope.bending_stiffness,
+            rope.lay_coupling,
+            rope.lay_slope,
+        )
+    )
+    S = [[mpf(0)] * 3 for _ in range(3)]
+    left = 1 - D * D / (EA * C) if D else mpf(1)
+    S[0][0] = 1 / (EA * left) if EA else mpf(0)
+    tt, bb = 1 / (C * left) if C else mpf(0), 1 / B if B else mpf(0)
+    at = -D / (EA * C * left) if D else mpf(0)
+    norm = mpmath.sqrt(1 + H * H)
+    c, s = 1 / norm, H / norm
+    S[0][1] = S[1][0] = c * at
+    S[0][2] = S[2][0] = s * at
+    S[1][1], S[2][2] = c * c * tt + s * s * bb, s * s * tt + c * c * bb
+    S[1][2] = S[2][1] = c * s * (tt - bb)
+    return S
 
 
-def triple(chain, e):
-    """Return F, G, Q of distinct element e."""
-    w = len(chain.coordinate)
-    l, T = mpf(float(chain.length[e])), mpf(float(chain.tension[e]))
-    S = [[mpf(float(s)) for s in row] for row in chain.flexibility[e]]
-    F, G, Q = mpmath.eye(w), mpmath.zeros(w), mpmath.zeros(w)
-    coordinate = list(chain.coordinate)
-    channel = [CHANNEL[int(c)] for c in coordinate]
-    bends = BETA in coordinate
-    Sb = S[2][2]
-    if bends:
-        tau, *P = shape_functions(chain.kind, T * Sb * l * l)
-    for i, a in enumerate(coordinate):
-        for j, b in enumerate(coordinate):
-            c, d = channel[i], channel[j]
-            if c != 2 and d != 2:
-                G[i, j] = l * S[c][d]
-                if bends:
-                    G[i, j] += l * S[c][2] * S[d][2] / Sb * (P[0] - 1)
-            elif not bends:
-                G[i, j] = l / T if i == j else mpf(0)
+def identity(w):
+    return [[mpf(i == j) for j in range(w)] for i in range(w)]
+
+
+def times(A, B):
+    columns = list(zip(*B))
+    return [[sum(map(_product, row, column)) for column in columns] for row in A]
+
+
+def _product(a, b):
+    return a * b
+
+
+def plus(A, B, factor=1):
+    return [[a + factor * b for a, b in zip(p, q)] for p, q in zip(A, B)]
+
+
+def turned(A):
+    return [list(row) for row in zip(*A)]
+
+
+def inverse(A):
+    if len(A) == 1:
+        return [[1 / A[0][0]]]
+    if len(A) == 2:
+        (a, b), (c, d) = A
+        over = 1 / (a * d - b * c)
+        return [[d * over, -b * over], [-c * over, a * over]]
+    rows = [[*row, *unit] for row, unit in zip(A, identity(len(A)))]
+    for k in range(len(A)):
+        best = max(range(k, len(A)), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[best] = rows[best], rows[k]
+        over = 1 / rows[k][k]
+        rows[k] = [over * x for x in rows[k]]
+        for i in range(len(A)):
+            if i != k and rows[i][k] != 0:
+                share = rows[i][k]
+                rows[i] = [x - share * y for x, y in zip(rows[i], rows[k])]
+    return [row[len(A) :] for row in rows]
+
+
+def transfer(coordinates, length):
+    """How a rigid body's end moves with the other."""
+    F = identity(len(coordinates))
+    if "beta" in coordinates:
+        F[coordinates.index("z")][coordinates.index("beta")] = length
+    return F
+
+
+def cantilever(coordinates, S, length):
+    """G = integral P^T S P ds of the tip."""
+    power = [c == "z" for c in coordinates]
+    return [
+        [
+            S[CHANNEL[a]][CHANNEL[b]] * length ** (1 + p + q) / (1 + p + q)
+            for b, q in zip(coordinates, power)
+        ]
+        for a, p in zip(coordinates, power)
+    ]
+
+
+def tensed(coordinates, S, length, tension):
+    """(F, G, Q) of the static tensed cantilever: closed in bending, else from the exponential."""
+    w = len(coordinates)
+    if coordinates == ("z", "beta") and tension != 0:
+        bb = S[2][2]
+        kappa = mpmath.sqrt(tension * bb)
+        t = kappa * length
+        tau, sech = mpmath.tanh(t) / kappa, mpmath.sech(t)
+        if mpmath.im(kappa**2) == 0:
+            # tan and cos under compression
+            tau, sech = mpmath.re(tau), mpmath.re(sech)
+        F = [[mpf(1), tau], [mpf(0), sech]]
+        cross = (1 - sech) / tension
+        G = [[(length - tau) / tension, cross], [cross, bb * tau]]
+        return F, G, [[mpf(0), mpf(0)], [mpf(0), tension * tau]]
+    if tension == 0:
+        zero = [[mpf(0)] * w for _ in range(w)]
+        return transfer(coordinates, length), cantilever(coordinates, S, length), zero
+    # from pieces shorter than 1/kappa: the exponential of a long one is all growth
+    halvings = max(0, int(mpmath.ceil(mpmath.log(abs(tension * S[2][2]) * length**2, 4))))
+    piece = exponential(coordinates, S, length / 2**halvings, tension)
+    for _ in range(halvings):
+        piece = joined(piece, piece)
+    return piece
+
+
+def exponential(coordinates, S, length, tension):
+    """(F, G, Q) from exp(l E), E of the state (u, f) with the static section and tension."""
+    w = len(coordinates)
+    E = mpmath.zeros(2 * w)
+    for i, a in enumerate(coordinates):
+        for j, b in enumerate(coordinates):
+            if "z" not in (a, b):
+                E[i, w + j] = S[CHANNEL[a]][CHANNEL[b]]
+    z, beta = coordinates.index("z"), coordinates.index("beta")
+    E[z, beta], E[w + beta, w + z], E[w + beta, beta] = 1, -1, tension
+    e = mpmath.expm(E * length)
+    e12, e21, e22 = (
+        [[e[i + r, j + c] for j in range(w)] for i in range(w)] for r, c in ((0, w), (w, 0), (w, w))
+    )
+    back = inverse(e22)
+    return turned(back), times(e12, back), times(back, e21)
+
+
+def joined(one, two):
+    """M = (I + G1 Q2)^-1: F2 M F1, G2 + F2 M G1 F2^T, Q1 + F1^T Q2 M F1."""
+    (F1, G1, Q1), (F2, G2, Q2) = one, two
+    M = inverse(plus(identity(len(F1)), times(G1, Q2)))
+    F = times(F2, times(M, F1))
+    G = plus(G2, times(F2, times(times(M, G1), turned(F2))))
+    return F, G, plus(Q1, times(turned(F1), times(Q2, times(M, F1))))
+
+
+@dataclasses.dataclass
+class Exact:
+    """The discrete system of a model, from the numbers of its scene alone."""
+
+    model: rd.Model
+    coordinates: tuple[str, ...]
+    nudge: tuple[mpf, ...] = (mpf(1),) * 4
+    """Times section, tension, springs, inertia: what the condition of an answer asks."""
+
+    def __post_init__(self):
+        scene, model = self.model.scene, self.model
+        self.count = len(model.x) - 1
+        stations = sorted({mpf(0), mpf(scene.rope.length), *(mpf(p.x) for p in scene.parts)})
+        node = [int(np.abs(model.x - float(s)).argmin()) for s in stations]
+        self.lengths = []
+        for a, b, i, j in zip(stations, stations[1:], node, node[1:]):
+            self.lengths += [(b - a) / (j - i)] * (j - i)
+        self.part_at = [(node[stations.index(mpf(p.x))], p) for p in scene.parts]
+
+    def factors(self, omega):
+        """On sections, tension, springs, inertia; real where nothing is damped."""
+        section = tension = spring = mpf(1)
+        inertia = -(omega**2)
+        for damping in self.model.scene.dampings:
+            if isinstance(damping, rd.StiffnessDamping):
+                section = section + 1j * omega * mpf(damping.gamma)
+                spring = spring + 1j * omega * mpf(damping.gamma)
             else:
-                k = int(a == Z) + int(b == Z)
-                ri = mpf(1) if c == 2 else S[c][2] / Sb
-                rj = mpf(1) if d == 2 else S[d][2] / Sb
-                G[i, j] = ri * rj * Sb * l ** (1 + k) * P[k]
-        if bends:
-            theta = T * Sb * l * l
-            ri = mpf(1) if channel[i] == 2 else S[channel[i]][2] / Sb
-            if chain.kind == DIFFERENCE:
-                theta = mpf(0)
-            F[i, w - 1] = l * tau if a == Z else int(a == BETA) - ri * theta * P[1]
-    if bends:
-        Q[w - 1, w - 1] = T * l * tau
-    return F, G, Q
+                section = section + 1j * omega * mpf(damping.stiffness)
+                tension = tension + 1j * omega * mpf(damping.stiffness)
+                spring = spring + 1j * omega * mpf(damping.stiffness)
+                inertia = inertia + 1j * omega * mpf(damping.mass)
+        return [p * q for p, q in zip((section, tension, spring, inertia), self.nudge)]
+
+    def triple(self, length, omega):
+        scene = self.model.scene
+        c, (g, of_tension, _, _) = self.coordinates, self.factors(omega)
+        S = [[s / g for s in row] for row in section(scene.rope)]
+        T = mpf(scene.tension) * of_tension if "z" in c else mpf(0)
+        if c == ("z",):
+            return [[mpf(1)]], [[length / T]], [[mpf(0)]]
+        if self.model.element == "tensed":
+            return tensed(c, S, length, T)
+        if self.model.element == "difference":
+            zero = [[mpf(0)] * len(c) for _ in c]
+            return identity(len(c)), cantilever(c, S, length), zero
+        F, G = transfer(c, length), cantilever(c, S, length)
+        if T == 0:
+            return F, G, [[mpf(0)] * len(c) for _ in c]
+        # the string in parallel
+        string = [[T / length * (a == b == "z") for b in c] for a in c]
+        X = inverse(plus(identity(len(c)), times(G, string)))
+        F2 = times(X, plus(F, times(G, string)))
+        turned_less = plus(identity(len(c)), turned(F), -1)
+        Q = times(times(turned_less, string), plus(F2, identity(len(c)), -1))
+        return F2, times(X, G), [[-q for q in row] for row in Q]
+
+    def term(self, node, omega):
+        """Node term -omega^2 M + springs and the held coordinates."""
+        scene, c = self.model.scene, self.coordinates
+        rope = scene.rope
+        _, _, spring, inertia = self.factors(omega)
+        left = self.lengths[node - 1] if node > 0 else mpf(0)
+        right = self.lengths[node] if node < self.count else mpf(0)
+        mu = mpf(rope.linear_density)
+        own = {"x": mu, "z": mu, "alpha": mpf(rope.polar_inertia or 0)}
+        own["beta"] = mpf(rope.rotary_inertia or 0)
+        mass = {k: own[k] * (left + right) / 2 for k in c}
+        stiffness, held = dict.fromkeys(c, mpf(0)), set()
+        for at, part in self.part_at:
+            if at != node:
+                continue
+            if isinstance(part, rd.PointMass):
+                added = {"x": part.mass, "z": part.mass, "alpha": part.polar_inertia}
+                added["beta"] = part.rotary_inertia
+                mass = {k: mass[k] + mpf(added[k]) for k in c}
+            elif part.coordinate in c and isinstance(part, rd.Spring):
+                stiffness[part.coordinate] += mpf(part.stiffness)
+            elif part.coordinate in c:
+                held.add(part.coordinate)
+        if node in (0, self.count):
+            end = scene.ends[node > 0]
+            if isinstance(end, rd.End):
+                held |= {k for k in c if end.holds(k)}
+                for k in set(end.spring) & set(c):
+                    stiffness[k] += mpf(end.spring[k])
+            else:
+                holds = {"clamped": set(c), "pinned": set(c) - {"beta"}, "free": set()}
+                held |= holds[end]
+        N = [[mpf(0)] * len(c) for _ in c]
+        for k, name in enumerate(c):
+            N[k][k] = inertia * mass[name] + spring * stiffness[name]
+        if self.model.element == "tensed" and "beta" in c:
+            z, beta = c.index("z"), c.index("beta")
+            N[z][beta] = N[beta][z] = -inertia * mu * (left**2 - right**2) / 12
+        return N, [name in held for name in c]
+
+    def assembled(self, omega):
+        """Diagonal blocks, held coordinates as ones, and the blocks above the diagonal."""
+        w, memory = len(self.coordinates), {}
+        diagonal, beside, masks = [], [], []
+        for node in range(self.count + 1):
+            N, held = self.term(node, omega)
+            diagonal.append(N)
+            masks.append(held)
+        for e, length in enumerate(self.lengths):
+            if length not in memory:
+                F, G, Q = self.triple(length, omega)
+                Gi = inverse(G)
+                FtGi = times(turned(F), Gi)
+                memory[length] = plus(Q, times(FtGi, F)), [[-x for x in r] for r in FtGi], Gi
+            here, between, there = memory[length]
+            diagonal[e] = plus(diagonal[e], here)
+            diagonal[e + 1] = plus(diagonal[e + 1], there)
+            beside.append([list(row) for row in between])
+        for node, held in enumerate(masks):
+            for k in range(w):
+                if held[k]:
+                    for m in range(w):
+                        diagonal[node][k][m] = diagonal[node][m][k] = mpf(k == m)
+                        if node < self.count:
+                            beside[node][k][m] = mpf(0)
+                        if node > 0:
+                            beside[node - 1][m][k] = mpf(0)
+        return diagonal, beside, masks
+
+    def receptance(self, omega, drive, responses):
+        """Displacements at (coordinate, node) per unit force at (coordinate, node)."""
+        D, beside, masks = self.assembled(omega)
+        coordinate, at = drive
+        left, right = [], []
+        P = D[0]
+        for i in range(at):
+            left.append(times(inverse(P), beside[i]))
+            P = plus(D[i + 1], times(turned(beside[i]), left[i]), -1)
+        P2 = D[-1]
+        for i in range(self.count - 1, at - 1, -1):
+            back = times(inverse(P2), turned(beside[i]))
+            right.append(back)
+            P2 = plus(D[i], times(beside[i], back), -1)
+        whole = plus(plus(P, P2), D[at], -1)
+        k = self.coordinates.index(coordinate)
+        if masks[at][k]:
+            return [mpf(0)] * len(responses)
+        u = {at: [[row[k]] for row in inverse(whole)]}
+        for i in range(at - 1, -1, -1):
+            u[i] = [[-x[0]] for x in times(left[i], u[i + 1])]
+        for i, back in zip(range(at + 1, self.count + 1), reversed(right)):
+            u[i] = [[-x[0]] for x in times(back, u[i - 1])]
+        return [u[node][self.coordinates.index(c)][0] for c, node in responses]
 
 
-def element_matrix(chain, e):
-    """Return K_e (2 width, 2 width)."""
-    w = len(chain.coordinate)
-    F, G, Q = triple(chain, e)
-    inverse = G**-1
-    blocks = ((Q + F.T * inverse * F, -(F.T) * inverse), (-inverse * F, inverse))
-    K = mpmath.zeros(2 * w)
-    for a in range(2):
-        for b in range(2):
-            for i in range(w):
-                for j in range(w):
-                    K[a * w + i, b * w + j] = blocks[a][b][i, j]
-    return K
+def omega_of(f):
+    """The angular frequency the library works with: f is the user's number, pi has 60 digits."""
+    return 2 * mpmath.pi * mpf(f)
 
 
-class ExactChain:
-    """A compiled chain in many digits."""
+def response(exact, f, drive, at):
+    """The response at (coordinate, node) per unit force at (coordinate, node); f in Hz.
 
-    def __init__(self, chain, digits=60):
-        self.chain = chain
-        self.digits = digits
-        self.width = len(chain.coordinate)
-        with mpmath.workdps(digits):
-            self.element = lru_cache(None)(lambda e: self._rows(element_matrix(chain, e)))
-            self.term = lru_cache(None)(self._term)
-
-    @staticmethod
-    def _rows(matrix):
-        return [[matrix[i, j] for j in range(matrix.cols)] for i in range(matrix.rows)]
-
-    def _term(self, t):
-        mass = [[mpf(float(m)) for m in row] for row in self.chain.mass[t]]
-        stiffness = [[mpf(float(k)) for k in row] for row in self.chain.stiffness[t]]
-        free = [i for i in range(self.width) if not self.chain.held[t][i]]
-        return mass, stiffness, free
-
-    def count(self, eigenvalue):
-        """Return the negative eigenvalues of K - lambda M."""
-        with mpmath.workdps(self.digits):
-            return self._count(mpf(eigenvalue))
-
-    def _count(self, lam):
-        w, chain = self.width, self.chain
-        left = [[mpf(0)] * w for _ in range(w)]
-        count, last = 0, len(chain.term_of) - 1
-        for n, t in enumerate(chain.term_of):
-            mass, stiffness, free = self.term(int(t))
-            size = w if n == last else 2 * w
-            A = [[mpf(0)] * size for _ in range(size)]
-            if n < last:
-                A = [row[:] for row in self.element(int(chain.element_of[n]))]
-            for i in range(w):
-                for j in range(w):
-                    A[i][j] += left[i][j] + stiffness[i][j] - lam * mass[i][j]
-            rest = list(free)
-            while rest:
-                p = max(rest, key=lambda i: abs(A[i][i]))
-                rest.remove(p)
-                pivot = A[p][p]
-                if pivot == 0:
-                    raise ZeroDivisionError("an exactly singular leading part")
-                count += pivot < 0
-                others = rest + list(range(w, size))
-                for i in others:
-                    if A[i][p] == 0:
-                        continue
-                    share = A[i][p] / pivot
-                    for j in others:
-                        A[i][j] -= share * A[p][j]
-            if n < last:
-                left = [row[w:] for row in A[w:]]
-        return count
-
-    def error(self, index, value):
-        """Return how far eigenvalue number `index`, from 0, is from `value`, to one per cent.
-
-        Valid above the spurious eigenvalues of an indefinite mass matrix, which lie far below zero.
-        """
-        with mpmath.workdps(self.digits):
-            value = mpf(float(value))
-            step = abs(value) * mpf(2) ** -60 + mpf(10) ** -30
-            while not self._count(value - step) <= index < self._count(value + step):
-                step *= 16
-                if step > mpf(10) ** 30:
-                    raise ValueError(f"there is no eigenvalue number {index}")
-            side = 1 if self._count(value) <= index else -1
-            near, far = mpf(0), step
-            while far - near > far / 100 and far > abs(value) * mpf(2) ** -60:
-                middle = (near + far) / 2
-                beyond = self._count(value + side * middle) > index
-                if beyond == (side > 0):
-                    far = middle
-                else:
-                    near = middle
-            return float(far)
+    At 0 Hz a part of the chain may be a mechanism though the whole is none, and has no inverse:
+    there it is the response at 1e-60 rad/s, which differs from the one at rest by 1e-100.
+    """
+    try:
+        return exact.receptance(omega_of(f), drive, [at])[0]
+    except ZeroDivisionError:
+        if f != 0:
+            raise
+        with mpmath.workdps(300):
+            return exact.receptance(mpf(10) ** -60, drive, [at])[0]
 
 
-def eigenvalue_errors(model, modes, digits=60):
-    """Return the errors of the eigenvalues of a model of one component [rad^2/s^2]."""
-    exact = ExactChain(model.chain, digits)
-    return np.array([exact.error(k, v) for k, v in enumerate(modes.eigenvalue)])
+def relative(value, exact):
+    """|value - exact|/|exact|, 0 where both are 0."""
+    if exact == 0:
+        return 0.0 if value == 0 else float("inf")
+    return float(abs(mpmath.mpmathify(complex(value)) / exact - 1))
+
+
+def condition(exact, omega, drive, response):
+    """1 + the sum of |d ln h/d ln p| over p: section, tension, springs, inertia (or omega^2).
+
+    What a relative change of 1 in each of the four parts of the dynamic stiffness does to the
+    answer h, to first order, by differences of 1e-20.
+    """
+    step = mpf(10) ** -20
+    (h,) = exact.receptance(omega, drive, [response])
+    total = mpf(1)
+    for part in range(4):
+        nudge = tuple(1 + step * (k == part) for k in range(4))
+        (near,) = dataclasses.replace(exact, nudge=nudge).receptance(omega, drive, [response])
+        total += abs(near / h - 1) / step
+    return float(total)
+
+
+def error_over_condition(model, f, drive, response=None, *, enough=0.0, digits=DIGITS):
+    """Error of a response of the sweep over the condition of the answer.
+
+    Parameters
+    ----------
+    model : Model
+    f : float
+        [Hz].
+    drive, response : (coordinate, node)
+        The response is the driven coordinate unless one is given.
+    enough : float
+        An error below this is returned itself: its condition, 1 at least, costs the most.
+    digits : int
+        Of the reference.
+
+    Returns
+    -------
+    float
+        Relative error of the value over its `condition`.
+    float
+        Relative error over `rounding_error`.
+    """
+    response = response or drive
+    x = model.x.tolist()
+    frf = model.frf(
+        f,
+        drive=(drive[0], x[drive[1]]),
+        response=(response[0], x[response[1]]),
+        threads=1,
+        solver="sweep",
+    )
+    with mpmath.workdps(digits):
+        exact = Exact(model, model.component_of(drive[0]))
+        (h,) = exact.receptance(omega_of(f), drive, [response])
+        error = relative(frf.value[0, 0], h)
+        covered = error / frf.rounding_error[0, 0] if error else 0.0
+        if error > enough:
+            error /= condition(exact, omega_of(f), drive, response)
+    return error, covered

@@ -161,7 +161,7 @@ def test_no_number_of_a_model_can_be_changed(way):
         way, copy.deepcopy(MODEL)
     )
     every = [model.x, *(a for a in model.chain if isinstance(a, np.ndarray))]
-    assert [a.flags.writeable for a in every] == [False] * 10
+    assert [a.flags.writeable for a in every] == [False] * 11
 
 
 QUESTIONS = {

@@ -155,3 +155,27 @@ def test_too_many_elements_for_a_dense_matrix_are_refused():
     model = beam(10).compile(elements=20_000)
     with pytest.raises(rd.SolveError, match=r"39998 unknowns.*fewer elements"):
         model.modes(1)
+
+
+@pytest.mark.claim(
+    "Frequencies from the assembled stiffness lose digits as n^4: relative error of f1, 1023 to "
+    "1025 clamped elements; scipy's eigsh keeps 4e-8 there (design.md section 3)",
+    reference="exact discrete dispersion relation, mpmath 40 digits",
+    accepted=1e-4,
+    limit=True,
+)
+def test_assembled_stiffness_of_1024_elements_keeps_few_digits(claim):
+    # 48 (n/pi)^4 eps = 1.2e-4, see `rounding` in test_rigid_chain
+    claim(digits_lost(1024))
+
+
+@pytest.mark.claim(
+    "The 2015 study's kinematics leads away when refined: relative difference of f1 at 128 "
+    "elements from the published 70 Hz; use rigid or tensed elements",
+    reference="design.md section 8",
+    accepted=0.8,
+    limit=True,
+)
+def test_difference_elements_lead_away_from_the_published_figures(claim):
+    model = rd.study2015.scene().compile(elements=128, element="difference")
+    claim(abs(model.modes(1).frequency[0] / 70 - 1))

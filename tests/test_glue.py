@@ -23,7 +23,7 @@ SCENE = rd.Scene(
     ROPE.replace(rotary_inertia=1e-5, polar_inertia=1e-6),
     tension=100.0,
     ends=("clamped", "free"),
-    parts=[rd.PointMass(0.3, 0.05), rd.Spring(0.6, 100.0)],
+    parts=[rd.PointMass(0.3, 0.05), rd.Spring(0.6, 100.0), rd.Hinge(0.6, stiffness=2.0)],
 )
 MODEL = SCENE.compile(elements=8)
 CHAIN = MODEL.chain  # 9 nodes, width 3
@@ -36,7 +36,6 @@ SHAPES = np.ones((2, NODES, WIDTH))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
 
 # every entry point that takes a chain
-RUNS = _core.runs(CHAIN)
 ENTRIES = {
     "triples": _core.triples,
     "assemble": _core.assemble,
@@ -45,8 +44,10 @@ ENTRIES = {
     "deflection": lambda chain: _core.deflection(chain, FORCE),
     "modes": lambda chain: _core.modes(chain, 3, 0.0, 1e4),
     "frf": lambda chain: _core.frf(chain, FACTOR, PORT, PORT),
-    "runs": _core.runs,
-    "sweep": lambda chain: _core.sweep(chain, RUNS, FACTOR.T.copy(), PORT, PORT),
+    "sweep": lambda chain: _core.sweep(chain, FACTOR.T.copy(), PORT, PORT),
+    "steps": lambda chain: _core.steps(chain, FACTOR.T.copy()),
+    "mixed": lambda chain: _core.mixed(chain, FACTOR.T.copy(), PORT, PORT),
+    "mixed_deflection": lambda chain: _core.mixed_deflection(chain, FORCE),
     "triple": lambda chain: _core.triple(chain, 0, FACTOR.T[:2].copy()),
     "energy": lambda chain: _core.energy(chain, SHAPES),
 }
@@ -83,9 +84,9 @@ MALFORMED = {
     "none": (None, TypeError, "chain must be a tuple"),
     "list": (list(CHAIN), TypeError, "chain must be a tuple"),
     "model": (MODEL, TypeError, "chain must be a tuple"),
-    "empty": ((), TypeError, "10 arguments"),
-    "one less": (tuple(CHAIN)[:-1], TypeError, "10 arguments"),
-    "one more": ((*CHAIN, 1), TypeError, "10 arguments"),
+    "empty": ((), TypeError, "11 arguments"),
+    "one less": (tuple(CHAIN)[:-1], TypeError, "11 arguments"),
+    "one more": ((*CHAIN, 1), TypeError, "11 arguments"),
     "kind of text": (CHAIN._replace(kind="rigid"), TypeError, ""),
     "kind of a float": (CHAIN._replace(kind=1.0), TypeError, ""),
     "kind too large": (CHAIN._replace(kind=2**40), OverflowError, ""),
@@ -100,41 +101,55 @@ MALFORMED = {
     "coordinates turned": (swapped("coordinate", lambda a: a[::-1]), ValueError, "increase"),
     "coordinate 4": (put("coordinate", 4, at=-1), ValueError, r"coordinate\[2\] must lie in 0"),
     "coordinate -1": (put("coordinate", -1), ValueError, r"coordinate\[0\] must lie in 0 ... 3"),
-    "element -1": (put("element_of", -1), ValueError, r"element_of\[0\] must lie in 0"),
+    "element -1": (put("element", -1), ValueError, r"element\[0\] must lie in 0"),
     "element beyond": (
-        put("element_of", len(CHAIN.length), at=7),
+        put("element", len(CHAIN.length), at=-1),
         ValueError,
-        rf"element_of\[7\] must lie in 0 ... {len(CHAIN.length) - 1}, got {len(CHAIN.length)}",
+        rf"element\[{len(CHAIN.element) - 1}\] must lie in 0 ... {len(CHAIN.length) - 1}, got",
     ),
-    "element far beyond": (put("element_of", 2**31 - 1), ValueError, "element_of"),
-    "term -1": (put("term_of", -(2**31)), ValueError, r"term_of\[0\] must lie in 0"),
-    "term beyond": (put("term_of", len(CHAIN.mass), at=8), ValueError, r"term_of\[8\] must lie"),
+    "element far beyond": (put("element", 2**31 - 1), ValueError, "element"),
+    "term -1": (put("term", -(2**31)), ValueError, r"term\[0\] must lie in 0"),
+    "term beyond": (put("term", len(CHAIN.mass), at=-1), ValueError, r"term\[\d\] must lie"),
+    "no first node": (put("first", 1), ValueError, "first must increase from 0"),
+    "a node twice": (put("first", 0, at=1), ValueError, "first must increase from 0"),
+    "last node negative": (put("first", -1, at=-1), ValueError, "at least one element"),
+    "too many nodes": (put("first", 2**31 - 1, at=-1), ValueError, "at least one element"),
     "one node": (
-        CHAIN._replace(element_of=CHAIN.element_of[:0], term_of=CHAIN.term_of[:1]),
+        CHAIN._replace(first=CHAIN.first[:1], element=CHAIN.element[:0], term=CHAIN.term[:1]),
         ValueError,
         "at least one element",
     ),
     "no node": (
-        CHAIN._replace(element_of=CHAIN.element_of[:0], term_of=CHAIN.term_of[:0]),
+        CHAIN._replace(first=CHAIN.first[:0], element=CHAIN.element[:0], term=CHAIN.term[:0]),
         ValueError,
-        "element_of must have one entry fewer than term_of",
+        "at least one element",
     ),
-    "a node too many": (
-        swapped("term_of", lambda a: np.append(a, a[-1:])),
+    "a term too many": (
+        swapped("term", lambda a: np.append(a, a[-1:])),
         ValueError,
-        "element_of must have one entry fewer than term_of",
+        f"term must have {len(CHAIN.term)} entries along axis 0",
+    ),
+    "an element too many": (
+        swapped("element", lambda a: np.append(a, a[-1:])),
+        ValueError,
+        f"element must have {len(CHAIN.element)} entries along axis 0",
     ),
     "no elements": (
         CHAIN._replace(
             length=CHAIN.length[:0], tension=CHAIN.tension[:0], flexibility=CHAIN.flexibility[:0]
         ),
         ValueError,
-        "element_of",
+        "element",
     ),
     "no terms": (
-        CHAIN._replace(mass=CHAIN.mass[:0], stiffness=CHAIN.stiffness[:0], held=CHAIN.held[:0]),
+        CHAIN._replace(
+            mass=CHAIN.mass[:0],
+            stiffness=CHAIN.stiffness[:0],
+            held=CHAIN.held[:0],
+            hinge=CHAIN.hinge[:0],
+        ),
         ValueError,
-        "term_of",
+        "term",
     ),
     "five coordinates": (
         CHAIN._replace(
@@ -142,6 +157,7 @@ MALFORMED = {
             mass=np.zeros((len(CHAIN.mass), 5, 5)),
             stiffness=np.zeros((len(CHAIN.mass), 5, 5)),
             held=np.zeros((len(CHAIN.mass), 5), np.uint8),
+            hinge=None,
         ),
         ValueError,
         "1 to 4 coordinates",
@@ -163,15 +179,22 @@ for field in FIELDS:
             TypeError,
             "cast",
         )
+del MALFORMED["hinge missing"]  # None: nothing is hinged
+MALFORMED["hinge negative"] = (
+    put("hinge", -1.0, at=7),
+    ValueError,
+    r"hinge\[2, 1\] must be >= 0",
+)
+MALFORMED["hinge of nan"] = (put("hinge", math.nan, at=0), ValueError, r"hinge\[0, 0\]")
 # arrays whose length another one decides
-for field in ("tension", "flexibility", "stiffness", "held"):
+for field in ("tension", "flexibility", "stiffness", "held", "hinge"):
     MALFORMED[f"{field} too short"] = (swapped(field, lambda a: a[1:]), ValueError, field)
     MALFORMED[f"{field} too long"] = (
         swapped(field, lambda a: np.concatenate([a, a])),
         ValueError,
         f"{field} must have {len(getattr(CHAIN, field))} entries along axis 0",
     )
-for field in ("flexibility", "mass", "stiffness", "held"):
+for field in ("flexibility", "mass", "stiffness", "held", "hinge"):
     MALFORMED[f"{field} too narrow"] = (
         swapped(field, lambda a: a[:, 1:]),
         ValueError,
@@ -260,13 +283,19 @@ REFUSED = {
         ValueError,
         "shape must have 9 entries along axis 1, got 8",
     ),
-    "element -1": (
+    "span -1": (
         lambda: _core.shape(CHAIN, -1, 0.0),
+        ValueError,
+        r"node must lie in 0 ... 7, got -1",
+    ),
+    "span of the last node": (lambda: _core.local(CHAIN, 8, 0.0, 0.0), ValueError, "got 8"),
+    "element -1": (
+        lambda: _core.triple(CHAIN, -1, FACTOR.T[:2].copy()),
         ValueError,
         r"element must lie in 0 ... \d, got -1",
     ),
     "element beyond": (
-        lambda: _core.local(CHAIN, len(CHAIN.length), 0.0, 0.0),
+        lambda: _core.triple(CHAIN, len(CHAIN.length), FACTOR.T[:2].copy()),
         ValueError,
         f"got {len(CHAIN.length)}",
     ),
@@ -505,7 +534,9 @@ def test_a_matrix_larger_than_memory_is_a_memory_error():
     # (4 million unknowns)^2 in one block: 128 TB, which is more than an address space has
     nodes = 4_000_001
     chain = STRING._replace(
-        element_of=np.zeros(nodes - 1, np.int32), term_of=np.ones(nodes, np.int32)
+        first=np.array([0, nodes - 1], np.int32),
+        element=np.zeros(1, np.int32),
+        term=np.ones(2, np.int32),
     )
     with pytest.raises(MemoryError):
         _core.modes(chain, 1, 0.0, 1.0)

@@ -103,3 +103,41 @@ def test_lumping_keeps_the_mass_of_the_rope(positions, elements):
     assert mass[0::2].sum() == pytest.approx(0.1, rel=1e-14)
     assert mass[1::2].sum() == pytest.approx(0.003, rel=1e-14)
     assert (mass > 0).all()
+
+
+def test_lengths_that_differ_by_the_rounding_of_positions_are_one_element():
+    n, length = 1000, 1.35
+    parts = [rd.PointMass(length * k / n, 0.1) for k in range(1, n)]
+    chain = rd.Scene(rd.Rope(length, 0.1), tension=1.0, parts=parts).compile(elements=n).chain
+    # differences of neighbouring positions: several numbers, one length
+    assert len(np.unique(np.diff([0.0, *(p.x for p in parts), length]))) > 1
+    assert len(chain.length) == 1
+    assert chain.length[0] == pytest.approx(length / n, rel=1e-15)
+
+
+def test_different_lengths_stay_different():
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=[rd.PointMass(0.5 + 1e-8, 1.0)])
+    chain = scene.compile(elements=2).chain
+    np.testing.assert_allclose(chain.length, [0.5 + 1e-8, 0.5 - 1e-8], rtol=2.3e-16)
+
+
+def test_uniform_rope_is_three_stretches_however_long():
+    chain = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0).compile(elements=1_000_000).chain
+    assert chain.first.tolist() == [0, 1, 1_000_000]
+    assert chain.nodes == 1_000_001
+    assert chain.element.tolist() == [0, 0]
+    assert [chain.stretch(node) for node in (0, 1, 999_999, 1_000_000)] == [0, 1, 1, 2]
+
+
+@given(st.lists(st.floats(0.01, 0.99), max_size=6), st.integers(7, 60))
+def test_stretches_say_what_stands_at_every_node(positions, elements):
+    parts = [rd.PointMass(x, 0.1 + x) for x in positions]
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=parts).compile(elements=elements)
+    chain = model.chain
+    # positions are the sums of lengths, each known to the rounding of a position
+    x = np.concatenate([[0.0], np.cumsum(chain.length[chain.element_of])])
+    np.testing.assert_allclose(x, model.x, rtol=0, atol=4e-16 * elements)
+    for node in range(chain.nodes):
+        assert chain.term_of[node] == chain.term[chain.stretch(node)]
+    total = chain.mass[chain.term_of, 0, 0].sum()
+    assert total == pytest.approx(0.1 + sum(p.mass for p in parts), rel=1e-14)

@@ -130,7 +130,7 @@ def test_every_effect_survives_the_file(effect, tmp_path):
         rope,
         tension=1.0,
         damping=(rd.StiffnessDamping(1e-4), rd.RayleighDamping(0.1, 1e-5)),
-        parts=[rd.PointMass(0.2, 0.1), rd.Spring(0.3, 5.0), rd.Support(0.4)],
+        parts=[rd.PointMass(0.2, 0.1), rd.Spring(0.3, 5.0), rd.Support(0.4), rd.Hinge(0.6)],
     )
     path = tmp_path / "rope.toml"
     whole.without(effect).save(path)
@@ -206,7 +206,7 @@ REFUSED = {
     ),
     "missing kind of part": (
         changed("parts", 2, "kind", drop=True),
-        "key parts[2].kind is missing: one of PointMass, Spring, Support",
+        "key parts[2].kind is missing: one of PointMass, Spring, Support, Hinge",
     ),
     "missing mass": (changed("parts", 0, "mass", drop=True), "key parts[0].mass is missing"),
     "missing x": (changed("parts", 2, "x", drop=True), "key parts[2].x is missing"),
@@ -246,7 +246,7 @@ REFUSED = {
     "parts of numbers": (changed("parts", value=[1, 2]), "parts[0] must be a table, got 1"),
     "unknown part": (
         changed("parts", 1, "kind", value="Dashpot"),
-        'parts[1].kind must be one of "PointMass", "Spring", "Support", got \'Dashpot\'',
+        'parts[1].kind must be one of "PointMass", "Spring", "Support", "Hinge", got \'Dashpot\'',
     ),
     "kind of a number": (changed("parts", 1, "kind", value=1), "parts[1].kind must be one of"),
     "mass of text": (changed("parts", 0, "mass", value="heavy"), "parts[0].mass must be"),

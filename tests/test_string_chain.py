@@ -51,13 +51,18 @@ def rounding(f):
 
 @pytest.mark.parametrize("kind", CHAINS)
 @pytest.mark.parametrize(("support", "n"), CASES)
-def test_chain_has_the_frequencies_of_lagrange(kind, support, n):
+@pytest.mark.claim(
+    "Frequencies of lumped strings and shafts: error / rounding of an assembled eigenproblem",
+    reference="Lagrange's closed form, 60 digits: lumped_chains_closed_form.json",
+    accepted=1.0,
+)
+def test_chain_has_the_frequencies_of_lagrange(kind, support, n, claim):
     build, family = CHAINS[kind]
     exact = np.array(REFERENCE[kind][support][str(n)])
     modes = build(support, n).modes(n)
     elastic = exact > 0
     relative = np.abs(modes.frequency[elastic] / exact[elastic] - 1)
-    assert (relative <= rounding(exact[elastic])).all()
+    claim((relative / rounding(exact[elastic])).max())
     # rigid motion is 0, not a small number
     assert (modes.frequency[~elastic] == 0).all()
     assert (modes.family == family).all()

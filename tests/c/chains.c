@@ -64,9 +64,11 @@ struct rope rope_make(const struct recipe *recipe)
         .stiffness = exact_memory(terms * w * w, sizeof *rope.stiffness),
         .held = exact_memory(terms * w, sizeof *rope.held),
         .term_of = exact_memory(nodes, sizeof *rope.term_of),
+        .first = exact_memory(nodes, sizeof *rope.first),
     };
     rope.chain = (struct rd_chain){
         .nodes = nodes,
+        .stretches = nodes,
         .width = w,
         .distinct = distinct,
         .terms = terms,
@@ -75,6 +77,9 @@ struct rope rope_make(const struct recipe *recipe)
         .length = rope.length,
         .tension = rope.tension,
         .flexibility = rope.flexibility,
+        .first = rope.first,
+        .element = rope.element_of,
+        .term = rope.term_of,
         .element_of = rope.element_of,
         .mass = rope.mass,
         .stiffness = rope.stiffness,
@@ -83,6 +88,8 @@ struct rope rope_make(const struct recipe *recipe)
     };
     for (size_t a = 0; a < w; a++)
         rope.coordinate[a] = (int32_t)(strchr(names, recipe->coordinates[a]) - names);
+    for (size_t i = 0; i < nodes; i++)
+        rope.first[i] = (int32_t)i;
     for (size_t i = 0; i < nodes; i++)
         rope.term_of[i] = i == 0 ? LEFT_END : i + 1 < nodes ? INNER : RIGHT_END;
     fill_elements(recipe, &rope);
@@ -101,6 +108,7 @@ void rope_free(struct rope *rope)
     free(rope->stiffness);
     free(rope->held);
     free(rope->term_of);
+    free(rope->first);
 }
 
 size_t rope_find(const struct rd_chain *chain, char coordinate)
@@ -119,7 +127,7 @@ double *rope_dense(const struct rd_chain *chain, const double *part)
     double *dense = zeros(n * n);
     for (size_t i = 0; i + 1 < chain->nodes; i++) {
         double elastic[E * E], tension[E * E];
-        const struct rd_element element = rd_chain_element(chain, (size_t)chain->element_of[i]);
+        const struct rd_element element = rd_chain_span(chain, rd_stretch_of(chain, i, 0));
         rd_element_stiffness(&element, elastic, tension);
         for (size_t a = 0; a < 2 * w; a++)
             for (size_t b = 0; b < 2 * w; b++)

@@ -35,6 +35,7 @@ struct rope {
     double *stiffness;
     uint8_t *held;
     int32_t *term_of;
+    int32_t *first; /* every node a stretch of its own */
 };
 
 struct rope rope_make(const struct recipe *recipe);

@@ -29,12 +29,21 @@ void line_find(struct line *line)
     chain->length = line->length;
     chain->tension = line->tension;
     chain->flexibility = line->flexibility;
-    chain->element_of = line->element_of;
     chain->mass = line->mass;
     chain->stiffness = line->stiffness;
     chain->held = line->held;
-    chain->term_of = line->term_of;
+    chain->first = line->first;
+    chain->element = line->element;
+    chain->term = line->term;
+    chain->stretches = 0;
+    for (size_t i = 0; i < chain->nodes; i++)
+        if (i == 0 || i + 1 == chain->nodes || line->term_of[i] != line->term_of[i - 1]) {
+            line->first[chain->stretches] = (int32_t)i;
+            line->term[chain->stretches++] = line->term_of[i];
+        }
     chain->hinge = line->hinge;
+    chain->element_of = line->element;
+    chain->term_of = line->term_of;
     rd_runs_find(chain, line->run, &line->runs);
 }
 
@@ -53,14 +62,14 @@ enum rd_status line_frf_less(const struct line *line, int32_t drive, int32_t res
     const struct rd_ports drives = {1, &drive, row, NULL};
     const struct rd_ports responses = {1, &response, row, NULL};
     struct rd_workspace space = {0};
-    rd_frf_sweep(&line->chain, &line->runs, &factors, &drives, &responses, &space, (double *)value,
-                 error, failed);
+    rd_frf_sweep(&line->chain, &factors, &drives, &responses, &space, (double *)value, error,
+                 failed);
     const size_t size = space.used - less;
     space = (struct rd_workspace){.base = malloc(size), .size = size};
     if (!space.base)
         abort();
-    const enum rd_status status = rd_frf_sweep(&line->chain, &line->runs, &factors, &drives,
-                                               &responses, &space, (double *)value, error, failed);
+    const enum rd_status status = rd_frf_sweep(&line->chain, &factors, &drives, &responses, &space,
+                                               (double *)value, error, failed);
     free(space.base);
     return status;
 }

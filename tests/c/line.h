@@ -13,7 +13,8 @@ struct line {
     struct rd_chain chain;
     struct rd_runs runs;
     struct rd_run run[LINE_NODES];
-    int32_t coordinate[2], element_of[LINE_NODES], term_of[LINE_NODES];
+    int32_t coordinate[2], first[LINE_NODES], element[LINE_NODES], term[LINE_NODES];
+    int32_t term_of[LINE_NODES]; /* the stretches follow from it */
     double length[1], tension[1], flexibility[9];
     double mass[5 * 4], stiffness[5 * 4], hinge[5 * 2];
     uint8_t held[5 * 2];

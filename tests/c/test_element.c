@@ -167,11 +167,12 @@ static void study_stiffness_to_its_condition(void)
     const double H = 0.01, norm = 1 + H * H;
     const struct rd_section section = {0, 0.1485 / norm, 54.626 / norm, 0, H};
     struct piece piece;
-    double F[9], K[9];
+    double K[36], tension[36];
     piece_make(&piece, "zab", RD_DIFFERENCE, 0, &section);
-    CHECK(rd_element_grip(&piece.element, F, K));
+    CHECK_INT(rd_element_stiffness(&piece.element, K, tension), RD_OK);
     for (int i = 0; i < 9; i++)
-        CHECK_ABS(K[i], expected[i], 200 * EPS * sqrt(expected[i / 3 * 4] * expected[i % 3 * 4]),
+        CHECK_ABS(K[6 * (3 + i / 3) + 3 + i % 3], expected[i],
+                  200 * EPS * sqrt(expected[i / 3 * 4] * expected[i % 3 * 4]),
                   "condition 15 of unit-diagonal G; relative to sqrt(K_ii K_jj)");
 }
 
@@ -263,6 +264,44 @@ static void triple_and_stiffness_agree(const struct example *of)
             CHECK_EXACT(block(K, w, 0, 1, j, i), block(K, w, 1, 0, i, j));
             CHECK_EXACT(block(K, w, 0, 0, i, j), block(K, w, 0, 0, j, i));
         }
+}
+
+/* the same for tensed elements, between critical loads too: the cantilever's are at
+   |T| l^2/B = (pi/2)^2 = 2.5 and 22, those of the element held at both ends at 39 and 81 */
+static void tensed_triple_and_stiffness_agree(void)
+{
+    static const double load[] = {-30, -10, -5, -2, -0.5, 0, 0.5, 3, 10};
+    static const char *const coordinates[] = {"zb", "zab", "xzab"};
+    for (size_t k = 0; k < 27; k++) {
+        const double tension = load[k / 3] * full.bending / (L * L);
+        const struct example of = {coordinates[k % 3], RD_TENSED, tension, 0.3, 120};
+        triple_and_stiffness_agree(&of);
+    }
+}
+
+/* sections times g and tension times g are the whole element times g; what is real stays real */
+static void stiffness_is_homogeneous_in_its_factors(void)
+{
+    const double _Complex g = CMPLX(0.8, 0.3);
+    const double hinge[] = {0, 0, 0, 0.02};
+    for (size_t k = 0; k < 2 * EXAMPLES; k++) {
+        struct piece piece;
+        struct example of = example[k / 2];
+        of.kind = k % 2 ? RD_TENSED : of.kind;
+        example_make(&piece, &of);
+        double g_own[W];
+        double _Complex one[N * N], many[N * N];
+        const size_t w = piece.element.width;
+        units(&piece.element, g_own);
+        piece.element.hinge = hinge + W - w;
+        CHECK_INT(rd_element_matrix(&piece.element, 1, 1, 1, one), RD_OK);
+        CHECK_INT(rd_element_matrix(&piece.element, g, g, g, many), RD_OK);
+        for (size_t i = 0; i < 4 * w * w; i++) {
+            const double scale = g_own[i / (2 * w) % w] * g_own[i % w];
+            CHECK_EXACT(cimag(one[i]), 0);
+            CHECK_ABS(cabs(many[i] - g * one[i]), 0, LOOSE / scale, condition);
+        }
+    }
 }
 
 /* the textbook beam element with the string in parallel */
@@ -366,6 +405,61 @@ static void exactly_critical_compression_is_refused(void)
                 CHECK(isfinite(F[i]) && isfinite(G[i]) && isfinite(Q[i]));
         }
     }
+}
+
+/* ---- the hinge ---- */
+
+/* a beam on a free hinge: 3 B/l^3, 3 B/l^2, 3 B/l, and no moment at the hinge */
+static void free_hinge_leaves_the_propped_beam(void)
+{
+    const double B = 2, l = L, k = B / (l * l * l);
+    const double expected[16] = {
+        3 * k,  0, -3 * k, 3 * l * k,  0,         0, 0,          0,
+        -3 * k, 0, 3 * k,  -3 * l * k, 3 * l * k, 0, -3 * l * k, 3 * l * l * k,
+    };
+    const struct rd_section section = {.bending = B};
+    const double hinge[] = {0, INFINITY};
+    struct piece piece;
+    double K[16], tension[16];
+    piece_make(&piece, "zb", RD_RIGID, 0, &section);
+    piece.element.hinge = hinge;
+    CHECK_INT(rd_element_stiffness(&piece.element, K, tension), RD_OK);
+    for (int i = 0; i < 16; i++)
+        CHECK_ABS(K[i], expected[i], 16 * EPS * fabs(K[i / 4 * 5] + K[i % 4 * 5]),
+                  "12 - 9 in units of k, a few roundings");
+    for (int i = 0; i < 4; i++)
+        CHECK_EXACT(K[4 + i], 0);
+}
+
+/* With compliances C in all coordinates: jump = -C times the force on the left node, and the open
+   element is the closed one at u_a + jump, whatever C from rigid to free */
+static void hinge_opens_by_what_it_carries(const struct example *of, double compliance)
+{
+    struct piece piece;
+    double closed[N * N], open[N * N], tension[N * N], jump[W * N], g[W], hinge[W];
+    example_make(&piece, of);
+    const size_t w = piece.element.width, n = 2 * w;
+    units(&piece.element, g);
+    for (size_t i = 0; i < w; i++)
+        hinge[i] = compliance * g[i] * g[i];
+    CHECK_INT(rd_element_stiffness(&piece.element, closed, tension), RD_OK);
+    for (size_t i = 0; i < n * n; i++)
+        closed[i] += tension[i];
+    piece.element.hinge = hinge;
+    CHECK_INT(rd_element_stiffness(&piece.element, open, tension), RD_OK);
+    CHECK_INT(rd_element_jump(&piece.element, jump), RD_OK);
+    for (size_t i = 0; i < n * n; i++)
+        open[i] += tension[i];
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            double force = closed[i * n + j];
+            for (size_t k = 0; k < w; k++)
+                force += closed[i * n + k] * jump[k * n + j];
+            CHECK_ABS(open[i * n + j], force, LOOSE / (g[i % w] * g[j % w]), condition);
+            if (i < w)
+                CHECK_ABS(jump[i * n + j], -hinge[i] * open[i * n + j],
+                          LOOSE * g[i] / g[j % w] * (1 + compliance), condition);
+        }
 }
 
 /* ---- between the nodes ---- */
@@ -552,11 +646,10 @@ static void local_flexibility_of_a_string_is_a_triangle(void)
 static void flexibility_that_creates_energy_is_refused(void)
 {
     struct piece piece;
-    double F[W * W], G[W * W], K[N * N], tension[N * N];
+    double K[N * N], tension[N * N];
     piece_make(&piece, "xzab", RD_RIGID, 300, &full);
     piece.S[8] = -1;
     CHECK_INT(rd_element_stiffness(&piece.element, K, tension), RD_NOT_POSITIVE_DEFINITE);
-    CHECK(!rd_element_grip(&piece.element, F, G));
     CHECK_INT(rd_element_shape(&piece.element, L / 2, K), RD_NOT_POSITIVE_DEFINITE);
     CHECK_INT(rd_element_local(&piece.element, L / 2, L / 2, K), RD_NOT_POSITIVE_DEFINITE);
 }
@@ -575,11 +668,16 @@ int main(void)
         half_a_turn_reverses_the_element(example + k);
         shape_ends_at_the_nodes(example + k);
         local_flexibility_is_symmetric(example + k);
+        for (double c = 1e-12; c < 1e2; c *= 100)
+            hinge_opens_by_what_it_carries(example + k, c);
         /* the study's element, cut in two, is not the study's element */
         if (example[k].kind == RD_RIGID || strchr(example[k].coordinates, 'b') == NULL)
             for (int part = 1; part < 4; part++)
                 node_between_moves_as_the_shape_says(example + k, part * L / 4);
     }
+    tensed_triple_and_stiffness_agree();
+    stiffness_is_homogeneous_in_its_factors();
+    free_hinge_leaves_the_propped_beam();
     exactly_critical_compression_is_refused();
     bending_shape_is_the_cubic();
     string_and_twist_shapes_are_straight();

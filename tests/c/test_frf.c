@@ -82,8 +82,9 @@ static void one_mass_is_the_textbook_oscillator(void)
         };
         const complex_t D =
             factor[RD_ELASTIC] * C / l + factor[RD_SPRINGS] * spring + factor[RD_MASS] * J;
-        const double sizes = cabs(factor[RD_ELASTIC]) * C / l + cabs(factor[RD_SPRINGS]) * spring +
-                             cabs(factor[RD_MASS]) * J;
+        const double elastic = (creal(factor[RD_ELASTIC]) + cimag(factor[RD_ELASTIC])) * C / l;
+        const double sizes =
+            elastic + cabs(factor[RD_SPRINGS]) * spring + cabs(factor[RD_MASS]) * J;
         complex_t value;
         double rounding;
         CHECK_INT(solve(&ready, factor, &value, &rounding), RD_OK);

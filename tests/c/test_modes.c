@@ -283,15 +283,15 @@ static void beam_chain_has_its_exact_discrete_frequencies(void)
     }
 }
 
-/* modes.h promises 2e-12 of f1 at 64 elements: 4e-12 of its square */
-static void sixty_four_elements_keep_twelve_digits(void)
+/* modes.h promises 2e-11 of f1 at 64 elements: 4e-11 of its square */
+static void sixty_four_elements_keep_eleven_digits(void)
 {
     static const double golden[] = {80953.673541263911, 614704.73181502181, 2359875.8479322378,
                                     6439026.4704627847, 14341890.235551941};
     const struct recipe recipe = beam(64, 0, "zb");
     struct solved solved;
     CHECK_INT(solve(&solved, rope_make(&recipe), 5, 0, 1e5, 64), RD_OK);
-    CHECK_REL(solved.eigenvalue[0], golden[0], 4e-12, "promised in modes.h");
+    CHECK_REL(solved.eigenvalue[0], golden[0], 4e-11, "promised in modes.h");
     for (size_t k = 0; k < 5; k++)
         CHECK_ABS(solved.eigenvalue[k], golden[k], solved.rounding[k], estimate);
     solved_free(&solved);
@@ -626,7 +626,7 @@ int main(void)
     free_chain_is_shifted_whatever_its_last_bits();
     repeated_eigenvalues_have_orthogonal_shapes();
     beam_chain_has_its_exact_discrete_frequencies();
-    sixty_four_elements_keep_twelve_digits();
+    sixty_four_elements_keep_eleven_digits();
     massless_rotations_and_buckling(0);
     massless_rotations_and_buckling(0.9);
     massless_rotations_and_buckling(1.5);

@@ -28,10 +28,13 @@ static void near(cv value, double complex exact)
     near_by(value, exact, 8.0);
 }
 
-static void test_tensed(double complex theta)
+static void test_tensed(double complex phi, double s)
 {
     struct shape_lanes p;
-    shape_functions(RD_TENSED, lanes_of(theta), &p);
+    struct shape_series series;
+    shape_prepare(lanes_of(phi), &series);
+    shape_functions(RD_TENSED, &series, s, &p);
+    const double complex theta = phi * s;
     const long double complex x = theta, t = csqrtl(x);
     const long double complex tau = ctanhl(t) / t;
     near(p.tau, (double complex)tau);
@@ -50,7 +53,9 @@ static void test_tensed(double complex theta)
 static void test_rigid(double complex theta)
 {
     struct shape_lanes p;
-    shape_functions(RD_RIGID, lanes_of(theta), &p);
+    struct shape_series series;
+    shape_prepare(lanes_of(theta), &series);
+    shape_functions(RD_RIGID, &series, 1.0, &p);
     const double complex q = 1.0 + theta / 3.0;
     near(p.tau, 1.0 / q);
     near(p.P0, (1.0 + theta / 12.0) / q);
@@ -60,11 +65,14 @@ static void test_rigid(double complex theta)
 
 int main(void)
 {
-    static const double size[] = {1e-9, 1e-5, 0.2, 0.999, 1.001, 7.0, 1e3, 1e5};
+    /* both sides of where the series has more terms and of where it ends */
+    static const double size[] = {1e-9, 1e-5,  1.0 / 512, 1.001 / 512, 1.0 / 64, 1.001 / 64,
+                                  0.2,  0.999, 1.001,     7.0,         1e3,      1e5};
     for (size_t i = 0; i < sizeof size / sizeof *size; i++)
         for (int k = -2; k <= 2; k++) {
             const double complex turn = CMPLX(cos(0.7 * k), sin(0.7 * k));
-            test_tensed(size[i] * turn);
+            test_tensed(size[i] * turn, 1.0);
+            test_tensed(turn, size[i]);
             test_rigid(size[i] * turn);
         }
     return check_report("shape");

@@ -90,6 +90,39 @@ static void test_hinges(void)
     CHECK_REL(creal(h), 1.0 / (48.0 * B) + 0.3 / 16.0, 1e-13, "measured 1e-15");
 }
 
+/* the same with every elastic part times g = 1 + 0.4 i: all of h is divided by g, the hinge too;
+   from both sides of it */
+static void test_hinge_is_damped_as_a_spring(void)
+{
+    const double B = 2.0, g[2] = {1.0, 0.4}, none[2] = {0.0, 0.0};
+    const double row[4] = {1.0}, exact = 1.0 / (48.0 * B) + 0.3 / 16.0;
+    const int32_t node[] = {7, 10, 13};
+    struct line line;
+    line_make(&line, RD_RIGID, 2, 20, 0.0, B, 1.0, 0);
+    line.hinge[2 * FIRST + 1] = 0.3;
+    line.term_of[10] = FIRST;
+    line_find(&line);
+    const struct rd_factors factors = {1, g, g, g, none};
+    double complex h[3];
+    for (size_t k = 0; k < 3; k++) {
+        const struct rd_ports port = {1, node + k, row, NULL}, middle = {1, node + 1, row, NULL};
+        struct rd_workspace space = {0};
+        double error;
+        size_t failed = 0;
+        rd_frf_sweep(&line.chain, &factors, &port, &middle, &space, (double *)(h + k),
+                     &error, &failed);
+        space = (struct rd_workspace){.base = malloc(space.used), .size = space.used};
+        if (!space.base)
+            abort();
+        CHECK_INT(rd_frf_sweep(&line.chain, &factors, &port, &middle, &space,
+                               (double *)(h + k), &error, &failed),
+                  RD_OK);
+        free(space.base);
+    }
+    CHECK_ABS(cabs(h[1] * CMPLX(1.0, 0.4) / exact - 1.0), 0, 1e-13, "measured 1e-15");
+    CHECK_ABS(cabs(h[0] / h[2] - 1.0), 0, 1e-13, "left and right of the middle are alike");
+}
+
 /* same bits whatever the frequencies beside it */
 static void test_neighbours_do_not_matter(void)
 {
@@ -135,6 +168,7 @@ int main(void)
         test_static_beams(RD_TENSED, n);
     }
     test_hinges();
+    test_hinge_is_damped_as_a_spring();
     test_neighbours_do_not_matter();
     test_failures();
     return check_report("sweep");
