@@ -424,19 +424,23 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
     return status;
 }
 
-void rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
+bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
 {
-    const size_t elements = walk->chain->nodes - 1;
+    size_t elements = 0;
     *steps = 16 * (wanted + 4);
     *pieces = 1;
     for (size_t r = 0; r < walk->legs; r++) {
         const size_t count = walk->leg[r].count;
         size_t levels = 0;
+        elements += count;
         while (count >> levels > 1)
             levels++;
         *steps += count < 4 ? count : 2 + 2 * levels;
         *pieces += count < 4 ? 0 : levels + 1;
     }
-    if (*steps > elements)
+    if (*steps >= elements) {
         *steps = elements;
+        return true;
+    }
+    return false;
 }

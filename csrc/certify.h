@@ -5,6 +5,7 @@
 #include "refine.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* The arrays are the caller's. Modes have x^T M x > 0; eigenvalues of a mass matrix that is not
    positive, which belong to the chain's numerics, are below all of them and are not modes. */
@@ -30,7 +31,8 @@ struct rd_certified {
    upper is NaN or block steps do not span a cluster. */
 enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes);
 
-/* steps and pieces that rd_certify needs at most for `wanted` modes */
-void rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces);
+/* Steps and pieces that rd_certify needs for `wanted` modes of as many half waves; with modes of
+   more it answers RD_NO_MEMORY. True where they are the most there can be. */
+bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces);
 
 #endif

@@ -165,8 +165,7 @@ RD_INLINE void start(struct wave *wave, const struct rd_walk *walk)
     wave->turns -= free >= 2 ? 1 : 0;
 }
 
-RD_CLONES
-void WIDTH(count)(const struct rd_walk *walk, const double *lambdas, double *counts)
+static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lambdas, double *counts)
 {
     lanes lambda, z[W], inverse[W], N[W][W];
     for (int k = 0; k < RD_LANES; k++) {
@@ -195,4 +194,9 @@ void WIDTH(count)(const struct rd_walk *walk, const double *lambdas, double *cou
         const double angle = atan2(wave.e.im[k] + 0, wave.e.re[k]) / pi;
         counts[k] = walk->below + round(-angle - 2 * wave.turns[k]);
     }
+}
+
+void WIDTH(count)(const struct rd_walk *walk, const double *lambdas, double *counts)
+{
+    count_lanes(walk, lambdas, counts);
 }

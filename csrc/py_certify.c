@@ -53,28 +53,38 @@ done:
 
 enum { LAMBDA, ERROR, CERTIFIED, BRACKET, SHAPE, ARRAYS };
 
-/* solves for the modes; 0, or -1 and an exception */
-static int solve(PyObject *module, const struct rd_walk *walk, struct rd_certified *modes)
+/* once with so much room; RD_NO_MEMORY where it is too little or, with an exception, there is none */
+static enum rd_status solve_in(const struct rd_walk *walk, size_t steps, size_t pieces,
+                               struct rd_certified *modes)
 {
     struct rd_workspace workspace = {0};
     struct rd_refine refine;
-    size_t steps, pieces;
-    int done = -1;
-    rd_certify_size(walk, modes->wanted, &steps, &pieces);
+    enum rd_status status = RD_NO_MEMORY;
     rd_refine_take(walk, steps, pieces, &workspace, &refine);
     if (py_workspace_allocate(&workspace) == 0) {
-        enum rd_status status;
         Py_BEGIN_ALLOW_THREADS
         rd_refine_take(walk, steps, pieces, &workspace, &refine);
         status = rd_certify(&refine, modes);
         Py_END_ALLOW_THREADS
-        if (status == RD_OK)
-            done = 0;
-        else
-            py_raise(module, status);
     }
     PyMem_RawFree(workspace.base);
-    return done;
+    return status;
+}
+
+/* solves for the modes; 0, or -1 and an exception */
+static int solve(PyObject *module, const struct rd_walk *walk, struct rd_certified *modes)
+{
+    enum rd_status status = RD_NO_MEMORY;
+    size_t steps, pieces, wanted = modes->wanted;
+    for (bool most = false; status == RD_NO_MEMORY && !most && !PyErr_Occurred(); wanted = 4 * wanted + 4) {
+        most = rd_certify_size(walk, wanted, &steps, &pieces);
+        status = solve_in(walk, steps, pieces, modes);
+    }
+    if (PyErr_Occurred())
+        return -1;
+    if (status != RD_OK)
+        py_raise(module, status);
+    return status == RD_OK ? 0 : -1;
 }
 
 PyObject *py_certify(PyObject *module, PyObject *arguments)

@@ -330,8 +330,7 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
     }
 }
 
-RD_CLONES
-void WIDTH(iterate)(struct rd_refine *r, const double *lambdas, _Bool begin)
+static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, _Bool begin)
 {
     const lanes lambda = lanes_load(lambdas);
     struct rate rate;
@@ -456,8 +455,7 @@ RD_INLINE void rate_at(const struct rd_refine *r, size_t m, lanes lambda, struct
     }
 }
 
-RD_CLONES
-void WIDTH(quotient)(struct rd_refine *r, const double *lambdas, struct rd_quotient *quotient)
+static RD_CLONES void quotient_lanes(struct rd_refine *r, const double *lambdas, struct rd_quotient *quotient)
 {
     const lanes lambda = lanes_load(lambdas);
     lanes xAx = l_fill(0), xMx = l_fill(0), noise = l_fill(0), energy = l_fill(0);
@@ -493,6 +491,16 @@ void WIDTH(quotient)(struct rd_refine *r, const double *lambdas, struct rd_quoti
         quotient->error[k] =
             eps * ((sqrt(noise[k]) + energy[k]) / fabs(xMx[k]) + fabs(quotient->lambda[k]));
     }
+}
+
+void WIDTH(iterate)(struct rd_refine *r, const double *lambdas, _Bool begin)
+{
+    iterate_lanes(r, lambdas, begin);
+}
+
+void WIDTH(quotient)(struct rd_refine *r, const double *lambdas, struct rd_quotient *quotient)
+{
+    quotient_lanes(r, lambdas, quotient);
 }
 
 void WIDTH(gram)(struct rd_refine *r, const double *lambdas, double *A, double *M)

@@ -137,7 +137,7 @@ class Answer:
 
         variables: dict[str, Any] = {}
         attributes: dict[str, Any] = {KIND: type(self).__name__}
-        for item, value in _leaves(self):
+        for item, value in leaves(self):
             if "axes" not in item.metadata:
                 attributes[PREFIX + item.name] = json.dumps(_plain(value))
                 continue
@@ -224,11 +224,11 @@ def load(path: str | os.PathLike[str]) -> Answer:
         ) from error
 
 
-def _leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
+def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
     """Yield the fields of an answer with their values, those of its nested parts among them."""
     for item in fields(thing):
         if "nested" in item.metadata:
-            yield from _leaves(getattr(thing, item.metadata["through"]))
+            yield from leaves(getattr(thing, item.metadata["through"]))
         else:
             yield item, getattr(thing, item.name)
 

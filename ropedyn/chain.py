@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -81,7 +82,7 @@ class Chain(NamedTuple):
             for k in np.flatnonzero(still)
         ]
         ends = np.concatenate([[0], *nodes, [self.nodes - 1]]).tolist()
-        return tuple(zip(ends[:-1], ends[1:]))
+        return tuple(pairwise(ends))
 
     def between(self, first: int, last: int) -> Chain:
         """Return the chain of some of the nodes."""

@@ -82,7 +82,7 @@ def _scene_command(
     parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
     parser.add_argument("--elements", type=int, default=64, help="over the rope (%(default)s)")
-    parser.add_argument("--element", choices=KINDS, default="rigid", help="kind (%(default)s)")
+    parser.add_argument("--element", choices=KINDS, default="tensed", help="kind (%(default)s)")
     if name in ("modes", "compare"):
         parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
     if name == "frf":

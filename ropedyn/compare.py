@@ -145,7 +145,7 @@ def _enough_modes(model: Model, measured: Peaks) -> Modes:
         # those below the highest peak, and above it one for each
         number = model.count(below=float(peaks.max())) + len(peaks)
     rigid = len(model.coordinates) + 1
-    return solve_modes(model, number + rigid, below=None, solver="lapack", strict=False)
+    return solve_modes(model, number + rigid, below=None, solver="sweep", strict=False)
 
 
 def _paired(peaks: NDArray[np.float64], found: NDArray[np.float64]) -> NDArray[np.int64]:

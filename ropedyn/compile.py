@@ -144,9 +144,7 @@ def _terms(
     stations: NDArray[np.float64],
     lengths: NDArray[np.float64],
     inside: NDArray[np.float64],
-) -> tuple[
-    NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None
-]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None]:
     """Return mass, stiffness, held of the distinct node terms, and hinges.
 
     Those of the stations, then those inside spans, one for each of the lengths `inside`; `lengths`

@@ -272,20 +272,14 @@ def _spread(model: Model, found: Sequence[Found]) -> Real:
 
 
 def _largest(shape: Real, own: NDArray[np.intp]) -> Real:
-    """Return the value of the largest component of the family's own coordinate, with its sign.
-
-    Of components that are equally large but for rounding it is the first, so that the sign of an
-    antisymmetric shape does not hang on its last digits.
-    """
+    """Return the value of the largest component of the family's own coordinate, with its sign."""
     rows = np.arange(len(shape))
     moved = shape[rows, :, own]
-    size = np.abs(moved)
-    first = (size >= (1 - 1e-6) * size.max(axis=1, keepdims=True)).argmax(axis=1)
-    return np.copysign(size.max(axis=1), moved[rows, first])
+    return moved[rows, np.abs(moved).argmax(axis=1)]
 
 
 def _in_hertz(eigenvalue: NDArray[np.float64], error: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the largest change of frequency (or of growth) while the eigenvalue changes by its error.
+    """Return the largest change of frequency or growth while the eigenvalue changes by its error.
 
     sqrt(a + e) - sqrt(a) = e/(sqrt(a + e) + sqrt(a)), so that no digit is lost.
     """

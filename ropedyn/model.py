@@ -152,7 +152,7 @@ class Model:
         return damping(self.chain, self.scene.dampings)
 
     def modes(
-        self, number: int | None = None, *, below: float | None = None, solver: str = "lapack"
+        self, number: int | None = None, *, below: float | None = None, solver: str = "sweep"
     ) -> Modes:
         """Find natural frequencies and shapes of the undamped model.
 
@@ -234,7 +234,7 @@ class Model:
         drive: Point | Sequence[Point],
         response: Point | Sequence[Point] | None = None,
         quantity: str = "receptance",
-        solver: str = "lapack",
+        solver: str = "sweep",
         threads: int | None = None,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment.
@@ -303,7 +303,7 @@ class Model:
             threads=threads,
         )
 
-    def static(self, load: Mapping[Point, float], *, solver: str = "lapack") -> Deflection:
+    def static(self, load: Mapping[Point, float], *, solver: str = "sweep") -> Deflection:
         """Find the static deflection under forces and moments.
 
         Parameters

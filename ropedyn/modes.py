@@ -55,8 +55,8 @@ class Modes(Answer):
     growth : ndarray, shape (k,)
         Growth rate sqrt(-omega^2) where that is negative [1/s], else 0.
     rounding_error : ndarray, shape (k,)
-        Estimated absolute error that rounding causes of the frequency [Hz], or where motion grows of
-        growth/2 pi.
+        Estimated absolute error of the frequency that rounding causes [Hz]; of growth/2 pi where
+        motion grows.
     certified : bool
         True: no mode is missed below the last, shown by count. The assembled solver does not count.
     damping_ratio : ndarray, shape (k,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
@@ -252,8 +253,7 @@ class Hinge:
 
     def term(self) -> NodeTerm:
         """Return the compliance of its spring."""
-        with np.errstate(divide="ignore", over="ignore"):
-            compliance = float(np.float64(1.0) / self.stiffness)
+        compliance = 1.0 / self.stiffness if self.stiffness > 0.0 else math.inf
         return NodeTerm(hinge={"beta": compliance})
 
 

@@ -224,7 +224,7 @@ class Scene:
             ),
         )
 
-    def compile(self, *, elements: int, element: str = "rigid") -> Model:
+    def compile(self, *, elements: int, element: str = "tensed") -> Model:
         """Compile the scene to a chain of nodes and elements.
 
         Parameters

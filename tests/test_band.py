@@ -8,33 +8,14 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import EPS
+from exact_chain import omega_of, relative
 from mpmath import mpf
-from test_sweep_frf import (
-    BENDING,
-    DAMPINGS,
-    DENSITY,
-    LENGTH,
-    WIDE,
-    Exact,
-    omega_of,
-    pinned_middle,
-    random_line,
-    relative,
-)
+from test_rounding_error import error_and_estimate
+from test_sweep_frf import BENDING, DAMPINGS, DENSITY, LENGTH, WIDE, pinned_middle
 
 import ropedyn as rd
 
 KINDS = ["difference", "rigid", "tensed"]
-
-
-def error_and_estimate(seed):
-    model, f, drive, response = random_line(seed)
-    with mpmath.workdps(50):
-        exact = Exact(model, model.component_of("z"))
-        (h,) = exact.receptance(omega_of(f), ("z", drive), [("z", response)])
-        x = model.x.tolist()
-        frf = model.frf(f, drive=("z", x[drive]), response=("z", x[response]), solver="band")
-        return relative(frf.value[0, 0], h), frf.rounding_error[0, 0]
 
 
 # seeds other than those of the sweep's own sample
@@ -43,7 +24,7 @@ SAMPLE = range(1000, 1100)
 
 @pytest.fixture(scope="module")
 def sample():
-    return np.array([error_and_estimate(seed) for seed in SAMPLE])
+    return np.array([error_and_estimate(seed, "band") for seed in SAMPLE])
 
 
 @pytest.mark.parametrize("seed", SAMPLE)

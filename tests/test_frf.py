@@ -21,7 +21,7 @@ REFERENCE = reference("frf_tensed_beam")
 )
 def test_rigid_chain_responds_exactly(case, coordinate, claim):
     scene = beam(8, tension=300.0, damping=rd.RayleighDamping(0, 1e-4))
-    frf = scene.compile(elements=8).frf(
+    frf = scene.compile(elements=8, element="rigid").frf(
         case["f"],
         drive=("z", REFERENCE["n8_drive"]),
         response=[(coordinate, x) for x in case["x"]],
@@ -63,7 +63,9 @@ def test_string_chain_responds_as_its_green_function(damping, part_of_top, respo
     f = part_of_top * TOP
     omega = 2 * math.pi * f
     scene = rd.Scene(rd.Rope(1.0, DENSITY), tension=TENSION, damping=DAMPINGS[damping])
-    frf = scene.compile(elements=N).frf(f, drive=("z", 0.3), response=("z", response / N))
+    frf = scene.compile(elements=N, element="rigid").frf(
+        f, drive=("z", 0.3), response=("z", response / N)
+    )
     # stiffness damping leaves the tension alone: design.md, section 3
     mass, stiffness = (3.0, 2e-3) if damping in ("rayleigh", "sum") else (0.0, 0.0)
     string = TENSION / SPACING * (1 + 1j * omega * stiffness)
@@ -80,9 +82,11 @@ def test_string_chain_responds_as_its_green_function(damping, part_of_top, respo
 def test_stiffness_damping_damps_all_but_the_tension():
     f, gamma = 37.0, 3e-4
     turning = 1 + 2j * math.pi * f * gamma
-    damped = beam(8, tension=300.0, damping=rd.StiffnessDamping(gamma)).compile(elements=8)
-    K = beam(8, tension=300.0).compile(elements=8).stiffness().toarray()
-    elastic = beam(8).compile(elements=8).stiffness().toarray()
+    damped = beam(8, tension=300.0, damping=rd.StiffnessDamping(gamma)).compile(
+        elements=8, element="rigid"
+    )
+    K = beam(8, tension=300.0).compile(elements=8, element="rigid").stiffness().toarray()
+    elastic = beam(8).compile(elements=8, element="rigid").stiffness().toarray()
     M = damped.mass().toarray()
     D = K + (turning - 1) * elastic - (2 * math.pi * f) ** 2 * M
     at = 2 * 3 - 2
@@ -95,7 +99,10 @@ def test_stiffness_damping_damps_all_but_the_tension():
 def test_without_tension_both_dampings_of_stiffness_are_one():
     frequency = np.linspace(0, 400, 41)
     one, other = (
-        beam(8, damping=damping).compile(elements=8).frf(frequency, drive=("z", LENGTH / 2)).value
+        beam(8, damping=damping)
+        .compile(elements=8, element="rigid")
+        .frf(frequency, drive=("z", LENGTH / 2))
+        .value
         for damping in (rd.StiffnessDamping(1e-4), rd.RayleighDamping(0, 1e-4))
     )
     np.testing.assert_array_equal(one, other)
@@ -104,7 +111,9 @@ def test_without_tension_both_dampings_of_stiffness_are_one():
 @pytest.mark.parametrize(("quantity", "power"), [("mobility", 1), ("accelerance", 2)])
 def test_velocity_and_acceleration_are_derivatives_of_the_motion(quantity, power):
     frequency = np.array([0.0, 3.0, 70.0])
-    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(elements=8)
+    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(
+        elements=8, element="rigid"
+    )
     receptance = model.frf(frequency, drive=("z", 0.5))
     derived = model.frf(frequency, drive=("z", 0.5), quantity=quantity)
     expected = (2j * math.pi * frequency) ** power * receptance.value
@@ -125,7 +134,7 @@ def test_force_and_response_can_change_places(pair):
         damping=rd.StiffnessDamping(1e-4),
     )
     here, there = (pair[0], 0.25), (pair[1], 0.625)
-    model = scene.compile(elements=8)
+    model = scene.compile(elements=8, element="rigid")
     frequency = np.linspace(1, 500, 23)
     forth = model.frf(frequency, drive=here, response=there)
     back = model.frf(frequency, drive=there, response=here)
@@ -139,14 +148,14 @@ def test_force_and_response_can_change_places(pair):
 @pytest.mark.parametrize("drive", [("z", LENGTH / 2), ("beta", LENGTH / 8)])
 def test_passive_rope_takes_in_power_at_the_drive_point(damping, drive):
     frequency = np.linspace(0.5, 900, 301)
-    model = beam(8, tension=300.0, damping=damping).compile(elements=8)
+    model = beam(8, tension=300.0, damping=damping).compile(elements=8, element="rigid")
     assert (model.frf(frequency, drive=drive).value.imag < 0).all()
 
 
 @pytest.mark.parametrize("k", [0, 1, 2])
 def test_peaks_recover_frequency_and_damping_of_the_modes(k):
     scene = beam(16, tension=300.0, damping=rd.RayleighDamping(0.0, 2e-6))
-    model = scene.compile(elements=16)
+    model = scene.compile(elements=16, element="rigid")
     modes = model.modes(3)
     # at the largest deflection of each mode
     drive = ("z", float(modes.x[np.abs(modes.shape[k, :, 0]).argmax()]))
@@ -169,7 +178,7 @@ def test_peaks_recover_frequency_and_damping_of_the_modes(k):
     ids=["string", "tensed beam", "beam"],
 )
 def test_frequency_on_an_undamped_resonance_is_refused_by_name(scene, k):
-    model = scene.compile(elements=16)
+    model = scene.compile(elements=16, element="rigid")
     f = float(model.modes(3).frequency[k])
     with pytest.raises(rd.SolveError, match=f"{f!r}"):
         model.frf([1.0, f, 2000.0], drive=("z", 0.3 * scene.rope.length))
@@ -179,7 +188,7 @@ def test_frequency_on_an_undamped_resonance_is_refused_by_name(scene, k):
 def test_frequency_next_to_an_undamped_resonance_has_the_digits_left(away):
     # string of two elements: one mass, h = 1/(4 T/L - omega^2 mu L/2)
     scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
-    model = scene.compile(elements=2)
+    model = scene.compile(elements=2, element="rigid")
     f = float(model.modes(1).frequency[0]) * (1 + away)
     # 400 - omega^2 0.05, without rounding of the difference: f is exact as given
     with mpmath.workdps(40):
@@ -190,7 +199,7 @@ def test_frequency_next_to_an_undamped_resonance_has_the_digits_left(away):
 
 def test_force_at_a_node_of_the_resonant_mode_is_right_or_refused():
     # half way, the second mode stands still; the response there is the even modes' alone
-    model = beam(16, tension=300.0).compile(elements=16)
+    model = beam(16, tension=300.0).compile(elements=16, element="rigid")
     f = float(model.modes(2).frequency[1])
     near = model.frf([f * (1 - 1e-5), f * (1 + 1e-5)], drive=("z", LENGTH / 2)).value.real.mean()
     try:
@@ -203,14 +212,14 @@ def test_force_at_a_node_of_the_resonant_mode_is_right_or_refused():
 
 
 def test_static_limit_of_a_clamped_beam_is_the_textbook_value():
-    frf = beam(8).compile(elements=8).frf(0.0, drive=("z", LENGTH / 2))
+    frf = beam(8).compile(elements=8, element="rigid").frf(0.0, drive=("z", LENGTH / 2))
     # F L^3/192 B; condition 50 n^4/pi^4 times eps
     assert frf.value[0, 0] == pytest.approx(LENGTH**3 / (192 * BENDING), rel=1e-12)
 
 
 def test_high_frequency_limit_is_the_mass_alone():
     # far above every mode the driven node is free: h = -1/(omega^2 m), the rest 1/omega^2 less
-    model = beam(8, tension=300.0).compile(elements=8)
+    model = beam(8, tension=300.0).compile(elements=8, element="rigid")
     f = 1e7
     value = model.frf(f, drive=("z", LENGTH / 2)).value[0, 0]
     mass = 0.13725 / 8
@@ -220,7 +229,9 @@ def test_high_frequency_limit_is_the_mass_alone():
 
 
 def test_result_does_not_depend_on_how_many_frequencies_are_asked():
-    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(elements=8)
+    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(
+        elements=8, element="rigid"
+    )
     frequency = np.linspace(1, 700, 300)
     many = model.frf(frequency, drive=("z", 0.5)).value
     one = [model.frf(f, drive=("z", 0.5)).value[0, 0] for f in frequency[::50]]

@@ -37,8 +37,8 @@ def with_nodes_at(scene, *positions):
 def test_static_response_between_nodes_is_that_of_a_chain_with_nodes_there(name, drive, response):
     # without tension on a beam the elements are exact in statics, and so is what is inside them
     scene = SCENES[name]
-    coarse = scene.compile(elements=8)
-    fine = with_nodes_at(scene, drive, response).compile(elements=20)
+    coarse = scene.compile(elements=8, element="rigid")
+    fine = with_nodes_at(scene, drive, response).compile(elements=20, element="rigid")
     c = scene.coordinates
     drives, responses = [(k, drive) for k in c], [(k, response) for k in c]
     value = coarse.frf(0.0, drive=drives, response=responses).value[..., 0]
@@ -56,7 +56,7 @@ def test_static_response_between_nodes_is_that_of_a_chain_with_nodes_there(name,
 @pytest.mark.parametrize("response", [0.02, 0.31, 0.36, 0.97])
 def test_static_response_of_a_clamped_beam_is_its_influence_function(drive, response):
     # w(x) for F at a: F (L-a)^2 x^2 (3 a L - (L + 2 a) x)/(6 B L^3), x <= a
-    model = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=5.0)).compile(elements=4)
+    model = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=5.0)).compile(elements=4, element="rigid")
     x, a = sorted((drive, response))
     exact = (1 - a) ** 2 * x**2 * (3 * a - (1 + 2 * a) * x) / (6 * 5.0)
     value = model.frf(0.0, drive=("z", drive), response=("z", response)).value[0, 0]
@@ -67,7 +67,9 @@ def test_static_response_of_a_clamped_beam_is_its_influence_function(drive, resp
 @pytest.mark.parametrize(("drive", "response"), PLACES)
 def test_static_response_of_a_string_is_its_triangle(drive, response):
     value = (
-        SCENES["string"].compile(elements=4).frf(0.0, drive=("z", drive), response=("z", response))
+        SCENES["string"]
+        .compile(elements=4, element="rigid")
+        .frf(0.0, drive=("z", drive), response=("z", response))
     )
     left, right = sorted((drive, response))
     exact = left * (1 - right) / 70.0
@@ -79,7 +81,9 @@ def test_static_response_of_a_string_is_its_triangle(drive, response):
 @pytest.mark.parametrize("coordinate", ["z", "beta"])
 def test_motion_between_nodes_is_the_cubic_through_them(s, coordinate):
     a = LENGTH / 8
-    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(elements=8)
+    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(
+        elements=8, element="rigid"
+    )
     frequency = np.array([0.0, 50.0, 260.0, 900.0])
     nodes = [("z", 4 * a), ("beta", 4 * a), ("z", 5 * a), ("beta", 5 * a)]
     u = model.frf(frequency, drive=("z", 2 * a), response=nodes).value
@@ -109,7 +113,7 @@ def test_motion_between_nodes_is_the_cubic_through_them(s, coordinate):
 @pytest.mark.parametrize("places", [(0.31, 0.36), (0.31, 0.77), (0.05, 0.5)])
 def test_force_and_response_between_nodes_can_change_places(frequency, coordinates, places):
     scene = SCENES["laid"].replace(tension=60.0, damping=rd.StiffnessDamping(1e-4))
-    model = scene.compile(elements=8)
+    model = scene.compile(elements=8, element="rigid")
     here, there = zip(coordinates, places)
     forth = model.frf(frequency, drive=here, response=there)
     back = model.frf(frequency, drive=there, response=here)
@@ -132,7 +136,7 @@ def test_local_flexibility_is_damped_as_the_element_is(name, damping):
         factor = factor if isinstance(damping, rd.RayleighDamping) else 1.0
     else:
         local = 0.125**3 / (192 * 5.0)
-    value = scene.compile(elements=8).frf(f, drive=("z", 0.3125)).value[0, 0]
+    value = scene.compile(elements=8, element="rigid").frf(f, drive=("z", 0.3125)).value[0, 0]
     # what moves at a node is its mass, by 1/(omega^2 m); half the force goes to each of two
     nodes = 1 / ((2 * np.pi * f) ** 2 * 0.1 * 0.125)
     assert nodes < 0.01 * abs(local / factor)
@@ -141,7 +145,7 @@ def test_local_flexibility_is_damped_as_the_element_is(name, damping):
 
 @pytest.mark.parametrize("side", [-1e-7, 1e-7])
 def test_local_flexibility_vanishes_towards_the_nodes(side):
-    model = SCENES["beam"].compile(elements=8)
+    model = SCENES["beam"].compile(elements=8, element="rigid")
     at_node = model.frf(20.0, drive=("z", 0.375)).value[0, 0]
     near = model.frf(20.0, drive=("z", 0.375 + side)).value[0, 0]
     # the receptance's slope is of its own order over the length
@@ -150,7 +154,7 @@ def test_local_flexibility_vanishes_towards_the_nodes(side):
 
 @pytest.mark.parametrize("away", [0.5e-9, -0.5e-9])
 def test_position_within_a_billionth_of_a_node_is_that_node(away):
-    model = beam(8).compile(elements=8)
+    model = beam(8).compile(elements=8, element="rigid")
     node, place = ("z", LENGTH / 2), ("z", LENGTH / 2 + away * LENGTH)
     one, other = (model.frf([0.0, 60.0], drive=point).value for point in (node, place))
     np.testing.assert_array_equal(one, other)
@@ -159,7 +163,7 @@ def test_position_within_a_billionth_of_a_node_is_that_node(away):
 def test_force_between_nodes_moves_no_mass():
     # at the same node spacing the response to a force next to a node tends to that at the node at
     # every frequency: a force brings no inertia
-    model = SCENES["string"].compile(elements=8)
+    model = SCENES["string"].compile(elements=8, element="rigid")
     frequency = np.linspace(1, 400, 17)
     node = model.frf(frequency, drive=("z", 0.5), response=("z", 0.25)).value
     near = model.frf(frequency, drive=("z", 0.5 + 1e-8), response=("z", 0.25)).value
@@ -168,7 +172,9 @@ def test_force_between_nodes_moves_no_mass():
 
 
 def test_several_drives_are_each_one_alone():
-    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(elements=8)
+    model = beam(8, tension=300.0, damping=rd.StiffnessDamping(1e-4)).compile(
+        elements=8, element="rigid"
+    )
     frequency = np.linspace(0, 300, 7)
     drives = [("z", 0.3), ("beta", LENGTH / 2), ("z", 1.1)]
     responses = [("beta", 0.2), ("z", 0.31)]
@@ -182,7 +188,7 @@ def test_several_drives_are_each_one_alone():
 
 
 def test_default_responses_are_the_drives():
-    model = beam(8).compile(elements=8)
+    model = beam(8).compile(elements=8, element="rigid")
     drives = [("z", 0.3), ("beta", 0.7)]
     frf = model.frf([10.0], drive=drives)
     assert frf.response == frf.drive == tuple(drives)
@@ -201,7 +207,7 @@ def test_response_in_another_component_is_exactly_nothing(place):
         axial_stiffness=900.0,
         polar_inertia=1e-6,
     )
-    model = rd.Scene(rope, tension=20.0).compile(elements=8)
+    model = rd.Scene(rope, tension=20.0).compile(elements=8, element="rigid")
     assert model.components == (("x",), ("z", "beta"), ("alpha",))
     points = [(c, place) for c in ("x", "z", "alpha", "beta")]
     frf = model.frf([0.0, 30.0], drive=points)
@@ -219,8 +225,12 @@ def test_local_flexibility_couples_what_the_lay_couples():
         rd.Rope(1.0, 0.1, bending_stiffness=5.0, torsional_stiffness=1.0, lay_slope=0.5)
     )
     drive, response = ("alpha", 0.55), ("beta", 0.53)
-    value = scene.compile(elements=2).frf(0.0, drive=drive, response=response).value[0, 0]
-    fine = with_nodes_at(scene, 0.55, 0.53).compile(elements=40)
+    value = (
+        scene.compile(elements=2, element="rigid")
+        .frf(0.0, drive=drive, response=response)
+        .value[0, 0]
+    )
+    fine = with_nodes_at(scene, 0.55, 0.53).compile(elements=40, element="rigid")
     exact = fine.frf(0.0, drive=drive, response=response).value[0, 0]
     # 40 elements: a thousand eps and more of the larger own responses
     assert abs(exact) > 1e-3

@@ -30,7 +30,7 @@ ROPE = rd.Rope(
 
 def test_strain_and_kinetic_fractions_are_whole():
     scene = rd.Scene(ROPE, tension=60.0, parts=[rd.Spring(0.4, 200.0)])
-    modes = scene.compile(elements=10).modes(12)
+    modes = scene.compile(elements=10, element="rigid").modes(12)
     assert set(modes.energy) == {
         *("bending", "twist", "stretch", "lay", "tension", "spring"),
         *("x", "z", "alpha", "beta"),
@@ -46,10 +46,12 @@ def test_strain_and_kinetic_fractions_are_whole():
 @pytest.mark.parametrize("without", ["tension", "spring"])
 def test_share_of_an_effect_is_what_its_stiffness_stores(without):
     scene = rd.Scene(ROPE, tension=60.0, parts=[rd.Spring(0.4, 200.0)])
-    model = scene.compile(elements=10)
+    model = scene.compile(elements=10, element="rigid")
     # the station of the spring stays, so that the nodes are the same
     bare = scene.replace(parts=[rd.PointMass(0.4, 0), *scene.parts]).without(without)
-    K, share = (m.compile(elements=10).stiffness().toarray() for m in (scene, bare))
+    K, share = (
+        m.compile(elements=10, element="rigid").stiffness().toarray() for m in (scene, bare)
+    )
     modes = model.modes(8)
     u = modes.shape[:, 1:-1].reshape(8, -1)
     total = np.einsum("ki,ij,kj->k", u, K, u)
@@ -59,7 +61,7 @@ def test_share_of_an_effect_is_what_its_stiffness_stores(without):
 
 
 def test_string_stores_tension_alone_and_moves_in_z_alone():
-    modes = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=6).modes(3)
+    modes = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=6, element="rigid").modes(3)
     assert set(modes.energy) == {"tension", "z"}
     assert (modes.energy["tension"] == 1).all()
     assert (modes.energy["z"] == 1).all()
@@ -70,7 +72,9 @@ def test_pinned_tensed_chain_shares_energy_as_its_waves_do(k):
     # z rises by 2 sin(k pi/2n) cos(..) a node: tension stores 2 (1 - c) T/a, the total is lambda
     # times the inertia of z and beta
     n, T = 8, 900.0
-    modes = beam(n, tension=T, ends=("pinned", "pinned")).compile(elements=n).modes(k)
+    modes = (
+        beam(n, tension=T, ends=("pinned", "pinned")).compile(elements=n, element="rigid").modes(k)
+    )
     lam = pinned_rigid_chain(n, k, T)[0]
     mass, a = MASS / n, LENGTH / n
     versed, s = 2 * math.sin(k * math.pi / (2 * n)) ** 2, math.sin(k * math.pi / n)
@@ -84,7 +88,7 @@ def test_pinned_tensed_chain_shares_energy_as_its_waves_do(k):
 
 
 def test_modal_mass_belongs_to_the_shape_given():
-    model = rd.Scene(ROPE, tension=60.0).compile(elements=10)
+    model = rd.Scene(ROPE, tension=60.0).compile(elements=10, element="rigid")
     modes = model.modes(9)
     _, M, _ = dense(model)
     u = modes.shape[:, 1:-1].reshape(9, -1)
@@ -96,7 +100,7 @@ def test_modal_mass_belongs_to_the_shape_given():
 
 def test_uncoupled_waves_are_four_families_in_order_of_frequency():
     rope = ROPE.replace(lay_coupling=None, lay_slope=None)
-    model = rd.Scene(rope, tension=60.0).compile(elements=4)
+    model = rd.Scene(rope, tension=60.0).compile(elements=4, element="rigid")
     modes = model.modes(12)
     assert sorted(modes.family.tolist()) == sorted(
         3 * ["transverse", "bending rotation", "torsional", "axial"]
@@ -113,7 +117,7 @@ def test_uncoupled_waves_are_four_families_in_order_of_frequency():
 def test_equal_frequencies_of_two_components_stay_apart():
     # twist and stretch with one speed of waves: each pair is one twist and one stretch
     rope = rd.Rope(1.0, 0.25, axial_stiffness=1024.0, torsional_stiffness=0.5, polar_inertia=2**-13)
-    modes = rd.Scene(rope).compile(elements=8).modes(6)
+    modes = rd.Scene(rope).compile(elements=8, element="rigid").modes(6)
     # the condition of eight elements, (2 n/pi)^2 = 26, for each of the two
     np.testing.assert_allclose(modes.frequency[::2], modes.frequency[1::2], rtol=100 * EPS)
     for k in range(0, 6, 2):
@@ -127,7 +131,7 @@ def test_equal_frequencies_of_two_components_stay_apart():
 def test_rayleigh_damping_ratio_is_exact():
     alpha, beta = 3.0, 2e-5
     scene = beam(N, tension=300.0, damping=rd.RayleighDamping(alpha, beta))
-    modes = scene.compile(elements=N).modes(5)
+    modes = scene.compile(elements=N, element="rigid").modes(5)
     omega = 2 * math.pi * modes.frequency
     # the stiffness part is read from energies of the shape: 50 n^4/pi^4 eps
     np.testing.assert_allclose(modes.damping_ratio, (alpha / omega + beta * omega) / 2, rtol=1e-11)
@@ -136,7 +140,7 @@ def test_rayleigh_damping_ratio_is_exact():
 def test_stiffness_damping_ratio_leaves_out_the_share_of_the_tension():
     gamma = 2e-5
     scene = beam(N, tension=3000.0, damping=rd.StiffnessDamping(gamma))
-    modes = scene.compile(elements=N).modes(5)
+    modes = scene.compile(elements=N, element="rigid").modes(5)
     omega = 2 * math.pi * modes.frequency
     expected = gamma * omega / 2 * (1 - modes.energy["tension"])
     np.testing.assert_allclose(modes.damping_ratio, expected, rtol=1e-11)
@@ -150,7 +154,7 @@ def test_damping_ratio_agrees_with_the_damping_matrix():
         parts=[rd.Spring(0.5, 300.0)],
         damping=(rd.StiffnessDamping(1e-5), rd.RayleighDamping(2.0, 1e-6)),
     )
-    model = scene.compile(elements=8)
+    model = scene.compile(elements=8, element="rigid")
     modes = model.modes(8)
     _, M, C = dense(model)
     u = modes.shape[:, 1:-1].reshape(8, -1)
@@ -160,7 +164,7 @@ def test_damping_ratio_agrees_with_the_damping_matrix():
 
 
 def test_nothing_damps_an_undamped_rope():
-    assert (beam(N).compile(elements=N).modes(4).damping_ratio == 0).all()
+    assert (beam(N).compile(elements=N, element="rigid").modes(4).damping_ratio == 0).all()
 
 
 # compression ---------------------------------------------------------------------------------
@@ -181,7 +185,9 @@ def test_rigid_chain_buckles_at_its_own_critical_load(n, printed, beyond):
     # design.md, section 5, in parts of Euler's
     ratio = critical(n) / (-4 * EULER)
     assert f"{ratio:.{len(printed) - 2}f}" == printed
-    modes = beam(n, tension=(1 + beyond) * critical(n)).compile(elements=n).modes(2)
+    modes = (
+        beam(n, tension=(1 + beyond) * critical(n)).compile(elements=n, element="rigid").modes(2)
+    )
     assert modes.eigenvalue[1] > 0
     # lambda falls nearly in a straight line from (45 Hz 2 pi)^2 = 8e4 at T = 0 to nothing
     assert modes.eigenvalue[0] == pytest.approx(-beyond * 8e4, rel=0.2)
@@ -191,7 +197,11 @@ def test_rigid_chain_buckles_at_its_own_critical_load(n, printed, beyond):
 @pytest.mark.parametrize("load", [1.5, 5.0, 12.0])
 def test_motion_beyond_the_critical_load_grows(load, k):
     tension = -load * EULER
-    modes = beam(N, tension=tension, ends=("pinned", "pinned")).compile(elements=N).modes(3)
+    modes = (
+        beam(N, tension=tension, ends=("pinned", "pinned"))
+        .compile(elements=N, element="rigid")
+        .modes(3)
+    )
     exact = np.sort([pinned_rigid_chain(N, j, tension)[0] for j in range(1, 8)])[k]
     # K has |B/a^3 48| where waves need (pi/n)^4: relative to the first eigenvalue at rest
     scale = pinned_rigid_chain(N, 1)[0]
@@ -208,7 +218,7 @@ def test_motion_beyond_the_critical_load_grows(load, k):
 def test_growing_modes_are_below_any_frequency():
     # five half waves buckle below 12 x Euler's load... of the chain: three
     tension = -12.0 * EULER
-    model = beam(N, tension=tension, ends=("pinned", "pinned")).compile(elements=N)
+    model = beam(N, tension=tension, ends=("pinned", "pinned")).compile(elements=N, element="rigid")
     exact = np.sort([pinned_rigid_chain(N, j, tension)[0] for j in range(1, 8)])
     modes = model.modes(below=1e-3)
     assert len(modes.eigenvalue) == (exact < 0).sum() == 3
@@ -222,7 +232,7 @@ def test_compressed_chain_swings_about_a_mass_of_any_shift(load):
         LENGTH, 0.1, bending_stiffness=BENDING, torsional_stiffness=1.0, polar_inertia=1e-4
     )
     scene = rd.Scene(rope, tension=-load * EULER, ends=("pinned", "pinned"))
-    modes = scene.compile(elements=N).modes(4)
+    modes = scene.compile(elements=N, element="rigid").modes(4)
     assert (np.diff(modes.eigenvalue) >= 0).all()
     assert (modes.eigenvalue[0] < 0) == (load > 1)
     assert "torsional" in modes.family
@@ -238,7 +248,7 @@ def test_free_rope_has_its_rigid_motions_at_exactly_zero(tension, n):
     rope = ROPE.replace(lay_coupling=None, lay_slope=None)
     scene = rd.Scene(rope, tension=tension, ends=("free", "free"))
     rigid = 4 if tension == 0 else 3
-    modes = scene.compile(elements=n).modes(rigid + 1)
+    modes = scene.compile(elements=n, element="rigid").modes(rigid + 1)
     assert (modes.eigenvalue[:rigid] == 0).all()
     assert (modes.frequency[:rigid] == 0).all()
     assert (modes.growth == 0).all()
@@ -249,7 +259,7 @@ def test_free_rope_has_its_rigid_motions_at_exactly_zero(tension, n):
 
 
 def test_rigid_motions_of_a_free_beam_are_lines():
-    modes = beam(N, ends=("free", "free")).compile(elements=N).modes(2)
+    modes = beam(N, ends=("free", "free")).compile(elements=N, element="rigid").modes(2)
     z, beta = modes.shape[:, :, 0], modes.shape[:, :, 1]
     slope = (z[:, -1] - z[:, 0]) / LENGTH
     for k in range(2):
@@ -259,13 +269,13 @@ def test_rigid_motions_of_a_free_beam_are_lines():
 
 
 def test_laid_free_rope_keeps_its_four_rigid_motions():
-    modes = rd.Scene(ROPE, ends=("free", "free")).compile(elements=6).modes(5)
+    modes = rd.Scene(ROPE, ends=("free", "free")).compile(elements=6, element="rigid").modes(5)
     assert (modes.frequency[:4] == 0).all()
     assert modes.frequency[4] > 1.0
 
 
 def test_hinged_rope_swings_about_its_pin_without_frequency():
-    modes = beam(N, ends=("pinned", "free")).compile(elements=N).modes(2)
+    modes = beam(N, ends=("pinned", "free")).compile(elements=N, element="rigid").modes(2)
     assert modes.frequency[0] == 0
     z = modes.shape[0, :, 0]
     np.testing.assert_allclose(z, modes.x / LENGTH * z[-1], rtol=0, atol=1e-11)
@@ -296,7 +306,7 @@ def test_hinged_rope_swings_about_its_pin_without_frequency():
     ],
 )
 def test_asking_for_more_modes_than_there_are_says_how_many(scene, finite):
-    model = scene.compile(elements=N)
+    model = scene.compile(elements=N, element="rigid")
     if finite:
         assert len(model.modes(finite).frequency) == finite
         assert np.isfinite(model.modes(finite).frequency).all()
@@ -306,7 +316,7 @@ def test_asking_for_more_modes_than_there_are_says_how_many(scene, finite):
 
 def test_massless_rotation_follows_statically():
     # condensed by hand: K_zz - K_zb K_bb^-1 K_bz
-    model = beam(N, tension=100.0, rotary=False).compile(elements=N)
+    model = beam(N, tension=100.0, rotary=False).compile(elements=N, element="rigid")
     K, M, _ = dense(model)
     z, b = slice(0, None, 2), slice(1, None, 2)
     condensed = K[z, z] - K[z, b] @ np.linalg.solve(K[b, b], K[b, z])
@@ -323,7 +333,7 @@ def test_disc_without_mass_turns_between_two_shafts():
         parts=[rd.PointMass(a, 0, polar_inertia=J)],
     )
     exact = math.sqrt((C / a + C / (1 - a)) / J) / (2 * math.pi)
-    modes = scene.compile(elements=4).modes(1)
+    modes = scene.compile(elements=4, element="rigid").modes(1)
     # condition of four elements
     assert modes.frequency[0] == pytest.approx(exact, rel=40 * EPS)
     np.testing.assert_allclose(modes.shape[0, :, 0], [0, 1, 2 / 3, 1 / 3, 0], atol=40 * EPS)
@@ -332,7 +342,7 @@ def test_disc_without_mass_turns_between_two_shafts():
 def test_point_mass_of_nothing_changes_nothing():
     scene = beam(N, tension=300.0)
     still = scene.replace(parts=[rd.PointMass(LENGTH / 2, 0)])
-    one, other = (s.compile(elements=N).modes(5) for s in (scene, still))
+    one, other = (s.compile(elements=N, element="rigid").modes(5) for s in (scene, still))
     # the spans' lengths differ by rounding at most
     np.testing.assert_allclose(one.frequency, other.frequency, rtol=1e-11)
 
@@ -340,11 +350,11 @@ def test_point_mass_of_nothing_changes_nothing():
 def test_negative_spring_on_a_massless_rotation_is_refused():
     # nothing could make K + s M positive definite: the rotation would leave at once
     n = 4
-    K = beam(n, rotary=False).compile(elements=n).stiffness().toarray()
+    K = beam(n, rotary=False).compile(elements=n, element="rigid").stiffness().toarray()
     too_much = -2.0 * K[3, 3]
     scene = beam(n, rotary=False, parts=[rd.Spring(LENGTH / 2, too_much, coordinate="beta")])
     with pytest.raises(rd.SolveError, match="without mass"):
-        scene.compile(elements=n).modes(1)
+        scene.compile(elements=n, element="rigid").modes(1)
 
 
 # below ---------------------------------------------------------------------------------------
@@ -352,7 +362,7 @@ def test_negative_spring_on_a_massless_rotation_is_refused():
 
 @pytest.mark.parametrize("number", [0, 1, 4, 9])
 def test_modes_below_a_frequency_are_the_lowest_ones(number):
-    model = rd.Scene(ROPE, tension=60.0).compile(elements=8)
+    model = rd.Scene(ROPE, tension=60.0).compile(elements=8, element="rigid")
     all_modes = model.modes(12)
     f = np.concatenate([[0], all_modes.frequency])
     modes = model.modes(below=(f[number] + f[number + 1]) / 2)
@@ -363,12 +373,12 @@ def test_modes_below_a_frequency_are_the_lowest_ones(number):
 
 
 def test_modes_below_everything_are_all_there_are():
-    model = beam(N).compile(elements=N)
+    model = beam(N).compile(elements=N, element="rigid")
     assert len(model.modes(below=1e9).frequency) == 14
 
 
 def test_rigid_motions_are_below_any_frequency():
-    model = beam(N, ends=("free", "free")).compile(elements=N)
+    model = beam(N, ends=("free", "free")).compile(elements=N, element="rigid")
     modes = model.modes(below=1e-2)
     np.testing.assert_array_equal(modes.frequency, [0, 0])
 
@@ -378,7 +388,7 @@ def test_rigid_motions_are_below_any_frequency():
 
 @pytest.mark.parametrize("mass", [1e6, 1e12])
 def test_rope_carries_a_mass_beyond_all_measure(mass):
-    model = beam(N, parts=[rd.PointMass(LENGTH / 2, mass)]).compile(elements=N)
+    model = beam(N, parts=[rd.PointMass(LENGTH / 2, mass)]).compile(elements=N, element="rigid")
     modes = model.modes(1)
     exact = math.sqrt(192 * BENDING / LENGTH**3 / (mass + 0.4 * MASS)) / (2 * math.pi)
     # the rope's own share of the mass is between 0 and 0.5 of MASS; and 5e3 eps
@@ -389,9 +399,9 @@ def test_rope_carries_a_mass_beyond_all_measure(mass):
 def test_ropes_on_both_sides_of_a_heavy_mass_swing_as_if_held(mass):
     # its rotation is free: even and odd modes of two equal spans are nearly one frequency apart
     heavy = rd.PointMass(LENGTH / 2, mass, rotary_inertia=mass)
-    model = beam(N, parts=[heavy]).compile(elements=N)
+    model = beam(N, parts=[heavy]).compile(elements=N, element="rigid")
     held = [rd.Support(LENGTH / 2), rd.Support(LENGTH / 2, coordinate="beta")]
-    exact = beam(N, parts=held).compile(elements=N).modes(4).frequency
+    exact = beam(N, parts=held).compile(elements=N, element="rigid").modes(4).frequency
     # alone on its springs: 192 B/L^3 and, turning, 2 x 4 B/(L/2)
     own = np.sqrt(BENDING / mass * np.array([16 / LENGTH, 192 / LENGTH**3])) / (2 * math.pi)
     exact = np.concatenate([own, exact])
@@ -411,7 +421,7 @@ def test_spring_of_either_sign_adds_to_the_stiffness(part):
     # one mass on two strings: 4 T/L (1 + part)
     T, density = 25.0, 0.2
     scene = rd.Scene(rd.Rope(1.0, density), tension=T, parts=[rd.Spring(0.5, 4 * T * part)])
-    modes = scene.compile(elements=2).modes(1)
+    modes = scene.compile(elements=2, element="rigid").modes(1)
     exact = 4 * T * (1 + part) / (density / 2)
     # 1 + part cancels to 1e-6 of two numbers with eps each
     assert modes.eigenvalue[0] == pytest.approx(exact, abs=8 * EPS * 4 * T / (density / 2) * 3)
@@ -420,15 +430,15 @@ def test_spring_of_either_sign_adds_to_the_stiffness(part):
 
 def test_negative_spring_cancels_a_beam_to_zero_frequency():
     scene = beam(N, parts=[rd.Spring(LENGTH / 2, -192 * BENDING / LENGTH**3)])
-    modes = scene.compile(elements=N).modes(2)
+    modes = scene.compile(elements=N, element="rigid").modes(2)
     # exactly 0 to within what it says rounding can do
     assert modes.eigenvalue[0] == 0 or abs(modes.eigenvalue[0]) < 1e-9 * modes.eigenvalue[1]
 
 
 def test_nearly_rigid_spring_is_a_support():
     k = 1e12
-    stiff = beam(N, parts=[rd.Spring(LENGTH / 2, k)]).compile(elements=N).modes(4)
-    held = beam(N, parts=[rd.Support(LENGTH / 2)]).compile(elements=N).modes(4)
+    stiff = beam(N, parts=[rd.Spring(LENGTH / 2, k)]).compile(elements=N, element="rigid").modes(4)
+    held = beam(N, parts=[rd.Support(LENGTH / 2)]).compile(elements=N, element="rigid").modes(4)
     # its own yield: stiffness of the two spans, 24 B (n/L)^3, over k
     assert (
         np.abs(stiff.frequency / held.frequency - 1) <= 24 * BENDING * (N / LENGTH) ** 3 / k + 1e-11
@@ -436,7 +446,7 @@ def test_nearly_rigid_spring_is_a_support():
 
 
 def test_everything_held_has_no_mode():
-    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0).compile(elements=1)
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0).compile(elements=1, element="rigid")
     assert model.size == 0
     with pytest.raises(rd.SolveError, match="at most 0"):
         model.modes(1)

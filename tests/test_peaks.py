@@ -10,7 +10,7 @@ from conftest import EPS
 import ropedyn as rd
 
 TENSION, DENSITY, LENGTH = 100.0, 0.1, 1.0
-STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION).compile(elements=8)
+STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION).compile(elements=8, element="rigid")
 # modes of the string of beads, in closed form: omega_k = 2 sqrt(T/(mu a^2)) sin(k pi/2n)
 BEADS = 16 * math.sqrt(TENSION / DENSITY) * np.sin(np.arange(1, 8) * math.pi / 16) / (2 * math.pi)
 
@@ -132,7 +132,7 @@ def test_more_peaks_than_modes_leaves_the_rest_without_partner(count):
 
 
 def test_more_peaks_than_the_model_has_modes_leaves_the_rest_without_partner():
-    two = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=3)
+    two = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=3, element="rigid")
     comparison = rd.compare(two, rd.Peaks([14.0, 30.0, 70.0]))
     assert sorted(comparison.order.tolist()) == [0, 1, 2]
 
@@ -150,7 +150,7 @@ def test_an_order_beyond_the_modes_is_refused(calculated):
 def test_rigid_motion_is_no_peak(calculated, orders):
     # a free rope: two rigid motions in front of its first vibration
     rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
-    model = rd.Scene(rope, ends=("free", "free")).compile(elements=16)
+    model = rd.Scene(rope, ends=("free", "free")).compile(elements=16, element="rigid")
     modes = model.modes(4)
     assert (modes.frequency[:2] == 0).all()
     given = model if calculated == "model" else modes
@@ -164,7 +164,7 @@ def test_rigid_motion_is_no_peak(calculated, orders):
 
 def test_modes_that_only_grow_are_no_peaks():
     rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
-    modes = rd.Scene(rope, tension=-50.0).compile(elements=16).modes(1)
+    modes = rd.Scene(rope, tension=-50.0).compile(elements=16, element="rigid").modes(1)
     assert modes.growth[0] > 0
     with pytest.raises(rd.SceneError, match="calculated must have at least one peak, got none"):
         rd.compare(modes, rd.Peaks([20.0]))
@@ -178,7 +178,9 @@ def test_a_response_without_peaks_has_nothing_to_compare():
 
 def test_a_response_is_compared_by_its_peaks():
     scene = STRING.scene.replace(damping=rd.RayleighDamping(0.5, 0.0))
-    frf = scene.compile(elements=8).frf(np.linspace(1, 60, 4000), drive=("z", 0.125))
+    frf = scene.compile(elements=8, element="rigid").frf(
+        np.linspace(1, 60, 4000), drive=("z", 0.125)
+    )
     comparison = rd.compare(frf, rd.Peaks([31.0, 16.0, 45.0]))
     assert comparison.order.tolist() == [2, 1, 3]
     np.testing.assert_array_equal(comparison.calculated, frf.peaks()[0].frequency[[1, 0, 2]])
@@ -192,7 +194,9 @@ NATURAL = math.sqrt(4 * TENSION / LENGTH / (DENSITY * LENGTH / 2)) / (2 * math.p
 def one_bead(ratio):
     """Return one mass on a string with this share of critical damping, C = 2 zeta omega M."""
     damping = rd.RayleighDamping(4 * math.pi * NATURAL * ratio, 0.0)
-    return rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, damping=damping).compile(elements=2)
+    return rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, damping=damping).compile(
+        elements=2, element="rigid"
+    )
 
 
 def grid(step):
@@ -253,7 +257,7 @@ def test_no_peak_is_found_on_a_slope():
 
 def test_a_drive_that_does_not_move_a_response_has_no_peaks():
     rope = rd.Rope(1.0, 0.1, torsional_stiffness=0.5)
-    model = rd.Scene(rope, tension=100.0).compile(elements=2)
+    model = rd.Scene(rope, tension=100.0).compile(elements=2, element="rigid")
     frf = model.frf(np.linspace(1, 20, 50), drive=("z", 0.5), response=("alpha", 0.5))
     assert not frf.value.any()
     assert len(frf.peaks()[0].frequency) == 0

@@ -78,7 +78,7 @@ def scenes(draw, held=False, dampings=UNDAMPED):
 @st.composite
 def models(draw, **more):
     scene = draw(scenes(**more))
-    model = scene.compile(elements=draw(st.integers(7, 12)))
+    model = scene.compile(elements=draw(st.integers(7, 12)), element="rigid")
     assume(model.size > 0)
     return model
 
@@ -157,7 +157,7 @@ def test_free_rope_resists_no_rigid_motion(rope, tension, elements):
     rope = rd.Rope(**rope)
     assume(tension > 0 or len(rd.Scene(rope, tension=1.0).coordinates) > 1)
     scene = rd.Scene(rope, tension=tension, ends=(FREE, FREE))
-    model = scene.compile(elements=elements)
+    model = scene.compile(elements=elements, element="rigid")
     K = model.stiffness().toarray()
     shape = (len(model.x), len(model.coordinates))
     for k, c in enumerate(model.coordinates):
@@ -191,7 +191,9 @@ def both_ways(scene, elements):
 
     Of spans that are as long the left one gets the odd element: only mirrored nodes compare.
     """
-    one, other = (s.compile(elements=elements) for s in (scene, reversed_scene(scene)))
+    one, other = (
+        s.compile(elements=elements, element="rigid") for s in (scene, reversed_scene(scene))
+    )
     assume(np.allclose(one.x, LENGTH - other.x[::-1], rtol=0, atol=1e-12))
     return one, other
 
@@ -355,7 +357,7 @@ def test_more_tension_never_lowers_a_frequency(model):
     scene = model.scene
     assume("z" in model.coordinates and scene.tension > 0)
     elements = len(model.x) - 1
-    tighter = scene.replace(tension=1.1 * scene.tension).compile(elements=elements)
+    tighter = scene.replace(tension=1.1 * scene.tension).compile(elements=elements, element="rigid")
     one, other = model.modes(below=1e3), tighter.modes(below=1e3)
     k = len(other.frequency)
     slack = one.rounding_error[:k] + other.rounding_error

@@ -27,7 +27,7 @@ def rounding(elements, mode):
 )
 def test_rigid_chain_has_its_exact_discrete_frequencies(case, k, claim):
     scene = beam(case["n"], tension=case["tension"], ends=(case["ends"],) * 2)
-    frequency = scene.compile(elements=case["n"]).modes(5).frequency[k]
+    frequency = scene.compile(elements=case["n"], element="rigid").modes(5).frequency[k]
     # and a few eps of the largest 1/lambda, which is what the solver computes
     solver = 2 * EPS * (case["f"][k] / case["f"][0]) ** 2
     tolerance = rounding(case["n"], k + 1) + solver
@@ -45,7 +45,11 @@ def test_pinned_chain_has_both_branches_of_the_dispersion_relation(tension):
     # k = n: no deflection at any node, the rotations alternate: (8 - 4) 12 B/(mu a^4)
     alone.append(alone[0] / 3)
     exact = np.sort([*np.ravel(both), *alone])
-    modes = beam(n, tension=tension, ends=("pinned", "pinned")).compile(elements=n).modes(2 * n)
+    modes = (
+        beam(n, tension=tension, ends=("pinned", "pinned"))
+        .compile(elements=n, element="rigid")
+        .modes(2 * n)
+    )
     # relative to the lowest, by the condition of the whole set
     condition = np.abs(exact).max() / np.abs(exact).min()
     np.testing.assert_allclose(modes.eigenvalue, exact, rtol=EPS * 10 * condition)
@@ -55,7 +59,11 @@ def test_pinned_chain_has_both_branches_of_the_dispersion_relation(tension):
 @pytest.mark.parametrize("tension", [0.0, 300.0])
 def test_pinned_chain_deflects_in_sines_and_turns_in_cosines(tension, k):
     n = 16
-    modes = beam(n, tension=tension, ends=("pinned", "pinned")).compile(elements=n).modes(3)
+    modes = (
+        beam(n, tension=tension, ends=("pinned", "pinned"))
+        .compile(elements=n, element="rigid")
+        .modes(3)
+    )
     wave = math.pi * k / LENGTH
     z, beta = modes.shape[k - 1].T
     sine, cosine = np.sin(wave * modes.x), np.cos(wave * modes.x)

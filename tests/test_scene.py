@@ -110,8 +110,8 @@ def test_without_equals_the_scene_never_given_the_effect(effect):
 
 @pytest.mark.parametrize("effect", ORDER)
 def test_without_compiles_to_the_bits_of_the_scene_never_given_the_effect(effect):
-    thinned = full().without(effect).compile(elements=12)
-    bare = NEVER_GIVEN[effect].compile(elements=12)
+    thinned = full().without(effect).compile(elements=12, element="rigid")
+    bare = NEVER_GIVEN[effect].compile(elements=12, element="rigid")
     assert thinned.coordinates == bare.coordinates
     assert thinned.components == bare.components
     assert bits(thinned) == bits(bare)
@@ -120,7 +120,7 @@ def test_without_compiles_to_the_bits_of_the_scene_never_given_the_effect(effect
 @pytest.mark.parametrize("effect", ORDER)
 def test_without_answers_the_bits_of_the_scene_never_given_the_effect(effect):
     first, second = (
-        scene.compile(elements=12).modes(4)
+        scene.compile(elements=12, element="rigid").modes(4)
         for scene in (full().without(effect), NEVER_GIVEN[effect])
     )
     np.testing.assert_array_equal(first.frequency, second.frequency)
@@ -286,8 +286,10 @@ def test_coordinates_follow_from_stiffnesses_and_tension(given, tension, coordin
     rope = rd.Rope(1.0, 0.1, **{f"{name}_stiffness": 5.0 for name in given})
     scene = rd.Scene(rope, tension=tension)
     assert scene.coordinates == coordinates
-    assert scene.compile(elements=3).coordinates == coordinates
-    assert scene.compile(elements=3).chain.mass.shape[1:] == (len(coordinates),) * 2
+    assert scene.compile(elements=3, element="rigid").coordinates == coordinates
+    assert (
+        scene.compile(elements=3, element="rigid").chain.mass.shape[1:] == (len(coordinates),) * 2
+    )
 
 
 @pytest.mark.parametrize("kind", ["difference", "rigid"])
@@ -304,7 +306,7 @@ def test_a_bare_string_has_no_entry_of_what_it_was_not_given(kind):
 @pytest.mark.parametrize("effect", ["rotary inertia", "polar inertia"])
 def test_absent_inertia_has_no_entry_in_the_mass_matrix(effect):
     coordinate = {"rotary inertia": "beta", "polar inertia": "alpha"}[effect]
-    model = full().without(effect, "point mass").compile(elements=9)
+    model = full().without(effect, "point mass").compile(elements=9, element="rigid")
     at = model.coordinates.index(coordinate)
     assert not model.chain.mass[:, at].any()
     assert not model.chain.mass[:, :, at].any()
@@ -313,14 +315,21 @@ def test_absent_inertia_has_no_entry_in_the_mass_matrix(effect):
 @pytest.mark.parametrize("effect", ["stiffness damping", "rayleigh damping"])
 def test_absent_damping_has_no_entry_in_the_damping_matrix(effect):
     other = {"stiffness damping": "rayleigh damping", "rayleigh damping": "stiffness damping"}
-    assert full().without(effect).compile(elements=9).damping().nnz > 0
-    assert full().without(effect, other[effect]).compile(elements=9).damping().nnz == 0
+    assert full().without(effect).compile(elements=9, element="rigid").damping().nnz > 0
+    assert (
+        full().without(effect, other[effect]).compile(elements=9, element="rigid").damping().nnz
+        == 0
+    )
 
 
 def test_without_lay_bending_and_twist_are_not_coupled():
     laid, straight = full(), full().without("lay")
-    assert laid.compile(elements=9).components == (("x", "z", "alpha", "beta"),)
-    assert straight.compile(elements=9).components == (("x",), ("z", "beta"), ("alpha",))
+    assert laid.compile(elements=9, element="rigid").components == (("x", "z", "alpha", "beta"),)
+    assert straight.compile(elements=9, element="rigid").components == (
+        ("x",),
+        ("z", "beta"),
+        ("alpha",),
+    )
 
 
 @pytest.mark.parametrize(
@@ -332,7 +341,9 @@ def test_a_property_of_zero_is_no_effect_and_compiles_to_the_same_bits(property_
     without = rd.Scene(rd.Rope(**others), tension=50.0)
     zero = rd.Scene(rd.Rope(**others, **{property_: value}), tension=50.0)
     assert zero.effects == without.effects
-    assert bits(zero.compile(elements=4)) == bits(without.compile(elements=4))
+    assert bits(zero.compile(elements=4, element="rigid")) == bits(
+        without.compile(elements=4, element="rigid")
+    )
 
 
 def test_inertia_on_an_absent_coordinate_is_ignored():
@@ -341,7 +352,9 @@ def test_inertia_on_an_absent_coordinate_is_ignored():
     heavy = rd.PointMass(0.5, 0.2, rotary_inertia=1e-3, polar_inertia=1e-4)
     turning = rd.Scene(rope, tension=50.0, parts=[heavy])
     assert turning.effects == plain.effects == ("tension", "point mass")
-    assert bits(turning.compile(elements=4)) == bits(plain.compile(elements=4))
+    assert bits(turning.compile(elements=4, element="rigid")) == bits(
+        plain.compile(elements=4, element="rigid")
+    )
 
 
 NAMED = {
@@ -355,19 +368,21 @@ NAMED = {
 @pytest.mark.parametrize("right", NAMED)
 def test_words_for_ends_compile_to_the_ends_they_stand_for(left, right):
     rope = rd.Rope(**ROPE)
-    words = rd.Scene(rope, ends=(left, right)).compile(elements=3)
-    spelled = rd.Scene(rope, ends=(NAMED[left], NAMED[right])).compile(elements=3)
+    words = rd.Scene(rope, ends=(left, right)).compile(elements=3, element="rigid")
+    spelled = rd.Scene(rope, ends=(NAMED[left], NAMED[right])).compile(elements=3, element="rigid")
     assert bits(words) == bits(spelled)
 
 
 @pytest.mark.parametrize(("word", "free"), [("clamped", 0), ("pinned", 1), ("free", 4)])
 def test_words_for_ends_hold_what_they_say(word, free):
     # two inner nodes with 4 coordinates each, and what the left end leaves free
-    model = rd.Scene(rd.Rope(**ROPE), ends=(word, "clamped")).compile(elements=3)
+    model = rd.Scene(rd.Rope(**ROPE), ends=(word, "clamped")).compile(elements=3, element="rigid")
     assert model.size == 2 * 4 + free
 
 
 def test_ends_of_coordinates_that_the_scene_lacks_are_ignored():
     string = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0)
     other = string.replace(ends=(rd.End(x="free", alpha="free", beta="free"), "pinned"))
-    assert bits(other.compile(elements=3)) == bits(string.compile(elements=3))
+    assert bits(other.compile(elements=3, element="rigid")) == bits(
+        string.compile(elements=3, element="rigid")
+    )

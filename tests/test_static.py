@@ -35,7 +35,7 @@ def digits(elements):
     ],
 )
 def test_beam_deflects_as_in_the_textbook(n, ends, load, watched, exact):
-    static = rd.Scene(BEAM, ends=ends).compile(elements=n).static({load: 1.0})
+    static = rd.Scene(BEAM, ends=ends).compile(elements=n, element="rigid").static({load: 1.0})
     node = round(watched[1] / L * n)
     value = static.displacement[node, static.coordinates.index(watched[0])]
     assert value == pytest.approx(exact, rel=digits(n))
@@ -47,7 +47,11 @@ def test_helical_cantilever_of_any_elements_has_the_flexibility_of_one(n, load):
     # the section is the same all along: G of design.md, section 2, with l = L
     H = 0.3
     rope = rd.Rope(L, 0.1, bending_stiffness=B, torsional_stiffness=C, lay_slope=H)
-    static = rd.Scene(rope, ends=("clamped", "free")).compile(elements=n).static({(load, L): 1.0})
+    static = (
+        rd.Scene(rope, ends=("clamped", "free"))
+        .compile(elements=n, element="rigid")
+        .static({(load, L): 1.0})
+    )
     c = 1 / (1 + H**2)
     P, Q, R = c * (H**2 / C + 1 / B), c * (1 / C + H**2 / B), c * H * (1 / C - 1 / B)
     G = np.array([[P * L**3 / 3, R * L**2 / 2, P * L**2 / 2], [0, Q * L, R * L], [0, 0, P * L]])
@@ -61,7 +65,7 @@ def test_pulled_laid_rope_untwists():
     D = -20.0
     rope = rd.Rope(L, 0.1, axial_stiffness=EA, torsional_stiffness=C, lay_coupling=D)
     scene = rd.Scene(rope, ends=("clamped", "free"))
-    static = scene.compile(elements=6).static({("x", L): 9.0})
+    static = scene.compile(elements=6, element="rigid").static({("x", L): 9.0})
     strain, rate = np.linalg.solve([[EA, D], [D, C]], [9.0, 0.0])
     line = np.outer(static.x, [strain, rate])
     # chain condition (2 n/pi)^2 and the section's, a few eps each
@@ -71,7 +75,7 @@ def test_pulled_laid_rope_untwists():
 @pytest.mark.parametrize(("coordinate", "stiffness"), [("x", EA), ("alpha", C)])
 def test_rod_between_walls_takes_a_load_as_two_springs(coordinate, stiffness):
     rope = rd.Rope(L, 0.1, axial_stiffness=EA, torsional_stiffness=C)
-    static = rd.Scene(rope).compile(elements=4).static({(coordinate, L / 4): 5.0})
+    static = rd.Scene(rope).compile(elements=4, element="rigid").static({(coordinate, L / 4): 5.0})
     k = static.coordinates.index(coordinate)
     exact = 5.0 / (stiffness / (L / 4) + stiffness / (3 * L / 4))
     np.testing.assert_allclose(
@@ -83,7 +87,7 @@ def test_rod_between_walls_takes_a_load_as_two_springs(coordinate, stiffness):
 
 def test_string_under_point_loads_is_a_polygon():
     T = 40.0
-    static = rd.Scene(rd.Rope(1.0, 0.1), tension=T).compile(elements=8)
+    static = rd.Scene(rd.Rope(1.0, 0.1), tension=T).compile(elements=8, element="rigid")
     z = static.static({("z", 0.25): 3.0, ("z", 0.55): -1.0}).displacement[:, 0]
     x = np.linspace(0, 1, 9)
 
@@ -98,7 +102,11 @@ def test_string_under_point_loads_is_a_polygon():
 def test_rotation_spring_at_an_end_leads_from_pinned_to_clamped(stiffness):
     # fixed-end moment m = (F L/8)/(1 + 2 B/(k L)); z = F L^3/48 B - m L^2/8 B
     end = rd.End(beta="free", spring={"beta": stiffness})
-    static = rd.Scene(BEAM, ends=(end, end)).compile(elements=8).static({("z", L / 2): 1.0})
+    static = (
+        rd.Scene(BEAM, ends=(end, end))
+        .compile(elements=8, element="rigid")
+        .static({("z", L / 2): 1.0})
+    )
     m = L / 8 / (1 + 2 * B / (stiffness * L))
     assert static.displacement[4, 0] == pytest.approx(
         L**3 / (48 * B) - m * L**2 / (8 * B), rel=digits(8)
@@ -111,20 +119,20 @@ def test_rotation_spring_at_an_end_leads_from_pinned_to_clamped(stiffness):
 def test_spring_half_way_shares_the_load():
     k = 60.0
     scene = rd.Scene(BEAM, parts=[rd.Spring(L / 2, k)])
-    static = scene.compile(elements=4).static({("z", L / 2): 1.0})
+    static = scene.compile(elements=4, element="rigid").static({("z", L / 2): 1.0})
     assert static.displacement[2, 0] == pytest.approx(1 / (192 * B / L**3 + k), rel=digits(4))
 
 
 def test_support_half_way_makes_two_ropes():
     scene = rd.Scene(BEAM, parts=[rd.Support(L / 2), rd.Support(L / 2, coordinate="beta")])
-    static = scene.compile(elements=8).static({("z", L / 4): 1.0})
+    static = scene.compile(elements=8, element="rigid").static({("z", L / 4): 1.0})
     assert static.displacement[2, 0] == pytest.approx((L / 2) ** 3 / (192 * B), rel=digits(4))
     assert (static.displacement[4:] == 0).all()
     assert (static.force[5:] == 0).all()
 
 
 def test_reactions_of_a_clamped_beam_are_half_the_load_and_an_eighth_of_its_moment():
-    static = rd.Scene(BEAM).compile(elements=8).static({("z", L / 2): 16.0})
+    static = rd.Scene(BEAM).compile(elements=8, element="rigid").static({("z", L / 2): 16.0})
     # left wall: -F/2 and, turning the rope's end back to the horizontal, -F L/8
     np.testing.assert_allclose(static.force[0], [-8.0, -16.0 * L / 8], rtol=digits(8))
     np.testing.assert_allclose(static.force[-1], [-8.0, 16.0 * L / 8], rtol=digits(8))
@@ -140,7 +148,7 @@ def test_reactions_of_a_clamped_beam_are_half_the_load_and_an_eighth_of_its_mome
 def test_loads_and_reactions_balance(tension, load):
     # moment about x = 0: sum of x F_z + M_beta = T (z_L - z_0), here 0 as the ends are held
     scene = rd.Scene(BEAM, tension=tension, ends=("clamped", HINGED), parts=[rd.Spring(0.7, 9.0)])
-    static = scene.compile(elements=8).static(load)
+    static = scene.compile(elements=8, element="rigid").static(load)
     F, M = static.force.T
     # every force is a sum of products of up to 24 B (n/L)^3 z
     size = 24 * B * (8 / L) ** 3 * np.abs(static.displacement[:, 0]).max()
@@ -151,7 +159,7 @@ def test_loads_and_reactions_balance(tension, load):
 
 
 def test_loads_superpose_and_work_both_ways():
-    model = rd.Scene(BEAM, tension=50.0).compile(elements=10)
+    model = rd.Scene(BEAM, tension=50.0).compile(elements=10, element="rigid")
     one, other = {("z", 0.33): 2.0}, {("beta", 1.21): 5.0}
     a, b, both = (model.static(load).displacement for load in (one, other, one | other))
     np.testing.assert_allclose(a + b, both, rtol=0, atol=digits(10) * np.abs(both).max())
@@ -163,7 +171,9 @@ def test_loads_superpose_and_work_both_ways():
 
 def test_deflection_solves_the_assembled_equations():
     rope = rd.Rope(L, 0.1, bending_stiffness=B, torsional_stiffness=C, lay_slope=0.2)
-    model = rd.Scene(rope, tension=30.0, ends=("pinned", "clamped")).compile(elements=6)
+    model = rd.Scene(rope, tension=30.0, ends=("pinned", "clamped")).compile(
+        elements=6, element="rigid"
+    )
     static = model.static({("z", L / 2): 1.0, ("alpha", L / 3): 0.5})
     K, _, _ = dense(model)
     load = np.zeros(static.displacement.shape)
@@ -175,7 +185,7 @@ def test_deflection_solves_the_assembled_equations():
 
 
 def test_loads_at_one_place_add():
-    model = rd.Scene(BEAM).compile(elements=4)
+    model = rd.Scene(BEAM).compile(elements=4, element="rigid")
     once = model.static({("z", 1.0): 3.0}).displacement
     # the same point written twice: an integer and a float
     assert (model.static({("z", 1): 3.0}).displacement == once).all()
@@ -194,12 +204,14 @@ def test_loads_at_one_place_add():
 @pytest.mark.parametrize("n", [1, 7, 8])
 def test_rope_that_nothing_holds_is_refused(scene, coordinate, n):
     with pytest.raises(rd.SolveError, match="rigid motion"):
-        scene.compile(elements=n).static({(coordinate, L): 1.0})
+        scene.compile(elements=n, element="rigid").static({(coordinate, L): 1.0})
 
 
 def test_free_component_does_not_keep_the_held_one_from_its_answer():
     ends = (rd.End(alpha="free"), rd.End(alpha="free"))
-    model = rd.Scene(BEAM.replace(torsional_stiffness=C), ends=ends).compile(elements=4)
+    model = rd.Scene(BEAM.replace(torsional_stiffness=C), ends=ends).compile(
+        elements=4, element="rigid"
+    )
     static = model.static({("z", L / 2): 1.0})
     assert static.displacement[2, 0] == pytest.approx(L**3 / (192 * B), rel=digits(4))
     with pytest.raises(rd.SolveError, match="alpha"):
@@ -210,4 +222,4 @@ def test_spring_that_cancels_the_stiffness_is_refused():
     # one mass on two strings, 4 T/L, and a spring of -4 T/L
     scene = rd.Scene(rd.Rope(1.0, 0.1), tension=8.0, parts=[rd.Spring(0.5, -32.0)])
     with pytest.raises(rd.SolveError, match=r"critical|rigid"):
-        scene.compile(elements=2).static({("z", 0.5): 1.0})
+        scene.compile(elements=2, element="rigid").static({("z", 0.5): 1.0})
