@@ -30,6 +30,47 @@ def frequency_near(model: rd.Model, frequency: float) -> mp.mpf:
     return mp.sqrt(energy) / (2 * mp.pi)
 
 
+@mp.workdps(60)
+def clamped_frequencies(chain: Chain, number: int) -> list[mp.mpf]:
+    """Return the lowest natural frequencies [Hz] of a uniform clamped chain of rigid bodies.
+
+    The dispersion equation and its boundary conditions are those of
+    ../shared/reference/rigid_chain_exact.json: one wave k n in (k pi, (k + 1) pi) for each mode.
+    """
+    n = chain.nodes - 1
+    a, tension = (mp.mpf(float(x[0])) for x in (chain.length, chain.tension))
+    bending = 1 / mp.mpf(float(chain.flexibility[0][2][2]))
+    m, J = (2 * mp.mpf(float(chain.mass[0][i][i])) for i in range(2))
+    stiff, kappa = 2 * (12 + tension * a**2 / bending), J / (m * a**2)
+
+    def eigenvalue(c: mp.mpf) -> mp.mpf:
+        # the lower one in (stiff (1 - c) - lambda)(8 + 4 c - kappa lambda) = 144 (1 - c^2)
+        p, q = stiff * (1 - c), (8 + 4 * c) / kappa
+        product = p * q - 144 * (1 - c * c) / kappa
+        return 2 * product / (p + q + mp.sqrt((p + q) ** 2 - 4 * product))
+
+    def mismatch(phi: mp.mpf, odd: bool) -> mp.mpf:
+        c = mp.cos(phi)
+        lam = eigenvalue(c)
+        square, middle = 144 - 4 * stiff, 4 * (stiff - lam) - stiff * (8 - kappa * lam)
+        d = -middle / square - c
+        psi = mp.acosh(d)
+        r1 = 12 * mp.sin(phi) / (8 + 4 * c - kappa * lam)
+        r2 = 12 * mp.sinh(psi) / (8 + 4 * d - kappa * lam)
+        sine, cosine, tanh = mp.sin(phi * n / 2), mp.cos(phi * n / 2), mp.tanh(psi * n / 2)
+        return mp.re(r2 * sine - r1 * cosine * tanh if odd else r2 * cosine * tanh + r1 * sine)
+
+    found = []
+    for k in range(1, number + 1):
+        ends = (mp.pi * (k + mp.mpf("1e-6")) / n, mp.pi * (k + 1 - mp.mpf("1e-6")) / n)
+        phi = mp.findroot(
+            lambda x, odd=k % 2 == 0: mismatch(x, odd), ends, solver="anderson", tol=1e-60
+        )
+        lam = eigenvalue(mp.cos(phi)) * bending / (m * a**3)
+        found.append(mp.sqrt(lam) / (2 * mp.pi))
+    return found
+
+
 def matrices(chain: Chain, section: mp.mpc) -> tuple[mp.matrix, list[mp.mpf]]:
     """Assemble stiffness and diagonal mass over the free coordinates.
 

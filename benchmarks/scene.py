@@ -54,9 +54,9 @@ def _masses(kind: str, elements: int) -> list[rd.PointMass]:
     return [rd.PointMass(*pair) for pair in zip(x.tolist(), mass.tolist())]
 
 
-def chain_of_different(elements: int) -> rd.Model:
+def chain_of_different(elements: int, *, rotary: bool = False) -> rd.Model:
     """Put random lengths and masses into a uniform model: no million parts to hold in memory."""
-    uniform = model("uniform", elements, twist=False)
+    uniform = model("uniform", elements, twist=False, rotary=rotary)
     random = np.random.default_rng(1)
     chain = uniform.chain
     length = random.uniform(0.5, 1.5, elements)

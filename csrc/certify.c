@@ -13,7 +13,7 @@ enum { LANES = RD_LANES, ATTEMPTS = 12, POLISH = 3, ROUNDS = 3, WIDER = 3, WIDES
 static const double CLUSTER = 1e-8;    /* closer than this, relative, are found together */
 static const double FAR = 1e-4;        /* from where a cluster is looked at first, relative */
 static const double NEAR = 1e-9;       /* and then */
-static const double CONVERGED = 1e-9;  /* step of the quotient by the gap to others: the last one */
+static const double CONVERGED = 1e-13; /* step of the quotient by the gap to others: the last one */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
 static const double COUNTED = 1e-13;   /* relative resolution of a count of few steps */
 
@@ -264,12 +264,14 @@ static enum rd_status refine_round(struct work *work)
     return status == RD_OK && n > 0 ? refine_singles(work, index, n) : status;
 }
 
-/* where mode i is: its value, or the bracket that it shares */
-static void locate(const struct work *work, size_t i, double *low, double *high)
+/* where mode i is: its value, or the bracket that it shares; false where that is not known yet */
+static bool locate(const struct work *work, size_t i, double *low, double *high)
 {
     const bool single = rd_search_is_single(&work->search, i);
-    *low = single ? work->modes->lambda[i] : work->search.low[i];
-    *high = single ? work->modes->lambda[i] : work->search.high[i];
+    const double value = work->modes->lambda[i];
+    *low = single ? value : work->search.low[i];
+    *high = single ? value : work->search.high[i];
+    return !single || rd_search_is_inside(&work->search, i, value);
 }
 
 /* from mode i on: how many lie together, and from where to where */
@@ -277,10 +279,11 @@ static size_t group(const struct work *work, size_t i, double *low, double *high
 {
     size_t n = 1;
     double next_low, next_high;
-    locate(work, i, low, high);
+    if (!locate(work, i, low, high))
+        return n;
     for (; i + n < work->search.wanted; n++) {
-        locate(work, i + n, &next_low, &next_high);
-        if (next_low - *high > CLUSTER * fmax(fabs(*low), fabs(*high)))
+        if (!locate(work, i + n, &next_low, &next_high) ||
+            next_low - *high > CLUSTER * fmax(fabs(*low), fabs(*high)))
             break;
         *high = fmax(*high, next_high);
     }

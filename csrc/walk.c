@@ -175,6 +175,11 @@ static void add_legs(struct rd_walk *walk, const int32_t *below)
         walk->carried[i] =
             with_mass[i] > 0 ? with_mass[i] * exp(walk->carried[i] / with_mass[i]) : 0;
     walk->tension /= walk->length;
+    if (walk->bend > 0)
+        for (size_t i = 0; i < w; i++)
+            if (chain->coordinate[i] == RD_Z)
+                walk->flexibility[i] = 1 / (3 / (walk->bend * walk->length * walk->length) +
+                                            fabs(walk->tension) / walk->length);
 }
 
 static bool are_finite(size_t count, const double *x)
@@ -216,6 +221,7 @@ enum rd_status rd_walk_fill(const struct rd_chain *chain, struct rd_workspace *w
     const enum rd_status status = fill_triples(walk, below);
     if (status != RD_OK)
         return status;
+    rd_body_find(chain, &walk->body);
     make_legs(chain, walk->leg);
     add_legs(walk, below);
     for (size_t t = 0; chain->hinge && t < chain->terms; t++)
@@ -249,6 +255,11 @@ void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z)
     }
     if (walk->bend > 0)
         bending_scale(walk, fabs(lambda) * walk->carried[iz], z + iz, z + ibeta);
+    for (size_t i = 0; i < chain->width; i++) {
+        const double rigid =
+            rd_body_receptance(&walk->body, chain, i, fabs(lambda), 1, walk->tension);
+        z[i] = fmax(z[i], sqrt(rigid));
+    }
 }
 
 /* G^-1 + P at the right end, Q + F^T G^-1 F at the left */

@@ -2,6 +2,7 @@
 #ifndef RD_WALK_H
 #define RD_WALK_H
 
+#include "body.h"
 #include "chain.h"
 #include "status.h"
 #include "workspace.h"
@@ -28,8 +29,9 @@ struct rd_walk {
     double *triple;         /* (elements, 4, width, width)  D, G, Q and P of strut.h */
     uint8_t *strut;         /* (elements)  1: P is not zero */
     double below;           /* eigenvalues below zero of the elements themselves */
-    double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held: sum of G_ii */
+    double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held */
     double mass[RD_WIDTH_MAX];        /* sum of |M_ii| */
+    struct rd_body body;
     double length;                    /* [m] */
     double bend;                      /* [rad/N m] sum of l S_bb, 0 without z and beta together */
     double tension;                   /* [N] mean */
@@ -64,7 +66,8 @@ static inline const uint8_t *rd_walk_held(const struct rd_walk *walk, int32_t te
 }
 
 /* z (width): scales of the coordinates, u = z u^, f = f^/z: z^2 is the receptance of a long rope,
-   1/(B k (k^2 + a^2)) and 1/(B a) for z and beta together, 1/sqrt(|lambda| mu T) for others. */
+   1/(B k (k^2 + a^2)) and 1/(B a) for z and beta together, 1/sqrt(|lambda| mu T) for others, or that
+   of the chain as a rigid body if it is larger. */
 void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z);
 
 /* the larger of the two diagonal entries of coordinate i in the assembled distinct element */
