@@ -15,7 +15,8 @@ static const double FAR = 1e-4;        /* from where a cluster is looked at firs
 static const double NEAR = 1e-9;       /* and then */
 static const double CONVERGED = 1e-13; /* step of the quotient by the gap to others: the last one */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
-static const double COUNTED = 1e-13;   /* relative resolution of a count of few steps */
+static const double NOISE = 8; /* what of its bound a quotient is wrong by at most times */
+static const double EPS = 2.3e-16;
 
 struct work {
     struct rd_refine *refine;
@@ -46,7 +47,7 @@ static bool has_settled(const struct work *work, size_t i, const struct rd_quoti
 {
     const double value = quotient->lambda[k];
     const double gap = fmin(value - work->search.low[i], work->search.high[i] - value);
-    return gap >= 0 && fabs(value - lambda[k]) <= fmax(CONVERGED * gap, quotient->error[k]);
+    return gap >= 0 && fabs(value - lambda[k]) <= fmax(CONVERGED * gap, quotient->error[k] / NOISE);
 }
 
 /* the next lambda of each lane: the quotient, or the middle of a bracket that was cut because the
@@ -186,21 +187,15 @@ static enum rd_status refine_cluster(struct work *work, size_t first, size_t n, 
     return RD_OK;
 }
 
-/* What a count can tell apart near lambda: its own rounding grows with the steps it walks. */
-static double resolution(const struct rd_refine *refine, double lambda, double error)
-{
-    return fmax(error, COUNTED * (1 + (double)refine->steps / 1000) * fabs(lambda));
-}
-
-/* Counts at lambda -+ width times the resolution: the modes index (n) are between them, and these
-   become their brackets. */
+/* Counts at lambda -+ width times the error: the modes index (n) are between them, these become their
+   brackets, and the error is what was counted. */
 static void certify_some(struct work *work, const size_t *index, size_t n, double width)
 {
     struct rd_certified *modes = work->modes;
     double lambda[LANES], count[LANES];
     for (size_t k = 0; k < LANES; k++) {
         const size_t j = index[k / 2 < n ? k / 2 : n - 1];
-        const double apart = width * resolution(work->refine, modes->lambda[j], modes->error[j]);
+        const double apart = width * fmax(modes->error[j], EPS * fabs(modes->lambda[j]));
         lambda[k] = modes->lambda[j] + (k % 2 ? apart : -apart);
     }
     rd_count(work->refine->walk, LANES, lambda, count);
@@ -210,8 +205,7 @@ static void certify_some(struct work *work, const size_t *index, size_t n, doubl
         if (!(count[2 * k] <= (double)i && count[2 * k + 1] > (double)i))
             continue;
         modes->certified[i] = 1;
-        if (width > 1e2)
-            modes->error[i] = lambda[2 * k + 1] - modes->lambda[i];
+        modes->error[i] = fmax(modes->error[i], lambda[2 * k + 1] - modes->lambda[i]);
         work->search.low[i] = lambda[2 * k];
         work->search.high[i] = lambda[2 * k + 1];
         work->search.below[i] = count[2 * k];
@@ -220,7 +214,7 @@ static void certify_some(struct work *work, const size_t *index, size_t n, doubl
 }
 
 /* All that are not certified yet, wider in each pass; true when all are. Where only a wide one holds,
-   rounding has spoilt more than the quotient knows: its width is the error. */
+   rounding has spoilt more than the quotient knows. */
 static bool certify(struct work *work, int passes)
 {
     bool all_are = true;
@@ -246,6 +240,14 @@ static bool certify(struct work *work, int passes)
     return all_are;
 }
 
+/* whether two modes can share the scales of one iteration */
+static bool are_of_one_size(const struct work *work, size_t i, size_t k)
+{
+    const double a = fmax(fabs(work->search.low[i]), fabs(work->search.high[i]));
+    const double b = fmax(fabs(work->search.low[k]), fabs(work->search.high[k]));
+    return fmax(a, b) <= SPREAD * fmin(a, b);
+}
+
 /* the single modes that are not certified yet, as many as there are lanes at a time */
 static enum rd_status refine_round(struct work *work)
 {
@@ -254,8 +256,7 @@ static enum rd_status refine_round(struct work *work)
     for (size_t i = 0; i < work->search.wanted && status == RD_OK; i++) {
         if (work->modes->certified[i] != 0 || !rd_search_is_single(&work->search, i))
             continue;
-        if (n == LANES ||
-            (n > 0 && work->search.high[i] > SPREAD * fabs(work->search.high[index[0]]))) {
+        if (n == LANES || (n > 0 && !are_of_one_size(work, index[0], i))) {
             status = refine_singles(work, index, n);
             n = 0;
         }
@@ -317,6 +318,16 @@ static size_t doubtful(const struct work *work, size_t *index)
         if (work->modes->certified[i] == 0)
             index[n++] = i;
     return n;
+}
+
+/* whether as many modes lie together as there are lanes: counts do not tell them apart for certain */
+static bool is_crowded(const struct work *work)
+{
+    const double *lambda = work->modes->lambda;
+    size_t n = 1;
+    for (size_t i = 1; i < work->search.wanted && n < LANES; i++)
+        n = lambda[i] - lambda[i - 1] <= CLUSTER * fabs(lambda[i]) ? n + 1 : 1;
+    return n >= LANES;
 }
 
 /* An iteration may settle on the wrong mode or between two: the counts tell, the bracket is cut
@@ -422,6 +433,8 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
     enum rd_status status = bracket(&work);
     if (status == RD_OK)
         status = refine_all(&work);
+    if (status == RD_OK && is_crowded(&work))
+        status = RD_CLUSTER;
     modes->counts = work.search.counts;
     modes->found = status == RD_OK ? work.search.wanted : 0;
     return status;

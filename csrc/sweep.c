@@ -9,12 +9,26 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
+/* By minors a third coordinate is seen beside its share r of the rotation, and after the element
+   without: that costs (r z_beta/z)^2 of its last digits, which is much only where the rope can turn
+   as a body and not twist. */
+static int is_planar(const struct sweep *s, size_t lane)
+{
+    static const double SHEAR_MOST = 10.0;
+    const double ratio = s->block.ratio[s->block.arm[0] ? 1 : 0][lane];
+    return s->minors && s->shear * ratio * ratio <= SHEAR_MOST;
+}
+
 /* the frequencies order[first] .. that fit together */
 static void begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
 {
     s->used = rd_sweep_block_from(s->chain, &s->runs, factors, s->order, first, s->index);
     s->extent = rd_sweep_extent(factors, s->index[0]);
     rd_sweep_scale(s->chain, &s->runs, factors, s->index, &s->block, s->way);
+    s->planar = is_planar(s, 0);
+    for (size_t lane = 1; lane < s->used; lane++)
+        if (is_planar(s, lane) != s->planar)
+            s->used = lane;
     s->levels = 0;
     s->steps = 1.0;
     for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)

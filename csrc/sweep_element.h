@@ -1,10 +1,35 @@
 /* The scaled triple of one element and its scattering coefficients.
    Included by sweep_width.h, once per width. */
 
-/* The triple of one element, scaled: D = F - I, G, Q (see triple.h for the shape functions).
+/* G of an element that bends, scaled, with the shape functions p (see triple.h):
        G_ij = flex_ij (S_bb rho_i rho_j l^(1+k) P_k),  k the number of z among i, j
-       D_z,beta = l tau,  D_c,beta = -rho_c theta P_1,  Q_beta,beta = T l tau
    with rho_c = S_cb/S_bb for the channels c that bending drives and 1 for z and beta. */
+RD_INLINE void K_(flexibility)(const struct rd_chain *chain, size_t e, const struct sweep_block *b,
+                               const struct shape_lanes *p, cv *G)
+{
+    const double l = chain->length[e];
+    const double *S = chain->flexibility + 9 * e;
+    const double Sbb = S[3 * RD_BENDING + RD_BENDING];
+    const cv bent[3] = {c_scale(p->P0, Sbb * l), c_scale(p->P1, Sbb * l * l),
+                        c_scale(p->P2, Sbb * l * l * l)};
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = i; j < W; j++) {
+            const int c = b->channel[i], d = b->channel[j];
+            const double ri = c == RD_BENDING ? 1.0 : S[3 * c + RD_BENDING] / Sbb;
+            const double rj = d == RD_BENDING ? 1.0 : S[3 * d + RD_BENDING] / Sbb;
+            const cv flex = b->flex[at(i, j)];
+            if (c != RD_BENDING && d != RD_BENDING) {
+                const cv stiffened = c_scale(p->less, ri * rj * Sbb * l);
+                G[at(i, j)] = c_mul(flex, c_add(c_real(S[3 * c + d] * l), stiffened));
+            } else {
+                const cv g = c_mul(flex, bent[b->arm[i] + b->arm[j]]);
+                G[at(i, j)] = c == d ? g : c_scale(g, ri * rj);
+            }
+        }
+}
+
+/* The triple of one element, scaled: D = F - I, G, Q.
+       D_z,beta = l tau,  D_c,beta = -rho_c theta P_1,  Q_beta,beta = T l tau */
 RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct sweep_block *b,
                            cv *triple)
 {
@@ -33,22 +58,7 @@ RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct 
     const cv theta = c_scale(b->series.phi, s);
     struct shape_lanes p;
     shape_functions(chain->kind, &b->series, s, &p);
-    const cv bent[3] = {c_scale(p.P0, Sbb * l), c_scale(p.P1, Sbb * l * l),
-                        c_scale(p.P2, Sbb * l * l * l)};
-    UNROLL for (int i = 0; i < W; i++)
-        UNROLL for (int j = i; j < W; j++) {
-            const int c = b->channel[i], d = b->channel[j];
-            const double ri = c == RD_BENDING ? 1.0 : S[3 * c + RD_BENDING] / Sbb;
-            const double rj = d == RD_BENDING ? 1.0 : S[3 * d + RD_BENDING] / Sbb;
-            const cv flex = b->flex[at(i, j)];
-            if (c != RD_BENDING && d != RD_BENDING) {
-                const cv stiffened = c_scale(p.less, ri * rj * Sbb * l);
-                G[at(i, j)] = c_mul(flex, c_add(c_real(S[3 * c + d] * l), stiffened));
-            } else {
-                const cv g = c_mul(flex, bent[b->arm[i] + b->arm[j]]);
-                G[at(i, j)] = c == d ? g : c_scale(g, ri * rj);
-            }
-        }
+    K_(flexibility)(chain, e, b, &p, G);
     const cv turn = c_neg(c_mul(theta, p.P1));
     UNROLL for (int i = 0; i < W; i++) {
         const int c = b->channel[i];
@@ -100,6 +110,46 @@ RD_INLINE void K_(coefficients)(const cv *triple, cv *coef, const int plain)
         }
 }
 
+/* A rigid strut's triple has a pole where the chain has none: there the string is taken beside the
+   element without it. With k = T/l, the element's u_b = A s - i B u_a and a = A e_z, the string
+   pulls by k (z_b - z_a) = kappa (a^T s - i v^T u_a):
+
+       A <- A + i kappa a a^T,  B <- B + kappa a v^T,  W <- W + kappa v v^T
+       kappa = k/(1 - i k A_zz),  v = (I + i B)^T e_z = a + i K_zz D^T e_z */
+RD_INLINE void K_(strut)(const struct rd_chain *chain, const struct sweep_block *b, size_t e,
+                         cv *coef)
+{
+    cv triple[FULL + 2 * SYM], *D = triple, *G = D + FULL, *A = coef, *B = A + SYM, *C = B + FULL;
+    const double l = chain->length[e];
+    const struct shape_lanes untensed = {c_real(1.0), c_real(0.5), c_real(1.0 / 3.0), c_zero(),
+                                         c_zero()};
+    const int z = b->arm[0] ? 0 : 1;
+    KEEP for (int i = 0; i < FULL + 2 * SYM; i++)
+        triple[i] = c_zero();
+    K_(flexibility)(chain, e, b, &untensed, G);
+    const cv lever = {l * b->ratio[z], (lanes){0}};
+    D[z * W + W - 1] = lever;
+    K_(coefficients)(triple, coef, 1);
+    const lanes zz = 1.0 / (b->ratio[z] * b->ratio[z]);
+    const cv k = c_scale(c_scale_lanes(b->pull, zz), chain->tension[e] / l);
+    cv a[W], v[W];
+    KEEP for (int i = 0; i < W; i++)
+        v[i] = a[i] = A[at(z, i)];
+    v[W - 1] = c_add(v[W - 1], c_times_i(c_mul(B[z * W + z], lever)));
+    cv d = c_neg(c_times_i(c_mul(k, a[z])));
+    d.re += 1.0;
+    const cv kappa = c_mul(k, c_inverse(d));
+    KEEP for (int i = 0; i < W; i++)
+        KEEP for (int j = 0; j < W; j++) {
+            const cv av = c_mul(kappa, c_mul(a[i], v[j]));
+            B[i * W + j] = c_add(B[i * W + j], av);
+            if (j < i)
+                continue;
+            A[at(i, j)] = c_add(A[at(i, j)], c_times_i(c_mul(kappa, c_mul(a[i], a[j]))));
+            C[at(i, j)] = c_add(C[at(i, j)], c_mul(kappa, c_mul(v[i], v[j])));
+        }
+}
+
 static RD_CLONES void K_(make_element)(const struct rd_chain *chain, const struct sweep_block *b,
                                        size_t e, cv *triple)
 {
@@ -115,6 +165,10 @@ static RD_CLONES void K_(make_coefficients)(const cv *triple, cv *coef)
 static RD_CLONES void K_(make_single)(const struct rd_chain *chain, const struct sweep_block *b,
                                       size_t e, cv *coef)
 {
+    if (sweep_is_strut(chain, e)) {
+        K_(strut)(chain, b, e, coef);
+        return;
+    }
     cv triple[FULL + 2 * SYM];
     K_(element)(chain, e, b, triple);
     K_(coefficients)(triple, coef, 1);

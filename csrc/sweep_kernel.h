@@ -5,6 +5,7 @@
 #include "chain.h"
 #include "lanes.h"
 #include "shape.h"
+#include "strut.h"
 
 enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
 
@@ -50,6 +51,17 @@ struct sweep_walk {
     const cv *plain;        /* (distinct, RD_PLAIN) the same for a walk without rows */
 };
 
+/* A rigid element under so much compression is a string beside an element without it: below
+   T S_bb l^2 = -1, a third of the critical load of its cantilever, which the chain does not know.
+   Elements so long are never joined, and tensed ones never so long. */
+static inline bool sweep_is_strut(const struct rd_chain *chain, size_t e)
+{
+    if (chain->kind != RD_RIGID || !(chain->tension[e] < 0))
+        return false;
+    const struct rd_element element = rd_chain_element(chain, e);
+    return rd_element_is_strut(&element);
+}
+
 /* The part behind the walk: u = U s, f = i (I - U) s, and responses in it as rows over s. */
 struct sweep_state {
     cv U[RD_PAIRS_MAX];
@@ -60,19 +72,31 @@ struct sweep_state {
     cv *E_all;      /* (all carried ports, 2, width) */
 };
 
-/* Rounding moves a row E by eps of its largest entry m in every coordinate: m times 1, -1, i, -i is
-   added to its companion, signs that do not cancel where the terms of E s do. */
-RD_INLINE void sweep_accompany(const cv *E, int width, cv *companion)
+/* the largest of some sizes */
+RD_INLINE lanes sweep_most(const cv *x, int count)
 {
     lanes most = {0};
-    for (int j = 0; j < width; j++) {
-        const lanes size = c_size(E[j]);
+    for (int j = 0; j < count; j++) {
+        const lanes size = c_size(x[j]);
         most = l_select(size > most, size, most);
     }
+    return most;
+}
+
+/* An error of a row of so many eps in every coordinate is added to its companion: m times 1, -1, i,
+   -i, signs that do not cancel where the terms of E s do. */
+RD_INLINE void sweep_disturb(lanes most, int width, cv *companion)
+{
     for (int j = 0; j < width; j++) {
         const lanes m = j % 2 ? -most : most;
         companion[j] = c_add(companion[j], j < 2 ? (cv){m, (lanes){0}} : (cv){(lanes){0}, m});
     }
+}
+
+/* Rounding moves a row E by eps of its largest entry. */
+RD_INLINE void sweep_accompany(const cv *E, int width, cv *companion)
+{
+    sweep_disturb(sweep_most(E, width), width, companion);
 }
 
 struct sweep_kernel {

@@ -1,6 +1,10 @@
 /* Nodes taken into the part behind the walk: holds, node terms, hinges.
    Included by sweep_width.h, once per width. */
 
+/* Where a node term N turns a row E into E' = E (I - i N U)^-1, rounding of U moves it by
+   i E' N dU (I - i N U)^-1: its companion hears of |E' N| max|U| before. However much a heavy node
+   reduces the row, E' N remains. */
+
 /* A coordinate e that cannot move: U <- U - U_e U_e^T/U_ee,  E <- E (I - e U_e^T/U_ee).
    U_ee = 0 only where all of U_e is. */
 RD_INLINE void K_(hold)(int e, cv *U, cv *E, size_t rows)
@@ -9,11 +13,14 @@ RD_INLINE void K_(hold)(int e, cv *U, cv *E, size_t rows)
     const lane_mask none = (d.re == 0.0) & (d.im == 0.0);
     d.re = l_select(none, (lanes){0} + 1.0, d.re);
     const cv s = c_inverse(d);
+    const lanes most = sweep_most(U, SYM);
     KEEP for (int i = 0; i < W; i++)
         Ue[i] = c_mul(U[at(i, e)], s);
     KEEP for (size_t r = 0; r < rows; r++) {
         cv *row = E + r * W;
         const cv Ee = row[e];
+        if (r % 2 == 0)
+            sweep_disturb(c_size(c_mul(Ee, s)) * most, W, row + W);
         KEEP for (int i = 0; i < W; i++)
             row[i] = i == e ? c_zero() : c_sub(row[i], c_mul(Ee, Ue[i]));
     }
@@ -40,7 +47,9 @@ static RD_CLONES void K_(hold_all)(const struct rd_chain *chain, size_t t, cv *U
 RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, cv *E, size_t rows)
 {
     cv Uv[W], q = c_zero();
+    lanes most = {0};
     UNROLL for (int i = 0; i < W; i++) {
+        most += l_abs(v[i]);
         Uv[i] = c_zero();
         UNROLL for (int j = 0; j < W; j++)
             Uv[i] = c_add(Uv[i], c_scale_lanes(U[at(i, j)], v[j]));
@@ -51,12 +60,15 @@ RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, cv *E, size_
     d.re += 1.0;
     const cv left = c_inverse(d);
     const cv s = c_mul(ic, left);
+    most *= sweep_most(U, SYM);
     KEEP for (size_t r = 0; r < rows; r++) {
         const cv kept = own < 0 ? c_zero() : c_mul(E[r * W + (size_t)own], left);
         cv Ev = c_zero();
         UNROLL for (int i = 0; i < W; i++)
             Ev = c_add(Ev, c_scale_lanes(E[r * W + (size_t)i], v[i]));
         Ev = c_mul(Ev, s);
+        if (r % 2 == 0)
+            sweep_disturb(c_size(Ev) * most, W, E + (r + 1) * W);
         UNROLL for (int i = 0; i < W; i++)
             E[r * W + (size_t)i] = c_add(E[r * W + (size_t)i], c_mul(Ev, Uv[i]));
         if (own >= 0)
@@ -140,6 +152,7 @@ static RD_CLONES void K_(absorb_whole)(const struct sweep_walk *s, const double 
     KEEP for (int i = 0; i < W; i++)
         x[i * W + i].re += 1.0;
     const cv d = c_inverse(K_(adjugate)(x, inverse));
+    const lanes most = sweep_most(state->U, SYM);
     KEEP for (int i = 0; i < FULL; i++)
         inverse[i] = c_mul(inverse[i], d);
     KEEP for (int i = 0; i < W; i++)
@@ -160,6 +173,15 @@ static RD_CLONES void K_(absorb_whole)(const struct sweep_walk *s, const double 
             KEEP for (int k = 0; k < W; k++)
                 row[j] = c_add(row[j], c_mul(old[k], inverse[k * W + j]));
         }
+        lanes force = {0};
+        KEEP for (int j = 0; j < W; j++) {
+            cv sum = c_zero();
+            KEEP for (int k = 0; k < W; k++)
+                sum = c_add(sum, c_mul(row[k], N[at(k, j)]));
+            force += c_size(sum);
+        }
+        if (r % 2 == 0)
+            sweep_disturb(force * most, W, row + W);
     }
 }
 
@@ -221,6 +243,7 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
 RD_INLINE void K_(open)(int e, cv h, int free, cv *U, cv *E, size_t rows)
 {
     cv V[W], k;
+    const lanes most = sweep_most(U, SYM);
     KEEP for (int i = 0; i < W; i++)
         V[i] = c_neg(U[at(i, e)]);
     V[e].re += 1.0;
@@ -237,6 +260,8 @@ RD_INLINE void K_(open)(int e, cv h, int free, cv *U, cv *E, size_t rows)
     KEEP for (size_t r = 0; r < rows; r++) {
         cv *row = E + r * W;
         const cv Ek = c_mul(row[e], k);
+        if (r % 2 == 0)
+            sweep_disturb(c_size(Ek) * most, W, row + W);
         KEEP for (int i = 0; i < W; i++)
             row[i] = c_sub(row[i], c_mul(Ek, V[i]));
     }

@@ -43,6 +43,30 @@ static bool is_skew(const struct rd_chain *chain, const double *mass, size_t i, 
            fabs(mass[i * (w + 1)] * mass[j * (w + 1)] - both) >= 0.5 * both;
 }
 
+/* Whether a walk without rows may go by minors: they know elements by their triple. */
+static bool has_minors(const struct rd_chain *chain, const struct sweep_kernel *kernel)
+{
+    for (size_t e = 0; e < chain->distinct; e++)
+        if (sweep_is_strut(chain, e))
+            return false;
+    return kernel->walk_plain &&
+           (chain->width == 2 || chain->coordinate[chain->width - 1] == RD_BETA);
+}
+
+/* what the third coordinate of a chain follows of its bending, squared */
+static double largest_shear(const struct rd_chain *chain)
+{
+    const int twists = chain->width == 3 && chain->coordinate[1] == RD_ALPHA;
+    const size_t c = twists ? RD_TORSION : RD_AXIAL;
+    double most = 0.0;
+    for (size_t e = 0; chain->width == 3 && e < chain->distinct; e++) {
+        const double *S = chain->flexibility + e * RD_CHANNELS * RD_CHANNELS;
+        const double r = S[c * RD_CHANNELS + RD_BENDING] / S[RD_BENDING * (RD_CHANNELS + 1)];
+        most = fmax(most, r * r);
+    }
+    return most;
+}
+
 /* what a node term needs besides adding masses */
 static uint8_t trait_of(const struct rd_chain *chain, size_t t)
 {
@@ -106,7 +130,8 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
         .sym = sym,
         .carried = carry->count,
         .swapped = swapped,
-        .planar = kernels[w - 1]->walk_plain && (w == 2 || chain->coordinate[w - 1] == RD_BETA),
+        .minors = has_minors(chain, kernels[w - 1]),
+        .shear = has_minors(chain, kernels[w - 1]) ? largest_shear(chain) : 0.0,
         .carry = carried,
         .meet = meeting,
         .rank = rank,

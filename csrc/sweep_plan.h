@@ -15,7 +15,9 @@ struct sweep {
     size_t sym;     /* and in U */
     size_t carried; /* ports whose rows are carried: the fewer */
     int swapped;    /* the carried ports are the drives */
-    int planar;     /* without rows the walk goes by minors */
+    int minors;     /* without rows a walk may go by them */
+    double shear;   /* largest (S_cb/S_bb)^2 of a width of 3 */
+    int planar;     /* this block's does */
     struct taps carry, meet;
     size_t *rank;           /* (carried) */
     size_t records;         /* different nodes where parts meet */

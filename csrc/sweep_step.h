@@ -50,11 +50,30 @@ RD_INLINE void K_(inner)(const cv *w, const cv *U, cv *X)
 #endif
 }
 
-/* rows E <- E (W U + i I)^-1 B^T */
+/* sum of sizes */
+RD_INLINE lanes K_(total)(const cv *x, int count)
+{
+    lanes sum = c_size(x[0]);
+    UNROLL for (int i = 1; i < count; i++)
+        sum += c_size(x[i]);
+    return sum;
+}
+
+/* m where it is more than a row's own rounding, else 0 */
+RD_INLINE lanes K_(beyond)(lanes m, const cv *row)
+{
+    return (lanes)((lane_mask)m & (m > 4.0 * K_(total)(row, W)));
+}
+
+/* Rows E <- v B^T, v = E (W U + i I)^-1. Rounding of U and B moves them by v W dU (W U + i I)^-1 B^T
+   and by v dB^T, which a heavy node and an element that hardly transmits do not reduce: where that
+   is more than rounding of the rows themselves, their companions hear of it. */
 static RD_CLONES void K_(carry)(const cv *w, const cv *U, const cv *B, cv *E, size_t rows)
 {
     cv adj[FULL];
     const cv s = K_(resolve)(w, U, adj);
+    const lanes before = K_(total)(w, SYM) * K_(total)(U, SYM), after = K_(total)(B, FULL);
+    lanes passed = {0};
     for (size_t r = 0; r < rows; r++) {
         cv *row = E + r * W, v[W];
         UNROLL for (int j = 0; j < W; j++) {
@@ -63,12 +82,19 @@ static RD_CLONES void K_(carry)(const cv *w, const cv *U, const cv *B, cv *E, si
                 sum = c_add(sum, c_mul(row[k], adj[k * W + j]));
             v[j] = c_mul(sum, s);
         }
+        const lanes size = K_(total)(v, W);
+        if (r % 2 == 0)
+            sweep_disturb(K_(beyond)(size * before, row), W, row + W);
         UNROLL for (int j = 0; j < W; j++) {
             cv sum = c_mul(v[0], B[j * W]);
             UNROLL for (int k = 1; k < W; k++)
                 sum = c_add(sum, c_mul(v[k], B[j * W + k]));
             row[j] = sum;
         }
+        if (r % 2 == 0)
+            passed = K_(beyond)(size * after, row);
+        else
+            sweep_disturb(passed, W, row);
     }
 }
 

@@ -62,11 +62,9 @@ def freeze(thing: Any) -> None:
     """Make the arrays that something holds read-only; a pickle or a copy forgets that."""
     for value in vars(thing).values():
         many = value.values() if isinstance(value, dict) else value
-        for array in many if isinstance(many, (Iterable, tuple)) else ():
+        for array in many if isinstance(value, (dict, tuple, list)) else (value,):
             if isinstance(array, np.ndarray):
                 array.flags.writeable = False
-        if isinstance(value, np.ndarray):
-            value.flags.writeable = False
 
 
 def nested(kind: type[Any], through: str) -> dict[str, Any]:

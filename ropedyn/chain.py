@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from .check import COORDINATES
 
+KINDS = ("difference", "rigid", "tensed")
+"""Kinds of element, in the core's order."""
+
 CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 """Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
 

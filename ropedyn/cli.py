@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from . import study2015
 from .answer import Answer
 from .atomic import replacing
+from .chain import KINDS
 from .check import shown
 from .compare import compare
-from .compile import KINDS
 from .errors import RopedynError, SceneError, SolveError
 from .model import Model
 from .peaks import Peaks

@@ -8,16 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, mesh
-from .chain import Chain, components
+from .chain import KINDS, Chain, components
 from .end import end_of
 from .errors import SceneError
 from .model import Model
 from .part import NodeTerm
 from .rope import Rope
 from .scene import Scene
-
-KINDS = ("difference", "rigid", "tensed")
-"""Kinds of element, in the core's order."""
 
 MOST_ELEMENTS = 10_000_000
 

@@ -16,6 +16,7 @@ from .chain import Chain
 from .errors import SceneError, SolveError
 from .model import Model
 from .port import Point, Ports, cut, ports, stops
+from .reaction import left_ends
 from .table import Table
 from .unit import FORCE, FORCE_UNIT, UNIT
 
@@ -154,13 +155,15 @@ def _on_nodes(
     right: NDArray[np.float64],
     begins: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return f_b of the element on the left less f_a = F^T f_b - Q u_a of the one on the right."""
-    F, _, Q = _core.triples(chain)
+    """Return f_b of the element on the left less f_a = E f_b - Q u_a + P u_b of the right one."""
+    of = left_ends(chain)
     first = chain.element_of[kept[:-1]]
-    left_end = np.einsum("nji,nj->ni", F[first], begins)
-    left_end -= np.einsum("nij,nj->ni", Q[first], u[:-1])
+    left_end = np.einsum("nij,nj->ni", of.E[first], begins)
+    left_end -= np.einsum("nij,nj->ni", of.Q[first], u[:-1])
+    # struts are never cut: their right end is the next node that is kept
+    left_end += np.einsum("nij,nj->ni", of.P[first], u[1:])
     if chain.hinge is not None:
-        left_end *= _kept(chain.hinge[chain.term_of[kept[:-1]]], Q[first])
+        left_end *= _kept(chain.hinge[chain.term_of[kept[:-1]]], of.Q[first])
     force = np.zeros_like(u)
     force[1:] += right
     force[:-1] -= left_end
@@ -168,9 +171,9 @@ def _on_nodes(
 
 
 def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the share 1/(1 + Q C) that a hinge leaves of F^T f_b - Q u, none where it is free.
+    """Return the share 1/(1 + Q C) that a hinge leaves of f_a without it, none where it is free.
 
-    f_a = F^T f_b - Q (u + C f_a), and a hinge stands on the one coordinate that Q has.
+    f_a = E f_b - Q (u_a + C f_a) + P u_b, and a hinge stands on the one coordinate that Q has.
     """
     free = np.isinf(compliance)
     finite = np.where(free, 0.0, compliance)

@@ -20,6 +20,7 @@ from .errors import SceneError, SolveError
 from .frf import FRF
 from .model import Model
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
+from .reaction import first_left_end
 from .unit import OF_FORCE, QUANTITIES
 
 LANES = 16
@@ -279,23 +280,25 @@ def _at_start(x: Real, point: Point) -> bool:
 
 
 def _hidden(component: tuple[str, ...], x: Real) -> list[Point]:
-    """Return what the force at the left end follows from: motion there, force at node 1."""
-    motion = [(c, float(x[0])) for c in component]
+    """Return what the force at the left end follows from: motion of nodes 0 and 1, force at 1."""
+    motion = [(c, float(at)) for at in x[:2] for c in component]
     force = [(f, float(x[1])) for c in component for f in OF_FORCE if OF_FORCE[f] == c]
     return motion + force
 
 
 def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Complex, Real]:
-    """Put f_a = F^T f_b - Q u_a of the first element where it was asked for."""
+    """Put f_a = E f_b - Q u_a + P u_b of the first element where it was asked for."""
     component, responses = question.component, question.responses
     chain, x = question.cut
     w = len(component)
-    F, _, Q = _core.triple(chain, int(chain.element[0]), np.ascontiguousarray(question.factor[:2]))
-    given, motion, force = np.split(np.arange(value.shape[1]), [-2 * w, -w])
-    reaction = np.einsum("kij,dik->djk", F, value[:, force])
-    reaction -= np.einsum("kij,djk->dik", Q, value[:, motion])
-    spread = np.einsum("kij,dik->djk", np.abs(F), error[:, force])
-    spread += np.einsum("kij,djk->dik", np.abs(Q), error[:, motion])
+    of = first_left_end(chain, question.factor[:2])
+    given, left, right, force = np.split(np.arange(value.shape[1]), [-3 * w, -2 * w, -w])
+    reaction = np.einsum("kij,djk->dik", of.E, value[:, force])
+    reaction -= np.einsum("kij,djk->dik", of.Q, value[:, left])
+    reaction += np.einsum("kij,djk->dik", of.P, value[:, right])
+    spread = np.einsum("kij,djk->dik", np.abs(of.E), error[:, force])
+    spread += np.einsum("kij,djk->dik", np.abs(of.Q), error[:, left])
+    spread += np.einsum("kij,djk->dik", np.abs(of.P), error[:, right])
     shape = (value.shape[0], len(responses), value.shape[2])
     values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
     direct = iter(given)

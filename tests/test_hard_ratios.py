@@ -66,6 +66,20 @@ def test_coordinates_without_mass_cost_no_digit(ends, element, claim):
     claim(worst(model, [2, 4], ("z", "alpha", "beta")))
 
 
+@KINDS
+@pytest.mark.parametrize("ends", [("free", "pinned"), ("pinned", "free")], ids="-".join)
+@pytest.mark.claim(
+    "FRF of a laid rope that turns as a body and is held against twist, 0.001 to 1 Hz: "
+    "error / condition",
+    reference=EXACT,
+    accepted=ACCEPTED,
+)
+def test_body_that_turns_and_cannot_twist_costs_no_digit(ends, element, claim):
+    rope = ROPE.replace(torsional_stiffness=0.1, lay_slope=-0.9, polar_inertia=1e-5)
+    model = rd.Scene(rope, tension=0.0, ends=ends).compile(elements=4, element=element)
+    claim(worst(model, [1, 3], ("z", "alpha", "beta"), (0.001, 0.1, 1.0)))
+
+
 TOGETHER = [
     rd.PointMass(0.3, 0.02),
     rd.Spring(0.3, 100.0),

@@ -16,8 +16,8 @@ ROPE = rd.Rope(LENGTH, DENSITY, bending_stiffness=1.54)
 N = 16
 
 
-def modes_of(scene, element, number=8, n=N):
-    return certified_modes(scene.compile(elements=n, element=element), number)
+def modes_of(scene, element, relative=2e-12, n=N):
+    return certified_modes(scene.compile(elements=n, element=element), 8, relative)
 
 
 # tension ----------------------------------------------------------------------------------------
@@ -101,7 +101,9 @@ def test_negative_spring_drives_one_mode_away(stiffness, element):
 @RATIOS
 def test_any_torsional_stiffness_with_lay(ratio, element):
     rope = ROPE.replace(torsional_stiffness=0.15 * ratio, polar_inertia=1e-6, lay_slope=0.3)
-    modes_of(rd.Scene(rope, tension=100.0), element)
+    # a section without torsional stiffness twists instead of bending: six frequencies within 1e-4
+    # of each other, whose gaps counts tell apart to 1e-9
+    modes_of(rd.Scene(rope, tension=100.0), element, 1e-9 if ratio < 1e-9 else 2e-12)
 
 
 @ELEMENTS
