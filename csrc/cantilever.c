@@ -56,8 +56,8 @@ struct rd_cantilever rd_cantilever_at(enum rd_kind kind, double _Complex theta)
         return (struct rd_cantilever){.P = {1, 0.5, 1.0 / 3}};
     if (kind == RD_RIGID) {
         const double _Complex p = 1 + theta / 3;
-        return (struct rd_cantilever){
-            .tau = 1 / p, .P = {(1 + theta / 12) / p, 1 / (2 * p), 1 / (3 * p)}};
+        return (struct rd_cantilever){.tau = 1 / p,
+                                      .P = {(1 + theta / 12) / p, 1 / (2 * p), 1 / (3 * p)}};
     }
     if (cabs(theta) <= 1)
         return by_series(theta);

@@ -15,7 +15,7 @@ static const double FAR = 1e-4;        /* from where a cluster is looked at firs
 static const double NEAR = 1e-9;       /* and then */
 static const double CONVERGED = 1e-13; /* step of the quotient by the gap to others: the last one */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
-static const double NOISE = 8; /* what of its bound a quotient is wrong by at most times */
+static const double NOISE = 8;         /* what of its bound a quotient is wrong by at most times */
 static const double EPS = 2.3e-16;
 
 struct work {
@@ -288,8 +288,9 @@ static size_t group(const struct work *work, size_t i, double *low, double *high
             break;
         *high = fmax(*high, next_high);
     }
-    const double end = rd_search_is_single(&work->search, i + n - 1) ? (double)(i + n)
-                                                                     : work->search.above[i + n - 1];
+    const double end = rd_search_is_single(&work->search, i + n - 1)
+                           ? (double)(i + n)
+                           : work->search.above[i + n - 1];
     return (size_t)end - i;
 }
 

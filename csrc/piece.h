@@ -156,7 +156,7 @@ struct middle {
 };
 
 RD_INLINE lane_mask middle_fill(const struct piece *piece, const lanes N[W][W],
-                                 struct middle *middle)
+                                struct middle *middle)
 {
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++)
@@ -183,8 +183,7 @@ RD_INLINE void carry(const lanes A[W][W], const lanes D[W][W], lanes AF[W][W])
 }
 
 /* two equal pieces with the node term N between them; lanes where the joint is safe */
-RD_INLINE lane_mask piece_double(const struct piece *half, const lanes N[W][W],
-                                  struct piece *whole)
+RD_INLINE lane_mask piece_double(const struct piece *half, const lanes N[W][W], struct piece *whole)
 {
     struct middle middle;
     lanes Dt[W][W], XVF[W][W], DXVF[W][W], DD[W][W];

@@ -76,7 +76,8 @@ static int solve(PyObject *module, const struct rd_walk *walk, struct rd_certifi
 {
     enum rd_status status = RD_NO_MEMORY;
     size_t steps, pieces, wanted = modes->wanted;
-    for (bool most = false; status == RD_NO_MEMORY && !most && !PyErr_Occurred(); wanted = 4 * wanted + 4) {
+    for (bool most = false; status == RD_NO_MEMORY && !most && !PyErr_Occurred();
+         wanted = 4 * wanted + 4) {
         most = rd_certify_size(walk, wanted, &steps, &pieces);
         status = solve_in(walk, steps, pieces, modes);
     }
@@ -113,7 +114,9 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
         const npy_intp shapes[] = {shaped ? wanted : 0, nodes, width};
         const int dimensions = k == SHAPE ? 3 : k == BRACKET ? 2 : 1;
         array[k] = py_new(NPY_DOUBLE, dimensions,
-                          k == SHAPE ? shapes : k == BRACKET ? brackets : lines);
+                          k == SHAPE     ? shapes
+                          : k == BRACKET ? brackets
+                                         : lines);
         if (array[k] == NULL)
             goto done;
         data[k] = PyArray_DATA((PyArrayObject *)array[k]);

@@ -74,7 +74,19 @@ __attribute__((optimize("O3"))) static int check_range(PyArrayObject *array, siz
     return -1;
 }
 
-enum { COORDINATE, LENGTH, TENSION, FLEXIBILITY, FIRST, ELEMENT, MASS, STIFFNESS, HELD, TERM, HINGE };
+enum {
+    COORDINATE,
+    LENGTH,
+    TENSION,
+    FLEXIBILITY,
+    FIRST,
+    ELEMENT,
+    MASS,
+    STIFFNESS,
+    HELD,
+    TERM,
+    HINGE
+};
 
 /* what the core asserts of the numbers */
 static int check_values(const struct rd_chain *chain)

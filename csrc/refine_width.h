@@ -11,8 +11,6 @@
 
 #include <string.h>
 
-
-
 /* a step in scaled coordinates with its change d/dlambda; V = Q + N */
 struct rate {
     lanes D[W][W], G[W][W], V[W][W], dD[W][W], dG[W][W], dV[W][W];
@@ -317,8 +315,7 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
         term_load(r->walk, term, step->element, lambda, N);
         for (int i = 0; i < W; i++)
             for (int j = 0; j < W; j++)
-                dN[i][j] =
-                    l_fill(-rd_walk_mass(r->walk, term)[i * W + j]);
+                dN[i][j] = l_fill(-rd_walk_mass(r->walk, term)[i * W + j]);
         struct piece *level =
             (struct piece *)(r->piece + (size_t)(step->piece - step->level) * 6 * W * W);
         piece_load(r->walk, step->element, level);
@@ -455,7 +452,8 @@ RD_INLINE void rate_at(const struct rd_refine *r, size_t m, lanes lambda, struct
     }
 }
 
-static RD_CLONES void quotient_lanes(struct rd_refine *r, const double *lambdas, struct rd_quotient *quotient)
+static RD_CLONES void quotient_lanes(struct rd_refine *r, const double *lambdas,
+                                     struct rd_quotient *quotient)
 {
     const lanes lambda = lanes_load(lambdas);
     lanes xAx = l_fill(0), xMx = l_fill(0), noise = l_fill(0), energy = l_fill(0);
@@ -477,8 +475,8 @@ static RD_CLONES void quotient_lanes(struct rd_refine *r, const double *lambdas,
                 xMx += f[i] * mp[i];
                 size = l_abs(f[i]) * (l_abs(u[i]) + l_abs(u[W + i]));
                 for (int j = 0; j < W; j++)
-                    work += l_abs(f[i] * rate.G[i][j] * f[j]) +
-                            2 * l_abs(f[i] * rate.D[i][j] * u[j]);
+                    work +=
+                        l_abs(f[i] * rate.G[i][j] * f[j]) + 2 * l_abs(f[i] * rate.D[i][j] * u[j]);
             }
             noise += size * size + work * work;
             energy += work * (1 + level);

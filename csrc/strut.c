@@ -69,9 +69,8 @@ static struct beam column(const struct rd_element *element)
     const double t = sqrt(compression(element));
     const double s = sin(t / 2), c = cos(t / 2);
     const double d = 4 * s * (s - t / 2 * c);
-    return beam_of(B / (l * l * l) * t * t * t * 2 * s * c / d,
-                   B / (l * l) * t * t * 2 * s * s / d, B / l * t * (sin(t) - t * cos(t)) / d,
-                   B / l * t * (t - sin(t)) / d, B, l);
+    return beam_of(B / (l * l * l) * t * t * t * 2 * s * c / d, B / (l * l) * t * t * 2 * s * s / d,
+                   B / l * t * (sin(t) - t * cos(t)) / d, B / l * t * (t - sin(t)) / d, B, l);
 }
 
 /* f = -G K_ba and q = K_aa - K_ab G K_ba = K_aa + K_ab f, G untensed */
@@ -97,8 +96,7 @@ enum rd_status rd_strut_fill(const struct rd_element *element, double *D, double
     const enum rd_status status = rd_triple_change(&untensed, D, G, Q);
     if (status != RD_OK)
         return status;
-    const struct beam beam =
-        element->kind == RD_RIGID ? string_beside(element) : column(element);
+    const struct beam beam = element->kind == RD_RIGID ? string_beside(element) : column(element);
     const double g[2][2] = {{G[z * w + z], G[z * w + beta]}, {G[beta * w + z], G[beta * w + beta]}};
     double f[2][2], q[2][2];
     condense(&beam, g, f, q);
@@ -111,8 +109,8 @@ enum rd_status rd_strut_fill(const struct rd_element *element, double *D, double
     for (int j = 0; j < 2; j++)
         for (size_t i = 0; i < w; i++) {
             const size_t c = channel[element->coordinate[i]];
-            const double r = element->flexibility[c * RD_CHANNELS + RD_BENDING] /
-                             element->flexibility[BB];
+            const double r =
+                element->flexibility[c * RD_CHANNELS + RD_BENDING] / element->flexibility[BB];
             D[i * w + at[j]] = i == z ? f[0][j] - (j == 0) : r * (f[1][j] - (j == 1));
         }
     for (int i = 0; i < 2; i++)

@@ -10,8 +10,8 @@
 /* Equal elements one after another, equal node terms between them; or a hinge, alone: the element
    chain->distinct + its term. */
 struct rd_leg {
-    size_t node;    /* first node */
-    size_t count;   /* elements */
+    size_t node;  /* first node */
+    size_t count; /* elements */
     int32_t element;
     int32_t before; /* element on the left of the first node, -1: none */
     int32_t first;  /* node term at the first node */
@@ -23,19 +23,19 @@ enum { RD_NO_TERM = -1 }; /* on the right of a hinge */
 struct rd_walk {
     const struct rd_chain *chain;
     size_t legs;
-    struct rd_leg *leg;     /* (legs) */
-    int32_t last;           /* node term at the last node */
-    int32_t behind;         /* element on its left */
-    double *triple;         /* (elements, 4, width, width)  D, G, Q and P of strut.h */
-    uint8_t *strut;         /* (elements)  1: P is not zero */
-    double below;           /* eigenvalues below zero of the elements themselves */
+    struct rd_leg *leg;               /* (legs) */
+    int32_t last;                     /* node term at the last node */
+    int32_t behind;                   /* element on its left */
+    double *triple;                   /* (elements, 4, width, width)  D, G, Q and P of strut.h */
+    uint8_t *strut;                   /* (elements)  1: P is not zero */
+    double below;                     /* eigenvalues below zero of the elements themselves */
     double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held */
     double mass[RD_WIDTH_MAX];        /* sum of |M_ii| */
     struct rd_body body;
-    double length;                    /* [m] */
-    double bend;                      /* [rad/N m] sum of l S_bb, 0 without z and beta together */
-    double tension;                   /* [N] mean */
-    double carried[RD_WIDTH_MAX];     /* nodes times the geometric mean of |M_ii| that are not 0 */
+    double length;                /* [m] */
+    double bend;                  /* [rad/N m] sum of l S_bb, 0 without z and beta together */
+    double tension;               /* [N] mean */
+    double carried[RD_WIDTH_MAX]; /* nodes times the geometric mean of |M_ii| that are not 0 */
 };
 
 /* Takes the arrays of walk from the workspace (with base NULL: counts what they need) and fills

@@ -217,8 +217,7 @@ RD_INLINE void stretch(struct wave *wave, int j, lanes d)
             if (i == j && k == j)
                 U[i][k] = c_scale_lanes(c_mul(c_mul(y[j], wave->Y[j][j]), inverse), s);
             else if (i == j || k == j)
-                U[i][k] = c_mul(c_mul(y[other], inverse),
-                                     c_make(d - s * y[j].re, -s * y[j].im));
+                U[i][k] = c_mul(c_mul(y[other], inverse), c_make(d - s * y[j].re, -s * y[j].im));
         }
     for (int i = 0; i < W; i++)
         for (int k = 0; k <= i; k++) {
@@ -250,8 +249,8 @@ RD_INLINE void release(struct wave *wave, int j)
     const cv inverse = c_invert(wave->Y[j][j]);
     for (int i = j + 1; i < W; i++)
         for (int k = j + 1; k < W; k++)
-            wave->Y[i][k] = c_sub(
-                wave->Y[i][k], c_mul(c_mul(wave->Y[i][j], wave->Y[j][k]), inverse));
+            wave->Y[i][k] =
+                c_sub(wave->Y[i][k], c_mul(c_mul(wave->Y[i][j], wave->Y[j][k]), inverse));
 }
 
 #endif

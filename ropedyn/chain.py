@@ -78,7 +78,7 @@ class Chain(NamedTuple):
     @property
     def spans(self) -> tuple[tuple[int, int], ...]:
         """First and last node of what lies between nodes where nothing can move."""
-        still = self.held.all(axis=1)[self.term]
+        still: NDArray[np.bool_] = np.all(self.held, axis=1)[self.term]
         still[[0, -1]] = False
         nodes = [
             np.arange(self.first[k], self.first[k + 1], dtype=np.int64)

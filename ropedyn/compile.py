@@ -180,8 +180,14 @@ def _correct_ends(scene: Scene, lengths: NDArray[np.float64], mass: NDArray[np.f
     Lumping is the trapezoidal rule; this is its first error term, zero inside a uniform span. With
     it the frequencies of tensed chains converge with the fourth power of the element's length.
     """
-    squares = np.concatenate([[0.0], lengths**2, [0.0]])
-    correction = -scene.rope.linear_density * (squares[:-1] - squares[1:]) / 12
+    with np.errstate(over="ignore", invalid="ignore"):
+        squares = np.concatenate([[0.0], lengths**2, [0.0]])
+        correction = -scene.rope.linear_density * (squares[:-1] - squares[1:]) / 12
+    if not np.isfinite(correction).all():
+        raise SceneError(
+            f"elements must be short enough for linear_density length^2 to be a number [kg m], got "
+            f"{scene.rope.linear_density!r} kg/m and {float(lengths.max())!r} m"
+        )
     z, beta = scene.coordinates.index("z"), scene.coordinates.index("beta")
     mass[:, z, beta] += correction
     mass[:, beta, z] += correction

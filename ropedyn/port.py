@@ -11,7 +11,11 @@ from numpy.typing import NDArray
 from . import _core
 from .chain import Chain
 from .check import COORDINATES, NEAR
+from .errors import SolveError
 from .unit import OF_FORCE
+
+MOST_PIECES = 1000
+"""That a compressed element is cut into."""
 
 Point = tuple[str, float]
 
@@ -97,8 +101,15 @@ def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
     """
     if COORDINATES.index("beta") not in chain.coordinate:
         return []
-    kappa = np.sqrt(np.maximum(-chain.tension * chain.flexibility[:, 2, 2], 0.0))
-    pieces = np.ceil(kappa * chain.length).astype(np.intp)[chain.element_of]
+    with np.errstate(over="ignore"):
+        kappa = np.sqrt(np.maximum(-chain.tension * chain.flexibility[:, 2, 2], 0.0))
+        each = np.ceil(kappa * chain.length)
+    if not each.max() <= MOST_PIECES:
+        raise SolveError(
+            f"the compression bends an element in {each.max() / np.pi:.3g} half waves, more than "
+            f"{MOST_PIECES}: use more elements"
+        )
+    pieces = each.astype(np.intp)[chain.element_of]
     return [
         float(at)
         for e in np.flatnonzero(pieces > 1)

@@ -12,6 +12,10 @@ BEAMS = reference("beam_frequencies")["cases"]
 RESPONSES = reference("frf_tensed_beam")["continuum"]
 
 
+def rigid(scene, elements):
+    return scene.compile(elements=elements, element="rigid")
+
+
 def order(coarse, fine):
     """Observed order of convergence when the elements are doubled."""
     return np.log2(np.abs(coarse) / np.abs(fine))
@@ -29,7 +33,7 @@ def test_beam_frequencies_converge_quadratically_or_better(case, k):
     scene = plain_beam(case["tension"], ends=(case["ends"],) * 2)
     # coarser where the error is so small that rounding would show
     chains = (64, 128) if case["tension"] > 0 else (32, 64)
-    error = [scene.compile(elements=n).modes(3).frequency[k] / case["f"][k] - 1 for n in chains]
+    error = [rigid(scene, n).modes(3).frequency[k] / case["f"][k] - 1 for n in chains]
     # without tension lumps on exact beams make no error of second order at held ends; with it the
     # fourth-order part is (k pi/64)^2 of the other but for the ratio B k^2 pi^2/(T L^2), at most
     # 100 here: 0.15 of the order
@@ -43,7 +47,11 @@ def test_string_frequencies_converge_quadratically(k):
     T, mu = 300.0, 0.1
     exact = k / 2 * math.sqrt(T / mu)
     error = [
-        rd.Scene(rd.Rope(1.0, mu), tension=T).compile(elements=n).modes(4).frequency[k - 1] / exact
+        rd.Scene(rd.Rope(1.0, mu), tension=T)
+        .compile(elements=n, element="rigid")
+        .modes(4)
+        .frequency[k - 1]
+        / exact
         - 1
         for n in (32, 64)
     ]
@@ -61,7 +69,7 @@ def test_shaft_and_rod_frequencies_converge_quadratically(family, k):
     # clamped-free: (2 k - 1)/4L c
     exact = (2 * k - 1) / 4 * math.sqrt(2e5)
     scene = rd.Scene(rope, ends=("clamped", "free"))
-    error = [scene.compile(elements=n).modes(k).frequency[k - 1] / exact - 1 for n in (32, 64)]
+    error = [rigid(scene, n).modes(k).frequency[k - 1] / exact - 1 for n in (32, 64)]
     assert order(*error) == pytest.approx(2, abs=0.02)
 
 
@@ -74,7 +82,7 @@ def test_response_of_a_tensed_beam_converges_quadratically(case, coordinate, at)
     scene = plain_beam(300.0, damping=rd.RayleighDamping(0, 1e-4))
     error = []
     for n in (64, 256):
-        frf = scene.compile(elements=n).frf(
+        frf = rigid(scene, n).frf(
             case["f"], drive=("z", case["drive"]), response=(coordinate, case["x"][at])
         )
         error.append(abs(frf.value[0, 0] - exact) / abs(exact))
@@ -94,7 +102,7 @@ def test_drive_between_nodes_converges_quadratically():
     exact = math.fsum(terms)
     scene = plain_beam(0.0, ends=("pinned", "pinned"))
     error = [
-        scene.compile(elements=n).frf(f, drive=("z", at)).value[0, 0].real / exact - 1
+        rigid(scene, n).frf(f, drive=("z", at)).value[0, 0].real / exact - 1
         for n in (8, 16, 32, 64)
     ]
     assert abs(error[3]) < 1e-3
@@ -110,7 +118,7 @@ def test_tensed_cantilever_deflects_as_the_catenary_of_bending(n):
     exact = (LENGTH - math.tanh(k * LENGTH) / k) / T
     scene = plain_beam(T, ends=("clamped", "free"))
     error = [
-        scene.compile(elements=m).static({("z", LENGTH): 1.0}).displacement[-1, 0] / exact - 1
+        rigid(scene, m).static({("z", LENGTH): 1.0}).displacement[-1, 0] / exact - 1
         for m in (n, 2 * n)
     ]
     assert order(*error) == pytest.approx(2, abs=0.1)

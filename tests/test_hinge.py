@@ -169,7 +169,8 @@ def test_hinged_chain_responds_as_the_exact_discrete_one(rope, element, stiffnes
                 # the assembled estimate counts one rounding an entry, which has a few
                 roundings = 8 if solver == "lapack" else 1
                 assert error <= roundings * frf.rounding_error[k, 0], (solver, points[k])
-                assert frf.rounding_error[k, 0] <= 1e-10
+                # the condition of these answers is below 1e3, a useful bound within 1e4 of that
+                assert frf.rounding_error[k, 0] <= 1e7 * EPS
 
 
 @pytest.mark.parametrize("element", ELEMENTS)

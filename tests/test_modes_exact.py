@@ -166,8 +166,8 @@ SCENES = {
 def test_shapes_satisfy_the_equations_of_motion(scene, element):
     model = scene.compile(elements=60, element=element)
     modes = model.modes(10, solver="sweep")
-    # |K u| is formed with some 10 eps; inside pieces of 2^5 elements shapes are found from the ends,
-    # each halving a solution of a small system of condition up to 10
+    # |K u| is formed with some 10 eps; inside pieces of 2^5 elements shapes are found from their
+    # ends, each halving a solution of a small system of condition up to 10
     assert (residual(model, modes) < 32 * 10 * 10 * np.finfo(float).eps).all()
 
 

@@ -65,6 +65,8 @@ struct rope rope_make(const struct recipe *recipe)
         .held = exact_memory(terms * w, sizeof *rope.held),
         .term_of = exact_memory(nodes, sizeof *rope.term_of),
         .first = exact_memory(nodes, sizeof *rope.first),
+        .stretch_element = exact_memory(nodes, sizeof *rope.stretch_element),
+        .stretch_term = exact_memory(nodes, sizeof *rope.stretch_term),
     };
     rope.chain = (struct rd_chain){
         .nodes = nodes,
@@ -109,6 +111,27 @@ void rope_free(struct rope *rope)
     free(rope->held);
     free(rope->term_of);
     free(rope->first);
+    free(rope->stretch_element);
+    free(rope->stretch_term);
+}
+
+void rope_gather(struct rope *rope)
+{
+    struct rd_chain *chain = &rope->chain;
+    const size_t last = chain->nodes - 1;
+    chain->stretches = 0;
+    for (size_t i = 0; i <= last; i++) {
+        if (i > 0 && i < last && rope->term_of[i] == rope->term_of[i - 1] &&
+            rope->element_of[i] == rope->element_of[i - 1])
+            continue;
+        rope->first[chain->stretches] = (int32_t)i;
+        rope->stretch_term[chain->stretches] = rope->term_of[i];
+        if (i < last)
+            rope->stretch_element[chain->stretches] = rope->element_of[i];
+        chain->stretches++;
+    }
+    chain->element = rope->stretch_element;
+    chain->term = rope->stretch_term;
 }
 
 size_t rope_find(const struct rd_chain *chain, char coordinate)

@@ -35,11 +35,16 @@ struct rope {
     double *stiffness;
     uint8_t *held;
     int32_t *term_of;
-    int32_t *first; /* every node a stretch of its own */
+    int32_t *first; /* every node a stretch of its own, until rope_gather */
+    int32_t *stretch_element;
+    int32_t *stretch_term;
 };
 
 struct rope rope_make(const struct recipe *recipe);
 void rope_free(struct rope *rope);
+
+/* equal nodes with equal elements on their right become one stretch; after the last change */
+void rope_gather(struct rope *rope);
 
 /* position of coordinate 'x', 'z', 'a' or 'b' in a node of the chain */
 size_t rope_find(const struct rd_chain *chain, char coordinate);

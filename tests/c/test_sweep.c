@@ -109,13 +109,13 @@ static void test_hinge_is_damped_as_a_spring(void)
         struct rd_workspace space = {0};
         double error;
         size_t failed = 0;
-        rd_frf_sweep(&line.chain, &factors, &port, &middle, &space, (double *)(h + k),
-                     &error, &failed);
+        rd_frf_sweep(&line.chain, &factors, &port, &middle, &space, (double *)(h + k), &error,
+                     &failed);
         space = (struct rd_workspace){.base = malloc(space.used), .size = space.used};
         if (!space.base)
             abort();
-        CHECK_INT(rd_frf_sweep(&line.chain, &factors, &port, &middle, &space,
-                               (double *)(h + k), &error, &failed),
+        CHECK_INT(rd_frf_sweep(&line.chain, &factors, &port, &middle, &space, (double *)(h + k),
+                               &error, &failed),
                   RD_OK);
         free(space.base);
     }
