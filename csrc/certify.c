@@ -13,7 +13,8 @@ enum { LANES = RD_LANES, ATTEMPTS = 12, POLISH = 3, ROUNDS = 3, WIDER = 3, WIDES
 static const double CLUSTER = 1e-8;    /* closer than this, relative, are found together */
 static const double FAR = 1e-4;        /* from where a cluster is looked at first, relative */
 static const double NEAR = 1e-9;       /* and then */
-static const double CONVERGED = 1e-13; /* step of the quotient by the gap to others: the last one */
+static const double CONVERGED = 1e-13; /* last step of the quotient by the gap, for the shape */
+static const double SETTLED = 1e-7;    /* for the value alone, which is right to its square */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
 static const double NOISE = 8;         /* what of its bound a quotient is wrong by at most times */
 static const double EPS = 2.3e-16;
@@ -46,8 +47,9 @@ static bool has_settled(const struct work *work, size_t i, const struct rd_quoti
                         const double *lambda, size_t k)
 {
     const double value = quotient->lambda[k];
+    const double near = work->modes->shape ? CONVERGED : SETTLED;
     const double gap = fmin(value - work->search.low[i], work->search.high[i] - value);
-    return gap >= 0 && fabs(value - lambda[k]) <= fmax(CONVERGED * gap, quotient->error[k] / NOISE);
+    return gap >= 0 && fabs(value - lambda[k]) <= fmax(near * gap, quotient->error[k] / NOISE);
 }
 
 /* the next lambda of each lane: the quotient, or the middle of a bracket that was cut because the

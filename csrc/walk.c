@@ -192,6 +192,9 @@ static bool are_finite(size_t count, const double *x)
 
 static bool is_finite(const struct rd_chain *chain)
 {
+    for (size_t i = 0; chain->hinge && i < chain->terms * chain->width; i++)
+        if (isnan(chain->hinge[i]))
+            return false;
     const size_t terms = chain->terms * chain->width * chain->width;
     return are_finite(chain->distinct, chain->length) &&
            are_finite(chain->distinct, chain->tension) &&

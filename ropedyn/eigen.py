@@ -235,7 +235,7 @@ SOLVERS = {"sweep": _sweep, "lapack": _lapack}
 
 
 def _later(model: Model, solver: str, number: int | None, limit: float) -> Vectors:
-    """Solve once more, with shapes: the same bits."""
+    """Solve once more, with shapes."""
     found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
     eigenvalue, _, order = _merged(found, number)
     return _vectors(model, found, eigenvalue, order)

@@ -164,12 +164,13 @@ class Model:
             All below this frequency [Hz]; instead of `number`.
         solver : {"sweep", "lapack"}
             ``"sweep"``: isolated by counts, refined by inverse iteration along the chain, nothing
-            assembled: right to the last digits whatever n, and certified. ``"lapack"``: assembles
-            the matrices and reduces them to a dense symmetric problem (see csrc/modes.h). The
-            assembled stiffness loses digits as n^4: of the first frequency of a clamped beam
-            about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time grows as n^3;
-            more than 8000 unknowns are refused, and the dense solution itself, most of a minute
-            for so many, does not stop for Ctrl-C.
+            assembled: right to the last digits whatever n, and certified (see csrc/certify.h);
+            clusters of eight modes and more within a relative 1e-8 are refused. ``"lapack"``:
+            assembles the matrices and reduces them to a dense symmetric problem (see
+            csrc/modes.h). The assembled stiffness loses digits as n^4: of the first frequency of
+            a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
+            grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
+            of a minute for so many, does not stop for Ctrl-C.
 
         Returns
         -------
@@ -253,11 +254,11 @@ class Model:
             sweep or the band.
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration per force.
-        solver : {"lapack", "sweep", "band"}
-            ``"lapack"``: complex band LU of the assembled dynamic stiffness at each frequency;
-            loses digits with n as `modes` does. ``"sweep"``: along the chain in scattering form
-            (see csrc/sweep.h), nothing assembled, right to nearly the last digits whatever n;
-            uniform stretches are joined by doubling and cost little more for more elements.
+        solver : {"sweep", "lapack", "band"}
+            ``"sweep"``: along the chain in scattering form (see csrc/sweep.h), nothing assembled,
+            right to nearly the last digits whatever n; uniform stretches are joined by doubling
+            and cost little more for more elements. ``"lapack"``: complex band LU of the assembled
+            dynamic stiffness at each frequency; loses digits with n as `modes` does.
             ``"band"``: complex band LU of the mixed form, forces of elements beside motion of
             nodes (see csrc/mixed.h); its error grows as n at most, it shares no step with the
             sweep, and it takes hundreds of times as long.
@@ -310,9 +311,9 @@ class Model:
         ----------
         load : mapping from points to float
             Such as ``{("z", 0.5): 10.0}`` [N, N m].
-        solver : {"lapack", "sweep", "band"}
-            ``"lapack"``: band LU of the assembled stiffness; ``"sweep"`` and ``"band"``: as `frf`
-            at 0 Hz.
+        solver : {"sweep", "lapack", "band"}
+            ``"sweep"`` and ``"band"``: as `frf` at 0 Hz; ``"lapack"``: band LU of the assembled
+            stiffness.
 
         Returns
         -------
