@@ -192,7 +192,7 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
     for (int k = 0; k < RD_LANES; k++) {
         const double pi = 3.14159265358979323846;
         const double angle = atan2(wave.e.im[k] + 0, wave.e.re[k]) / pi;
-        counts[k] = walk->below + round(-angle - 2 * wave.turns[k]);
+        counts[k] = round(-angle - 2 * wave.turns[k]);
     }
 }
 

@@ -66,24 +66,7 @@ static size_t make_legs(const struct rd_chain *chain, struct rd_leg *leg)
     return legs;
 }
 
-/* of the symmetric A = L diag(g) L^T */
-static int32_t negative_pivots(size_t w, const double *A)
-{
-    double L[RD_WIDTH_MAX][RD_WIDTH_MAX], g[RD_WIDTH_MAX];
-    int32_t count = 0;
-    for (size_t j = 0; j < w; j++) {
-        for (size_t i = j; i < w; i++) {
-            L[i][j] = A[i * w + j];
-            for (size_t k = 0; k < j; k++)
-                L[i][j] -= L[i][k] * L[j][k] / g[k];
-        }
-        g[j] = L[j][j];
-        count += g[j] < 0;
-    }
-    return count;
-}
-
-static enum rd_status fill_triples(struct rd_walk *walk, int32_t *below)
+static enum rd_status fill_triples(struct rd_walk *walk)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t block = chain->width * chain->width;
@@ -97,7 +80,6 @@ static enum rd_status fill_triples(struct rd_walk *walk, int32_t *below)
                                                      : rd_triple_change(&element, D, G, Q);
         if (status != RD_OK)
             return status;
-        below[i] = negative_pivots(chain->width, G);
     }
     return RD_OK;
 }
@@ -154,7 +136,7 @@ static void add_leg(struct rd_walk *walk, const struct rd_leg *leg, bool bends, 
         walk->bend += n * chain->length[e] * chain->flexibility[e * 9 + 8];
 }
 
-static void add_legs(struct rd_walk *walk, const int32_t *below)
+static void add_legs(struct rd_walk *walk)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width;
@@ -166,8 +148,6 @@ static void add_legs(struct rd_walk *walk, const int32_t *below)
     double with_mass[RD_WIDTH_MAX] = {0};
     for (size_t r = 0; r < walk->legs; r++) {
         const struct rd_leg *leg = walk->leg + r;
-        if ((size_t)leg->element < chain->distinct)
-            walk->below += (double)leg->count * below[leg->element];
         add_leg(walk, leg, z && beta && chain->kind != RD_DIFFERENCE, with_mass);
     }
     add_mass(walk, walk->last, 1, with_mass);
@@ -216,17 +196,16 @@ enum rd_status rd_walk_fill(const struct rd_chain *chain, struct rd_workspace *w
     walk->leg = rd_take(workspace, walk->legs, sizeof *walk->leg);
     walk->triple = rd_take(workspace, elements * 4 * block, sizeof *walk->triple);
     walk->strut = rd_take(workspace, elements, 1);
-    int32_t *below = rd_take(workspace, chain->distinct, sizeof *below);
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     if (!is_finite(chain))
         return RD_NOT_POSITIVE_DEFINITE;
-    const enum rd_status status = fill_triples(walk, below);
+    const enum rd_status status = fill_triples(walk);
     if (status != RD_OK)
         return status;
     rd_body_find(chain, &walk->body);
     make_legs(chain, walk->leg);
-    add_legs(walk, below);
+    add_legs(walk);
     for (size_t t = 0; chain->hinge && t < chain->terms; t++)
         fill_hinge(walk, t, walk->bend > 0 ? walk->bend : 1);
     return RD_OK;

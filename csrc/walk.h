@@ -28,7 +28,6 @@ struct rd_walk {
     int32_t behind;                   /* element on its left */
     double *triple;                   /* (elements, 4, width, width)  D, G, Q and P of strut.h */
     uint8_t *strut;                   /* (elements)  1: P is not zero */
-    double below;                     /* eigenvalues below zero of the elements themselves */
     double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held */
     double mass[RD_WIDTH_MAX];        /* sum of |M_ii| */
     struct rd_body body;
