@@ -177,6 +177,6 @@ void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double
         const double *u = shape + i * w;
         for (size_t a = 0; a < w; a++)
             for (size_t b = 0; b < w; b++)
-                kinetic[a] += u[a] * M[a * w + b] * u[b];
+                kinetic[a < b ? a : b] += u[a] * M[a * w + b] * u[b];
     }
 }

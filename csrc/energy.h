@@ -20,7 +20,8 @@ enum rd_strain {
    equal motions. */
 enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain);
 
-/* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape */
+/* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape. What couples two is the
+   first one's: the end correction of lumped masses, M_z,beta, is inertia of z. */
 void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double *kinetic);
 
 #endif

@@ -67,6 +67,14 @@ def test_string_stores_tension_alone_and_moves_in_z_alone():
     assert (modes.energy["z"] == 1).all()
 
 
+def test_rotation_without_inertia_has_no_kinetic_energy():
+    # the end correction of tensed chains couples z and beta: it is inertia of z
+    scene = beam(8, tension=300.0, rotary=False, parts=[rd.PointMass(0.4, 0.01)])
+    modes = scene.compile(elements=9, element="tensed").modes(5)
+    assert (modes.energy["beta"] == 0).all()
+    assert (modes.energy["z"] == 1).all()
+
+
 @pytest.mark.parametrize("k", [1, 2, 3])
 def test_pinned_tensed_chain_shares_energy_as_its_waves_do(k):
     # z rises by 2 sin(k pi/2n) cos(..) a node: tension stores 2 (1 - c) T/a, the total is lambda
