@@ -456,7 +456,7 @@ static void negative_stiffness_without_mass_is_refused(void)
     solved_free(&solved);
 }
 
-/* shapes are not asked for: the same eigenvalues, to the last bit */
+/* shapes are not asked for: fewer iterations, the same eigenvalues within their errors */
 static void eigenvalues_do_not_need_shapes(void)
 {
     struct solved solved;
@@ -471,7 +471,7 @@ static void eigenvalues_do_not_need_shapes(void)
     rd_certify_size(&solved.walked.walk, 100, &steps, &pieces);
     CHECK_INT(solve_in(&solved.walked.walk, steps, pieces, &bare), RD_OK);
     for (size_t k = 0; k < 5; k++)
-        CHECK_EXACT(bare.lambda[k], lambda[k]);
+        CHECK_ABS(bare.lambda[k], lambda[k], bare.error[k], "its own bound");
     solved_free(&solved);
 }
 
