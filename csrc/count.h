@@ -5,8 +5,7 @@
 #include "walk.h"
 
 /* counts[i]: negative eigenvalues of K - lambda[i] M; where M is not negative and K positive that is
-   the number of squared angular frequencies below lambda [rad^2/s^2]. For any real lambda up to
-   1e12 times the chain's own eigenvalues: beyond, node terms leave no digit of the elements.
+   the number of squared angular frequencies below lambda [rad^2/s^2]. For any real lambda.
    lambda, counts (count). */
 void rd_count(const struct rd_walk *walk, size_t count, const double *lambda, double *counts);
 

@@ -67,27 +67,6 @@ void rd_search_count(struct rd_search *search, const double *lambda, double *cou
         rd_search_learn(search, lambda[k], count[k]);
 }
 
-/* An upper bound of all eigenvalues: the largest stiffness over the least mass of a coordinate,
-   times what a node's elements can add up to. */
-static double ceiling_of(const struct rd_walk *walk)
-{
-    const struct rd_chain *chain = walk->chain;
-    const size_t w = chain->width, block = w * w;
-    double ceiling = 0;
-    for (size_t i = 0; i < w; i++) {
-        double stiffness = 0, springs = 0, mass = INFINITY;
-        for (size_t e = 0; e < chain->distinct; e++)
-            stiffness = fmax(stiffness, rd_walk_stiffness(walk, e, i));
-        for (size_t t = 0; t < chain->terms; t++) {
-            const double m = fabs(chain->mass[t * block + i * (w + 1)]);
-            springs = fmax(springs, fabs(chain->stiffness[t * block + i * (w + 1)]));
-            mass = m > 0 ? fmin(mass, m) : mass;
-        }
-        ceiling = fmax(ceiling, 16 * (double)w * (stiffness + springs) / mass);
-    }
-    return ceiling;
-}
-
 /* Counts at -at, step times deeper in each lane; true where one of them is 0. What is deeper than the
    first of those is not learnt: an M that is not positive has eigenvalues there that are no modes. */
 static bool look_below(struct rd_search *search, double *at, double step)
@@ -111,7 +90,7 @@ enum rd_status rd_search_bottom(struct rd_search *search, double nearest)
     double at = nearest;
     if (look_below(search, &at, 16))
         return RD_OK;
-    const double deepest = DEEPEST * fmax(ceiling_of(search->walk), search->size);
+    const double deepest = DEEPEST * fmax(rd_walk_ceiling(search->walk), search->size);
     at = nearest;
     for (int pass = 0; pass < DEEPER && at < deepest; pass++)
         if (look_below(search, &at, 2))

@@ -259,3 +259,22 @@ double rd_walk_stiffness(const struct rd_walk *walk, size_t element, size_t i)
             left += (D[a * w + i] + (a == i)) * Gi[a * w + b] * (D[b * w + i] + (b == i));
     return fmax(fabs(Gi[i * (w + 1)]) + fabs(P[i * (w + 1)]), fabs(left));
 }
+
+double rd_walk_ceiling(const struct rd_walk *walk)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width, block = w * w;
+    double ceiling = 0;
+    for (size_t i = 0; i < w; i++) {
+        double stiffness = 0, springs = 0, mass = INFINITY;
+        for (size_t e = 0; e < chain->distinct; e++)
+            stiffness = fmax(stiffness, rd_walk_stiffness(walk, e, i));
+        for (size_t t = 0; t < chain->terms; t++) {
+            const double m = fabs(chain->mass[t * block + i * (w + 1)]);
+            springs = fmax(springs, fabs(chain->stiffness[t * block + i * (w + 1)]));
+            mass = m > 0 ? fmin(mass, m) : mass;
+        }
+        ceiling = fmax(ceiling, 16 * (double)w * (stiffness + springs) / mass);
+    }
+    return ceiling;
+}

@@ -69,6 +69,10 @@ static inline const uint8_t *rd_walk_held(const struct rd_walk *walk, int32_t te
    of the chain as a rigid body if it is larger. */
 void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z);
 
+/* An upper bound of all eigenvalues where inertia is diagonal [rad^2/s^2]: the largest stiffness over
+   the least mass of a coordinate, times what a node's elements can add up to. */
+double rd_walk_ceiling(const struct rd_walk *walk);
+
 /* the larger of the two diagonal entries of coordinate i in the assembled distinct element */
 double rd_walk_stiffness(const struct rd_walk *walk, size_t element, size_t i);
 

@@ -65,8 +65,13 @@ def test_random_scenes_are_counted_exactly():
 
 
 @pytest.mark.slow
-def test_very_many_random_scenes_are_counted_exactly():
-    assert miscounted(range(MANY)) == []
+@pytest.mark.claim(
+    f"counts of modes below a limit: {MANY} random scenes, how many are wrong",
+    reference="counts in many digits: tests/exact_counts.py",
+    accepted=0.0,
+)
+def test_very_many_random_scenes_are_counted_exactly(claim):
+    claim(len(miscounted(range(MANY))))
 
 
 @pytest.mark.parametrize("stiffness", [0.0, 1e-3, 1.0, 1e3])
@@ -191,3 +196,10 @@ def test_count_below_refuses_what_is_no_frequency(below):
     model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0).compile(elements=4)
     with pytest.raises(rd.SceneError, match="below"):
         model.count(below=below)
+
+
+@pytest.mark.parametrize("element", ["rigid", "tensed"])
+def test_no_more_modes_are_counted_than_exist(element):
+    # far above the spectrum node terms leave no digit of the elements
+    model = beam(9, tension=300.0, rotary=False).compile(elements=9, element=element)
+    assert {model.count(below=10.0**k) for k in (9, 12, 13, 14, 20, 60, 100, 300)} == {8}
