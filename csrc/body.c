@@ -44,6 +44,23 @@ static void add_row(const struct rd_chain *chain, size_t t, const struct row *ro
     }
 }
 
+/* the inertia of continuous elements, a bar of so many that begins at x */
+static void add_bar(const struct rd_chain *chain, size_t e, double count, double x,
+                    struct rd_body *body)
+{
+    const size_t w = chain->width;
+    const double l = count * chain->length[e];
+    for (size_t i = 0; i < w; i++) {
+        const double m = l * chain->inertia[e * w + i];
+        const struct row bar = {.count = 1.0, .x = x + 0.5 * l};
+        body->sum[i][0] += m;
+        if (chain->coordinate[i] != RD_Z)
+            continue;
+        add_weight(m, &bar, body->weight, body->centre, body->moment);
+        body->moment[0] += m * l * l / 12.0;
+    }
+}
+
 void rd_body_find(const struct rd_chain *chain, struct rd_body *body)
 {
     *body = (struct rd_body){.length = 0.0};
@@ -55,6 +72,8 @@ void rd_body_find(const struct rd_chain *chain, struct rd_body *body)
             .apart = last ? 0.0 : chain->length[chain->element[k]],
         };
         add_row(chain, (size_t)chain->term[k], &row, body);
+        if (chain->inertia && !last)
+            add_bar(chain, (size_t)chain->element[k], row.count, row.x, body);
         body->length += last ? 0.0 : row.count * row.apart;
     }
 }

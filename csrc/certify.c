@@ -5,6 +5,7 @@
 #include "rigid.h"
 #include "ritz.h"
 #include "search.h"
+#include "span.h"
 
 #include <string.h>
 
@@ -445,19 +446,24 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
 
 bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
 {
-    size_t elements = 0;
+    const bool endless = rd_walk_is_endless(walk);
+    size_t elements = 0, waves = 2;
+    for (size_t n = wanted; n > 0; n /= 2)
+        waves++;
     *steps = 16 * (wanted + 4);
     *pieces = 1;
     for (size_t r = 0; r < walk->legs; r++) {
         const size_t count = walk->leg[r].count;
-        size_t levels = 0;
+        const double still = rd_walk_radians(walk, walk->leg + r, 0);
+        const bool whole = count < 4 && still == 0 && !endless;
+        size_t levels = endless ? waves + (size_t)rd_span_halvings(still) : 0;
         elements += count;
-        while (count >> levels > 1)
+        for (size_t n = count; n > 1; n /= 2)
             levels++;
-        *steps += count < 4 ? count : 2 + 2 * levels;
-        *pieces += count < 4 ? 0 : levels + 1;
+        *steps += whole ? count : 2 + 2 * levels;
+        *pieces += whole ? 0 : levels + 1;
     }
-    if (*steps >= elements) {
+    if (*steps >= elements && !endless) {
         *steps = elements;
         return true;
     }

@@ -11,12 +11,14 @@ enum rd_coordinate { RD_X, RD_Z, RD_ALPHA, RD_BETA };
 /* channels of a section: axial strain, twist rate, curvature */
 enum rd_channel { RD_AXIAL, RD_TORSION, RD_BENDING };
 
-enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED };
+/* the first three are massless with inertia lumped at the nodes; a continuous one carries its own */
+enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED, RD_CONTINUOUS };
 
 enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
 
 /* Nodes first[k] .. first[k + 1] - 1 are a stretch: the same term and the same element on their
-   right. The last node, which has no element on its right, is the last stretch. */
+   right. The last node, which has no element on its right, is the last stretch. Where elements are
+   continuous nothing stands at the nodes of a stretch of more than one. */
 struct rd_chain {
     size_t nodes;              /* elements + 1 */
     size_t stretches;          /* 2 to nodes */
@@ -28,6 +30,8 @@ struct rd_chain {
     const double *length;      /* (distinct)              [m] */
     const double *tension;     /* (distinct)              [N] */
     const double *flexibility; /* (distinct, 3, 3)        S, absent channels zero */
+    const double *inertia;     /* (distinct, width)       of continuous elements, per length
+                                                          [kg/m, kg m]; else NULL */
     const int32_t *first;      /* (stretches)             node, increasing from 0 to nodes - 1 */
     const int32_t *element;    /* (stretches - 1)         distinct element right of its nodes */
     const int32_t *term;       /* (stretches)             node term at its nodes */
@@ -40,6 +44,31 @@ struct rd_chain {
     const int32_t *element_of; /* (nodes - 1)             element node by node: right of node i */
     const int32_t *term_of; /* (nodes)                 term node by node; a sweep reads neither */
 };
+
+/* the channel that a coordinate's end force loads */
+static inline size_t rd_channel_of(int32_t coordinate)
+{
+    static const size_t channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
+    return channel[coordinate];
+}
+
+/* nodes of a stretch */
+static inline size_t rd_stretch_nodes(const struct rd_chain *chain, size_t k)
+{
+    return (size_t)(k + 1 < chain->stretches ? chain->first[k + 1] - chain->first[k] : 1);
+}
+
+/* whether nothing stands at a node with this term */
+static inline int rd_term_is_bare(const struct rd_chain *chain, int32_t term)
+{
+    const size_t w = chain->width, t = (size_t)term;
+    int any = 0;
+    for (size_t i = 0; i < w * w; i++)
+        any |= chain->mass[t * w * w + i] != 0 || chain->stiffness[t * w * w + i] != 0;
+    for (size_t i = 0; i < w; i++)
+        any |= chain->held[t * w + i] || (chain->hinge && chain->hinge[t * w + i] != 0);
+    return !any;
+}
 
 /* the stretch that a node belongs to, sought from a near one */
 static inline size_t rd_stretch_of(const struct rd_chain *chain, size_t node, size_t near)

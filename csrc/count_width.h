@@ -120,16 +120,18 @@ RD_INLINE void leg_walk(struct wave *wave, const struct rd_walk *walk, const str
     struct piece level[LEVELS];
     struct step step;
     lanes first[W][W], inner[W][W];
-    const int top = pieces_fill(walk, leg, lambda, level);
+    const int halvings = leg_halvings(walk, leg, lambda);
+    const int top = pieces_fill(walk, leg, halvings, lambda, level);
     term_scale(walk, leg->first, leg->before, lambda, z, first);
     term_scale(walk, leg->term, leg->element, lambda, z, inner);
-    size_t left = leg->count;
+    const size_t all = leg->count << halvings;
+    size_t left = all;
     for (int k = top; k >= 0; k--) {
         if (left >> k == 0)
             continue;
-        step_fill(level + k, k > 0, z, inverse, &step);
+        step_fill(level + k, k > 0 || leg_is_continuous(walk, leg), z, inverse, &step);
         for (; left >> k > 0; left -= (size_t)1 << k) {
-            const _Bool start = left == leg->count;
+            const _Bool start = left == all;
             walk_node(wave, walk, start ? leg->first : leg->term, start ? first : inner, &step,
                       start && leg == walk->leg);
             if (W > 2 && walk->strut[leg->element] && (size_t)leg->element < walk->chain->distinct)

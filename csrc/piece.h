@@ -17,6 +17,8 @@
 
 #define W RD_WAVE_WIDTH
 
+#include "slice.h"
+
 #define PIVOT_LIMIT 0.4
 
 enum { LEVELS = 40 };
@@ -24,6 +26,62 @@ enum { LEVELS = 40 };
 struct piece {
     lanes D[W][W], G[W][W], Q[W][W];
 };
+
+/* of a complex step: its square is nothing beside 1, so derivatives are exact */
+#define SLICE_STEP 0x1p-200
+
+RD_INLINE double largest(lanes x)
+{
+    double most = 0;
+    for (int k = 0; k < RD_LANES; k++)
+        most = fmax(most, fabs(x[k]));
+    return most;
+}
+
+/* a continuous element's 2^-halvings part and, where change is not NULL, its d/dlambda */
+RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, int halvings,
+                          lanes lambda, struct piece *piece, struct piece *change)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t e = (size_t)leg->element;
+    const double *S = chain->flexibility + 9 * e;
+    const _Bool bends = chain->coordinate[W - 1] == RD_BETA;
+    const lanes step = l_fill(change ? SLICE_STEP : 0);
+    struct rate_matrix rate = {.z = -1, .lever = l_fill(1)};
+    for (int i = 0; i < W; i++) {
+        const _Bool is_z = chain->coordinate[i] == RD_Z;
+        const double p = chain->inertia[e * W + (size_t)i];
+        rate.q[i] = c_make(-lambda * p, -step * p);
+        if (is_z && bends)
+            rate.z = i;
+        for (int j = 0; j < W; j++) {
+            const size_t c = rd_channel_of(chain->coordinate[i]);
+            const size_t d = rd_channel_of(chain->coordinate[j]);
+            double s = is_z || chain->coordinate[j] == RD_Z ? 0 : S[c * RD_CHANNELS + d];
+            if (is_z && i == j && !bends)
+                s = 1 / chain->tension[e];
+            rate.S[i][j] = c_real(s);
+            rate.elastic[i][j] = s != 0;
+        }
+    }
+    if (bends)
+        rate.q[W - 1].re += chain->tension[e];
+    cv D[W][W], G[W][W], Q[W][W];
+    const double part = ldexp(1, -halvings);
+    const int terms = rd_span_terms(part * rd_walk_radians(walk, leg, largest(lambda)));
+    slice_fill(&rate, part * chain->length[e], terms, D, G, Q);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            piece->D[i][j] = D[i][j].re;
+            piece->G[i][j] = G[i][j].re;
+            piece->Q[i][j] = Q[i][j].re;
+            if (change) {
+                change->D[i][j] = D[i][j].im / SLICE_STEP;
+                change->G[i][j] = G[i][j].im / SLICE_STEP;
+                change->Q[i][j] = Q[i][j].im / SLICE_STEP;
+            }
+        }
+}
 
 /* the element itself */
 RD_INLINE void piece_load(const struct rd_walk *walk, int32_t element, struct piece *piece)
@@ -200,23 +258,48 @@ RD_INLINE lane_mask piece_double(const struct piece *half, const lanes N[W][W], 
     return safe;
 }
 
-/* level[k] of 2^k elements; returns the last k with 2^k <= count and every joint safe */
-RD_INLINE int pieces_fill(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda,
-                          struct piece *level)
+RD_INLINE _Bool leg_is_continuous(const struct rd_walk *walk, const struct rd_leg *leg)
+{
+    return walk->chain->inertia && (size_t)leg->element < walk->chain->distinct;
+}
+
+/* level[0] of a leg, one of its 2^halvings parts of an element, and its d/dlambda */
+RD_INLINE void first_piece(const struct rd_walk *walk, const struct rd_leg *leg, int halvings,
+                           lanes lambda, struct piece *level, struct piece *change)
+{
+    if (leg_is_continuous(walk, leg)) {
+        slice_load(walk, leg, halvings, lambda, level, change);
+        return;
+    }
+    piece_load(walk, leg->element, level);
+    if (change)
+        *change = (struct piece){0};
+}
+
+/* level[k] of 2^k first pieces of an element's 2^-halvings part; returns the last k with
+   2^k <= count 2^halvings and every joint safe */
+RD_INLINE int pieces_fill(const struct rd_walk *walk, const struct rd_leg *leg, int halvings,
+                          lanes lambda, struct piece *level)
 {
     lanes N[W][W];
     int top = 0;
-    piece_load(walk, leg->element, level);
+    first_piece(walk, leg, halvings, lambda, level, NULL);
     if (walk->strut[leg->element])
         return 0;
     for (int i = 0; i < W; i++)
         if (rd_walk_held(walk, leg->term)[i])
             return 0;
     term_load(walk, leg->term, leg->element, lambda, N);
-    while (top + 1 < LEVELS && (leg->count >> (top + 1)) > 0 &&
+    while (top + 1 < LEVELS && ((leg->count << halvings) >> (top + 1)) > 0 &&
            every(piece_double(level + top, N, level + top + 1)))
         top++;
     return top;
+}
+
+/* halvings of the elements of a leg */
+RD_INLINE int leg_halvings(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda)
+{
+    return rd_span_halvings(rd_walk_radians(walk, leg, largest(lambda)));
 }
 
 /* d/dlambda of a doubled piece, dN = -mass, M = I - X V, F' = dD:

@@ -4,7 +4,10 @@
 #include "dense.h"
 #include "element.h"
 #include "section.h"
+#include "transfer.h"
 #include "triple.h"
+
+#include <string.h>
 
 PyObject *py_section(PyObject *module, PyObject *arguments)
 {
@@ -112,6 +115,44 @@ static int check_distance(const struct rd_element *element, double s, const char
 }
 
 /* the triple of one element at many complex factors of its section and its tension */
+/* F, G, Q (count, width, width) of massless elements */
+static enum rd_status massless(const struct rd_chain *chain, size_t e, size_t count,
+                               const double _Complex *factor, double _Complex *const *triple)
+{
+    const struct rd_element element = rd_chain_element(chain, e);
+    const size_t block = chain->width * chain->width;
+    enum rd_status status = RD_OK;
+    for (size_t i = 0; i < count && status == RD_OK; i++)
+        status = rd_triple(&element, factor[i], factor[count + i], triple[0] + i * block,
+                           triple[1] + i * block, triple[2] + i * block);
+    return status;
+}
+
+/* the same of continuous ones, RD_LANES at a time */
+static void continuous(const struct rd_chain *chain, size_t e, size_t count,
+                       const double _Complex *factor, double _Complex *const *triple)
+{
+    const size_t block = chain->width * chain->width;
+    for (size_t i = 0; i < count; i += RD_LANES) {
+        struct rate_matrix rate;
+        struct rd_transfer transfer;
+        cv part[4];
+        for (size_t k = 0; k < RD_LANES; k++)
+            for (size_t p = 0; p < 4; p++) {
+                const double _Complex x = factor[p * count + (i + k < count ? i + k : count - 1)];
+                part[p].re[k] = creal(x);
+                part[p].im[k] = cimag(x);
+            }
+        rd_rate_fill(chain, e, part[0], part[1], part[3], &rate);
+        rd_transfer_fill(chain, e, &rate, &transfer);
+        for (size_t k = 0; k < RD_LANES && i + k < count; k++) {
+            memcpy(triple[0] + (i + k) * block, transfer.F[k], block * sizeof **triple);
+            memcpy(triple[1] + (i + k) * block, transfer.G[k], block * sizeof **triple);
+            memcpy(triple[2] + (i + k) * block, transfer.Q[k], block * sizeof **triple);
+        }
+    }
+}
+
 PyObject *py_triple(PyObject *module, PyObject *arguments)
 {
     struct py_chain parsed = {0};
@@ -123,7 +164,7 @@ PyObject *py_triple(PyObject *module, PyObject *arguments)
         return NULL;
     if (py_chain_view(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
         goto done;
-    factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){2, -1}, "factor");
+    factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){4, -1}, "factor");
     if (factor == NULL)
         goto done;
     const npy_intp count = PyArray_DIM(factor, 1);
@@ -135,17 +176,15 @@ PyObject *py_triple(PyObject *module, PyObject *arguments)
             goto done;
         data[k] = PyArray_DATA((PyArrayObject *)array[k]);
     }
-    const double _Complex *section = PyArray_DATA(factor);
-    for (npy_intp i = 0; i < count; i++) {
-        const npy_intp at = i * w * w;
-        const enum rd_status status = rd_triple(&element, section[i], section[count + i],
-                                                data[0] + at, data[1] + at, data[2] + at);
-        if (status != RD_OK) {
-            py_raise(module, status);
-            goto done;
-        }
-    }
-    result = PyTuple_Pack(3, array[0], array[1], array[2]);
+    enum rd_status status = RD_OK;
+    if (parsed.chain.inertia)
+        continuous(&parsed.chain, (size_t)index, (size_t)count, PyArray_DATA(factor), data);
+    else
+        status = massless(&parsed.chain, (size_t)index, (size_t)count, PyArray_DATA(factor), data);
+    if (status == RD_OK)
+        result = PyTuple_Pack(3, array[0], array[1], array[2]);
+    else
+        py_raise(module, status);
 done:
     for (int k = 0; k < 3; k++)
         Py_XDECREF(array[k]);

@@ -1,14 +1,14 @@
 /* Energies of shapes. */
 #include "py_glue.h"
 
-#include "energy.h"
+#include "energy_span.h"
 
 PyObject *py_energy(PyObject *module, PyObject *arguments)
 {
     struct py_chain parsed = {0};
-    PyArrayObject *shapes = NULL;
-    PyObject *chain, *object, *strain = NULL, *kinetic = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OO", &chain, &object))
+    PyArrayObject *shapes = NULL, *lambdas = NULL;
+    PyObject *chain, *object, *eigenvalues, *strain = NULL, *kinetic = NULL, *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OOO", &chain, &object, &eigenvalues))
         return NULL;
     if (py_chain_parse(chain, &parsed) < 0)
         goto done;
@@ -19,16 +19,24 @@ PyObject *py_energy(PyObject *module, PyObject *arguments)
     if (shapes == NULL)
         goto done;
     const npy_intp count = PyArray_DIM(shapes, 0);
+    lambdas = py_array(eigenvalues, NPY_DOUBLE, 1, &count, "eigenvalue");
+    if (lambdas == NULL)
+        goto done;
     strain = py_new(NPY_DOUBLE, 2, (npy_intp[]){count, RD_STRAINS});
     kinetic = py_new(NPY_DOUBLE, 2, (npy_intp[]){count, (npy_intp)w});
     if (strain == NULL || kinetic == NULL)
         goto done;
-    const double *u = PyArray_DATA(shapes);
+    const double *u = PyArray_DATA(shapes), *lambda = PyArray_DATA(lambdas);
     double *stored = PyArray_DATA((PyArrayObject *)strain);
     double *moving = PyArray_DATA((PyArrayObject *)kinetic);
     enum rd_status status = RD_OK;
     Py_BEGIN_ALLOW_THREADS
     for (size_t k = 0; k < (size_t)count && status == RD_OK; k++) {
+        if (parsed.chain.inertia) {
+            status = rd_energy_span(&parsed.chain, lambda[k], u + k * entries,
+                                    stored + k * RD_STRAINS, moving + k * w);
+            continue;
+        }
         status = rd_energy_strain(&parsed.chain, u + k * entries, stored + k * RD_STRAINS);
         rd_energy_kinetic(&parsed.chain, u + k * entries, moving + k * w);
     }
@@ -40,6 +48,7 @@ PyObject *py_energy(PyObject *module, PyObject *arguments)
 done:
     Py_XDECREF(kinetic);
     Py_XDECREF(strain);
+    Py_XDECREF(lambdas);
     Py_XDECREF(shapes);
     py_chain_release(&parsed);
     return result;

@@ -85,7 +85,8 @@ enum {
     STIFFNESS,
     HELD,
     TERM,
-    HINGE
+    HINGE,
+    INERTIA
 };
 
 /* what the core asserts of the numbers */
@@ -99,6 +100,12 @@ static int check_values(const struct rd_chain *chain)
     for (size_t k = 0; chain->hinge && k < chain->terms * chain->width; k++)
         if (!(chain->hinge[k] >= 0)) {
             PyErr_Format(PyExc_ValueError, "hinge[%zd, %zd] must be >= 0",
+                         (Py_ssize_t)(k / chain->width), (Py_ssize_t)(k % chain->width));
+            return -1;
+        }
+    for (size_t k = 0; chain->inertia && k < chain->distinct * chain->width; k++)
+        if (!(chain->inertia[k] >= 0)) {
+            PyErr_Format(PyExc_ValueError, "inertia[%zd, %zd] must be >= 0",
                          (Py_ssize_t)(k / chain->width), (Py_ssize_t)(k % chain->width));
             return -1;
         }
@@ -123,17 +130,27 @@ static int check_stretches(const struct rd_chain *chain)
     bool increase = first[0] == 0;
     for (size_t k = 1; k < chain->stretches; k++)
         increase = increase && first[k] > first[k - 1];
-    if (increase)
-        return 0;
-    PyErr_SetString(PyExc_ValueError, "first must increase from 0");
-    return -1;
+    if (!increase) {
+        PyErr_SetString(PyExc_ValueError, "first must increase from 0");
+        return -1;
+    }
+    for (size_t k = 0; chain->inertia && k < chain->stretches; k++)
+        if (rd_stretch_nodes(chain, k) > 1 && !rd_term_is_bare(chain, chain->term[k])) {
+            PyErr_SetString(PyExc_ValueError, "nothing may stand inside continuous stretches");
+            return -1;
+        }
+    return 0;
 }
 
 static int check_indices(const struct py_chain *parsed)
 {
     const struct rd_chain *chain = &parsed->chain;
-    if (chain->kind != RD_DIFFERENCE && chain->kind != RD_RIGID && chain->kind != RD_TENSED) {
-        PyErr_Format(PyExc_ValueError, "kind must be 0, 1 or 2, got %d", (int)chain->kind);
+    if ((int)chain->kind < RD_DIFFERENCE || (int)chain->kind > RD_CONTINUOUS) {
+        PyErr_Format(PyExc_ValueError, "kind must be 0, 1, 2 or 3, got %d", (int)chain->kind);
+        return -1;
+    }
+    if ((chain->kind == RD_CONTINUOUS) != (chain->inertia != NULL)) {
+        PyErr_SetString(PyExc_ValueError, "continuous elements and no others have inertia");
         return -1;
     }
     for (size_t k = 1; k < chain->width; k++)
@@ -160,11 +177,11 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
 {
     static const char *const name[PY_CHAIN_ARRAYS] = {
         "coordinate", "length",    "tension", "flexibility", "first", "element",
-        "mass",       "stiffness", "held",    "term",        "hinge"};
+        "mass",       "stiffness", "held",    "term",        "hinge", "inertia"};
     static const int type[PY_CHAIN_ARRAYS] = {NPY_INT32, NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE,
                                               NPY_INT32, NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE,
-                                              NPY_UINT8, NPY_INT32,  NPY_DOUBLE};
-    static const int dimensions[PY_CHAIN_ARRAYS] = {1, 1, 1, 3, 1, 1, 3, 3, 2, 1, 2};
+                                              NPY_UINT8, NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE};
+    static const int dimensions[PY_CHAIN_ARRAYS] = {1, 1, 1, 3, 1, 1, 3, 3, 2, 1, 2, 2};
     struct rd_chain *chain = &parsed->chain;
     int kind;
     PyObject *item[PY_CHAIN_ARRAYS];
@@ -172,8 +189,9 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
         PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
-                          item + 4, item + 5, item + 6, item + 7, item + 8, item + 9, item + 10))
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
+                          item + 4, item + 5, item + 6, item + 7, item + 8, item + 9, item + 10,
+                          item + 11))
         return -1;
     npy_intp width = -1, distinct = -1, stretches = -1, terms = -1;
     for (int k = 0; k < PY_CHAIN_ARRAYS; k++) {
@@ -189,8 +207,9 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
             {terms, width},
             {stretches},
             {terms, width},
+            {distinct, width},
         };
-        if (k == HINGE && item[k] == Py_None)
+        if (k >= HINGE && item[k] == Py_None)
             continue;
         parsed->array[k] = py_array(item[k], type[k], dimensions[k], shape[k], name[k]);
         if (parsed->array[k] == NULL)
@@ -218,6 +237,7 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
         .held = PyArray_DATA(parsed->array[HELD]),
         .term = PyArray_DATA(parsed->array[TERM]),
         .hinge = parsed->array[HINGE] == NULL ? NULL : PyArray_DATA(parsed->array[HINGE]),
+        .inertia = parsed->array[INERTIA] == NULL ? NULL : PyArray_DATA(parsed->array[INERTIA]),
     };
     chain->nodes = stretches > 0 ? (size_t)(uint32_t)chain->first[stretches - 1] + 1 : 0;
     return check_indices(parsed);

@@ -5,10 +5,11 @@
 #include "real_lanes.h"
 #include "walk.h"
 
-/* one step of the walk: a piece of 2^level elements, or a single element */
+/* one step of the walk: 2^level first pieces, or a single element */
 struct rd_step {
-    size_t node;   /* first node */
-    int32_t piece; /* index of the piece, -1: the element alone */
+    size_t at;        /* first pieces from the leg's first node */
+    int32_t halvings; /* an element has 2^halvings first pieces */
+    int32_t piece;    /* index of the piece, -1: the element alone */
     int32_t element;
     int32_t term;   /* node term at the first node */
     int32_t before; /* element on its left, -1: none */

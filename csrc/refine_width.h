@@ -301,25 +301,25 @@ RD_INLINE lanes lanes_load(const double *x)
     return y;
 }
 
+/* all pieces with their d/dlambda */
 RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
 {
-    int32_t leg = -1;
+    int32_t done = -1;
     for (size_t m = 0; m < r->steps; m++) {
-        const struct rd_step *step = r->step + m;
-        if (step->leg == leg || step->piece < 0)
-            continue;
         /* the first step of a leg is its largest piece, the last of its levels */
-        leg = step->leg;
+        const struct rd_step *step = r->step + m;
+        if (step->piece <= done)
+            continue;
+        done = step->piece;
+        const struct rd_leg *leg = r->walk->leg + step->leg;
         lanes N[W][W], dN[W][W];
-        const int32_t term = r->walk->leg[leg].term;
-        term_load(r->walk, term, step->element, lambda, N);
+        term_load(r->walk, leg->term, step->element, lambda, N);
         for (int i = 0; i < W; i++)
             for (int j = 0; j < W; j++)
-                dN[i][j] = l_fill(-rd_walk_mass(r->walk, term)[i * W + j]);
+                dN[i][j] = l_fill(-rd_walk_mass(r->walk, leg->term)[i * W + j]);
         struct piece *level =
             (struct piece *)(r->piece + (size_t)(step->piece - step->level) * 6 * W * W);
-        piece_load(r->walk, step->element, level);
-        memset(level + 1, 0, sizeof *level);
+        first_piece(r->walk, leg, step->halvings, lambda, level, level + 1);
         for (int32_t k = 0; k < step->level; k++, level += 2) {
             piece_double(level, N, level + 2);
             piece_double_change(level, level + 1, N, dN, level + 3);
@@ -547,14 +547,16 @@ static void joint_fill(const struct rd_refine *r, const struct rd_step *step, la
     }
 }
 
-/* Back down the doubling: in the middle of two halves u_m = M F1 u_a + X F2^T f_b with
+/* Back down the doubling to the nodes, 2^halvings first pieces apart: in the middle of two halves u_m = M F1 u_a + X F2^T f_b with
    M = I - X V, f_m = F2^T f_b - V u_m. joint[k] is that of two halves of level k. */
-static void descend(const struct joint *joint, int32_t level, const double *ua, const double *fb,
-                    double *u)
+static void descend(const struct joint *joint, int32_t halvings, int32_t level, size_t at,
+                    const double *ua, const double *fb, double *u)
 {
-    memcpy(u, ua, W * sizeof *u);
-    if (level == 0)
+    if (level <= halvings) {
+        if ((at & (((size_t)1 << halvings) - 1)) == 0)
+            memcpy(u + (at >> halvings) * W, ua, W * sizeof *u);
         return;
+    }
     const struct joint *half = joint + level - 1;
     double um[W], fm[W], Fu[W], Ff[W];
     for (int i = 0; i < W; i++) {
@@ -575,8 +577,8 @@ static void descend(const struct joint *joint, int32_t level, const double *ua, 
         for (int j = 0; j < W; j++)
             fm[i] -= half->V[i][j] * um[j];
     }
-    descend(joint, level - 1, ua, fm, u);
-    descend(joint, level - 1, um, fb, u + ((size_t)W << (level - 1)));
+    descend(joint, halvings, level - 1, at, ua, fm, u);
+    descend(joint, halvings, level - 1, at + ((size_t)1 << (level - 1)), um, fb, u);
 }
 
 void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *u)
@@ -600,35 +602,50 @@ void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *
         if (step->leg != leg && step->piece >= 0)
             joint_fill(r, step, lambda, lane, joint);
         leg = step->leg;
-        if (step->term != RD_NO_TERM) /* the node's own motion is that on the left of its hinge */
-            descend(joint, step->level, ua, fb, u + step->node * W);
+        /* a node's own motion is that on the left of its hinge */
+        if (step->at > 0 || step->term != RD_NO_TERM)
+            descend(joint, step->halvings, step->level, step->at, ua, fb,
+                    u + r->walk->leg[leg].node * W);
     }
 }
 
-/* Steps of a leg: single elements where it is short, pieces of 2^k otherwise. */
+static _Bool are_equal(const struct rd_leg *a, const struct rd_leg *b)
+{
+    return a->element == b->element && a->count == b->count && a->term == b->term;
+}
+
+/* Steps of a leg: single elements where it is short, pieces of 2^k otherwise. Equal spans side by
+   side share their pieces. */
 static _Bool plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
 {
     const struct rd_leg *leg = r->walk->leg + index;
+    const _Bool joined = leg->count >= 4 || leg_is_continuous(r->walk, leg);
     struct piece level[LEVELS];
-    const int top = leg->count < 4 ? 0 : pieces_fill(r->walk, leg, lambda, level);
-    if (top > 0 && (size_t)(*pieces + top + 1) > r->pieces)
+    const int halvings = leg_halvings(r->walk, leg, lambda);
+    const int top = joined ? pieces_fill(r->walk, leg, halvings, lambda, level) : 0;
+    const _Bool kept = top > 0 || leg_is_continuous(r->walk, leg);
+    const struct rd_step *last = r->steps > 0 ? r->step + r->steps - 1 : NULL;
+    const _Bool shared = last && last->piece >= 0 && index > 0 && are_equal(leg - 1, leg);
+    const int32_t base = shared ? last->piece - last->level : *pieces;
+    if (kept && !shared && (size_t)(base + top + 1) > r->pieces)
         return 0;
-    size_t node = leg->node, left = leg->count;
+    size_t left = leg->count << halvings, at = 0;
     for (int k = top; k >= 0; k--)
-        for (; left >> k > 0; left -= (size_t)1 << k, node += (size_t)1 << k) {
+        for (; left >> k > 0; left -= (size_t)1 << k, at += (size_t)1 << k) {
             if (r->steps == r->capacity)
                 return 0;
             r->step[r->steps++] = (struct rd_step){
-                .node = node,
-                .piece = top > 0 ? *pieces + k : -1,
+                .at = at,
+                .halvings = halvings,
+                .piece = kept ? base + k : -1,
                 .element = leg->element,
-                .term = node == leg->node ? leg->first : leg->term,
-                .before = node == leg->node ? leg->before : leg->element,
+                .term = at == 0 ? leg->first : leg->term,
+                .before = at == 0 ? leg->before : leg->element,
                 .level = k,
                 .leg = index,
             };
         }
-    *pieces += top > 0 ? top + 1 : 0;
+    *pieces += kept && !shared ? top + 1 : 0;
     return 1;
 }
 

@@ -184,12 +184,25 @@ static void add_inertia(size_t w, const double *M, const double B[W][W], const d
                     A[a][b] += factor / 2 * M[i * w + j] * (B[i][a] * C[j][b] + C[i][a] * B[j][b]);
 }
 
-/* T^T M T over all nodes; in a run T + k D T, with sums of k and k^2 for k = 1 .. n - 1 */
+/* the inertia M (width, width) of an element of its own; false where it has none */
+static bool rope_of(const struct rd_walk *walk, const struct rd_leg *leg, double *M)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t w = chain->width, e = (size_t)leg->element;
+    if (!chain->inertia || e >= chain->distinct)
+        return false;
+    memset(M, 0, w * w * sizeof *M);
+    for (size_t i = 0; i < w; i++)
+        M[i * (w + 1)] = chain->length[e] * chain->inertia[e * w + i];
+    return true;
+}
+
+/* T^T M T over all nodes and continuous elements, in which T is linear; in a run T + k D T, with sums of k and k^2 for k = 1 .. n - 1 */
 static void inertia(const struct rd_walk *walk, double A[W][W])
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width;
-    double T[W][W], DT[W][W], D[W * W], Q[W * W];
+    double T[W][W], DT[W][W], D[W * W], Q[W * W], own[W * W];
     begin(walk, T);
     memset(A, 0, W * sizeof *A);
     for (size_t r = 0; r < walk->legs; r++) {
@@ -202,6 +215,11 @@ static void inertia(const struct rd_walk *walk, double A[W][W])
         add_inertia(w, M, T, T, n - 1, A);
         add_inertia(w, M, T, DT, n * (n - 1), A);
         add_inertia(w, M, DT, DT, (n - 1) * n * (2 * n - 1) / 6, A);
+        if (rope_of(walk, leg, own)) {
+            add_inertia(w, own, T, T, n, A);
+            add_inertia(w, own, T, DT, n * n, A);
+            add_inertia(w, own, DT, DT, n * n * n / 3, A);
+        }
         advance(w, D, leg->count, T);
     }
     add_inertia(w, rd_walk_mass(walk, walk->last), T, T, 1, A);

@@ -5,7 +5,7 @@
 
 size_t rd_runs_capacity(const struct rd_chain *chain)
 {
-    const size_t most = chain->nodes / RD_RUN_LEAST + 1;
+    const size_t most = chain->inertia ? chain->stretches : chain->nodes / RD_RUN_LEAST + 1;
     return chain->stretches < most ? chain->stretches : most;
 }
 
@@ -19,27 +19,25 @@ static int parts(const struct rd_chain *chain, int32_t term)
     return any;
 }
 
-/* nodes of a stretch */
-static size_t nodes_of(const struct rd_chain *chain, size_t k)
-{
-    return (size_t)(k + 1 < chain->stretches ? chain->first[k + 1] - chain->first[k] : 1);
-}
-
 static void average(const struct rd_chain *chain, struct rd_runs *runs)
 {
-    double length = 0.0, tension = 0.0, flexibility[RD_CHANNELS] = {0};
+    double length = 0.0, tension = 0.0, flexibility[RD_CHANNELS] = {0}, rope[RD_WIDTH_MAX] = {0};
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         const size_t e = (size_t)chain->element[k];
-        const double l = (double)nodes_of(chain, k) * chain->length[e];
+        const double l = (double)rd_stretch_nodes(chain, k) * chain->length[e];
         length += l;
         tension += l * chain->tension[e];
         for (size_t c = 0; c < RD_CHANNELS; c++)
             flexibility[c] += l * chain->flexibility[9 * e + 4 * c];
+        for (size_t i = 0; chain->inertia && i < chain->width; i++)
+            rope[i] += l * chain->inertia[e * chain->width + i];
     }
     runs->length = length;
     runs->tension = tension / length;
     for (size_t c = 0; c < RD_CHANNELS; c++)
         runs->flexibility[c] = flexibility[c] / length;
+    for (size_t i = 0; i < chain->width; i++)
+        runs->mass[i] = rope[i] / length;
 }
 
 /* One mass of 1e12 among many must not set the scale of all: a geometric mean. Few logarithms of
@@ -48,9 +46,11 @@ static void average_mass(const struct rd_chain *chain, struct rd_runs *runs)
 {
     const size_t w = chain->width;
     for (size_t c = 0; c < w; c++) {
+        if (runs->mass[c] > 0.0)
+            continue;
         double sum = 0.0, nodes = 0.0, product = 1.0;
         for (size_t k = 0; k < chain->stretches; k++) {
-            const double n = (double)nodes_of(chain, k);
+            const double n = (double)rd_stretch_nodes(chain, k);
             const double m = fabs(chain->mass[(size_t)chain->term[k] * w * w + c * (w + 1)]);
             if (m == 0.0)
                 continue;
@@ -68,8 +68,23 @@ static void average_mass(const struct rd_chain *chain, struct rd_runs *runs)
     }
 }
 
+/* every span: equal continuous elements with nothing between them */
+static size_t find_spans(const struct rd_chain *chain, struct rd_run *run)
+{
+    size_t count = 0;
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const int32_t e = chain->element[k];
+        const size_t first = (size_t)chain->first[k], last = (size_t)chain->first[k + 1];
+        if (count > 0 && run[count - 1].element == e && rd_term_is_bare(chain, chain->term[k]))
+            run[count - 1].last = last;
+        else
+            run[count++] = (struct rd_run){first, last, e, RD_NO_NODE};
+    }
+    return count;
+}
+
 /* a stretch, and the node before it where the element on its right is the same */
-void rd_runs_find(const struct rd_chain *chain, struct rd_run *run, struct rd_runs *runs)
+static size_t find_stretches(const struct rd_chain *chain, struct rd_run *run)
 {
     size_t count = 0, end = 0;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
@@ -83,7 +98,16 @@ void rd_runs_find(const struct rd_chain *chain, struct rd_run *run, struct rd_ru
         run[count++] = (struct rd_run){first, last, e, t};
         end = last;
     }
-    *runs = (struct rd_runs){.count = count, .run = run};
+    return count;
+}
+
+void rd_runs_find(const struct rd_chain *chain, struct rd_run *run, struct rd_runs *runs)
+{
+    *runs = (struct rd_runs){
+        .count = chain->inertia ? find_spans(chain, run) : find_stretches(chain, run),
+        .least = chain->inertia ? 1 : RD_RUN_LEAST,
+        .run = run,
+    };
     average(chain, runs);
     average_mass(chain, runs);
     rd_body_find(chain, &runs->body);

@@ -7,21 +7,25 @@
 #include "status.h"
 
 /* Elements first .. last - 1 are the same and so are the node terms at first + 1 .. last - 1,
-   where nothing is held. Only stretches of RD_RUN_LEAST elements or more are runs. */
+   where nothing is held. Only stretches of so many elements or more are runs: RD_RUN_LEAST, or 1
+   where elements are continuous, which have nothing at those nodes. */
 struct rd_run {
     size_t first, last;
-    int32_t element, term;
+    int32_t element;
+    int32_t term; /* RD_NO_NODE: nothing */
 };
 
-enum { RD_RUN_LEAST = 8 };
+enum { RD_RUN_LEAST = 8, RD_NO_NODE = -1 };
 
 struct rd_runs {
     size_t count;
+    size_t least;                    /* elements of a run */
     const struct rd_run *run;        /* (count) */
     double length;                   /* [m] of the chain */
     double tension;                  /* [N] mean over the length */
     double flexibility[RD_CHANNELS]; /* mean S_cc over the length */
-    double mass[RD_WIDTH_MAX];       /* per length, geometric mean of nodes that have any */
+    double mass[RD_WIDTH_MAX];       /* per length: the rope's own, or where elements have none the
+                                        geometric mean of nodes that have any */
     struct rd_body body;
 };
 

@@ -5,6 +5,7 @@
 #include "ritz.h"
 
 #include <math.h>
+#include <stdint.h>
 
 enum { LANES = RD_LANES, DEEPER = 48, HIGHER = 60, CUTS = 200 };
 
@@ -201,6 +202,8 @@ static size_t positive(const struct rd_walk *walk, int32_t term)
 
 size_t rd_search_finite(const struct rd_walk *walk)
 {
+    if (rd_walk_is_endless(walk))
+        return SIZE_MAX;
     size_t count = positive(walk, walk->last);
     for (size_t r = 0; r < walk->legs; r++) {
         const struct rd_leg *leg = walk->leg + r;

@@ -29,7 +29,7 @@ static void begin_block(struct sweep *s, const struct rd_factors *factors, size_
     for (size_t lane = 1; lane < s->used; lane++)
         if (is_planar(s, lane) != s->planar)
             s->used = lane;
-    s->levels = 0;
+    s->tabled.levels = 0;
     s->steps = 1.0;
     for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)
         s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);

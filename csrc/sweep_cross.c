@@ -37,6 +37,8 @@ static int turns(const struct sweep *s, int32_t term)
 {
     const size_t w = s->chain->width, at = (size_t)term * w * w;
     int any = 0;
+    if (term == RD_NO_NODE)
+        return 0;
     for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j < w; j++)
             if (s->way[1].sign[i] * s->way[1].sign[j] < 0.0)
@@ -45,26 +47,33 @@ static int turns(const struct sweep *s, int32_t term)
     return any;
 }
 
-/* pieces of 1, 2, 4, .. elements of a run, joined by doubling */
-static void make_table(struct sweep *s, int32_t e, int32_t t, int way, size_t levels)
+/* pieces of 1, 2, 4, .. first pieces of a run, joined by doubling; those that it is crossed by are
+   the largest and the binary digits of the rest */
+static void make_table(struct sweep *s, const struct rd_run *run, int way,
+                       const struct sweep_pieces *pieces)
 {
-    way = turns(s, t) ? way : 0;
-    if (s->levels == levels && s->table_element == e && s->table_term == t && s->table_way == way)
+    const size_t levels = pieces->level + 1, rest = pieces->count & (((size_t)1 << levels) - 1);
+    struct sweep_table *table = &s->tabled;
+    way = turns(s, run->term) ? way : 0;
+    if (table->levels == levels && table->element == run->element && table->term == run->term &&
+        table->way == way && table->rest == rest)
         return;
     cv *one = s->triple, *two = s->triple + s->coefs;
-    s->kernel->make_element(s->chain, &s->block, (size_t)e, one);
+    const size_t e = (size_t)run->element;
+    if (s->chain->inertia)
+        s->kernel->make_slice(s->chain, &s->block, e, pieces->halvings, pieces->terms, one);
+    else
+        s->kernel->make_element(s->chain, &s->block, e, one);
     for (size_t k = 0; k < levels; k++) {
-        s->kernel->make_coefficients(one, s->table + k * s->coefs);
+        if (k + 1 == levels || rest >> k & 1)
+            s->kernel->make_coefficients(one, s->table + k * s->coefs);
         if (k + 1 < levels)
-            s->kernel->join(s->chain, &s->way[way], (size_t)t, one, one, two);
+            s->kernel->join(s->chain, &s->way[way], run->term, one, one, two);
         cv *swap = one;
         one = two;
         two = swap;
     }
-    s->levels = levels;
-    s->table_element = e;
-    s->table_term = t;
-    s->table_way = way;
+    *table = (struct sweep_table){levels, rest, run->element, run->term, way};
 }
 
 /* the node term at the near end of the first piece may differ from the run's */
@@ -94,15 +103,14 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
-    const int32_t e = run->element, t = run->term;
-    size_t top = rd_sweep_levels(s->chain, (size_t)e, (size_t)t, count, &s->extent);
-    if (top == 0) {
+    const struct sweep_pieces all = rd_sweep_pieces(s->chain, run, count, &s->extent);
+    if (all.level == 0 && !s->chain->inertia) {
         cross_each(s, way, node, count);
         return;
     }
-    make_table(s, e, t, way, top + 1);
+    make_table(s, run, way, &all);
     int begun = 0;
-    for (size_t left = count; left > 0; top--) {
+    for (size_t left = all.count, top = all.level; left > 0; top--) {
         size_t pieces = left >> top;
         left -= pieces << top;
         s->steps += (double)pieces * (double)pieces;
@@ -114,7 +122,7 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
             begun = 1;
             pieces--;
         }
-        s->kernel->walk_pieces(&s->walk[way], piece, t, pieces, &s->state);
+        s->kernel->walk_pieces(&s->walk[way], piece, run->term, pieces, &s->state);
     }
     const size_t end = term_at(s, way ? node - count : node + count);
     if (way && (s->trait[end] & RD_HINGED))
@@ -143,7 +151,7 @@ void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
             a = until;
         } else {
             const size_t end = run->last < b ? run->last : b;
-            if (end - a >= RD_RUN_LEAST)
+            if (end - a >= s->runs.least)
                 cross_run(s, run, 0, a, end - a);
             else
                 cross_each(s, 0, a, end - a);
@@ -166,7 +174,7 @@ void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
             b = until;
         } else {
             const size_t end = run->first > a ? run->first : a;
-            if (b - end >= RD_RUN_LEAST)
+            if (b - end >= s->runs.least)
                 cross_run(s, run, 1, b, b - end);
             else
                 cross_each(s, 1, b, b - end);

@@ -1,16 +1,19 @@
 /* Two pieces joined into one.
    Included by sweep_width.h, once per width. */
 
-/* Two pieces and the node term t between them, Q2 <- Q2 + N, M = (I + G1 Q2)^-1:
+/* Two pieces and the node term t (negative: none) between them, Q2 <- Q2 + N, M = (I + G1 Q2)^-1:
        D = D1 + D2 + D2 D1 - F2 M G1 Q2 F1,  G = G2 + F2 M G1 F2^T,  Q = Q1 + F1^T Q2 M F1 */
-static RD_CLONES void K_(join)(const struct rd_chain *chain, const struct sweep_way *way, size_t t,
+static RD_CLONES void K_(join)(const struct rd_chain *chain, const struct sweep_way *way, int32_t t,
                                const cv *one, const cv *two, cv *joined)
 {
     const cv *D1 = one, *G1 = D1 + FULL, *Q1 = G1 + SYM;
     const cv *D2 = two, *G2 = D2 + FULL, *Q2n = G2 + SYM;
     cv N[SYM], Q2[SYM], m[FULL], M[FULL], X[FULL], Y[FULL], F1[FULL], F2[FULL];
     cv F2X[FULL], QF1[FULL], YF1[FULL], D[FULL], G[SYM], Q[SYM];
-    K_(node_term)(chain, way, t, N);
+    UNROLL for (int i = 0; i < SYM; i++)
+        N[i] = c_zero();
+    if (t >= 0)
+        K_(node_term)(chain, way, (size_t)t, N);
     UNROLL for (int i = 0; i < SYM; i++)
         Q2[i] = c_add(Q2n[i], N[i]);
     K_(sym_times_sym)(G1, Q2, m);

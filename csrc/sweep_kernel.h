@@ -4,6 +4,7 @@
 
 #include "chain.h"
 #include "lanes.h"
+#include "rate_matrix.h"
 #include "shape.h"
 #include "strut.h"
 
@@ -101,11 +102,15 @@ RD_INLINE void sweep_accompany(const cv *E, int width, cv *companion)
 
 struct sweep_kernel {
     void (*make_element)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *triple);
+    void (*make_slice)(const struct rd_chain *, const struct sweep_block *, size_t e, int halvings,
+                       int terms, cv *triple);
+    void (*make_span)(const struct rate_matrix *, double length, int halvings, int terms,
+                      cv *triple);
     void (*make_coefficients)(const cv *triple, cv *coef);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
     void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);
     void (*walk_plain)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
-    void (*join)(const struct rd_chain *, const struct sweep_way *, size_t term, const cv *one,
+    void (*join)(const struct rd_chain *, const struct sweep_way *, int32_t term, const cv *one,
                  const cv *two, cv *joined);
     void (*walk)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
     void (*walk_pieces)(const struct sweep_walk *, const cv *piece, int32_t term, size_t count,

@@ -35,8 +35,10 @@ static bool same_levels(const struct rd_chain *chain, const struct rd_runs *runs
 {
     for (size_t r = 0; r < runs->count; r++) {
         const struct rd_run *run = runs->run + r;
-        const size_t e = (size_t)run->element, t = (size_t)run->term, n = run->last - run->first;
-        if (rd_sweep_levels(chain, e, t, n, x) != rd_sweep_levels(chain, e, t, n, y))
+        const size_t n = run->last - run->first;
+        const struct sweep_pieces a = rd_sweep_pieces(chain, run, n, x);
+        const struct sweep_pieces b = rd_sweep_pieces(chain, run, n, y);
+        if (a.level != b.level || a.halvings != b.halvings)
             return false;
     }
     return true;

@@ -1,6 +1,7 @@
 /* All that a sweep works with, laid out in one workspace. */
 #include "sweep_plan.h"
 
+#include "span.h"
 #include "sweep_order.h"
 
 #include <math.h>
@@ -24,10 +25,10 @@ static void *take_lanes(struct rd_workspace *workspace, size_t count, size_t siz
     return p ? p + (ALIGN - (uintptr_t)p % ALIGN) % ALIGN : NULL;
 }
 
-/* pieces of 1, 2, 4, .. elements, up to all of the chain */
+/* pieces of 1, 2, 4, .. elements or parts of them, up to all of the chain */
 static size_t levels_most(const struct rd_chain *chain)
 {
-    size_t levels = 1;
+    size_t levels = chain->inertia ? 1 + RD_HALVINGS_MOST : 1;
     for (size_t n = chain->nodes - 1; n > 1; n /= 2)
         levels++;
     return levels;
@@ -114,10 +115,10 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
     lanes *error = take_lanes(workspace, carry->count, sizeof *error);
     lanes *heavy = take_lanes(workspace, carry->count, sizeof *heavy);
     cv *coefficients = NULL;
-    if (chain->distinct <= DISTINCT_MOST)
+    if (chain->distinct <= DISTINCT_MOST && !chain->inertia)
         coefficients = take_lanes(workspace, chain->distinct * coefs, sizeof *coefficients);
     cv *plain = NULL;
-    if (chain->distinct <= DISTINCT_MOST && kernels[w - 1]->walk_plain)
+    if (chain->distinct <= DISTINCT_MOST && !chain->inertia && kernels[w - 1]->walk_plain)
         plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *plain);
     uint8_t *trait = rd_take(workspace, chain->terms, sizeof *trait);
     size_t *order = rd_take(workspace, factors->count, sizeof *order);

@@ -7,6 +7,14 @@
 #include "sweep_scale.h"
 #include "taps.h"
 
+/* what the pieces in the table are of */
+struct sweep_table {
+    size_t levels; /* 0: of nothing */
+    size_t rest;   /* binary digits that have coefficients beside the largest piece */
+    int32_t element, term;
+    int way;
+};
+
 struct sweep {
     const struct rd_chain *chain;
     struct rd_runs runs;
@@ -35,9 +43,7 @@ struct sweep {
     size_t index[RD_LANES]; /* frequencies of the block */
     size_t used;            /* lanes of it that are not repeated */
     size_t failed;          /* the first frequency without a response, or their count */
-    size_t levels;          /* of the table, 0: none */
-    int32_t table_element, table_term;
-    int table_way;
+    struct sweep_table tabled;
     struct sweep_block block;
     struct sweep_way way[2];
     struct sweep_extent extent;

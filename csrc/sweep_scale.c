@@ -1,11 +1,11 @@
 /* The characteristic receptances that scale a sweep, and how long its pieces may be. */
 #include "sweep_scale.h"
 
+#include "span.h"
+
 #include <math.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
-
-static const int channel_of[] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
 
 /* Propagating and evanescent wavenumber squared of B z'''' - T z'' = q z:
        h = T/2B, r = sqrt(h^2 + q/B), a^2 = r + h, k^2 = r - h, the smaller one from k a */
@@ -55,7 +55,7 @@ static void characteristic(const struct rd_chain *chain, const struct rd_runs *r
                 a2 = fmin(a2, 16.0 / (l * l));
             endless = c == RD_Z ? S / (section * sqrt(k2) * (k2 + a2)) : S / (section * sqrt(a2));
         } else {
-            const double C = c == RD_Z ? fabs(T) : section / runs->flexibility[channel_of[c]];
+            const double C = c == RD_Z ? fabs(T) : section / runs->flexibility[rd_channel_of(c)];
             endless = 1.0 / (C * sqrt(fmax(lambda * runs->mass[i] / C, least)));
         }
         z[i] = sqrt(fmax(endless, rd_body_receptance(&runs->body, chain, i, lambda, spring, T)));
@@ -111,7 +111,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
     const cv soft = c_inverse(section);
     for (size_t i = 0; i < w; i++) {
         const int32_t c = chain->coordinate[i];
-        block->channel[i] = channel_of[c];
+        block->channel[i] = (int)rd_channel_of(c);
         block->arm[i] = block->bends && c == RD_Z;
         block->ratio[i] = last / block->z[i];
         way[0].sign[i] = 1.0;
@@ -139,25 +139,42 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
         }
 }
 
-/* largest wavenumber of a run: of z with bending from N_zz, N_beta,beta (which acts like a
-   compression) and N_z,beta; of the others from their own term */
-static double run_wavenumber(const struct rd_chain *chain, size_t e, size_t t,
-                             const struct sweep_extent *x)
+/* what the nodes of a run, or its own inertia, add to the stiffness per length of each coordinate, and
+   of z with beta; sizes */
+static double load_of(const struct rd_chain *chain, const struct rd_run *run,
+                      const struct sweep_extent *x, double *n)
 {
-    const size_t w = chain->width;
-    const double *S = chain->flexibility + 9 * e, l = chain->length[e];
-    const double *m = chain->mass + t * w * w, *k = chain->stiffness + t * w * w;
-    const int bends = chain->coordinate[w - 1] == RD_BETA;
-    double n[RD_WIDTH_MAX] = {0}, turn = 0.0, most = 0.0;
+    const size_t w = chain->width, e = (size_t)run->element;
+    double turn = 0.0;
+    for (size_t i = 0; chain->inertia && i < w; i++)
+        n[i] = chain->inertia[e * w + i] * x->inertia;
+    if (run->term == RD_NO_NODE)
+        return turn;
+    const double l = chain->length[e];
+    const double *m = chain->mass + (size_t)run->term * w * w;
+    const double *k = chain->stiffness + (size_t)run->term * w * w;
     for (size_t i = 0; i < w; i++) {
         n[i] = (fabs(k[i * (w + 1)]) * x->spring + fabs(m[i * (w + 1)]) * x->inertia) / l;
-        if (bends && chain->coordinate[i] == RD_Z)
+        if (chain->coordinate[i] == RD_Z)
             turn = (fabs(k[i * w + w - 1]) * x->spring + fabs(m[i * w + w - 1]) * x->inertia) / l;
     }
+    return turn;
+}
+
+/* largest wavenumber of a run: of z with bending from N_zz, N_beta,beta (which acts like a
+   compression) and N_z,beta; of the others from their own term */
+static double run_wavenumber(const struct rd_chain *chain, const struct rd_run *run,
+                             const struct sweep_extent *x)
+{
+    const size_t w = chain->width, e = (size_t)run->element;
+    const double *S = chain->flexibility + 9 * e;
+    const int bends = chain->coordinate[w - 1] == RD_BETA;
+    double n[RD_WIDTH_MAX] = {0}, most = 0.0;
+    const double turn = load_of(chain, run, x, n);
     const double T = chain->tension[e] * x->tension;
     for (size_t i = 0; i < w; i++) {
         const int32_t c = chain->coordinate[i];
-        const double s = S[4 * (size_t)channel_of[c]] * x->section;
+        const double s = S[4 * rd_channel_of(c)] * x->section;
         if (bends && c == RD_Z) {
             double k2, a2;
             wavenumbers(1.0 / s, T - n[w - 1], n[i], &k2, &a2);
@@ -173,27 +190,50 @@ static double run_wavenumber(const struct rd_chain *chain, size_t e, size_t t,
     return most;
 }
 
-size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t count,
-                       const struct sweep_extent *extent)
+/* radians of the shortest wave over one continuous element */
+static double radians(const struct rd_chain *chain, size_t e, const struct sweep_extent *extent)
 {
-    const double k = run_wavenumber(chain, e, t, extent);
-    double length = chain->length[e];
-    size_t level = 0;
-    while (((size_t)2 << level) <= count && 2.0 * length * k <= 1.2) {
-        level++;
+    struct rd_span span = {
+        .width = chain->width,
+        .coordinate = chain->coordinate,
+        .flexibility = chain->flexibility + 9 * e,
+        .section = 1.0 / extent->section,
+        .tension = fabs(chain->tension[e]) * extent->tension,
+    };
+    for (size_t i = 0; i < chain->width; i++)
+        span.load[i] = extent->inertia * chain->inertia[e * chain->width + i];
+    return chain->length[e] * rd_span_wavenumber(&span);
+}
+
+struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,
+                                    size_t count, const struct sweep_extent *extent)
+{
+    struct sweep_pieces pieces = {.count = count};
+    double length = chain->length[run->element];
+    if (chain->inertia) {
+        const double whole = radians(chain, (size_t)run->element, extent);
+        pieces.halvings = rd_span_halvings(whole);
+        pieces.terms = rd_span_terms(ldexp(whole, -pieces.halvings));
+        pieces.count = count << pieces.halvings;
+        length = ldexp(length, -pieces.halvings);
+    }
+    const double k = run_wavenumber(chain, run, extent);
+    while (((size_t)2 << pieces.level) <= pieces.count && 2.0 * length * k <= 1.2) {
+        pieces.level++;
         length *= 2.0;
     }
-    return level;
+    return pieces;
 }
 
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
 {
     size_t steps = 1;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
-        const size_t e = (size_t)chain->element[k], t = (size_t)chain->term[k];
-        const size_t count = (size_t)(chain->first[k + 1] - chain->first[k]);
-        const size_t level = rd_sweep_levels(chain, e, t, count, extent);
-        steps += (count >> level) + 2 * level;
+        const struct rd_run run = {.element = chain->element[k],
+                                   .term = chain->inertia ? RD_NO_NODE : chain->term[k]};
+        const struct sweep_pieces pieces =
+            rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k), extent);
+        steps += (pieces.count >> pieces.level) + 2 * pieces.level;
     }
     return steps;
 }

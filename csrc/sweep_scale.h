@@ -27,10 +27,15 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
                     const struct rd_factors *factors, const size_t *index,
                     struct sweep_block *block, struct sweep_way *way);
 
-/* largest k with 2^k elements e and node terms t between them below their first cantilever
-   resonance, and 2^k <= count */
-size_t rd_sweep_levels(const struct rd_chain *chain, size_t e, size_t t, size_t count,
-                       const struct sweep_extent *extent);
+/* How a run is crossed: by pieces of 2^level first pieces, below their first cantilever resonance.
+   A first piece is an element, or one of the 2^halvings parts of a continuous one. */
+struct sweep_pieces {
+    int halvings, terms; /* terms of the series of a continuous first piece */
+    size_t count, level; /* first pieces in all; 2^level <= count */
+};
+
+struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,
+                                    size_t count, const struct sweep_extent *extent);
 
 /* steps of a walk through all of the chain, runs by pieces */
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent);

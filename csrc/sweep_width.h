@@ -37,6 +37,8 @@ RD_INLINE int K_(at)(int i, int j)
 
 #include "sweep_join.h"
 
+#include "sweep_slice.h"
+
 #include "sweep_node.h"
 
 #include "sweep_walk.h"
@@ -49,6 +51,8 @@ RD_INLINE int K_(at)(int i, int j)
 
 const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_element = K_(make_element),
+    .make_slice = K_(make_slice),
+    .make_span = K_(make_span),
     .make_coefficients = K_(make_coefficients),
     .make_single = K_(make_single),
 #if RD_WIDTH == 2 || RD_WIDTH == 3

@@ -3,16 +3,12 @@
 
 #include "dense.h"
 #include "element.h"
+#include "span.h"
 #include "strut.h"
 #include "triple.h"
 
 #include <math.h>
 #include <string.h>
-
-static size_t nodes_of(const struct rd_chain *chain, size_t k)
-{
-    return (size_t)(k + 1 < chain->stretches ? chain->first[k + 1] - chain->first[k] : 1);
-}
 
 /* a node, its hinge as an element of no length, and the element on its right */
 static size_t hinged_legs(const struct rd_chain *chain, size_t k, size_t node, int32_t before,
@@ -29,6 +25,15 @@ static size_t hinged_legs(const struct rd_chain *chain, size_t k, size_t node, i
     return 2;
 }
 
+/* whether the next stretch is more of the element on the right of this one */
+static bool goes_on(const struct rd_chain *chain, size_t k)
+{
+    if (k + 2 >= chain->stretches || chain->element[k + 1] != chain->element[k])
+        return false;
+    const int32_t next = chain->term[k + 1];
+    return chain->inertia ? rd_term_is_bare(chain, next) : !rd_chain_is_hinged(chain, next);
+}
+
 /* legs of the chain, written where leg is not NULL; a single node takes the stretch on its right
    along where that goes on with the same element */
 static size_t make_legs(const struct rd_chain *chain, struct rd_leg *leg)
@@ -37,7 +42,7 @@ static size_t make_legs(const struct rd_chain *chain, struct rd_leg *leg)
     for (size_t k = 0; k + 1 < chain->stretches; k = next) {
         const size_t node = (size_t)chain->first[k];
         const int32_t before = k > 0 ? chain->element[k - 1] : -1;
-        size_t count = nodes_of(chain, k);
+        size_t count = rd_stretch_nodes(chain, k);
         next = k + 1;
         if (rd_chain_is_hinged(chain, chain->term[k])) {
             for (size_t i = 0; i < count; i++)
@@ -45,12 +50,9 @@ static size_t make_legs(const struct rd_chain *chain, struct rd_leg *leg)
                                     leg ? leg + legs : NULL);
             continue;
         }
-        const bool goes_on = count == 1 && k + 2 < chain->stretches &&
-                             chain->element[k + 1] == chain->element[k] &&
-                             !rd_chain_is_hinged(chain, chain->term[k + 1]);
-        if (goes_on) {
+        if (count == 1 && goes_on(chain, k)) {
             next = k + 2;
-            count += nodes_of(chain, k + 1);
+            count += rd_stretch_nodes(chain, k + 1);
         }
         if (leg)
             leg[legs] = (struct rd_leg){
@@ -59,7 +61,7 @@ static size_t make_legs(const struct rd_chain *chain, struct rd_leg *leg)
                 .element = chain->element[k],
                 .before = before,
                 .first = chain->term[k],
-                .term = chain->term[next - 1],
+                .term = chain->inertia ? RD_NO_TERM : chain->term[next - 1],
             };
         legs++;
     }
@@ -73,7 +75,9 @@ static enum rd_status fill_triples(struct rd_walk *walk)
     for (size_t i = 0; i < chain->distinct; i++) {
         double *D = walk->triple + 4 * block * i;
         double *G = D + block, *Q = G + block, *P = Q + block;
-        const struct rd_element element = rd_chain_element(chain, i);
+        struct rd_element element = rd_chain_element(chain, i);
+        if (chain->kind == RD_CONTINUOUS) /* for its scales alone */
+            element.tension = fmax(element.tension, 0);
         walk->strut[i] = rd_element_is_strut(&element);
         memset(P, 0, block * sizeof *P);
         const enum rd_status status = walk->strut[i] ? rd_strut_fill(&element, D, G, Q, P)
@@ -117,7 +121,8 @@ static void add_mass(struct rd_walk *walk, int32_t term, double n, double *with_
     }
 }
 
-static void add_leg(struct rd_walk *walk, const struct rd_leg *leg, bool bends, double *with_mass)
+static void add_leg(struct rd_walk *walk, const struct rd_leg *leg, bool bends, double *with_mass,
+                    double *rope)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width, block = w * w;
@@ -128,8 +133,12 @@ static void add_leg(struct rd_walk *walk, const struct rd_leg *leg, bool bends, 
     add_mass(walk, leg->term, n - 1, with_mass);
     if (e >= chain->distinct)
         return;
-    for (size_t i = 0; i < w; i++)
+    for (size_t i = 0; i < w; i++) {
+        const double own = chain->inertia ? n * chain->length[e] * chain->inertia[e * w + i] : 0;
         walk->flexibility[i] += n * fabs(G[i * (w + 1)]);
+        walk->mass[i] += own;
+        rope[i] += own;
+    }
     walk->length += n * chain->length[e];
     walk->tension += n * chain->length[e] * chain->tension[e];
     if (bends)
@@ -145,15 +154,16 @@ static void add_legs(struct rd_walk *walk)
         z = z || chain->coordinate[i] == RD_Z;
         beta = beta || chain->coordinate[i] == RD_BETA;
     }
-    double with_mass[RD_WIDTH_MAX] = {0};
+    double with_mass[RD_WIDTH_MAX] = {0}, rope[RD_WIDTH_MAX] = {0};
     for (size_t r = 0; r < walk->legs; r++) {
         const struct rd_leg *leg = walk->leg + r;
-        add_leg(walk, leg, z && beta && chain->kind != RD_DIFFERENCE, with_mass);
+        add_leg(walk, leg, z && beta && chain->kind != RD_DIFFERENCE, with_mass, rope);
     }
     add_mass(walk, walk->last, 1, with_mass);
     for (size_t i = 0; i < w; i++)
-        walk->carried[i] =
-            with_mass[i] > 0 ? with_mass[i] * exp(walk->carried[i] / with_mass[i]) : 0;
+        walk->carried[i] = rope[i] > 0        ? rope[i]
+                           : with_mass[i] > 0 ? with_mass[i] * exp(walk->carried[i] / with_mass[i])
+                                              : 0;
     walk->tension /= walk->length;
     if (walk->bend > 0)
         for (size_t i = 0; i < w; i++)
@@ -176,7 +186,8 @@ static bool is_finite(const struct rd_chain *chain)
         if (isnan(chain->hinge[i]))
             return false;
     const size_t terms = chain->terms * chain->width * chain->width;
-    return are_finite(chain->distinct, chain->length) &&
+    return (!chain->inertia || are_finite(chain->distinct * chain->width, chain->inertia)) &&
+           are_finite(chain->distinct, chain->length) &&
            are_finite(chain->distinct, chain->tension) &&
            are_finite(chain->distinct * 9, chain->flexibility) && are_finite(terms, chain->mass) &&
            are_finite(terms, chain->stiffness);
@@ -260,11 +271,22 @@ double rd_walk_stiffness(const struct rd_walk *walk, size_t element, size_t i)
     return fmax(fabs(Gi[i * (w + 1)]) + fabs(P[i * (w + 1)]), fabs(left));
 }
 
+bool rd_walk_is_endless(const struct rd_walk *walk)
+{
+    const struct rd_chain *chain = walk->chain;
+    double most = 0;
+    for (size_t i = 0; chain->inertia && i < chain->distinct * chain->width; i++)
+        most = fmax(most, chain->inertia[i]);
+    return most > 0;
+}
+
 double rd_walk_ceiling(const struct rd_walk *walk)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width, block = w * w;
     double ceiling = 0;
+    if (rd_walk_is_endless(walk))
+        return INFINITY;
     for (size_t i = 0; i < w; i++) {
         double stiffness = 0, springs = 0, mass = INFINITY;
         for (size_t e = 0; e < chain->distinct; e++)
@@ -277,4 +299,22 @@ double rd_walk_ceiling(const struct rd_walk *walk)
         ceiling = fmax(ceiling, 16 * (double)w * (stiffness + springs) / mass);
     }
     return ceiling;
+}
+
+double rd_walk_radians(const struct rd_walk *walk, const struct rd_leg *leg, double lambda)
+{
+    const struct rd_chain *chain = walk->chain;
+    const size_t e = (size_t)leg->element;
+    if (!chain->inertia || e >= chain->distinct)
+        return 0;
+    struct rd_span span = {
+        .width = chain->width,
+        .coordinate = chain->coordinate,
+        .flexibility = chain->flexibility + 9 * e,
+        .section = 1,
+        .tension = fabs(chain->tension[e]),
+    };
+    for (size_t i = 0; i < chain->width; i++)
+        span.load[i] = fabs(lambda) * chain->inertia[e * chain->width + i];
+    return chain->length[e] * rd_span_wavenumber(&span);
 }

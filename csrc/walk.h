@@ -7,6 +7,8 @@
 #include "status.h"
 #include "workspace.h"
 
+#include <stdbool.h>
+
 /* Equal elements one after another, equal node terms between them; or a hinge, alone: the element
    chain->distinct + its term. */
 struct rd_leg {
@@ -15,10 +17,10 @@ struct rd_leg {
     int32_t element;
     int32_t before; /* element on the left of the first node, -1: none */
     int32_t first;  /* node term at the first node */
-    int32_t term;   /* node term at the inner nodes */
+    int32_t term;   /* node term at the inner nodes and, of a continuous leg, inside elements */
 };
 
-enum { RD_NO_TERM = -1 }; /* on the right of a hinge */
+enum { RD_NO_TERM = -1 }; /* on the right of a hinge and between continuous pieces */
 
 struct rd_walk {
     const struct rd_chain *chain;
@@ -29,12 +31,14 @@ struct rd_walk {
     double *triple;                   /* (elements, 4, width, width)  D, G, Q and P of strut.h */
     uint8_t *strut;                   /* (elements)  1: P is not zero */
     double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held */
-    double mass[RD_WIDTH_MAX];        /* sum of |M_ii| */
+    double mass[RD_WIDTH_MAX];        /* sum of |M_ii|, the rope's own included */
     struct rd_body body;
-    double length;                /* [m] */
-    double bend;                  /* [rad/N m] sum of l S_bb, 0 without z and beta together */
-    double tension;               /* [N] mean */
-    double carried[RD_WIDTH_MAX]; /* nodes times the geometric mean of |M_ii| that are not 0 */
+    double length;  /* [m] */
+    double bend;    /* [rad/N m] sum of l S_bb, 0 without z and beta together */
+    double tension; /* [N] mean */
+    double
+        carried[RD_WIDTH_MAX]; /* the rope's own mass, of continuous elements; else nodes times the
+                                     geometric mean of |M_ii| that are not 0 */
 };
 
 /* Takes the arrays of walk from the workspace (with base NULL: counts what they need) and fills
@@ -69,9 +73,17 @@ static inline const uint8_t *rd_walk_held(const struct rd_walk *walk, int32_t te
    of the chain as a rigid body if it is larger. */
 void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z);
 
+/* whether elements have inertia of their own: there are infinitely many modes */
+bool rd_walk_is_endless(const struct rd_walk *walk);
+
 /* An upper bound of all eigenvalues where inertia is diagonal [rad^2/s^2]: the largest stiffness over
-   the least mass of a coordinate, times what a node's elements can add up to. */
+   the least mass of a coordinate, times what a node's elements can add up to. INFINITY where elements
+   have inertia of their own. */
 double rd_walk_ceiling(const struct rd_walk *walk);
+
+/* Radians that the shortest wave of a continuous leg has over one element, evanescent ones included;
+   0 of any other leg. */
+double rd_walk_radians(const struct rd_walk *walk, const struct rd_leg *leg, double lambda);
 
 /* the larger of the two diagonal entries of coordinate i in the assembled distinct element */
 double rd_walk_stiffness(const struct rd_walk *walk, size_t element, size_t i);

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from .check import COORDINATES
 
-KINDS = ("difference", "rigid", "tensed")
+KINDS = ("difference", "rigid", "tensed", "continuous")
 """Kinds of element, in the core's order."""
+
+TENSED, CONTINUOUS = KINDS.index("tensed"), KINDS.index("continuous")
 
 CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 """Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
@@ -49,6 +51,8 @@ class Chain(NamedTuple):
     hinge: NDArray[np.float64] | None = None
     """(terms, width) compliance between the node and the element on its right, infinite where
     free; None where nothing is hinged."""
+    inertia: NDArray[np.float64] | None = None
+    """(distinct, width) per length of continuous elements [kg/m, kg m]; None for others."""
 
     @property
     def nodes(self) -> int:
@@ -70,6 +74,18 @@ class Chain(NamedTuple):
         """How many coordinates can move."""
         free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
         return int(free_of_term[self.term] @ np.diff(self.first, append=self.nodes))
+
+    @property
+    def finite(self) -> int | None:
+        """How many modes there can be at most, None where elements have inertia of their own."""
+        return self.free if self.inertia is None or not self.inertia.any() else None
+
+    @property
+    def at_rest(self) -> Chain:
+        """The chain without inertia, where continuous elements are tensed ones exactly."""
+        if self.inertia is None:
+            return self
+        return self._replace(kind=TENSED, inertia=None)
 
     def stretch(self, node: int) -> int:
         """Return the stretch that a node belongs to."""
@@ -112,6 +128,7 @@ class Chain(NamedTuple):
             stiffness=np.ascontiguousarray(self.stiffness[square]),
             held=np.ascontiguousarray(self.held[:, kept]),
             hinge=hinge if hinge is not None and hinge.any() else None,
+            inertia=None if self.inertia is None else np.ascontiguousarray(self.inertia[:, kept]),
         )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, mesh
-from .chain import KINDS, Chain, components
+from .chain import CONTINUOUS, KINDS, Chain, components
 from .end import end_of
 from .errors import SceneError
 from .model import Model
@@ -22,23 +22,59 @@ ROUNDING = 4 * np.finfo(float).eps
 """Positions are known to so much of the rope's length."""
 
 
-def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
+MOST_RADIANS = 1e10
+"""Of the boundary layers of a stiff string, L sqrt(T/B), in a continuous span."""
+
+
+def compile_scene(scene: Scene, *, elements: int | None, element: str | None) -> Model:
     """Compile a scene; see `Scene.compile`."""
-    check.count(elements, "elements", most=MOST_ELEMENTS)
-    kind = KINDS.index(check.one_of(element, "element", KINDS))
+    if element is None:
+        element = "continuous" if elements is None else "tensed"
+    check.one_of(element, "element", KINDS)
+    if elements is not None:
+        check.count(elements, "elements", most=MOST_ELEMENTS)
+    elif element != "continuous":
+        raise SceneError(f"elements must be given, how many {element!r} ones, got None")
+    stations = stations_of(scene)
+    spans = len(stations) - 1
+    counts = mesh.shares(np.diff(stations), spans if elements is None else elements)
+    return divided(scene, element, stations, counts)
+
+
+def stations_of(scene: Scene) -> NDArray[np.float64]:
+    """Return where the ends and parts of a scene stand [m]."""
+    return mesh.stations(scene.rope.length, (part.x for part in scene.parts))
+
+
+def divided(
+    scene: Scene, element: str, stations: NDArray[np.float64], counts: NDArray[np.intp]
+) -> Model:
+    """Compile a scene with so many elements between stations.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is compiled.
+    element : str
+        Kind of the elements.
+    stations : ndarray, shape (spans + 1,)
+        Of the scene [m].
+    counts : ndarray of int, shape (spans,)
+        Elements of each span.
+    """
+    kind = KINDS.index(element)
     if element == "difference" and scene.tension != 0 and scene.rope.bending_stiffness is not None:
         raise SceneError(
             'element must not be "difference" where there is bending and tension: the '
             "2015 study's kinematics has no geometric stiffness"
         )
-    stations = mesh.stations(scene.rope.length, (part.x for part in scene.parts))
-    spans = np.diff(stations)
-    counts = mesh.shares(spans, elements)
-    if not (spans / counts > 0).all():
+    if not (np.diff(stations) / counts > 0).all():
         raise SceneError(
-            f"elements must be longer than the smallest number, got {elements} on "
+            f"elements must be longer than the smallest number, got {int(counts.sum())} on "
             f"{scene.rope.length!r} m"
         )
+    if element == "continuous":
+        _check_layers(scene)
     chain = _chain(scene, kind, stations, counts)
     groups = components(chain, scene.coordinates)
     for array in chain:
@@ -53,6 +89,26 @@ def compile_scene(scene: Scene, *, elements: int, element: str) -> Model:
         chain=chain,
         unknowns=tuple(chain.only(group).free for group in groups),
     )
+
+
+def finer(model: Model, points: int) -> Model:
+    """Return the same continuous spans with nodes at the ends of equal parts of their elements."""
+    stations = stations_of(model.scene)
+    counts = np.diff(np.searchsorted(model.x, stations)) * points
+    return divided(model.scene, model.element, stations, counts)
+
+
+def _check_layers(scene: Scene) -> None:
+    """Refuse boundary layers too thin for the rope to be halved into them."""
+    bending = scene.rope.bending_stiffness
+    if bending is None:
+        return
+    radians = scene.rope.length * np.sqrt(abs(scene.tension)) / np.sqrt(bending)
+    if not radians <= MOST_RADIANS:
+        raise SceneError(
+            f"bending_stiffness must leave L sqrt(T/B) at most {MOST_RADIANS:g} in continuous "
+            f"spans, got {radians:.3g}: without bending_stiffness the rope is a string"
+        )
 
 
 def section(rope: Rope) -> NDArray[np.float64]:
@@ -132,6 +188,7 @@ def _chain(
         held=held,
         term=term,
         hinge=hinge,
+        inertia=np.tile(_inertia(scene), (len(length), 1)) if kind == CONTINUOUS else None,
     )
 
 
@@ -152,8 +209,9 @@ def _terms(
     beside[1 : len(stations)] += lengths
     beside[: len(stations)] /= 2
     mass = np.zeros((len(beside), width, width))
-    for k, inertia in enumerate(_inertia(scene)):
-        np.multiply(beside, inertia, out=mass[:, k, k])
+    if kind != CONTINUOUS:
+        for k, inertia in enumerate(_inertia(scene)):
+            np.multiply(beside, inertia, out=mass[:, k, k])
     if kind == KINDS.index("tensed") and "beta" in scene.coordinates:
         _correct_ends(scene, lengths, mass[: len(stations)])
     stiffness = np.zeros(mass.shape)

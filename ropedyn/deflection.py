@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from . import _core, check
 from .answer import Answer, Cost, axes
 from .chain import Chain
+from .compile import finer
 from .errors import SceneError, SolveError
-from .model import Model
+from .model import EXACT, MOST_POINTS, Model
 from .port import Point, Ports, cut, ports, stops
 from .reaction import left_ends
 from .table import Table
@@ -65,13 +66,23 @@ class Deflection(Answer):
         return plot_deflection(self, ax)
 
 
-def solve_static(model: Model, load: Mapping[Point, float], *, solver: str) -> Deflection:
+def solve_static(
+    model: Model, load: Mapping[Point, float], *, solver: str, points: int | None = None
+) -> Deflection:
     """Find the static deflection; see `Model.static`."""
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
     loads = _checked(model, load)
+    if model.element != "continuous" and points is not None:
+        raise SceneError(f"points must be left out for chains, got {points}: answers are at nodes")
+    if points is not None:
+        check.count(points, "points", most=MOST_POINTS)
+    if model.element == "continuous":
+        model = finer(model, points or POINTS)
+        x = cut(model.chain, model.x, [at for _, at in loads])[1]
+    else:
+        x = model.x
     width = len(model.coordinates)
-    displacement = np.zeros((len(model.x), width))
-    force = np.zeros((len(model.x), width))
+    displacement, force = np.zeros((len(x), width)), np.zeros((len(x), width))
     unknowns, solved = 0, 0
     start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
@@ -80,7 +91,7 @@ def solve_static(model: Model, load: Mapping[Point, float], *, solver: str) -> D
             continue
         at = [model.coordinates.index(c) for c in component]
         try:
-            displacement[:, at], force[:, at] = solve(model, component, here)
+            displacement[:, at], force[:, at] = solve(model, component, here, x)
         except SolveError as error:
             raise SolveError(
                 f"({', '.join(component)}): the stiffness is singular to working precision: a "
@@ -94,22 +105,25 @@ def solve_static(model: Model, load: Mapping[Point, float], *, solver: str) -> D
         raise SolveError("the numbers of the static deflection overflow: check the units")
     return Deflection(
         coordinates=model.coordinates,
-        x=model.x,
+        x=x,
         displacement=displacement,
         force=force,
         cost=Cost(seconds, solver, len(model.x) - 1, unknowns, solved),
     )
 
 
+POINTS = 64
+"""Parts of each continuous span that a deflection is given at."""
+
 BLOCK = 4096
 """Nodes whose motion one sweep reports."""
 
 
 def _sweep(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return motion of the nodes and what the surroundings put on them."""
-    longer, finer, kept = _cut(model, component, loads)
+    longer, finer, kept = _cut(model, component, loads, nodes)
     pushed = ports(longer, finer, component, loads)
     amount = np.array(list(loads.values()))
     factor = np.array([[1.0], [1.0], [1.0], [0.0]], dtype=np.complex128)
@@ -141,9 +155,9 @@ def _sweep(
 
 
 def _band(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    chain, x, kept = _cut(model, component, loads)
+    chain, x, kept = _cut(model, component, loads, nodes)
     u, force = _core.mixed_deflection(chain, _nodal(chain, x, component, loads))
     return u[kept], _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
 
@@ -181,21 +195,21 @@ def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np
 
 
 def _lapack(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    chain, x, kept = _cut(model, component, loads)
+    chain, x, kept = _cut(model, component, loads, nodes)
     u, _ = _core.deflection(chain, _nodal(chain, x, component, loads))
     return u[kept], _held_up(chain, u)[kept]
 
 
 def _cut(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float]
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
 ) -> tuple[Chain, NDArray[np.float64], NDArray[np.intp]]:
-    """Return the chain with nodes under the loads, where they stand, and which the model has."""
-    chain, x = model.chain.only(component), model.x
-    if model.element == "tensed":
-        chain, x = cut(chain, x, [*(point[1] for point in loads), *stops(chain, x)])
-    return chain, x, np.flatnonzero(np.isin(x, model.x))
+    """Return the chain with nodes under the loads, where they stand, and those of the answer."""
+    chain, x = model.chain.only(component).at_rest, model.x
+    if model.element in EXACT:
+        chain, x = cut(chain, x, [*nodes, *(point[1] for point in loads), *stops(chain, x)])
+    return chain, x, np.flatnonzero(np.isin(x, nodes))
 
 
 SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}

@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from . import _core, check, damping
 from .answer import Cost
 from .chain import CHANNELS, Chain
+from .compile import finer
 from .errors import SceneError, SolveError
-from .model import Model
+from .model import MOST_POINTS, MOST_STEPS, Model
 from .modes import Modes, Vectors
 from .unit import FAMILY
 
@@ -57,18 +58,32 @@ class Found:
 
 
 def solve_modes(
-    model: Model, number: int | None, *, below: float | None, solver: str, strict: bool = True
+    model: Model,
+    number: int | None,
+    *,
+    below: float | None,
+    solver: str,
+    points: int | None = None,
+    strict: bool = True,
 ) -> Modes:
     """Find natural frequencies and shapes; see `Model.modes`.
 
     Without `strict` fewer modes than asked for are no error.
     """
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    if points is not None:
+        check.count(points, "points", most=MOST_POINTS)
+    if model.element == "continuous" and solver != "sweep":
+        raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
+    if model.element != "continuous" and points is not None:
+        raise SceneError(f"points must be left out for chains, got {points}: shapes are at nodes")
     if (number is None) == (below is None):
         raise SceneError(f"give either number or below, got number={number!r} and below={below!r}")
     if number is not None:
         check.count(number, "number", most=np.iinfo(np.int32).max)
     limit = math.inf if below is None else eigenvalue_of(below)
+    if below is not None:
+        _refuse_short_waves(model, limit)
     start = time.perf_counter()
     found = [solve(model, c, number, limit, shaped=False) for c in model.components]
     seconds = time.perf_counter() - start
@@ -78,11 +93,16 @@ def solve_modes(
             f"number must be at most {existing}, the modes this model has, got {number}"
         )
     eigenvalue, error, order = _merged(found, number)
-    later = partial(_later, model, solver, number, limit)
+    later: Callable[[], Vectors] = partial(_later, model, solver, number, limit)
+    x = model.x
+    if model.element == "continuous":
+        points = points or _points_for(model, eigenvalue)
+        x = finer(model, points).x
+        later = partial(_later_within, model, number, limit, eigenvalue, points)
     return Modes(
         coordinates=model.coordinates,
         certified=all(part.certified for part in found),
-        x=model.x,
+        x=x,
         frequency=np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi),
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
@@ -101,6 +121,7 @@ def eigenvalue_of(below: Any) -> float:
 def count_modes(model: Model, below: float) -> int:
     """Count the natural frequencies below a limit; see `Model.count`."""
     limit = eigenvalue_of(below)
+    _refuse_short_waves(model, limit)
     return sum(_count(model.chain.only(c), limit) for c in model.components)
 
 
@@ -117,6 +138,25 @@ def _merged(found: Sequence[Found], number: int | None) -> tuple[Real, Real, NDA
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
     order = np.argsort(eigenvalue, kind="stable")[:number]
     return eigenvalue[order], error[order], order
+
+
+def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
+    """Refuse to count more half waves than can be walked."""
+    if model.element != "continuous":
+        return
+    for component in model.components:
+        steps = _steps(model.chain.only(component), eigenvalue)
+        if steps > MOST_STEPS:
+            raise SolveError(
+                f"below is too high: ({', '.join(component)}) has {steps} pieces shorter than its "
+                f"waves there, at most {MOST_STEPS} are walked"
+            )
+
+
+def _steps(chain: Chain, eigenvalue: float) -> int:
+    """Return how many pieces shorter than its waves a component is walked in."""
+    factor = np.array([[1.0], [1.0], [1.0], [-eigenvalue]], dtype=np.complex128)
+    return int(_core.steps(chain, factor))
 
 
 def _in_threads(call: Callable[..., Any], nodes: int, *arguments: Any) -> Any:
@@ -160,9 +200,8 @@ def _sweep(
 
 
 def _span(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
-    wanted = min(number or chain.free, chain.free)
-    if number is None:
-        wanted = min(_count(chain, limit), chain.free)
+    wanted = _count(chain, limit) if number is None else number
+    wanted = wanted if chain.finite is None else min(wanted, chain.finite)
     eigenvalue, error, certified, shape, found, counts = _in_threads(
         _core.certify, chain.nodes, chain, wanted, _upper(limit), shaped
     )
@@ -241,11 +280,32 @@ def _later(model: Model, solver: str, number: int | None, limit: float) -> Vecto
     return _vectors(model, found, eigenvalue, order)
 
 
+def _points_for(model: Model, eigenvalue: Real) -> int:
+    """Return how many parts of each element show the highest mode."""
+    highest = float(np.abs(eigenvalue).max(initial=0.0))
+    pieces = max((_steps(model.chain.only(c), highest) for c in model.components), default=1)
+    return min(max(32, 8 * pieces), MOST_POINTS)
+
+
+def _later_within(
+    model: Model, number: int | None, limit: float, eigenvalue: Real, points: int
+) -> Vectors:
+    """Solve continuous spans once more, with shapes inside them.
+
+    Energies want elements below their own resonance, so there may be more of them than points.
+    """
+    highest = float(np.abs(eigenvalue).max(initial=0.0))
+    pieces = max((_steps(model.chain.only(c), highest) for c in model.components), default=1)
+    more = -(-pieces // points)
+    vectors = _later(finer(model, points * more), "sweep", number, limit)
+    return replace(vectors, shape=vectors.shape[:, ::more])
+
+
 def _vectors(
     model: Model, found: Sequence[Found], eigenvalue: Real, order: NDArray[np.intp]
 ) -> Vectors:
     shape = _spread(model, found)[order]
-    strain, kinetic = _core.energy(model.chain, shape)
+    strain, kinetic = _core.energy(model.chain, shape, eigenvalue)
     own = kinetic.argmax(axis=1)
     size = _largest(shape, own)
     shape /= size[:, None, None]

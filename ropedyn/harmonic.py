@@ -18,7 +18,7 @@ from .answer import Cost
 from .chain import Chain
 from .errors import SceneError, SolveError
 from .frf import FRF
-from .model import Model
+from .model import EXACT, MOST_STEPS, Model
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reaction import first_left_end
 from .unit import OF_FORCE, QUANTITIES
@@ -83,7 +83,7 @@ class Question:
         model, points = self.model, [*self.drives, *self.responses]
         chain = model.chain.only(self.component)
         between = [p for p in points if locate(model.x, p[1])[1] is not None]
-        if model.element != "tensed":
+        if model.element not in EXACT:
             for point in filter(is_force, between):
                 raise SceneError(
                     "response of an internal force must stand at a node unless elements are "
@@ -93,7 +93,22 @@ class Question:
         positions = [p[1] for p in between]
         if model.element == "tensed":
             positions += stops(chain, model.x)
+        if model.element == "continuous" and any(_at_start(model.x, p) for p in self.responses):
+            positions += self._short(chain)
         return cut(chain, model.x, positions)
+
+    def _short(self, chain: Chain) -> list[float]:
+        """Return where the first element is cut so that its left end is far from resonances."""
+        first = chain.between(0, 1)
+        pieces = _core.steps(first, self.fastest)
+        return [float(self.model.x[1]) / pieces]
+
+    @property
+    def fastest(self) -> Complex:
+        """The factors of the highest frequency, shape (4, 1), or none where there is none."""
+        factor = self.factor
+        highest = [np.argmax(np.abs(factor[damping.INERTIA]))] if factor.size else []
+        return np.ascontiguousarray(factor[:, highest])
 
     def resonance(self, k: int) -> str:
         """Say that frequency k has no answer."""
@@ -115,6 +130,8 @@ def solve_frf(
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    if model.element == "continuous" and solver != "sweep":
+        raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
     workers = _workers(threads)
     check.one_of(quantity, "quantity", QUANTITIES)
     f = check.frequencies(frequency)
@@ -198,9 +215,12 @@ def _relative(value: Complex, error: Real) -> Real:
 
 def _sweep(question: Question) -> tuple[Complex, Real]:
     chain, _ = question.cut
-    factor = question.factor
-    fastest = [np.argmax(np.abs(factor[damping.INERTIA]))] if factor.size else []
-    steps = _core.steps(chain, np.ascontiguousarray(factor[:, fastest]))
+    steps = _core.steps(chain, question.fastest)
+    if steps > max(MOST_STEPS, chain.nodes):
+        raise SolveError(
+            f"frequency {float(question.frequency.max())!r} Hz is too high: the rope has {steps} "
+            f"pieces shorter than its waves, at most {MOST_STEPS} are walked"
+        )
     return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)
 
 
@@ -291,7 +311,7 @@ def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Co
     component, responses = question.component, question.responses
     chain, x = question.cut
     w = len(component)
-    of = first_left_end(chain, question.factor[:2])
+    of = first_left_end(chain, question.factor)
     given, left, right, force = np.split(np.arange(value.shape[1]), [-3 * w, -2 * w, -w])
     reaction = np.einsum("kij,djk->dik", of.E, value[:, force])
     reaction -= np.einsum("kij,djk->dik", of.Q, value[:, left])
@@ -338,7 +358,7 @@ def _lapack(question: Question) -> tuple[Complex, Real]:
 
 def _add_local(question: Question, value: Complex) -> None:
     """Add the flexibility inside a driven element that is not cut."""
-    if question.model.element == "tensed":
+    if question.model.element in EXACT:
         return
     for d, pushed in enumerate(question.drives):
         for r, watched in enumerate(question.responses):

@@ -25,6 +25,16 @@ if TYPE_CHECKING:
     from .modes import Modes
 
 
+EXACT = ("tensed", "continuous")
+"""Elements that can be cut anywhere."""
+
+MOST_STEPS = 10_000_000
+"""Of a walk over continuous spans."""
+
+MOST_POINTS = 1_000_000
+"""Parts of a continuous element that an answer is given at."""
+
+
 class Triples(NamedTuple):
     """The distinct elements: u_b = F u_a + G f_b and f_a = F^T f_b - Q u_a.
 
@@ -80,7 +90,7 @@ class Model:
 
     @property
     def size(self) -> int:
-        """Number of unknowns: coordinates that can move."""
+        """Number of unknowns: coordinates of nodes that can move."""
         return sum(self.unknowns)
 
     @property
@@ -96,14 +106,14 @@ class Model:
 
     @property
     def triples(self) -> Triples:
-        """The distinct elements.
+        """The distinct elements, at rest.
 
         Raises
         ------
         SolveError
             If the compression is exactly the critical load of one element.
         """
-        return Triples(*_core.triples(self.chain), self.chain.element_of)
+        return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
 
     def stiffness(self) -> sp.csr_array:
         """Assemble the stiffness matrix, tension included.
@@ -115,6 +125,7 @@ class Model:
         """
         from .matrices import stiffness
 
+        self._refuse_matrices()
         return stiffness(self.chain)
 
     def mass(self) -> sp.csr_array:
@@ -127,6 +138,7 @@ class Model:
         """
         from .matrices import mass
 
+        self._refuse_matrices()
         return mass(self.chain)
 
     def damping(self) -> sp.csr_array:
@@ -142,6 +154,7 @@ class Model:
         SceneError
             If there is none: tensed elements with tension and stiffness damping.
         """
+        self._refuse_matrices()
         if not self.separable:
             raise SceneError(
                 "damping must scale sections and tension alike for tensed elements with tension "
@@ -152,7 +165,12 @@ class Model:
         return damping(self.chain, self.scene.dampings)
 
     def modes(
-        self, number: int | None = None, *, below: float | None = None, solver: str = "sweep"
+        self,
+        number: int | None = None,
+        *,
+        below: float | None = None,
+        solver: str = "sweep",
+        points: int | None = None,
     ) -> Modes:
         """Find natural frequencies and shapes of the undamped model.
 
@@ -171,6 +189,10 @@ class Model:
             a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
             grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
             of a minute for so many, does not stop for Ctrl-C.
+        points : int, optional
+            Of continuous spans: shapes are given at the ends of so many equal parts of each span
+            or element, exactly; so many that the highest mode has 16 to a half wave where left
+            out.
 
         Returns
         -------
@@ -195,7 +217,7 @@ class Model:
         """
         from .eigen import solve_modes
 
-        return solve_modes(self, number, below=below, solver=solver)
+        return solve_modes(self, number, below=below, solver=solver, points=points)
 
     def count(self, *, below: float) -> int:
         """Count the natural frequencies below a limit, by Sturm count.
@@ -304,7 +326,9 @@ class Model:
             threads=threads,
         )
 
-    def static(self, load: Mapping[Point, float], *, solver: str = "sweep") -> Deflection:
+    def static(
+        self, load: Mapping[Point, float], *, solver: str = "sweep", points: int | None = None
+    ) -> Deflection:
         """Find the static deflection under forces and moments.
 
         Parameters
@@ -314,6 +338,9 @@ class Model:
         solver : {"sweep", "lapack", "band"}
             ``"sweep"`` and ``"band"``: as `frf` at 0 Hz; ``"lapack"``: band LU of the assembled
             stiffness.
+        points : int, optional
+            Of continuous spans: the answer is given at the ends of so many equal parts of each
+            span or element (64 where left out) and under the loads.
 
         Returns
         -------
@@ -337,7 +364,14 @@ class Model:
         """
         from .deflection import solve_static
 
-        return solve_static(self, load, solver=solver)
+        return solve_static(self, load, solver=solver, points=points)
+
+    def _refuse_matrices(self) -> None:
+        if self.element == "continuous":
+            raise SceneError(
+                "elements must be given for matrices: continuous spans have none, their stiffness "
+                "depends on the frequency"
+            )
 
     def component_of(self, coordinate: str) -> tuple[str, ...]:
         """Return the coordinates that move with this one."""

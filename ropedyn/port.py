@@ -122,7 +122,8 @@ def cut(
 ) -> tuple[Chain, NDArray[np.float64]]:
     """Put nodes without mass at positions inside elements.
 
-    Two tensed elements joined there are the one they came from: no other answer changes.
+    Two tensed or continuous elements joined there are the one they came from: no other answer
+    changes.
 
     Parameters
     ----------
@@ -170,5 +171,8 @@ def cut(
         stiffness=np.concatenate([chain.stiffness, none]),
         held=np.concatenate([chain.held, np.zeros((1, width), dtype=np.uint8)]),
         term=term.astype(np.int32),
+        inertia=None
+        if chain.inertia is None
+        else np.concatenate([chain.inertia, chain.inertia[source]]),
         hinge=None if chain.hinge is None else np.concatenate([chain.hinge, closed]),
     ), nodes

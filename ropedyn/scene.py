@@ -224,19 +224,21 @@ class Scene:
             ),
         )
 
-    def compile(self, *, elements: int, element: str = "tensed") -> Model:
-        """Compile the scene to a chain of nodes and elements.
+    def compile(self, *, elements: int | None = None, element: str | None = None) -> Model:
+        """Compile the scene to continuous spans, or to a chain of nodes and elements.
 
         Parameters
         ----------
-        elements : int
+        elements : int, optional
             Over the whole rope. There is a node at every station (end or part); the stretches
-            between stations share the elements as equally as can be.
-        element : {"rigid", "tensed", "difference"}
-            ``"rigid"``: beam elements between rigid node frames, tension as a string in parallel;
-            second order in the length of elements. ``"tensed"``: the exact static tensed beam, with
-            end-corrected lumping; fourth order where there is bending (second with a hinge that
-            moves). ``"difference"``: the kinematics of the 2015 study.
+            between stations share the elements as equally as can be. Left out: continuous spans.
+        element : {"continuous", "rigid", "tensed", "difference"}, optional
+            ``"continuous"``, the default without `elements`: exact spans at each frequency, no
+            discretisation error; with `elements` there are more nodes to look at. ``"tensed"``,
+            the default with `elements`: the exact static tensed beam, with end-corrected lumping;
+            fourth order where there is bending (second with a hinge that moves). ``"rigid"``: beam
+            elements between rigid node frames, tension as a string in parallel; second order in
+            the length of elements. ``"difference"``: the kinematics of the 2015 study.
 
         Returns
         -------
@@ -248,12 +250,15 @@ class Scene:
             If an argument is of the wrong type.
         SceneError
             If there are fewer elements than stretches between stations or more than 10^7, the
-            element is unknown, or is ``"difference"`` with bending and tension.
+            element is unknown, or is ``"difference"`` with bending and tension, or continuous with
+            L sqrt(T/B) beyond 10^10.
 
         Examples
         --------
         >>> import ropedyn as rd
         >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> scene.compile().modes(1).frequency.round(6)
+        array([15.811388])
         >>> scene.compile(elements=8).size
         7
         """

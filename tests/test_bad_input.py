@@ -318,7 +318,7 @@ row(
     "Scene.compile",
     "elements",
     lambda v: scene().compile(elements=v),
-    NOT_A_COUNT,
+    without(NOT_A_COUNT, "none"),
     BAD_COUNT | {"a_billion": 10**9},
 )
 row(
@@ -332,13 +332,15 @@ row(
     "Scene.compile",
     "element",
     lambda v: scene().compile(elements=4, element=v),
-    NOT_A_WORD,
-    {
-        "unknown": "cubic",
-        "empty": "",
-        "later": "continuous",
-        "no_geometric_stiffness": "difference",
-    },
+    without(NOT_A_WORD, "none"),
+    {"unknown": "cubic", "empty": "", "no_geometric_stiffness": "difference"},
+)
+row(
+    "Scene.compile without elements",
+    "elements",
+    lambda v: scene().compile(element=v),
+    {},
+    {"tensed": "tensed", "rigid": "rigid"},
 )
 
 SOLVER = (NOT_A_WORD, {"unknown": "magic", "empty": "", "later": "newton"})
@@ -552,7 +554,6 @@ def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
         (rd.Scene, "rope"),
         (lambda: rd.Scene(rope(), 100.0), "positional"),
         (lambda: scene().replace(gravity=9.81), "gravity"),
-        (lambda: scene().compile(), "elements"),
         (lambda: scene().compile(elements=4, tolerance=1e-6), "tolerance"),
         (lambda: MODEL.modes(1, damped=True), "damped"),
         (lambda: MODEL.frf([1.0]), "drive"),

@@ -1,0 +1,20 @@
+/* How motion and force change along a continuous span, at several lambda side by side. */
+#ifndef RD_RATE_MATRIX_H
+#define RD_RATE_MATRIX_H
+
+#include "chain.h"
+#include "lanes.h"
+
+/* y = (u, f), f the force of the right part on the left, has y' = E y,
+
+       E = | Phi  S'    |   Phi_z,beta = 1,  q = -lambda inertia, + T for beta,
+           | q   -Phi^T |   S' the section flexibility, 1/T for z without bending */
+struct rate_matrix {
+    cv S[RD_WIDTH_MAX][RD_WIDTH_MAX];          /* S' */
+    _Bool elastic[RD_WIDTH_MAX][RD_WIDTH_MAX]; /* where it is not zero */
+    cv q[RD_WIDTH_MAX];
+    lanes lever; /* Phi_z,beta */
+    int z;       /* index of z where it bends, beta being the last; else -1 */
+};
+
+#endif

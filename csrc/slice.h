@@ -1,0 +1,112 @@
+/* The first piece of a continuous span, by the series of the matrix exponential, at several lambda
+   side by side. W is the number of coordinates.
+
+   Of exp(l E) = [[E11, E12], [E21, E22]], E of rate_matrix.h, the triple is F^T = E22^-1, G = E12 E22^-1,
+   Q = E22^-1 E21. Pieces are so short (span.h) that nothing cancels. */
+#ifndef RD_SLICE_H
+#define RD_SLICE_H
+
+#include "rate_matrix.h"
+#include "span.h"
+
+/* (u, f) <- (Phi u + S' f, q u - Phi^T f) h */
+RD_INLINE void slice_differentiate(const struct rate_matrix *s, double h, cv *u, cv *f)
+{
+    cv du[W], df[W];
+    for (int i = 0; i < W; i++) {
+        du[i] = c_zero();
+        for (int j = 0; j < W; j++)
+            if (s->elastic[i][j])
+                du[i] = c_add(du[i], c_mul(s->S[i][j], f[j]));
+        df[i] = c_mul(s->q[i], u[i]);
+    }
+    if (s->z >= 0) {
+        du[s->z] = c_add(du[s->z], c_scale_lanes(u[W - 1], s->lever));
+        df[W - 1] = c_sub(df[W - 1], c_scale_lanes(f[s->z], s->lever));
+    }
+    for (int i = 0; i < W; i++) {
+        u[i] = c_scale(du[i], h);
+        f[i] = c_scale(df[i], h);
+    }
+}
+
+/* column c of exp(l E) - I for a unit displacement (0) or a unit force (1) at the left end */
+RD_INLINE void slice_column(const struct rate_matrix *s, double l, int terms, int c, _Bool force,
+                            cv *u, cv *f)
+{
+    cv du[W], df[W];
+    for (int i = 0; i < W; i++) {
+        du[i] = c_real(i == c && !force);
+        df[i] = c_real(i == c && force);
+        u[i] = f[i] = c_zero();
+    }
+    for (int m = 1; m <= terms; m++) {
+        slice_differentiate(s, l / m, du, df);
+        for (int i = 0; i < W; i++) {
+            u[i] = c_add(u[i], du[i]);
+            f[i] = c_add(f[i], df[i]);
+        }
+    }
+}
+
+/* X <- A^-1 by Gauss and Jordan, A destroyed: near a unit triangle nothing is to be exchanged */
+RD_INLINE void slice_invert(cv A[W][W], cv X[W][W])
+{
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++)
+            X[i][j] = c_real(i == j);
+    for (int k = 0; k < W; k++) {
+        const cv pivot = c_inverse(A[k][k]);
+        for (int j = 0; j < W; j++) {
+            A[k][j] = c_mul(A[k][j], pivot);
+            X[k][j] = c_mul(X[k][j], pivot);
+        }
+        for (int i = 0; i < W; i++) {
+            if (i == k)
+                continue;
+            const cv a = A[i][k];
+            for (int j = 0; j < W; j++) {
+                A[i][j] = c_sub(A[i][j], c_mul(a, A[k][j]));
+                X[i][j] = c_sub(X[i][j], c_mul(a, X[k][j]));
+            }
+        }
+    }
+}
+
+/* (i, j) of A B */
+RD_INLINE cv slice_product(const cv A[W][W], const cv B[W][W], int i, int j)
+{
+    cv sum = c_mul(A[i][0], B[0][j]);
+    for (int k = 1; k < W; k++)
+        sum = c_add(sum, c_mul(A[i][k], B[k][j]));
+    return sum;
+}
+
+/* D = F - I, G, Q of a piece of length l */
+RD_INLINE void slice_fill(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
+                          cv Q[W][W])
+{
+    cv change[W][W], A[W][W], B[W][W], C[W][W], inverse[W][W], u[W], f[W];
+    for (int c = 0; c < W; c++) {
+        slice_column(s, l, terms, c, 1, u, f);
+        for (int i = 0; i < W; i++) {
+            B[i][c] = u[i];
+            change[i][c] = A[i][c] = f[i];
+            A[i][c].re += (double)(i == c);
+        }
+        slice_column(s, l, terms, c, 0, u, f);
+        for (int i = 0; i < W; i++)
+            C[i][c] = f[i];
+    }
+    slice_invert(A, inverse);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            D[j][i] = c_neg(slice_product(inverse, change, i, j));
+            if (j > i)
+                continue;
+            G[i][j] = G[j][i] = slice_product(B, inverse, i, j);
+            Q[i][j] = Q[j][i] = slice_product(inverse, C, i, j);
+        }
+}
+
+#endif

@@ -1,0 +1,33 @@
+/* A continuous span: how short the pieces are whose transfer is summed as a series. */
+#ifndef RD_SPAN_H
+#define RD_SPAN_H
+
+#include "chain.h"
+
+/* Rope between two nodes, in magnitudes: what sets its wavenumbers. */
+struct rd_span {
+    size_t width;
+    const int32_t *coordinate; /* (width) */
+    const double *flexibility; /* (3, 3) S, to be divided by section */
+    double section;            /* |factor of the sections| */
+    double tension;            /* |T| [N] */
+    double load[RD_WIDTH_MAX]; /* (width) |lambda| times inertia per length [N/m^2, N] */
+};
+
+/* A bound of the largest wavenumber [1/m], evanescent ones included: with h = (T + lambda j) S_bb/2
+
+       a^2 = h + sqrt(h^2 + lambda mu S_bb) + lambda (mu S_aa + p S_tt)
+
+   twice that where bending, twist and stretch are coupled. */
+double rd_span_wavenumber(const struct rd_span *span);
+
+/* How often a span of so many radians is halved until a piece has RD_SLICE_REACH of them, at most
+   RD_HALVINGS_MOST times. */
+int rd_span_halvings(double radians);
+
+enum { RD_HALVINGS_MOST = 40, RD_SLICE_TERMS = 24 };
+
+/* terms of the exponential series of a piece of so many radians, for all digits of all entries */
+int rd_span_terms(double radians);
+
+#endif
