@@ -4,11 +4,29 @@
 #include "assemble.h"
 #include "element.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const char names[] = "xzab";
+
+const struct recipe long_string = {
+    .elements = 1000,
+    .coordinates = "z",
+    .length = 1e-3,
+    .tension = 300,
+    .inertia = {[RD_Z] = 1e-4},
+    .left = "z",
+    .right = "z",
+    .more = 1,
+};
+
+double long_string_eigenvalue(size_t k)
+{
+    const double s = sin((double)k * 3.14159265358979323846 / 2000);
+    return 4 * 300 / 1e-4 / 1e-3 * s * s;
+}
 
 static void *exact_memory(size_t count, size_t size)
 {

@@ -40,6 +40,12 @@ struct rope {
     int32_t *stretch_term;
 };
 
+/* a thousand elements of 1 mm, 1e-4 kg between them, under 300 N, both ends held */
+extern const struct recipe long_string;
+
+/* its eigenvalue k = 1, 2, ...: (4 T/m l) sin^2(k pi/2n) */
+double long_string_eigenvalue(size_t k);
+
 struct rope rope_make(const struct recipe *recipe);
 void rope_free(struct rope *rope);
 

@@ -197,29 +197,18 @@ static void clamped_chain_has_the_modes_of_its_matrix(enum rd_kind kind, const c
     }
 }
 
-static const struct recipe string = {
-    .elements = 1000,
-    .coordinates = "z",
-    .length = 1e-3,
-    .tension = 300,
-    .inertia = {[RD_Z] = 1e-4},
-    .left = "z",
-    .right = "z",
-    .more = 1,
-};
-
-/* (4 T/m l) sin^2(k pi/2n), shapes sin(k pi i/n) */
+/* shapes sin(k pi i/n) */
 static void string_has_its_closed_form(void)
 {
     struct solved solved;
-    struct rope rope = rope_make(&string);
+    struct rope rope = rope_make(&long_string);
     rope_gather(&rope);
     solve(&solved, rope, 10);
     check_certified(&solved, 10);
     CHECK_INT(solved.modes.existing, 999);
     for (size_t k = 0; k < solved.modes.found; k++) {
-        const double x = (double)(k + 1) * PI / 1000, s = sin(x / 2);
-        const double exact = 4 * 300 / 1e-4 / 1e-3 * s * s;
+        const double x = (double)(k + 1) * PI / 1000;
+        const double exact = long_string_eigenvalue(k + 1);
         const double *u = shape_of(&solved, k);
         CHECK_ABS(solved.modes.lambda[k], exact, solved.modes.error[k] + 8 * EPS * exact,
                   "the bound that is reported, and the closed form's own");
@@ -325,7 +314,7 @@ static void buckled_chain_has_negative_eigenvalues(enum rd_kind kind, double loa
 
 static void no_more_are_found_than_exist(void)
 {
-    struct recipe recipe = string;
+    struct recipe recipe = long_string;
     struct solved solved;
     recipe.elements = 10;
     recipe.length = 0.1;
@@ -359,13 +348,13 @@ static void none_above_the_limit_is_found(void)
 {
     struct solved solved;
     const double s = sin(4.5 * PI / 2000), upper = 4 * 300 / 1e-4 / 1e-3 * s * s;
-    struct rope rope = rope_make(&string);
+    struct rope rope = rope_make(&long_string);
     rope_gather(&rope);
     solve_below(&solved, rope, 10, upper);
     check_certified(&solved, 4);
     CHECK_INT(solved.modes.existing, 4);
     solved_free(&solved);
-    rope = rope_make(&string);
+    rope = rope_make(&long_string);
     rope_gather(&rope);
     solve_below(&solved, rope, 10, 1e-3);
     check_certified(&solved, 0);
@@ -394,7 +383,7 @@ static void nothing_wanted_is_nothing_found(void)
 static void too_little_room_is_no_memory(size_t room)
 {
     struct solved solved;
-    struct rope rope = rope_make(&string);
+    struct rope rope = rope_make(&long_string);
     rope_gather(&rope);
     solve(&solved, rope, 3);
     CHECK_INT(solve_in(&solved.walked.walk, room, room, &solved.modes), RD_NO_MEMORY);
@@ -407,7 +396,7 @@ static void too_little_room_is_no_memory(size_t room)
 /* what rd_certify_size says is the most is enough for every mode there is */
 static void largest_size_is_enough(void)
 {
-    struct recipe recipe = string;
+    struct recipe recipe = long_string;
     struct solved solved;
     size_t steps, pieces;
     recipe.elements = 40;
@@ -425,7 +414,7 @@ static void largest_size_is_enough(void)
 /* nine equal strings between eight masses of 1e12 kg have nine equal frequencies */
 static void eight_modes_in_one_place_are_refused_by_name(void)
 {
-    struct recipe recipe = string;
+    struct recipe recipe = long_string;
     struct solved solved;
     recipe.elements = 36;
     struct rope rope = rope_make(&recipe);

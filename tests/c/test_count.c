@@ -145,23 +145,6 @@ static void compressed_chains(enum rd_kind kind, const char *names)
     }
 }
 
-static const struct recipe string = {
-    .elements = 1000,
-    .coordinates = "z",
-    .length = 1e-3,
-    .tension = 300,
-    .inertia = {[RD_Z] = 1e-4},
-    .left = "z",
-    .right = "z",
-};
-
-/* (4 T/m l) sin^2(k pi/2n) */
-static double string_eigenvalue(size_t k)
-{
-    const double s = sin((double)k * PI / 2000);
-    return 4 * 300 / 1e-4 / 1e-3 * s * s;
-}
-
 static void check_string(const struct rope *rope)
 {
     static const size_t mode[] = {1, 2, 3, 10, 100, 499, 500, 501, 998, 999};
@@ -170,8 +153,8 @@ static void check_string(const struct rope *rope)
     /* Rounding of a thousand steps, each EPS of the stiffness scaled to the wave: 1000 EPS; the
        highest lambda follow from 1 - sin^2, so that EPS of it is all they know. */
     for (int k = 0; k < MODES; k++) {
-        lambda[2 * k] = string_eigenvalue(mode[k]) * (1 - 1e-12);
-        lambda[2 * k + 1] = string_eigenvalue(mode[k]) * (1 + 1e-12);
+        lambda[2 * k] = long_string_eigenvalue(mode[k]) * (1 - 1e-12);
+        lambda[2 * k + 1] = long_string_eigenvalue(mode[k]) * (1 + 1e-12);
     }
     struct walked walked = walked_make(&rope->chain);
     rd_count(&walked.walk, 2 * MODES, lambda, count);
@@ -184,7 +167,7 @@ static void check_string(const struct rope *rope)
 
 static void fixed_string_is_counted_as_its_closed_form(void)
 {
-    struct rope rope = rope_make(&string);
+    struct rope rope = rope_make(&long_string);
     check_string(&rope);
     rope_gather(&rope);
     CHECK_INT(rope.chain.stretches, 3);
@@ -252,7 +235,7 @@ static void loads_above_eulers_are_counted_at_zero(enum rd_kind kind)
 /* no lambda: nothing is read or written */
 static void no_lambda_is_no_count(void)
 {
-    struct rope rope = rope_make(&string);
+    struct rope rope = rope_make(&long_string);
     struct walked walked = walked_make(&rope.chain);
     rd_count(&walked.walk, 0, NULL, NULL);
     CHECK_INT(walked.walk.legs, 500);
