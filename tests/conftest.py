@@ -18,6 +18,18 @@ settings.load_profile("ropedyn")
 EPS = float(np.finfo(float).eps)
 LENGTH, BENDING, MASS = 1.35, 54.626, 0.13725
 """Of the beam in the reference files [m, N m^2, kg]."""
+LAID = rd.Rope(
+    1.0,
+    0.1,
+    bending_stiffness=5.0,
+    torsional_stiffness=1.0,
+    axial_stiffness=900.0,
+    lay_coupling=-12.0,
+    lay_slope=0.3,
+    rotary_inertia=1e-5,
+    polar_inertia=1e-6,
+)
+"""A rope with every coordinate, all of them coupled, with stiffness and inertia in each."""
 
 
 def reference(name):

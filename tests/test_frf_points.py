@@ -2,21 +2,10 @@
 
 import numpy as np
 import pytest
-from conftest import EPS, LENGTH, beam
+from conftest import EPS, LAID, LENGTH, beam
 
 import ropedyn as rd
 
-LAID = rd.Rope(
-    1.0,
-    0.1,
-    bending_stiffness=5.0,
-    torsional_stiffness=1.0,
-    axial_stiffness=900.0,
-    lay_coupling=-12.0,
-    lay_slope=0.3,
-    rotary_inertia=1e-5,
-    polar_inertia=1e-6,
-)
 SCENES = {
     "string": rd.Scene(rd.Rope(1.0, 0.1), tension=70.0),
     "beam": rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=5.0), ends=("clamped", "pinned")),

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import BENDING, EPS, LENGTH, MASS, beam, dense, pinned_rigid_chain
+from conftest import BENDING, EPS, LAID, LENGTH, MASS, beam, dense, pinned_rigid_chain
 
 import ropedyn as rd
 
@@ -12,24 +12,13 @@ N = 8
 SPACING = LENGTH / N
 EULER = (math.pi / LENGTH) ** 2 * BENDING
 """Critical load of the pinned beam [N]; of the clamped one four times that."""
-ROPE = rd.Rope(
-    1.0,
-    0.1,
-    bending_stiffness=5.0,
-    torsional_stiffness=1.0,
-    axial_stiffness=900.0,
-    lay_coupling=-12.0,
-    lay_slope=0.3,
-    rotary_inertia=1e-5,
-    polar_inertia=1e-6,
-)
 
 
 # energies ------------------------------------------------------------------------------------
 
 
 def test_strain_and_kinetic_fractions_are_whole():
-    scene = rd.Scene(ROPE, tension=60.0, parts=[rd.Spring(0.4, 200.0)])
+    scene = rd.Scene(LAID, tension=60.0, parts=[rd.Spring(0.4, 200.0)])
     modes = scene.compile(elements=10, element="rigid").modes(12)
     assert set(modes.energy) == {
         *("bending", "twist", "stretch", "lay", "tension", "spring"),
@@ -45,7 +34,7 @@ def test_strain_and_kinetic_fractions_are_whole():
 
 @pytest.mark.parametrize("without", ["tension", "spring"])
 def test_share_of_an_effect_is_what_its_stiffness_stores(without):
-    scene = rd.Scene(ROPE, tension=60.0, parts=[rd.Spring(0.4, 200.0)])
+    scene = rd.Scene(LAID, tension=60.0, parts=[rd.Spring(0.4, 200.0)])
     model = scene.compile(elements=10, element="rigid")
     # the station of the spring stays, so that the nodes are the same
     bare = scene.replace(parts=[rd.PointMass(0.4, 0), *scene.parts]).without(without)
@@ -96,7 +85,7 @@ def test_pinned_tensed_chain_shares_energy_as_its_waves_do(k):
 
 
 def test_modal_mass_belongs_to_the_shape_given():
-    model = rd.Scene(ROPE, tension=60.0).compile(elements=10, element="rigid")
+    model = rd.Scene(LAID, tension=60.0).compile(elements=10, element="rigid")
     modes = model.modes(9)
     _, M, _ = dense(model)
     u = modes.shape[:, 1:-1].reshape(9, -1)
@@ -107,7 +96,7 @@ def test_modal_mass_belongs_to_the_shape_given():
 
 
 def test_uncoupled_waves_are_four_families_in_order_of_frequency():
-    rope = ROPE.replace(lay_coupling=None, lay_slope=None)
+    rope = LAID.replace(lay_coupling=None, lay_slope=None)
     model = rd.Scene(rope, tension=60.0).compile(elements=4, element="rigid")
     modes = model.modes(12)
     assert sorted(modes.family.tolist()) == sorted(
@@ -157,7 +146,7 @@ def test_stiffness_damping_ratio_leaves_out_the_share_of_the_tension():
 
 def test_damping_ratio_agrees_with_the_damping_matrix():
     scene = rd.Scene(
-        ROPE,
+        LAID,
         tension=60.0,
         parts=[rd.Spring(0.5, 300.0)],
         damping=(rd.StiffnessDamping(1e-5), rd.RayleighDamping(2.0, 1e-6)),
@@ -253,7 +242,7 @@ def test_compressed_chain_swings_about_a_mass_of_any_shift(load):
 @pytest.mark.parametrize("tension", [0.0, 50.0])
 def test_free_rope_has_its_rigid_motions_at_exactly_zero(tension, n):
     # tension turns with nothing: it resists a rotation of the whole rope
-    rope = ROPE.replace(lay_coupling=None, lay_slope=None)
+    rope = LAID.replace(lay_coupling=None, lay_slope=None)
     scene = rd.Scene(rope, tension=tension, ends=("free", "free"))
     rigid = 4 if tension == 0 else 3
     modes = scene.compile(elements=n, element="rigid").modes(rigid + 1)
@@ -277,7 +266,7 @@ def test_rigid_motions_of_a_free_beam_are_lines():
 
 
 def test_laid_free_rope_keeps_its_four_rigid_motions():
-    modes = rd.Scene(ROPE, ends=("free", "free")).compile(elements=6, element="rigid").modes(5)
+    modes = rd.Scene(LAID, ends=("free", "free")).compile(elements=6, element="rigid").modes(5)
     assert (modes.frequency[:4] == 0).all()
     assert modes.frequency[4] > 1.0
 
@@ -310,7 +299,7 @@ def test_hinged_rope_swings_about_its_pin_without_frequency():
             1,
         ),
         (beam(N, rotary=False, parts=[rd.PointMass(LENGTH / 2, 0, rotary_inertia=1e-5)]), 8),
-        (rd.Scene(ROPE.replace(rotary_inertia=None)), 21),
+        (rd.Scene(LAID.replace(rotary_inertia=None)), 21),
     ],
 )
 def test_asking_for_more_modes_than_there_are_says_how_many(scene, finite):
@@ -370,7 +359,7 @@ def test_negative_spring_on_a_massless_rotation_is_refused():
 
 @pytest.mark.parametrize("number", [0, 1, 4, 9])
 def test_modes_below_a_frequency_are_the_lowest_ones(number):
-    model = rd.Scene(ROPE, tension=60.0).compile(elements=8, element="rigid")
+    model = rd.Scene(LAID, tension=60.0).compile(elements=8, element="rigid")
     all_modes = model.modes(12)
     f = np.concatenate([[0], all_modes.frequency])
     modes = model.modes(below=(f[number] + f[number + 1]) / 2)

@@ -5,7 +5,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-from conftest import LENGTH, beam, pinned_rigid_chain, reference
+from conftest import LAID, LENGTH, beam, pinned_rigid_chain, reference
 from exact_counts import ExactChain
 from exact_waves import pinned_tensed_chain
 from mpmath import mpf
@@ -70,18 +70,7 @@ def test_counts_stand_on_both_sides_of_a_pinned_tensed_chain(tension):
 @pytest.mark.parametrize("tension", [0.0, 70.0, -30.0])
 def test_elements_are_those_of_the_library(element, tension):
     # the same formulas in two arithmetics, lay and stretch coupled: a slip in one shows
-    rope = rd.Rope(
-        1.0,
-        0.1,
-        bending_stiffness=5.0,
-        torsional_stiffness=1.0,
-        axial_stiffness=900.0,
-        lay_coupling=-12.0,
-        lay_slope=0.3,
-        rotary_inertia=1e-5,
-        polar_inertia=1e-6,
-    )
-    scene = rd.Scene(rope, tension=tension, parts=[rd.PointMass(0.3, 0.2)])
+    scene = rd.Scene(LAID, tension=tension, parts=[rd.PointMass(0.3, 0.2)])
     model = scene.compile(elements=5, element=element)
     exact = ExactChain(model.chain)
     values = np.linalg.eigvals(np.linalg.solve(model.mass().toarray(), model.stiffness().toarray()))
