@@ -1,7 +1,6 @@
 """The mixed form by band LU: an oracle that shares no formula with the sweep but the triples."""
 
 import math
-import re
 
 import exact_mixed
 import mpmath
@@ -162,26 +161,6 @@ def test_massless_disc_and_heavy_mass_do_not_hurt():
         exact = 1 / (2 * T / a - (6 * math.pi) ** 2 * (mass + a * 1e-12))
         # a handful of roundings, no cancellation: one term dominates
         assert frf.value[0, 0].real == pytest.approx(exact, rel=16 * EPS)
-
-
-@pytest.mark.parametrize(
-    "resonant",
-    [
-        rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=2.0), ends=("free", "free")),
-        rd.Scene(rd.Rope(1.0, 0.1), tension=8.0, ends=("free", "free")),
-        # a string of two elements, 16 N/m each, against a spring of -32
-        rd.Scene(rd.Rope(1.0, 0.1), tension=8.0, parts=[rd.Spring(0.5, -32.0)]),
-    ],
-    ids=["free beam", "free string", "negative spring"],
-)
-@pytest.mark.parametrize("element", ["rigid", "tensed"])
-def test_undamped_resonance_is_an_error_that_names_the_frequency(resonant, element):
-    # at 0 Hz the resonance is exact in doubles
-    model = resonant.compile(elements=2, element=element)
-    with pytest.raises(rd.SolveError, match=re.escape("frequency 0.0 Hz")):
-        model.frf([5.0, 0.0, 7.0], drive=("z", 0.5), solver="band")
-    with pytest.raises(rd.SolveError, match="singular"):
-        model.static({("z", 0.5): 1.0}, solver="band")
 
 
 @pytest.mark.parametrize("share", [0.5, 0.9, 0.999, 0.99999, 1.00001, 1.001, 1.5])

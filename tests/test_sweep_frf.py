@@ -258,8 +258,11 @@ def test_long_pinned_chain_responds_as_its_two_waves(n, tension, f, claim):
     ids=["free beam", "free string", "negative spring"],
 )
 @pytest.mark.parametrize("element", ["rigid", "tensed"])
-def test_undamped_resonance_is_an_error_that_names_the_frequency(resonant, element):
+@pytest.mark.parametrize("solver", ["sweep", "band"])
+def test_undamped_resonance_is_an_error_that_names_the_frequency(resonant, element, solver):
     # at 0 Hz the resonance is exact in doubles
     model = resonant.compile(elements=2, element=element)
     with pytest.raises(rd.SolveError, match=re.escape("frequency 0.0 Hz")):
-        model.frf([5.0, 0.0, 7.0], drive=("z", 0.5), solver="sweep")
+        model.frf([5.0, 0.0, 7.0], drive=("z", 0.5), solver=solver)
+    with pytest.raises(rd.SolveError, match="singular"):
+        model.static({("z", 0.5): 1.0}, solver=solver)
