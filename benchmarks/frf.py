@@ -19,6 +19,7 @@ from typing import Any
 
 import exact
 import numpy as np
+import report
 import scene
 from scipy.linalg import solve_banded
 from scipy.sparse import csc_array
@@ -153,8 +154,8 @@ def over_frequencies() -> str:
         model = scene.model(kind, elements, twist=False)
         calls = {str(n): partial(sweep, model, np.linspace(10.0, 400.0, n)) for n in NUMBERS}
         times = timing.medians(calls, budget=0.5)
-        rows.append([f"{kind}, n = {elements}", *(timing.digits(1e3 * t) for t in times.values())])
-    return timing.table(["time [ms] for so many frequencies", *map(str, NUMBERS)], rows)
+        rows.append([f"{kind}, n = {elements}", *(report.digits(1e3 * t) for t in times.values())])
+    return report.table(["time [ms] for so many frequencies", *map(str, NUMBERS)], rows)
 
 
 def memory() -> dict[str, float]:
@@ -184,13 +185,13 @@ def resident(name: str) -> float:
 # --- what is written --------------------------------------------------------------------------
 
 
-def report(rows: list[Row], numbers: str, peak: dict[str, float]) -> str:
+def page(rows: list[Row], numbers: str, peak: dict[str, float]) -> str:
     kinds = "\n".join(f"- {name}: {text}." for name, text in scene.KINDS.items())
     count = ", ".join(f"{fewer(n)} at n = {n}" for n in ELEMENTS)
     bare = peak["bare"]
     return f"""# Frequency response
 
-{timing.machine()}. T = 2830 N, B = 1.54 N m^2, 1.35 m, 0.1017 kg/m, clamped,
+{report.machine()}. T = 2830 N, B = 1.54 N m^2, 1.35 m, 0.1017 kg/m, clamped,
 StiffnessDamping(1e-4), driven and watched in the middle, 10 to 400 Hz. Elements are rigid where
 nothing else is said; tensed ones with this damping have no damping matrix to give SciPy.
 Width 2 is z and beta; width 3 has twist and lay too.
@@ -244,12 +245,12 @@ def _times(rows: list[Row]) -> str:
             [
                 _name(row),
                 str(row.elements),
-                timing.digits(1e6 * own * row.elements),
-                *(timing.digits(t and 1e9 * t) for t in (own, *others)),
-                *(timing.digits(t and t / own) for t in others),
+                report.digits(1e6 * own * row.elements),
+                *(report.digits(t and 1e9 * t) for t in (own, *others)),
+                *(report.digits(t and t / own) for t in others),
             ]
         )
-    return timing.table([*head, "solve_banded / sweep", "splu / sweep"], lines)
+    return report.table([*head, "solve_banded / sweep", "splu / sweep"], lines)
 
 
 def _errors(rows: list[Row]) -> str:
@@ -264,7 +265,7 @@ def _errors(rows: list[Row]) -> str:
         for row in rows
         if row.error
     ]
-    return timing.table(head, lines)
+    return report.table(head, lines)
 
 
 def _exponents(rows: list[Row]) -> str:
@@ -278,12 +279,7 @@ def _exponents(rows: list[Row]) -> str:
 
 
 def plot(rows: list[Row]) -> None:
-    import matplotlib as mpl
-
-    mpl.use("agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(2, 2, figsize=(10, 8), sharex=True, sharey="row")
+    figure, axes = report.panels()
     for column, twist in enumerate((False, True)):
         time, error = axes[:, column]
         chosen = {
@@ -324,15 +320,8 @@ def plot(rows: list[Row]) -> None:
         )
         time.set_title("with twist and lay (width 3)" if twist else "bending (width 2)")
         error.set_xlabel("elements")
-        for ax in (time, error):
-            ax.grid(alpha=0.3)
-    axes[0, 0].set_ylabel("time of 1000 frequencies [ms]")
-    axes[1, 0].set_ylabel("largest relative error or bound [1]")
-    axes[0, 0].legend(fontsize=9)
-    axes[1, 0].legend(fontsize=9)
-    figure.suptitle("Frequency response 10 to 400 Hz, one core")
-    figure.tight_layout()
-    figure.savefig(timing.RESULTS / "frf.png", dpi=130)
+    labels = ("time of 1000 frequencies [ms]", "largest relative error or bound [1]")
+    report.save(figure, axes, "frf.png", "Frequency response 10 to 400 Hz, one core", labels)
 
 
 def main() -> None:
@@ -350,7 +339,7 @@ def main() -> None:
         for kind in ("masses", "different"):
             rows += [measure_own(kind, twist, n, "tensed") for n in (1000, 10_000)]
     print()
-    timing.write("frf.md", report(rows, over_frequencies(), memory()))
+    report.write("frf.md", page(rows, over_frequencies(), memory()))
     plot(rows)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import exact
 import numpy as np
+import report
 import scene
 from scipy.linalg import eig_banded, eigh
 from scipy.sparse.linalg import eigsh
@@ -132,11 +133,11 @@ def _exact(kind: str, model: rd.Model, near: np.ndarray) -> tuple[np.ndarray, st
 # --- what is written --------------------------------------------------------------------------
 
 
-def report(rows: list[Row]) -> str:
+def page(rows: list[Row]) -> str:
     kinds = "\n".join(f"- {name}: {text}." for name, text in KINDS.items())
     return f"""# Ten lowest modes
 
-{timing.machine()}. T = 2830 N, B = 1.54 N m^2, 1.35 m, 0.1017 kg/m, clamped,
+{report.machine()}. T = 2830 N, B = 1.54 N m^2, 1.35 m, 0.1017 kg/m, clamped,
 rigid elements with their own rotary inertia, width 2 (z and beta).
 
 {kinds}
@@ -172,15 +173,15 @@ def _times(rows: list[Row]) -> str:
         ]
         for row in rows
     ]
-    return timing.table(head, lines)
+    return report.table(head, lines)
 
 
 def _milliseconds(seconds: float | None) -> str:
-    return timing.digits(None if seconds is None else 1e3 * seconds)
+    return report.digits(None if seconds is None else 1e3 * seconds)
 
 
 def _ratio(seconds: float | None, own: float) -> str:
-    return timing.digits(None if seconds is None else seconds / own)
+    return report.digits(None if seconds is None else seconds / own)
 
 
 def _errors(rows: list[Row]) -> str:
@@ -196,16 +197,11 @@ def _errors(rows: list[Row]) -> str:
         ]
         for row in rows
     ]
-    return timing.table(head, lines)
+    return report.table(head, lines)
 
 
 def plot(rows: list[Row]) -> None:
-    import matplotlib as mpl
-
-    mpl.use("agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(2, 2, figsize=(10, 8), sharex=True, sharey="row")
+    figure, axes = report.panels()
     for (time, error), kind in zip(axes.T, KINDS):
         of_kind = [row for row in rows if row.kind == kind]
         for k, name in enumerate(MOST):
@@ -236,15 +232,8 @@ def plot(rows: list[Row]) -> None:
         )
         time.set_title(kind)
         error.set_xlabel("elements")
-        for ax in (time, error):
-            ax.grid(alpha=0.3)
-    axes[0, 0].set_ylabel("time [ms]")
-    axes[1, 0].set_ylabel("largest relative error [1]")
-    axes[0, 0].legend(fontsize=9)
-    axes[1, 0].legend(fontsize=9)
-    figure.suptitle("Ten lowest modes, one core")
-    figure.tight_layout()
-    figure.savefig(timing.RESULTS / "modes.png", dpi=130)
+    labels = ("time [ms]", "largest relative error [1]")
+    report.save(figure, axes, "modes.png", "Ten lowest modes, one core", labels)
 
 
 def main() -> None:
@@ -254,7 +243,7 @@ def main() -> None:
             rows.append(measure(kind, n))
             print(".", end="", flush=True)
     print()
-    timing.write("modes.md", report(rows))
+    report.write("modes.md", page(rows))
     plot(rows)
 
 
