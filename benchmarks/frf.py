@@ -27,7 +27,6 @@ from scipy.sparse.linalg import splu
 
 import ropedyn as rd
 
-GAMMA = 1e-4
 FREQUENCY = np.linspace(10.0, 400.0, 1000)
 ELEMENTS = (8, 64, 1000, 10_000, 100_000)
 NUMBERS = (1, 10, 100, 1000, 10_000)
@@ -49,26 +48,26 @@ class Row:
 
 
 class Assembled:
-    """The dynamic stiffness K + i omega C - omega^2 M for SciPy, filled anew per frequency."""
+    """The dynamic stiffness K + i omega C - omega^2 M for SciPy, filled anew per frequency.
 
-    def __init__(self, model: rd.Model) -> None:
-        stiffness = model.stiffness().tocoo()
-        i, j = stiffness.row, stiffness.col
-        self.width = int(abs(i - j).max())
-        parts = [part.tocoo() for part in (stiffness, model.damping(), model.mass())]
-        self.bands = [np.zeros((2 * self.width + 1, model.size)) for _ in parts]
+    Unknown `at` is driven and watched.
+    """
+
+    def __init__(self, stiffness: Any, damping: Any, mass: Any, at: int) -> None:
+        parts = [part.tocoo() for part in (stiffness, damping, mass)]
+        size = parts[0].shape[0]
+        self.width = int(abs(parts[0].row - parts[0].col).max())
+        self.bands = [np.zeros((2 * self.width + 1, size)) for _ in parts]
         for band, part in zip(self.bands, parts):
             band[self.width + part.row - part.col, part.col] = part.data
         self.sparse = stiffness.tocsc()
         self.sparse.sort_indices()
-        columns = np.repeat(np.arange(model.size), np.diff(self.sparse.indptr))
+        columns = np.repeat(np.arange(size), np.diff(self.sparse.indptr))
         place = (self.width + self.sparse.indices - columns, columns)
         self.data = [band[place] for band in self.bands]
-        free = np.flatnonzero((model.chain.held[model.chain.term_of] == 0).ravel())
-        middle = (len(model.x) // 2) * len(model.coordinates) + model.coordinates.index("z")
-        self.at = int(np.searchsorted(free, middle))
-        self.force = np.zeros(model.size, dtype=complex)
-        self.force[self.at] = 1.0
+        self.at = at
+        self.force = np.zeros(size, dtype=complex)
+        self.force[at] = 1.0
 
     def solve_banded(self, frequency: np.ndarray) -> np.ndarray:
         ends = (self.width, self.width)
@@ -97,6 +96,13 @@ def _dynamic(parts: list[np.ndarray], frequency: float) -> np.ndarray:
     return stiffness + 1j * omega * damping - omega**2 * mass
 
 
+def middle_of(model: rd.Model) -> int:
+    """Return which unknown is z of the node in the middle."""
+    free = np.flatnonzero((model.chain.held[model.chain.term_of] == 0).ravel())
+    middle = (len(model.x) // 2) * len(model.coordinates) + model.coordinates.index("z")
+    return int(np.searchsorted(free, middle))
+
+
 def sweep(model: rd.Model, frequency: np.ndarray) -> Any:
     middle = ("z", float(model.x[len(model.x) // 2]))
     return model.frf(frequency, drive=middle, solver="sweep", threads=1)
@@ -104,7 +110,7 @@ def sweep(model: rd.Model, frequency: np.ndarray) -> Any:
 
 def measure(kind: str, twist: bool, elements: int) -> Row:
     model = scene.model(kind, elements, twist=twist)
-    assembled = Assembled(model)
+    assembled = Assembled(model.stiffness(), model.damping(), model.mass(), middle_of(model))
     few = FREQUENCY[:: 1000 // fewer(elements)]
     calls: dict[str, Callable[[], Any]] = {
         "sweep": partial(sweep, model, FREQUENCY),
@@ -117,7 +123,7 @@ def measure(kind: str, twist: bool, elements: int) -> Row:
     value = {"sweep": result.value[0]} | {name: calls[name]() for name in SOLVERS[1:]}
     if elements == ELEMENTS[0]:
         value = {name: v[::10] for name, v in value.items()}
-        right = [exact.receptance(model, f, GAMMA, assembled.at) for f in few[::10]]
+        right = [exact.receptance(model, f, scene.GAMMA, assembled.at) for f in few[::10]]
     else:
         right = value.pop("sweep")
     return Row(

@@ -1,13 +1,14 @@
 """The scene of the benchmarks: a rope of 2830 N, damped, uniform or different at every node."""
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
 import ropedyn as rd
 
-LENGTH, DENSITY, BENDING, TENSION = 1.35, 0.1017, 1.54, 2830.0
-"""[m], [kg/m], [N m^2], [N]."""
+LENGTH, DENSITY, BENDING, TENSION, GAMMA = 1.35, 0.1017, 1.54, 2830.0, 1e-4
+"""[m], [kg/m], [N m^2], [N], [s]."""
 
 TWIST = {"torsional_stiffness": 0.1485, "polar_inertia": 1.4e-7, "lay_slope": 0.01}
 
@@ -16,6 +17,22 @@ KINDS = {
     "masses": "another point mass at every node, elements equal but for rounding",
     "different": "another point mass at every node, every element of another length",
 }
+
+
+def scene(
+    parts: Sequence[rd.PointMass | rd.Spring] = (),
+    *,
+    ends: str = "clamped",
+    **properties: float | None,
+) -> rd.Scene:
+    """Return the rope, with these parts and more properties."""
+    return rd.Scene(
+        rd.Rope(LENGTH, DENSITY, bending_stiffness=BENDING, **properties),
+        tension=TENSION,
+        ends=(ends, ends),
+        damping=rd.StiffnessDamping(GAMMA),
+        parts=parts,
+    )
 
 
 def model(
@@ -28,21 +45,13 @@ def model(
     element: str = "rigid",
 ) -> rd.Model:
     """Compile the scene; with `rotary` the elements are rigid bodies, mu (L/n)^2/12."""
-    rope = rd.Rope(
-        LENGTH,
-        DENSITY,
-        bending_stiffness=BENDING,
+    whole = scene(
+        [] if kind == "uniform" else _masses(kind, elements),
+        ends=ends,
         rotary_inertia=DENSITY * (LENGTH / elements) ** 2 / 12 if rotary else None,
         **(TWIST if twist else {}),
     )
-    scene = rd.Scene(
-        rope,
-        tension=TENSION,
-        ends=(ends, ends),
-        damping=rd.StiffnessDamping(1e-4),
-        parts=[] if kind == "uniform" else _masses(kind, elements),
-    )
-    return scene.compile(elements=elements, element=element)
+    return whole.compile(elements=elements, element=element)
 
 
 def _masses(kind: str, elements: int) -> list[rd.PointMass]:
