@@ -45,13 +45,6 @@ struct rd_chain {
     const int32_t *term_of; /* (nodes)                 term node by node; a sweep reads neither */
 };
 
-/* the channel that a coordinate's end force loads */
-static inline size_t rd_channel_of(int32_t coordinate)
-{
-    static const size_t channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
-    return channel[coordinate];
-}
-
 /* nodes of a stretch */
 static inline size_t rd_stretch_nodes(const struct rd_chain *chain, size_t k)
 {
@@ -68,6 +61,23 @@ static inline int rd_term_is_bare(const struct rd_chain *chain, int32_t term)
     for (size_t i = 0; i < w; i++)
         any |= chain->held[t * w + i] || (chain->hinge && chain->hinge[t * w + i] != 0);
     return !any;
+}
+
+/* index of a coordinate among those of a node, or width where absent */
+static inline size_t rd_coordinate_find(size_t width, const int32_t *coordinate,
+                                        enum rd_coordinate sought)
+{
+    size_t i = 0;
+    while (i < width && coordinate[i] != (int32_t)sought)
+        i++;
+    return i;
+}
+
+/* the channel that a coordinate's end force loads, z by its moment */
+static inline int rd_channel_of(int32_t coordinate)
+{
+    static const int channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
+    return channel[coordinate];
 }
 
 /* the stretch that a node belongs to, sought from a near one */

@@ -68,8 +68,8 @@ RD_INLINE void strut_transfer(struct wave *wave, const struct rd_chain *chain, i
     const double *S = chain->flexibility + (size_t)element * RD_CHANNELS * RD_CHANNELS;
     lanes shear[W][W], back[W][W], f[W][W];
     for (int i = 0; i < W; i++) {
-        const _Bool bends = chain->coordinate[i] == RD_Z || chain->coordinate[i] == RD_BETA;
-        const int channel = chain->coordinate[i] == RD_X ? RD_AXIAL : RD_TORSION;
+        const int channel = rd_channel_of(chain->coordinate[i]);
+        const _Bool bends = channel == RD_BENDING;
         const double r = S[channel * RD_CHANNELS + RD_BENDING] / S[RD_CHANNELS * RD_CHANNELS - 1];
         for (int j = 0; j < W; j++) {
             back[i][j] = bends || j < W - 1 ? l_fill(0) : r * z[j] * inverse[i];

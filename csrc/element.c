@@ -11,8 +11,7 @@
 enum { W = RD_WIDTH_MAX, N = 2 * RD_WIDTH_MAX };
 
 /* The section force a coordinate's end force causes at the distance s from that end is
-   s^power in one channel: axial: F_x; torque: M_alpha; moment: s F_z + M_beta. */
-static const int channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
+   s^power in its channel: axial: F_x; torque: M_alpha; moment: s F_z + M_beta. */
 static const int power[RD_WIDTH_MAX] = {0, 1, 0, 0};
 
 struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i)
@@ -46,19 +45,11 @@ struct rd_element rd_chain_span(const struct rd_chain *chain, size_t stretch)
     return element;
 }
 
-/* index of a coordinate in the element, or its width where absent */
-static size_t find(const struct rd_element *element, enum rd_coordinate coordinate)
-{
-    size_t i = 0;
-    while (i < element->width && element->coordinate[i] != (int32_t)coordinate)
-        i++;
-    return i;
-}
-
 /* a string: z is present and has no bending to carry it */
 static bool is_string(const struct rd_element *element)
 {
-    return find(element, RD_Z) < element->width && find(element, RD_BETA) == element->width;
+    return rd_element_find(element, RD_Z) < element->width &&
+           rd_element_find(element, RD_BETA) == element->width;
 }
 
 /* integral of (s - r)^m (p - r)^n dr from 0 to min(s, p), m and n 0 or 1 */
@@ -84,7 +75,8 @@ static void cantilever(const struct rd_element *element, double s, double p, dou
         for (size_t j = 0; j < w; j++) {
             const int32_t a = element->coordinate[i];
             const int32_t b = element->coordinate[j];
-            const double S = element->flexibility[channel[a] * RD_CHANNELS + channel[b]];
+            const double S =
+                element->flexibility[rd_channel_of(a) * RD_CHANNELS + rd_channel_of(b)];
             const bool absent = string && (a == RD_Z || b == RD_Z);
             G[i * w + j] = absent ? 0 : S * overlap(s, power[a], p, power[b]);
         }
@@ -96,8 +88,8 @@ static void transfer(const struct rd_element *element, double s, double *F)
     const size_t w = element->width;
     for (size_t i = 0; i < w * w; i++)
         F[i] = i % (w + 1) == 0;
-    const size_t z = find(element, RD_Z);
-    const size_t beta = find(element, RD_BETA);
+    const size_t z = rd_element_find(element, RD_Z);
+    const size_t beta = rd_element_find(element, RD_BETA);
     if (element->kind != RD_DIFFERENCE && z < w && beta < w)
         F[z * w + beta] = s;
 }
@@ -126,20 +118,20 @@ static bool add_rods(const struct rd_element *element, double _Complex section, 
     const size_t w = element->width;
     const double *S = element->flexibility;
     const double Sbb = S[RD_BENDING * (RD_CHANNELS + 1)];
-    const bool bends = find(element, RD_BETA) < w;
+    const bool bends = rd_element_find(element, RD_BETA) < w;
     double change[2][N] = {{0}}, inverse[4];
     size_t at[2], rods = 0;
     for (size_t i = 0; i < w; i++)
-        if (channel[element->coordinate[i]] != RD_BENDING)
+        if (rd_channel_of(element->coordinate[i]) != RD_BENDING)
             at[rods++] = i;
     for (size_t i = 0; i < rods; i++) {
-        const double *row = S + channel[element->coordinate[at[i]]] * RD_CHANNELS;
+        const double *row = S + rd_channel_of(element->coordinate[at[i]]) * RD_CHANNELS;
         const double r = bends ? row[RD_BENDING] / Sbb : 0;
         add_change(w, at[i], 1, change[i]);
         if (bends)
             add_change(w, w - 1, -r, change[i]);
         for (size_t j = 0; j < rods; j++) {
-            const int d = channel[element->coordinate[at[j]]];
+            const int d = rd_channel_of(element->coordinate[at[j]]);
             inverse[i * rods + j] = row[d] - r * S[d * RD_CHANNELS + RD_BENDING];
         }
     }
@@ -167,7 +159,7 @@ static bool add_rods(const struct rd_element *element, double _Complex section, 
 static bool add_bending(const struct rd_element *element, double _Complex section,
                         double _Complex tension, double _Complex *K)
 {
-    const size_t w = element->width, z = find(element, RD_Z), beta = w - 1;
+    const size_t w = element->width, z = rd_element_find(element, RD_Z), beta = w - 1;
     const double l = element->length;
     const double Sbb = element->flexibility[RD_BENDING * (RD_CHANNELS + 1)];
     if (!(Sbb > 0))
@@ -189,7 +181,7 @@ static bool add_bending(const struct rd_element *element, double _Complex sectio
 static void add_string(const struct rd_element *element, double _Complex tension,
                        double _Complex *K)
 {
-    const size_t w = element->width, z = find(element, RD_Z);
+    const size_t w = element->width, z = rd_element_find(element, RD_Z);
     double change[N] = {0};
     if (z == w)
         return;
@@ -247,7 +239,7 @@ static enum rd_status closed_matrix(const struct rd_element *element, double _Co
     memset(K, 0, 4 * w * w * sizeof *K);
     if (!add_rods(element, section, K))
         return RD_NOT_POSITIVE_DEFINITE;
-    if (find(element, RD_BETA) < w && !add_bending(element, section, tension, K))
+    if (rd_element_find(element, RD_BETA) < w && !add_bending(element, section, tension, K))
         return RD_NOT_POSITIVE_DEFINITE;
     add_string(element, tension, K);
     return RD_OK;
@@ -288,9 +280,10 @@ enum rd_status rd_element_jump(const struct rd_element *element, double *jump)
 /* sections and tension are one in a tensed element that bends, and where a hinge opens in z */
 static bool is_inseparable(const struct rd_element *element)
 {
-    const size_t z = find(element, RD_Z);
+    const size_t z = rd_element_find(element, RD_Z);
     const bool opens = element->hinge && z < element->width && element->hinge[z] != 0;
-    return opens || (element->kind == RD_TENSED && find(element, RD_BETA) < element->width);
+    return opens ||
+           (element->kind == RD_TENSED && rd_element_find(element, RD_BETA) < element->width);
 }
 
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
@@ -319,7 +312,7 @@ static bool tip_share(const struct rd_element *element, double s, double *share)
     if (!rd_dense_invert(w, Gi))
         return false;
     rd_dense_multiply(w, w, w, G, Gi, share);
-    const size_t z = find(element, RD_Z);
+    const size_t z = rd_element_find(element, RD_Z);
     if (is_string(element))
         share[z * w + z] = s / element->length;
     return true;
@@ -356,7 +349,7 @@ static bool closed_local(const struct rd_element *element, double s, double p, d
     rd_dense_multiply(w, w, w, share, Glp, carried);
     for (size_t i = 0; i < w * w; i++)
         local[i] -= carried[i];
-    const size_t z = find(element, RD_Z);
+    const size_t z = rd_element_find(element, RD_Z);
     if (is_string(element))
         local[z * w + z] = (fmin(s, p) - s * p / element->length) / element->tension;
     return true;

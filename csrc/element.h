@@ -19,6 +19,12 @@ struct rd_element {
     const double *hinge; /* (width) compliance between the left node and the element, or NULL */
 };
 
+/* index of a coordinate in the element, or its width where absent */
+static inline size_t rd_element_find(const struct rd_element *element, enum rd_coordinate sought)
+{
+    return rd_coordinate_find(element->width, element->coordinate, sought);
+}
+
 /* the distinct element i of a chain, without a hinge */
 struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i);
 

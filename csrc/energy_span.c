@@ -47,8 +47,8 @@ static bool step_section(const struct rd_chain *chain, enum rd_strain strain, in
     bool any = false;
     for (size_t i = 0; i < chain->width; i++)
         for (size_t j = 0; j < chain->width; j++) {
-            const size_t c = rd_channel_of(chain->coordinate[i]);
-            const size_t d = rd_channel_of(chain->coordinate[j]);
+            const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
+            const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);
             if (chain->coordinate[i] == RD_Z || chain->coordinate[j] == RD_Z ||
                 !rate->elastic[i][j] || strain_of(c, d) != strain)
                 continue;

@@ -15,8 +15,6 @@ enum { W = RD_WIDTH_MAX };
 /* roundings of one entry of the band, a product of a few numbers, and of the refined solution */
 static const double ROUNDINGS = 4;
 
-static const int channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
-
 /* static receptances of a rope of the mean section and tension; z of a beam that is under tension
    too from both in parallel */
 static void find_scale(const struct rd_chain *chain, double *scale)
@@ -32,7 +30,7 @@ static void find_scale(const struct rd_chain *chain, double *scale)
     }
     const bool bends = chain->coordinate[chain->width - 1] == RD_BETA;
     for (size_t i = 0; i < chain->width; i++) {
-        const double own = soft[channel[chain->coordinate[i]]];
+        const double own = soft[rd_channel_of(chain->coordinate[i])];
         const double beam = bends ? 1 / (own * length * length) : 0;
         const bool lateral = chain->coordinate[i] == RD_Z;
         scale[i] = sqrt(lateral ? 1 / (beam + pull / (length * length)) : own);

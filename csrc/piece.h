@@ -55,8 +55,8 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
         if (is_z && bends)
             rate.z = i;
         for (int j = 0; j < W; j++) {
-            const size_t c = rd_channel_of(chain->coordinate[i]);
-            const size_t d = rd_channel_of(chain->coordinate[j]);
+            const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
+            const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);
             double s = is_z || chain->coordinate[j] == RD_Z ? 0 : S[c * RD_CHANNELS + d];
             if (is_z && i == j && !bends)
                 s = 1 / chain->tension[e];

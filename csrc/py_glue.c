@@ -92,11 +92,9 @@ enum {
 /* what the core asserts of the numbers */
 static int check_values(const struct rd_chain *chain)
 {
-    bool string = false;
-    for (size_t k = 0; k < chain->width; k++) {
-        string = string || chain->coordinate[k] == RD_Z;
-        string = string && chain->coordinate[k] != RD_BETA;
-    }
+    const size_t w = chain->width;
+    const bool string = rd_coordinate_find(w, chain->coordinate, RD_Z) < w &&
+                        rd_coordinate_find(w, chain->coordinate, RD_BETA) == w;
     for (size_t k = 0; chain->hinge && k < chain->terms * chain->width; k++)
         if (!(chain->hinge[k] >= 0)) {
             PyErr_Format(PyExc_ValueError, "hinge[%zd, %zd] must be >= 0",

@@ -67,9 +67,9 @@ static void levers(const struct rd_chain *chain, int32_t element, double *D, dou
     const bool hinge = (size_t)element >= chain->distinct;
     if (hinge || chain->coordinate[beta] != RD_BETA || chain->kind == RD_DIFFERENCE)
         return;
-    for (size_t i = 0; i < w; i++)
-        if (chain->coordinate[i] == RD_Z)
-            D[i * w + beta] = chain->length[element];
+    const size_t z = rd_coordinate_find(w, chain->coordinate, RD_Z);
+    if (z < w)
+        D[z * w + beta] = chain->length[element];
     Q[beta * w + beta] = chain->tension[element];
 }
 

@@ -8,17 +8,6 @@
 
 enum { BB = RD_BENDING * RD_CHANNELS + RD_BENDING };
 
-/* the channel that a coordinate's force loads */
-static const size_t channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
-
-static size_t find(const struct rd_element *element, enum rd_coordinate coordinate)
-{
-    size_t i = 0;
-    while (i < element->width && element->coordinate[i] != (int32_t)coordinate)
-        i++;
-    return i;
-}
-
 static double compression(const struct rd_element *element)
 {
     return -element->tension * element->flexibility[BB] * element->length * element->length;
@@ -26,7 +15,7 @@ static double compression(const struct rd_element *element)
 
 bool rd_element_is_strut(const struct rd_element *element)
 {
-    return element->kind != RD_DIFFERENCE && find(element, RD_BETA) < element->width &&
+    return element->kind != RD_DIFFERENCE && rd_element_find(element, RD_BETA) < element->width &&
            compression(element) > 1;
 }
 
@@ -90,7 +79,7 @@ enum rd_status rd_strut_fill(const struct rd_element *element, double *D, double
                              double *P)
 {
     const size_t w = element->width;
-    const size_t z = find(element, RD_Z), beta = find(element, RD_BETA);
+    const size_t z = rd_element_find(element, RD_Z), beta = rd_element_find(element, RD_BETA);
     struct rd_element untensed = *element;
     untensed.tension = 0;
     const enum rd_status status = rd_triple_change(&untensed, D, G, Q);
@@ -108,7 +97,7 @@ enum rd_status rd_strut_fill(const struct rd_element *element, double *D, double
     const size_t at[2] = {z, beta};
     for (int j = 0; j < 2; j++)
         for (size_t i = 0; i < w; i++) {
-            const size_t c = channel[element->coordinate[i]];
+            const int c = rd_channel_of(element->coordinate[i]);
             const double r =
                 element->flexibility[c * RD_CHANNELS + RD_BENDING] / element->flexibility[BB];
             D[i * w + at[j]] = i == z ? f[0][j] - (j == 0) : r * (f[1][j] - (j == 1));

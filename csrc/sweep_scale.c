@@ -39,10 +39,8 @@ static void characteristic(const struct rd_chain *chain, const struct rd_runs *r
     const double lambda = size_of(factors->inertia + 2 * f);
     const double L = runs->length, least = 1.0 / (L * L);
     const double S = runs->flexibility[RD_BENDING], l = L / (double)(chain->nodes - 1);
-    double mu = 0.0;
-    for (size_t i = 0; i < chain->width; i++)
-        if (chain->coordinate[i] == RD_Z)
-            mu = runs->mass[i];
+    const size_t lateral = rd_coordinate_find(chain->width, chain->coordinate, RD_Z);
+    const double mu = lateral < chain->width ? runs->mass[lateral] : 0.0;
     for (size_t i = 0; i < chain->width; i++) {
         const int32_t c = chain->coordinate[i];
         double endless;
@@ -111,7 +109,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
     const cv soft = c_inverse(section);
     for (size_t i = 0; i < w; i++) {
         const int32_t c = chain->coordinate[i];
-        block->channel[i] = (int)rd_channel_of(c);
+        block->channel[i] = rd_channel_of(c);
         block->arm[i] = block->bends && c == RD_Z;
         block->ratio[i] = last / block->z[i];
         way[0].sign[i] = 1.0;
@@ -174,7 +172,7 @@ static double run_wavenumber(const struct rd_chain *chain, const struct rd_run *
     const double T = chain->tension[e] * x->tension;
     for (size_t i = 0; i < w; i++) {
         const int32_t c = chain->coordinate[i];
-        const double s = S[4 * rd_channel_of(c)] * x->section;
+        const double s = S[4 * (size_t)rd_channel_of(c)] * x->section;
         if (bends && c == RD_Z) {
             double k2, a2;
             wavenumbers(1.0 / s, T - n[w - 1], n[i], &k2, &a2);

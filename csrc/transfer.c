@@ -19,12 +19,12 @@ void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension
     const cv soft = c_inverse(section);
     *rate = (struct rate_matrix){.z = -1, .lever = l_fill(1)};
     for (size_t i = 0; i < w; i++) {
-        const size_t c = rd_channel_of(chain->coordinate[i]);
+        const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
         const bool is_z = chain->coordinate[i] == RD_Z;
         rate->q[i] = c_scale(inertia, chain->inertia[e * w + i]);
         rate->z = is_z && bends ? (int)i : rate->z;
         for (size_t j = 0; j < w; j++) {
-            const size_t d = rd_channel_of(chain->coordinate[j]);
+            const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);
             if (is_z || chain->coordinate[j] == RD_Z)
                 continue;
             rate->S[i][j] = c_scale(soft, S[c * RD_CHANNELS + d]);
@@ -58,7 +58,7 @@ static double wavenumber(const struct rd_chain *chain, size_t e, const struct ra
         .width = w, .coordinate = chain->coordinate, .flexibility = S, .section = 1, .tension = 0};
     double softest = 0;
     for (size_t i = 0; i < w; i++) {
-        const size_t c = rd_channel_of(chain->coordinate[i]);
+        const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
         span.load[i] = largest(rate->q[i]);
         if (chain->coordinate[i] != RD_Z)
             softest = fmax(softest, largest(rate->S[i][i]) / S[c * (RD_CHANNELS + 1)]);

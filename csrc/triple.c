@@ -9,17 +9,8 @@
 
 enum { W = RD_WIDTH_MAX };
 
-/* channel of the section that a coordinate's end force loads, and whether by the lever of z */
-static const int channel[RD_WIDTH_MAX] = {RD_AXIAL, RD_BENDING, RD_TORSION, RD_BENDING};
+/* whether a coordinate's end force loads its channel by the lever of z */
 static const int lever[RD_WIDTH_MAX] = {0, 1, 0, 0};
-
-static bool has(const struct rd_element *element, enum rd_coordinate coordinate)
-{
-    for (size_t i = 0; i < element->width; i++)
-        if (element->coordinate[i] == (int32_t)coordinate)
-            return true;
-    return false;
-}
 
 /* without bending every coordinate is a rod of its own: G_cd = l S_cd, and l/T for z */
 static void rods(const struct rd_element *element, double _Complex section, double _Complex tension,
@@ -28,8 +19,8 @@ static void rods(const struct rd_element *element, double _Complex section, doub
     const size_t w = element->width;
     for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j < w; j++) {
-            const int c = channel[element->coordinate[i]];
-            const int d = channel[element->coordinate[j]];
+            const int c = rd_channel_of(element->coordinate[i]);
+            const int d = rd_channel_of(element->coordinate[j]);
             if (c != RD_BENDING && d != RD_BENDING)
                 G[i * w + j] =
                     element->length * element->flexibility[c * RD_CHANNELS + d] / section;
@@ -63,10 +54,10 @@ static void bend(const struct rd_element *element, double _Complex section, doub
     const double reach[3] = {l, l * l, l * l * l};
     const size_t beta = w - 1;
     for (size_t i = 0; i < w; i++) {
-        const int c = channel[element->coordinate[i]];
+        const int c = rd_channel_of(element->coordinate[i]);
         const double ri = c == RD_BENDING ? 1 : S[c * RD_CHANNELS + RD_BENDING] / Sbb;
         for (size_t j = 0; j < w; j++) {
-            const int d = channel[element->coordinate[j]];
+            const int d = rd_channel_of(element->coordinate[j]);
             const double rj = d == RD_BENDING ? 1 : S[d * RD_CHANNELS + RD_BENDING] / Sbb;
             const int k = lever[element->coordinate[i]] + lever[element->coordinate[j]];
             if (c != RD_BENDING && d != RD_BENDING)
@@ -90,7 +81,7 @@ static enum rd_status fill(const struct rd_element *element, double _Complex sec
     const size_t w = element->width;
     for (size_t i = 0; i < w * w; i++)
         D[i] = G[i] = Q[i] = 0;
-    if (!has(element, RD_BETA)) {
+    if (rd_element_find(element, RD_BETA) == w) {
         rods(element, section, tension, G);
         return RD_OK;
     }

@@ -149,15 +149,13 @@ static void add_legs(struct rd_walk *walk)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width;
-    bool z = false, beta = false;
-    for (size_t i = 0; i < w; i++) {
-        z = z || chain->coordinate[i] == RD_Z;
-        beta = beta || chain->coordinate[i] == RD_BETA;
-    }
+    const size_t z = rd_coordinate_find(w, chain->coordinate, RD_Z);
+    const size_t beta = rd_coordinate_find(w, chain->coordinate, RD_BETA);
+    const bool bends = z < w && beta < w && chain->kind != RD_DIFFERENCE;
     double with_mass[RD_WIDTH_MAX] = {0}, rope[RD_WIDTH_MAX] = {0};
     for (size_t r = 0; r < walk->legs; r++) {
         const struct rd_leg *leg = walk->leg + r;
-        add_leg(walk, leg, z && beta && chain->kind != RD_DIFFERENCE, with_mass, rope);
+        add_leg(walk, leg, bends, with_mass, rope);
     }
     add_mass(walk, walk->last, 1, with_mass);
     for (size_t i = 0; i < w; i++)
@@ -166,10 +164,8 @@ static void add_legs(struct rd_walk *walk)
                                               : 0;
     walk->tension /= walk->length;
     if (walk->bend > 0)
-        for (size_t i = 0; i < w; i++)
-            if (chain->coordinate[i] == RD_Z)
-                walk->flexibility[i] = 1 / (3 / (walk->bend * walk->length * walk->length) +
-                                            fabs(walk->tension) / walk->length);
+        walk->flexibility[z] = 1 / (3 / (walk->bend * walk->length * walk->length) +
+                                    fabs(walk->tension) / walk->length);
 }
 
 static bool are_finite(size_t count, const double *x)
@@ -238,13 +234,12 @@ static void bending_scale(const struct rd_walk *walk, double m, double *z, doubl
 void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z)
 {
     const struct rd_chain *chain = walk->chain;
-    size_t iz = 0, ibeta = 0;
+    const size_t iz = rd_coordinate_find(chain->width, chain->coordinate, RD_Z);
+    const size_t ibeta = rd_coordinate_find(chain->width, chain->coordinate, RD_BETA);
     for (size_t i = 0; i < chain->width; i++) {
         const double G = walk->flexibility[i] > 0 ? walk->flexibility[i] : 1;
         const double x = fabs(lambda) * walk->carried[i] * G;
         z[i] = sqrt(G / sqrt(fmax(x, 1)));
-        iz = chain->coordinate[i] == RD_Z ? i : iz;
-        ibeta = chain->coordinate[i] == RD_BETA ? i : ibeta;
     }
     if (walk->bend > 0)
         bending_scale(walk, fabs(lambda) * walk->carried[iz], z + iz, z + ibeta);
