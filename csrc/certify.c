@@ -2,6 +2,7 @@
 #include "certify.h"
 
 #include "count.h"
+#include "inertia.h"
 #include "rigid.h"
 #include "ritz.h"
 #include "search.h"
@@ -408,7 +409,7 @@ static enum rd_status bracket(struct work *work)
         status = rd_search_bottom(&work->search, apart);
     if (status != RD_OK)
         return status;
-    const size_t finite = rd_search_finite(work->refine->walk);
+    const size_t finite = rd_inertia_positive(work->refine->walk->chain);
     modes->rigid = work->rigid.count;
     if (work->search.wanted > finite)
         work->search.wanted = finite;
@@ -446,7 +447,7 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
 
 bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
 {
-    const bool endless = rd_walk_is_endless(walk);
+    const bool endless = rd_inertia_is_endless(walk->chain);
     size_t elements = 0, waves = 2;
     for (size_t n = wanted; n > 0; n /= 2)
         waves++;

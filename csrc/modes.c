@@ -1,6 +1,7 @@
 /* Natural frequencies and shapes of the assembled system by LAPACK's dense symmetric solver. */
 #include "modes.h"
 
+#include "inertia.h"
 #include "lapack.h"
 
 #include <assert.h>
@@ -8,65 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { W = RD_WIDTH_MAX, ATTEMPTS = 64 };
-
-/* A <- A scaled so that no entry exceeds 1 and every inertia on the diagonal is 1: units and ratios
-   of inertia do not hide a small one */
-static void equilibrate(size_t n, double *A)
-{
-    double scale[W];
-    for (size_t i = 0; i < n; i++) {
-        const double own = fabs(A[i * n + i]);
-        scale[i] = own > 0 ? 1 / sqrt(own) : 0;
-    }
-    for (size_t i = 0; i < n; i++) {
-        double largest = 0;
-        for (size_t j = 0; j < n; j++)
-            largest = fmax(largest, fabs(A[i * n + j]) * (scale[j] > 0 ? scale[j] : 1));
-        if (scale[i] == 0 && largest > 0)
-            scale[i] = 1 / largest;
-    }
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            A[i * n + j] *= scale[i] * scale[j];
-}
-
-/* positive eigenvalues of A (n, n), n <= W, which is destroyed; what is within rounding of zero
-   counts as zero */
-static size_t positive(size_t n, double *A)
-{
-    double value[W], work[8 * W];
-    if (n == 0)
-        return 0;
-    equilibrate(n, A);
-    LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'N', 'L', (int)n, A, (int)n, value, work, 8 * W);
-    size_t count = 0;
-    for (size_t i = 0; i < n; i++)
-        count += value[i] > 8 * DBL_EPSILON;
-    return count;
-}
-
-/* With K + s M positive definite there are as many mu > 0 as M has positive eigenvalues
-   (Sylvester), whatever the node they stand at. */
-static size_t count_finite(const struct rd_system *system)
-{
-    const size_t w = system->assembly.width;
-    size_t finite = 0;
-    for (size_t p = 0; p < system->assembly.nodes; p++) {
-        const int32_t *number = system->number + p * w;
-        const double *mass = system->assembly.mass + p * w * w;
-        double A[W * W];
-        size_t free[W], n = 0;
-        for (size_t a = 0; a < w; a++)
-            if (number[a] >= 0)
-                free[n++] = a;
-        for (size_t i = 0; i < n; i++)
-            for (size_t j = 0; j < n; j++)
-                A[i * n + j] = mass[free[i] * w + free[j]];
-        finite += positive(n, A);
-    }
-    return finite;
-}
+enum { ATTEMPTS = 64 };
 
 enum rd_status rd_modes_prepare(const struct rd_chain *chain, size_t columns,
                                 struct rd_modes *modes, struct rd_workspace *workspace)
@@ -84,7 +27,7 @@ enum rd_status rd_modes_prepare(const struct rd_chain *chain, size_t columns,
     modes->support = rd_take(workspace, n, 2 * sizeof *modes->support);
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
-    modes->finite = status == RD_OK ? count_finite(&modes->system) : 0;
+    modes->finite = status == RD_OK ? rd_inertia_positive(chain) : 0;
     return status;
 }
 

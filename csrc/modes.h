@@ -15,7 +15,7 @@
    of a coordinate without mass. */
 struct rd_modes {
     struct rd_system system;
-    size_t finite;     /* positive eigenvalues of M over the free coordinates: modes there are */
+    size_t finite;     /* modes there are, rd_inertia_positive */
     double shift;      /* s in use [rad^2/s^2] */
     double *band;      /* (free, reach + 1) K + s M, then L */
     double *matrix;    /* (free, free) M, then L^-1 M L^-T */

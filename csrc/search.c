@@ -2,10 +2,8 @@
 #include "search.h"
 
 #include "count.h"
-#include "ritz.h"
 
 #include <math.h>
-#include <stdint.h>
 
 enum { LANES = RD_LANES, DEEPER = 48, HIGHER = 60, CUTS = 200 };
 
@@ -159,57 +157,4 @@ void rd_search_isolate(struct rd_search *search, double narrow)
             return;
         rd_search_cut(search, n, index);
     }
-}
-
-/* scale_i^2 = |M_ii|, or where that is zero what makes its largest entry 1 */
-static void equilibrate(size_t n, double *A)
-{
-    double scale[RD_WIDTH_MAX];
-    for (size_t i = 0; i < n; i++)
-        scale[i] = A[i * n + i] != 0 ? 1 / sqrt(fabs(A[i * n + i])) : 0;
-    for (size_t i = 0; i < n; i++) {
-        double most = 0;
-        for (size_t j = 0; j < n; j++)
-            most = fmax(most, fabs(A[i * n + j]) * (scale[j] > 0 ? scale[j] : 1));
-        if (scale[i] == 0 && most > 0)
-            scale[i] = 1 / most;
-    }
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            A[i * n + j] *= scale[i] * scale[j];
-}
-
-/* positive eigenvalues of a node's M over its free coordinates */
-static size_t positive(const struct rd_walk *walk, int32_t term)
-{
-    const size_t w = walk->chain->width;
-    const double *M = rd_walk_mass(walk, term);
-    const uint8_t *held = rd_walk_held(walk, term);
-    double A[RD_WIDTH_MAX * RD_WIDTH_MAX], V[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
-    size_t free[RD_WIDTH_MAX], n = 0, count = 0;
-    for (size_t i = 0; i < w; i++)
-        if (!held[i])
-            free[n++] = i;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            A[i * n + j] = M[free[i] * w + free[j]];
-    equilibrate(n, A);
-    rd_ritz_rotate(n, A, V);
-    for (size_t i = 0; i < n; i++)
-        count += A[i * (n + 1)] > 1e-13;
-    return count;
-}
-
-size_t rd_search_finite(const struct rd_walk *walk)
-{
-    if (rd_walk_is_endless(walk))
-        return SIZE_MAX;
-    size_t count = positive(walk, walk->last);
-    for (size_t r = 0; r < walk->legs; r++) {
-        const struct rd_leg *leg = walk->leg + r;
-        count += positive(walk, leg->first);
-        if (leg->count > 1)
-            count += (leg->count - 1) * positive(walk, leg->term);
-    }
-    return count;
 }

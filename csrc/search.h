@@ -42,10 +42,6 @@ void rd_search_cut(struct rd_search *search, size_t n, const size_t *index);
 /* Cuts until each bracket has a single mode or is relatively narrower than `narrow`. */
 void rd_search_isolate(struct rd_search *search, double narrow);
 
-/* positive eigenvalues of M over the free coordinates: how many modes there are, SIZE_MAX where
-   elements have inertia of their own */
-size_t rd_search_finite(const struct rd_walk *walk);
-
 static inline bool rd_search_is_single(const struct rd_search *search, size_t i)
 {
     return search->above[i] - search->below[i] == 1;

@@ -3,6 +3,7 @@
 
 #include "dense.h"
 #include "element.h"
+#include "inertia.h"
 #include "span.h"
 #include "strut.h"
 #include "triple.h"
@@ -266,21 +267,12 @@ double rd_walk_stiffness(const struct rd_walk *walk, size_t element, size_t i)
     return fmax(fabs(Gi[i * (w + 1)]) + fabs(P[i * (w + 1)]), fabs(left));
 }
 
-bool rd_walk_is_endless(const struct rd_walk *walk)
-{
-    const struct rd_chain *chain = walk->chain;
-    double most = 0;
-    for (size_t i = 0; chain->inertia && i < chain->distinct * chain->width; i++)
-        most = fmax(most, chain->inertia[i]);
-    return most > 0;
-}
-
 double rd_walk_ceiling(const struct rd_walk *walk)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width, block = w * w;
     double ceiling = 0;
-    if (rd_walk_is_endless(walk))
+    if (rd_inertia_is_endless(chain))
         return INFINITY;
     for (size_t i = 0; i < w; i++) {
         double stiffness = 0, springs = 0, mass = INFINITY;

@@ -7,8 +7,6 @@
 #include "status.h"
 #include "workspace.h"
 
-#include <stdbool.h>
-
 /* Equal elements one after another, equal node terms between them; or a hinge, alone: the element
    chain->distinct + its term. */
 struct rd_leg {
@@ -72,9 +70,6 @@ static inline const uint8_t *rd_walk_held(const struct rd_walk *walk, int32_t te
    1/(B k (k^2 + a^2)) and 1/(B a) for z and beta together, 1/sqrt(|lambda| mu T) for others, or that
    of the chain as a rigid body if it is larger. */
 void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z);
-
-/* whether elements have inertia of their own: there are infinitely many modes */
-bool rd_walk_is_endless(const struct rd_walk *walk);
 
 /* An upper bound of all eigenvalues where inertia is diagonal [rad^2/s^2]: the largest stiffness over
    the least mass of a coordinate, times what a node's elements can add up to. INFINITY where elements

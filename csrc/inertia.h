@@ -1,0 +1,17 @@
+/* How many modes a chain has. */
+#ifndef RD_INERTIA_H
+#define RD_INERTIA_H
+
+#include "chain.h"
+
+#include <stdbool.h>
+
+/* whether elements have inertia of their own: there are infinitely many modes */
+bool rd_inertia_is_endless(const struct rd_chain *chain);
+
+/* positive eigenvalues of M over the free coordinates: with K + s M positive definite there are as
+   many modes (Sylvester). Units and ratios of inertia hide none; what is within rounding of zero
+   counts as zero. SIZE_MAX where elements have inertia of their own. */
+size_t rd_inertia_positive(const struct rd_chain *chain);
+
+#endif
