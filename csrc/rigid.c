@@ -1,10 +1,12 @@
 /* Motions of the whole chain that nothing resists. */
 #include "rigid.h"
 
+#include "lapack.h"
+
 #include <math.h>
 #include <string.h>
 
-enum { W = RD_WIDTH_MAX, TURNS = 30 };
+enum { W = RD_WIDTH_MAX };
 
 /* relative; below it a resistance is rounding of the levers */
 static const double NOTHING = 1e-11;
@@ -133,41 +135,20 @@ static void resistance(const struct rd_walk *walk, double R[W][W])
     resist_node(walk, walk->last, T, R);
 }
 
-/* R V = columns orthogonal to each other, by rotations of two columns at a time; then those of
-   size zero belong to the motions V that nothing resists, c = T V. */
-static size_t null_space(size_t w, double R[W][W], double V[W][W], double motion[W][W])
+/* The right singular vectors V of R (w, w) whose size is nothing belong to the motions that nothing
+   resists. LAPACK, which counts by columns, takes R for its transpose and V for the left ones. */
+static size_t null_space(size_t w, double R[W][W], double motion[W][W])
 {
-    for (int turn = 0; turn < TURNS; turn++)
-        for (size_t p = 0; p < w; p++)
-            for (size_t q = p + 1; q < w; q++) {
-                double pp = 0, qq = 0, pq = 0;
-                for (size_t i = 0; i < w; i++) {
-                    pp += R[i][p] * R[i][p];
-                    qq += R[i][q] * R[i][q];
-                    pq += R[i][p] * R[i][q];
-                }
-                if (pq == 0)
-                    continue;
-                const double t0 = (qq - pp) / (2 * pq);
-                const double t = (t0 >= 0 ? 1 : -1) / (fabs(t0) + hypot(t0, 1));
-                const double c = 1 / hypot(t, 1), s = t * c;
-                for (size_t i = 0; i < w; i++) {
-                    const double x = R[i][p], y = R[i][q], a = V[i][p], b = V[i][q];
-                    R[i][p] = c * x - s * y;
-                    R[i][q] = s * x + c * y;
-                    V[i][p] = c * a - s * b;
-                    V[i][q] = s * a + c * b;
-                }
-            }
+    double size[W], V[W][W], work[16 * W];
+    const int n = (int)w;
+    LAPACKE_dgesvd_work(LAPACK_COL_MAJOR, 'A', 'N', n, n, *R, W, size, *V, W, NULL, 1, work,
+                        16 * W);
     size_t count = 0;
     for (size_t p = 0; p < w; p++) {
-        double size = 0;
-        for (size_t i = 0; i < w; i++)
-            size = fmax(size, fabs(R[i][p]));
-        if (size > NOTHING)
+        if (size[p] > NOTHING)
             continue;
         for (size_t i = 0; i < w; i++)
-            motion[i][count] = V[i][p];
+            motion[i][count] = V[p][i];
         count++;
     }
     return count;
@@ -253,12 +234,10 @@ static bool orthonormalise(size_t w, const double A[W][W], struct rd_rigid *rigi
 enum rd_status rd_rigid_fill(const struct rd_walk *walk, struct rd_rigid *rigid)
 {
     const size_t w = walk->chain->width;
-    double R[W][W] = {{0}}, V[W][W] = {{0}}, A[W][W];
+    double R[W][W] = {{0}}, A[W][W];
     memset(rigid, 0, sizeof *rigid);
     resistance(walk, R);
-    for (size_t i = 0; i < w; i++)
-        V[i][i] = 1;
-    rigid->count = null_space(w, R, V, rigid->motion);
+    rigid->count = null_space(w, R, rigid->motion);
     if (rigid->count == 0)
         return RD_OK;
     inertia(walk, A);
