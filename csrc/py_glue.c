@@ -241,8 +241,7 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
     return check_indices(parsed);
 }
 
-/* element_of and term_of from the stretches */
-static int chain_expand(struct py_chain *parsed)
+int py_chain_expand(struct py_chain *parsed)
 {
     struct rd_chain *chain = &parsed->chain;
     parsed->each = PyMem_RawMalloc(2 * chain->nodes * sizeof *parsed->each);
@@ -264,7 +263,7 @@ static int chain_expand(struct py_chain *parsed)
 
 int py_chain_parse(PyObject *object, struct py_chain *parsed)
 {
-    return py_chain_view(object, parsed) < 0 ? -1 : chain_expand(parsed);
+    return py_chain_view(object, parsed) < 0 ? -1 : py_chain_expand(parsed);
 }
 
 void py_chain_release(struct py_chain *parsed)

@@ -40,9 +40,11 @@ struct py_chain {
 };
 
 /* 0, or -1 and an exception; to be released in both cases. py_chain_view leaves element_of and
-   term_of NULL: its time grows with the stretches of the chain, not with its nodes. */
-int py_chain_parse(PyObject *object, struct py_chain *parsed);
+   term_of NULL: its time grows with the stretches of the chain, not with its nodes. py_chain_expand
+   fills them, py_chain_parse does both. */
 int py_chain_view(PyObject *object, struct py_chain *parsed);
+int py_chain_expand(struct py_chain *parsed);
+int py_chain_parse(PyObject *object, struct py_chain *parsed);
 void py_chain_release(struct py_chain *parsed);
 
 /* ports and the arrays they view, from the tuple (node (count), row (count, 2, width), force (count,

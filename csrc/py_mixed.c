@@ -1,49 +1,45 @@
 /* Frequency response and static deflection by the mixed form. */
-#include "py_glue.h"
+#include "py_response.h"
 
 #include "mixed_deflection.h"
 #include "mixed_frf.h"
 
-struct task {
-    struct rd_mixed_frf frf;
-    const struct rd_chain *chain;
-    const struct rd_ports *drives;
-    const struct rd_ports *responses;
-    npy_intp count;                /* frequencies */
-    const double _Complex *factor; /* (RD_PARTS, count) */
-    double _Complex *value;        /* (drives, responses, count) */
-    double *error;
-};
-
 /* solves frequency after frequency; how many before one that has no answer */
-static npy_intp solve_each(struct task *task, enum rd_status *status)
+static npy_intp solve_each(struct rd_mixed_frf *frf, const struct py_response *response,
+                           enum rd_status *status)
 {
-    for (npy_intp i = 0; i < task->count; i++) {
+    const npy_intp count = response->count;
+    const double _Complex *parts = PyArray_DATA(response->factor);
+    double _Complex *value = PyArray_DATA((PyArrayObject *)response->value);
+    double *error = PyArray_DATA((PyArrayObject *)response->error);
+    for (npy_intp i = 0; i < count; i++) {
         double _Complex factor[RD_PARTS];
         for (int k = 0; k < RD_PARTS; k++)
-            factor[k] = task->factor[k * task->count + i];
-        *status = rd_mixed_frf_solve(&task->frf, factor, (size_t)task->count, task->value + i,
-                                     task->error + i);
+            factor[k] = parts[k * count + i];
+        *status = rd_mixed_frf_solve(frf, factor, (size_t)count, value + i, error + i);
         if (*status != RD_OK)
             return i;
     }
-    return task->count;
+    return count;
 }
 
 /* the same from the measuring of memory on; -1 and an exception */
-static npy_intp solve_all(PyObject *module, struct task *task)
+static npy_intp solve_all(PyObject *module, const struct py_response *response)
 {
+    const struct rd_chain *chain = &response->parsed.chain;
+    const struct rd_ports *drives = &response->drives.ports;
+    const struct rd_ports *responses = &response->responses.ports;
     struct rd_workspace workspace = {0};
+    struct rd_mixed_frf frf;
     npy_intp solved = -1;
-    rd_mixed_frf_prepare(task->chain, task->drives, task->responses, &task->frf, &workspace);
+    rd_mixed_frf_prepare(chain, drives, responses, &frf, &workspace);
     if (py_workspace_allocate(&workspace) < 0)
         return -1;
     enum rd_status status;
     Py_BEGIN_ALLOW_THREADS
-    status =
-        rd_mixed_frf_prepare(task->chain, task->drives, task->responses, &task->frf, &workspace);
+    status = rd_mixed_frf_prepare(chain, drives, responses, &frf, &workspace);
     if (status == RD_OK)
-        solved = solve_each(task, &status);
+        solved = solve_each(&frf, response, &status);
     Py_END_ALLOW_THREADS
     PyMem_RawFree(workspace.base);
     if (status == RD_OK || status == RD_SINGULAR)
@@ -54,44 +50,16 @@ static npy_intp solve_all(PyObject *module, struct task *task)
 
 PyObject *py_mixed(PyObject *module, PyObject *arguments)
 {
-    struct py_chain parsed = {0};
-    struct py_ports drives = {0}, responses = {0};
-    PyArrayObject *factor = NULL;
-    PyObject *object[4], *value = NULL, *error = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OOOO", object, object + 1, object + 2, object + 3))
-        return NULL;
-    if (py_chain_parse(object[0], &parsed) < 0 ||
-        py_ports_parse(object[2], &parsed.chain, "drives", &drives) < 0 ||
-        py_ports_parse(object[3], &parsed.chain, "responses", &responses) < 0)
+    struct py_response response = {0};
+    PyObject *result = NULL;
+    if (py_response_parse(arguments, PY_FREQUENCY_LAST, &response) < 0 ||
+        py_chain_expand(&response.parsed) < 0)
         goto done;
-    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
-    if (factor == NULL)
-        goto done;
-    const npy_intp count = PyArray_DIM(factor, 1);
-    const npy_intp shape[] = {(npy_intp)drives.ports.count, (npy_intp)responses.ports.count, count};
-    value = py_new(NPY_COMPLEX128, 3, shape);
-    error = py_new(NPY_DOUBLE, 3, shape);
-    if (value == NULL || error == NULL)
-        goto done;
-    struct task task = {
-        .chain = &parsed.chain,
-        .drives = &drives.ports,
-        .responses = &responses.ports,
-        .count = count,
-        .factor = PyArray_DATA(factor),
-        .value = PyArray_DATA((PyArrayObject *)value),
-        .error = PyArray_DATA((PyArrayObject *)error),
-    };
-    const npy_intp solved = solve_all(module, &task);
+    const npy_intp solved = solve_all(module, &response);
     if (solved >= 0)
-        result = Py_BuildValue("OOn", value, error, (Py_ssize_t)solved);
+        result = Py_BuildValue("OOn", response.value, response.error, (Py_ssize_t)solved);
 done:
-    Py_XDECREF(error);
-    Py_XDECREF(value);
-    Py_XDECREF(factor);
-    py_ports_release(&responses);
-    py_ports_release(&drives);
-    py_chain_release(&parsed);
+    py_response_release(&response);
     return result;
 }
 
