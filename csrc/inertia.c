@@ -5,8 +5,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { W = RD_WIDTH_MAX };
 

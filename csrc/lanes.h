@@ -2,6 +2,8 @@
 #ifndef RD_LANES_H
 #define RD_LANES_H
 
+#include <stdint.h> /* __GLIBC__ is known only after a header of the library */
+
 enum { RD_LANES = 8 };
 
 /* one copy of a function per instruction set, chosen when the library is loaded */

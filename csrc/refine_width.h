@@ -54,6 +54,13 @@ RD_INLINE void rate_load(const struct rd_refine *r, const struct rd_step *step, 
         }
 }
 
+/* whether a step has the rates of another */
+RD_INLINE _Bool is_alike(const struct rd_step *made, const struct rd_step *step)
+{
+    return made && made->piece == step->piece && made->element == step->element &&
+           made->term == step->term && made->before == step->before;
+}
+
 /* K = (G + i I)^-1, B = K F, Wt = i I + V + F^T B */
 struct kernel {
     cv K[W][W], B[W][W], Wt[W][W];
@@ -138,7 +145,7 @@ RD_INLINE const uint8_t *held_at(const struct rd_refine *r, int32_t term)
    2014), since what repeats from lane to lane could not tell a cluster's modes apart. */
 RD_INLINE lanes fixed_load(size_t m, int i)
 {
-    lanes p;
+    lanes p = {0};
     for (int k = 0; k < RD_LANES; k++) {
         uint64_t x = ((uint64_t)m * W + (uint64_t)i) * RD_LANES + (uint64_t)k + 1;
         x *= 0x9E3779B97F4A7C15u;
@@ -335,6 +342,7 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
     struct left left;
     lanes p[W], d[W];
     cv s[W], EBt[W][W], Eh[W];
+    const struct rd_step *made = NULL;
     pieces_change(r, lambda);
     const uint8_t *held = held_at(r, r->step[0].term);
     memset(&left, 0, sizeof left);
@@ -342,8 +350,11 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
         left.U[i][i].re += !held[i];
     for (size_t m = 0; m < r->steps; m++) {
         const struct rd_step *step = r->step + m;
-        rate_load(r, step, lambda, &rate);
-        kernel_fill(&rate, &kernel);
+        if (!is_alike(made, step)) {
+            rate_load(r, step, lambda, &rate);
+            kernel_fill(&rate, &kernel);
+            made = step;
+        }
         load(r, m, &rate, begin, p, d);
         held = held_at(r, step->term);
         left_store(&left, r->receptance + m * LEFT);
@@ -354,6 +365,7 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
     }
     const size_t n = r->steps;
     const int32_t last = r->walk->last;
+    made = NULL;
     memset(&rate, 0, sizeof rate);
     rate_node(r, last, r->walk->behind, lambda, &rate);
     for (int i = 0; i < W; i++) {
@@ -366,8 +378,11 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
     state(&left, s, r->u + n * W, f);
     for (size_t m = n; m-- > 0;) {
         const struct rd_step *step = r->step + m;
-        rate_load(r, step, lambda, &rate);
-        kernel_fill(&rate, &kernel);
+        if (!is_alike(made, step)) {
+            rate_load(r, step, lambda, &rate);
+            kernel_fill(&rate, &kernel);
+            made = step;
+        }
         load(r, m, &rate, begin, p, d);
         memcpy(r->f + m * W, f, sizeof f);
         held = held_at(r, step->term);

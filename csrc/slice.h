@@ -6,6 +6,7 @@
 #ifndef RD_SLICE_H
 #define RD_SLICE_H
 
+#include "beam_slice.h"
 #include "rate_matrix.h"
 #include "span.h"
 
@@ -82,9 +83,35 @@ RD_INLINE cv slice_product(const cv A[W][W], const cv B[W][W], int i, int j)
     return sum;
 }
 
-/* D = F - I, G, Q of a piece of length l */
-RD_INLINE void slice_fill(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
+/* bending alone, from beam_slice.h: with lever r of z' = r beta, S' and q as they are scaled,
+   z = r l phi, F = f/(r^2 S' l^3) and so on */
+RD_INLINE void slice_bend(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
                           cv Q[W][W])
+{
+    enum { B = W - 1 };
+    const lanes r = s->lever * l, back = 1.0 / r;
+    const cv soft = c_scale(s->S[B][B], l), stiff = c_inverse(soft);
+    const cv theta = c_mul(soft, c_scale(s->q[B], l));
+    const cv kappa = c_neg(c_mul(soft, c_scale_lanes(s->q[0], r * r * l)));
+    struct beam_slice b;
+    beam_slice_fill(theta, kappa, terms, &b);
+    D[0][0] = b.Dzz;
+    D[0][B] = c_scale_lanes(b.Dzb, r);
+    D[B][0] = c_scale_lanes(b.Dbz, back);
+    D[B][B] = b.Dbb;
+    G[0][0] = c_mul(soft, c_scale_lanes(b.Gzz, r * r));
+    G[0][B] = c_mul(soft, c_scale_lanes(b.Gzb, r));
+    G[B][0] = G[0][B];
+    G[B][B] = c_mul(soft, b.Gbb);
+    Q[0][0] = c_mul(stiff, c_scale_lanes(b.Qzz, back * back));
+    Q[0][B] = c_mul(stiff, c_scale_lanes(b.Qzb, back));
+    Q[B][0] = Q[0][B];
+    Q[B][B] = c_mul(stiff, b.Qbb);
+}
+
+/* D = F - I, G, Q of a piece of length l, any couplings */
+RD_INLINE void slice_sum(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
+                         cv Q[W][W])
 {
     cv change[W][W], A[W][W], B[W][W], C[W][W], inverse[W][W], u[W], f[W];
     for (int c = 0; c < W; c++) {
@@ -107,6 +134,15 @@ RD_INLINE void slice_fill(const struct rate_matrix *s, double l, int terms, cv D
             G[i][j] = G[j][i] = slice_product(B, inverse, i, j);
             Q[i][j] = Q[j][i] = slice_product(inverse, C, i, j);
         }
+}
+
+RD_INLINE void slice_fill(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
+                          cv Q[W][W])
+{
+    if (W == 2 && s->z >= 0)
+        slice_bend(s, l, terms / 2, D, G, Q);
+    else
+        slice_sum(s, l, terms, D, G, Q);
 }
 
 #endif
