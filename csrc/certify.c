@@ -8,6 +8,7 @@
 #include "search.h"
 #include "span.h"
 
+#include <float.h>
 #include <string.h>
 
 enum { LANES = RD_LANES, ATTEMPTS = 12, POLISH = 3, ROUNDS = 3, WIDER = 3, WIDEST = 11 };
@@ -19,7 +20,6 @@ static const double CONVERGED = 1e-13; /* last step of the quotient by the gap, 
 static const double SETTLED = 1e-7;    /* for the value alone, which is right to its square */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
 static const double NOISE = 8;         /* what of its bound a quotient is wrong by at most times */
-static const double EPS = 2.3e-16;
 
 struct work {
     struct rd_refine *refine;
@@ -199,7 +199,7 @@ static void certify_some(struct work *work, const size_t *index, size_t n, doubl
     double lambda[LANES], count[LANES];
     for (size_t k = 0; k < LANES; k++) {
         const size_t j = index[k / 2 < n ? k / 2 : n - 1];
-        const double apart = width * fmax(modes->error[j], EPS * fabs(modes->lambda[j]));
+        const double apart = width * fmax(modes->error[j], DBL_EPSILON * fabs(modes->lambda[j]));
         lambda[k] = modes->lambda[j] + (k % 2 ? apart : -apart);
     }
     rd_count(work->refine->walk, LANES, lambda, count);
