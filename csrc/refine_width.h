@@ -9,6 +9,7 @@
 #include "refine.h"
 #include "wave.h"
 
+#include <complex.h>
 #include <string.h>
 
 /* a step in scaled coordinates with its change d/dlambda; V = Q + N */
@@ -232,59 +233,70 @@ RD_INLINE void left_advance(struct left *left, const struct rate *rate, const st
     }
 }
 
-/* The right end: f + N u = p where free, u = 0 where held: row i of (N U - i Y) s = p - N g - i g
-   or of U s = -g; by elimination with pivoting, one lane after another. */
-static void end_solve(const struct rd_refine *r, const struct left *left, const struct rate *rate,
-                      const uint8_t *held, const lanes *p, cv *s)
+static double _Complex lane_of(const cv *x, int k)
 {
-    for (int k = 0; k < RD_LANES; k++) {
-        double A[W][W + 1][2];
+    return CMPLX(x->re[k], x->im[k]);
+}
+
+/* a/b by the textbook's formula: the same bits with every compiler */
+static double _Complex quotient(double _Complex a, double _Complex b)
+{
+    return a * conj(b) / (creal(b) * creal(b) + cimag(b) * cimag(b));
+}
+
+/* x <- A[:, :W]^-1 A[:, W] by elimination with pivoting; A is destroyed */
+static void eliminate(double _Complex A[W][W + 1], double _Complex *x)
+{
+    for (int c = 0; c < W; c++) {
+        int best = c;
+        for (int i = c + 1; i < W; i++)
+            if (cabs(A[i][c]) > cabs(A[best][c]))
+                best = i;
+        double _Complex row[W + 1];
+        memcpy(row, A[c], sizeof row);
+        memmove(A[c], A[best], sizeof row);
+        memcpy(A[best], row, sizeof row);
+        if (cabs(A[c][c]) < 1e-40)
+            A[c][c] = 1e-40;
         for (int i = 0; i < W; i++) {
-            for (int j = 0; j < W; j++) {
-                A[i][j][0] = held[i] ? left->U[i][j].re[k] : -left->U[i][j].im[k];
-                A[i][j][1] = held[i] ? left->U[i][j].im[k] : left->U[i][j].re[k] - (i == j);
-            }
-            A[i][W][0] = held[i] ? -left->g[i].re[k] : p[i][k] + left->g[i].im[k];
-            A[i][W][1] = held[i] ? -left->g[i].im[k] : -left->g[i].re[k];
-            for (int m = 0; m < W && !held[i]; m++) {
-                for (int j = 0; j < W; j++) {
-                    A[i][j][0] += rate->V[i][m][k] * left->U[m][j].re[k];
-                    A[i][j][1] += rate->V[i][m][k] * left->U[m][j].im[k];
-                }
-                A[i][W][0] -= rate->V[i][m][k] * left->g[m].re[k];
-                A[i][W][1] -= rate->V[i][m][k] * left->g[m].im[k];
-            }
-        }
-        for (int c = 0; c < W; c++) {
-            int best = c;
-            for (int i = c + 1; i < W; i++)
-                if (hypot(A[i][c][0], A[i][c][1]) > hypot(A[best][c][0], A[best][c][1]))
-                    best = i;
-            double row[W + 1][2];
-            memcpy(row, A[c], sizeof row);
-            memmove(A[c], A[best], sizeof row);
-            memcpy(A[best], row, sizeof row);
-            if (hypot(A[c][c][0], A[c][c][1]) < 1e-40)
-                A[c][c][0] = 1e-40;
-            const double size = A[c][c][0] * A[c][c][0] + A[c][c][1] * A[c][c][1];
-            for (int i = 0; i < W; i++) {
-                if (i == c)
-                    continue;
-                const double re = (A[i][c][0] * A[c][c][0] + A[i][c][1] * A[c][c][1]) / size;
-                const double im = (A[i][c][1] * A[c][c][0] - A[i][c][0] * A[c][c][1]) / size;
-                for (int j = c; j <= W; j++) {
-                    A[i][j][0] -= re * A[c][j][0] - im * A[c][j][1];
-                    A[i][j][1] -= re * A[c][j][1] + im * A[c][j][0];
-                }
-            }
-        }
-        for (int c = 0; c < W; c++) {
-            const double size = A[c][c][0] * A[c][c][0] + A[c][c][1] * A[c][c][1];
-            s[c].re[k] = (A[c][W][0] * A[c][c][0] + A[c][W][1] * A[c][c][1]) / size;
-            s[c].im[k] = (A[c][W][1] * A[c][c][0] - A[c][W][0] * A[c][c][1]) / size;
+            if (i == c)
+                continue;
+            const double _Complex share = quotient(A[i][c], A[c][c]);
+            for (int j = c; j <= W; j++)
+                A[i][j] -= share * A[c][j];
         }
     }
-    (void)r;
+    for (int c = 0; c < W; c++)
+        x[c] = quotient(A[c][W], A[c][c]);
+}
+
+/* The right end: f + N u = p where free, u = 0 where held: row i of (N U - i Y) s = p - N g - i g
+   or of U s = -g; one lane after another. */
+static void end_solve(const struct left *left, const struct rate *rate, const uint8_t *held,
+                      const lanes *p, cv *s)
+{
+    for (int k = 0; k < RD_LANES; k++) {
+        double _Complex A[W][W + 1], x[W];
+        for (int i = 0; i < W; i++) {
+            for (int j = 0; j < W; j++) {
+                const double _Complex U = lane_of(&left->U[i][j], k);
+                A[i][j] = held[i] ? U : CMPLX(-cimag(U), creal(U) - (i == j));
+            }
+            const double _Complex g = lane_of(left->g + i, k);
+            A[i][W] = held[i] ? -g : CMPLX(p[i][k] + cimag(g), -creal(g));
+            for (int m = 0; m < W && !held[i]; m++) {
+                const double N = rate->V[i][m][k];
+                for (int j = 0; j < W; j++)
+                    A[i][j] += N * lane_of(&left->U[m][j], k);
+                A[i][W] -= N * lane_of(left->g + m, k);
+            }
+        }
+        eliminate(A, x);
+        for (int c = 0; c < W; c++) {
+            s[c].re[k] = creal(x[c]);
+            s[c].im[k] = cimag(x[c]);
+        }
+    }
 }
 
 /* u = Re (U s + g), f = Re (-i Y s + i g) = Re -i (s - u) */
@@ -373,7 +385,7 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
         for (int j = 0; !begin && j < W; j++)
             p[i] -= rate.dV[i][j] * r->u[n * W + (size_t)j];
     }
-    end_solve(r, &left, &rate, held_at(r, last), p, s);
+    end_solve(&left, &rate, held_at(r, last), p, s);
     lanes f[W];
     state(&left, s, r->u + n * W, f);
     for (size_t m = n; m-- > 0;) {
