@@ -22,9 +22,9 @@ static int is_planar(const struct sweep *s, size_t lane)
 /* the frequencies order[first] .. that fit together */
 static void begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
 {
-    s->used = rd_sweep_block_from(s->chain, &s->runs, factors, s->order, first, s->index);
-    s->extent = rd_sweep_extent(factors, s->index[0]);
-    rd_sweep_scale(s->chain, &s->runs, factors, s->index, &s->block, s->way);
+    s->used =
+        rd_sweep_block_from(s->chain, &s->runs, factors, s->order, first, s->index, s->extent);
+    rd_sweep_scale(s->chain, &s->runs, factors, s->index, s->extent, &s->block, s->way);
     s->planar = is_planar(s, 0);
     for (size_t lane = 1; lane < s->used; lane++)
         if (is_planar(s, lane) != s->planar)

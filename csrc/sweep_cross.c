@@ -1,4 +1,5 @@
 /* Across the chain: runs by pieces, the rest element by element. */
+#include "span.h"
 #include "sweep_plan.h"
 
 #include <string.h>
@@ -61,7 +62,8 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
     cv *one = s->triple, *two = s->triple + s->coefs;
     const size_t e = (size_t)run->element;
     if (s->chain->inertia)
-        s->kernel->make_slice(s->chain, &s->block, e, pieces->halvings, pieces->terms, one);
+        s->kernel->make_slice(s->chain, &s->block, e, pieces->halvings,
+                              rd_span_terms(pieces->radians), one);
     else
         s->kernel->make_element(s->chain, &s->block, e, one);
     for (size_t k = 0; k < levels; k++) {
@@ -103,7 +105,7 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
-    const struct sweep_pieces all = rd_sweep_pieces(s->chain, run, count, &s->extent);
+    const struct sweep_pieces all = rd_sweep_pieces(s->chain, run, count, s->extent);
     if (all.level == 0 && !s->chain->inertia) {
         cross_each(s, way, node, count);
         return;

@@ -1,8 +1,6 @@
 /* Which frequencies go side by side. */
 #include "sweep_order.h"
 
-#include <stdbool.h>
-
 /* |inertia|^2 */
 static double key(const struct rd_factors *factors, size_t i)
 {
@@ -30,33 +28,32 @@ void rd_sweep_order(const struct rd_factors *factors, size_t *order)
         }
 }
 
-static bool same_levels(const struct rd_chain *chain, const struct rd_runs *runs,
-                        const struct sweep_extent *x, const struct sweep_extent *y)
+/* how many of the frequencies x cross a run by pieces of as many elements as the first does */
+static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
+                    const struct sweep_extent *x, size_t count)
 {
-    for (size_t r = 0; r < runs->count; r++) {
-        const struct rd_run *run = runs->run + r;
-        const size_t n = run->last - run->first;
-        const struct sweep_pieces a = rd_sweep_pieces(chain, run, n, x);
-        const struct sweep_pieces b = rd_sweep_pieces(chain, run, n, y);
-        if (a.level != b.level || a.halvings != b.halvings)
-            return false;
+    const size_t n = run->last - run->first;
+    const struct sweep_pieces first = rd_sweep_pieces(chain, run, n, x);
+    for (size_t i = 1; i < count; i++) {
+        const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, x + i);
+        if (own.level != first.level || own.halvings != first.halvings)
+            return i;
     }
-    return true;
+    return count;
 }
 
 size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *runs,
                            const struct rd_factors *factors, const size_t *order, size_t first,
-                           size_t *index)
+                           size_t *index, struct sweep_extent *extent)
 {
-    const struct sweep_extent own = rd_sweep_extent(factors, order[first]);
-    size_t used = 1;
-    while (used < RD_LANES && first + used < factors->count) {
-        const struct sweep_extent next = rd_sweep_extent(factors, order[first + used]);
-        if (!same_levels(chain, runs, &own, &next))
-            break;
-        used++;
-    }
+    size_t used = factors->count - first < RD_LANES ? factors->count - first : RD_LANES;
+    for (size_t lane = 0; lane < used; lane++)
+        extent[lane] = rd_sweep_extent(factors, order[first + lane]);
+    for (size_t r = 0; r < runs->count; r++)
+        used = alike(chain, runs->run + r, extent, used);
     for (size_t lane = 0; lane < RD_LANES; lane++)
         index[lane] = order[first + (lane < used ? lane : used - 1)];
+    for (size_t lane = used; lane < RD_LANES; lane++)
+        extent[lane] = extent[used - 1];
     return used;
 }

@@ -31,12 +31,10 @@ static double size_of(const double *factor)
    Below its first resonance a rope that can move as a rigid body does: where that receptance is the
    larger, I - U = -i f of the parts would be the small difference of large numbers without it. */
 static void characteristic(const struct rd_chain *chain, const struct rd_runs *runs,
-                           const struct rd_factors *factors, size_t f, double *z)
+                           const struct sweep_extent *x, double *z)
 {
-    const double section = size_of(factors->section + 2 * f);
-    const double T = runs->tension * size_of(factors->tension + 2 * f);
-    const double spring = size_of(factors->spring + 2 * f);
-    const double lambda = size_of(factors->inertia + 2 * f);
+    const double section = 1.0 / x->section, T = runs->tension * x->tension;
+    const double spring = x->spring, lambda = x->inertia;
     const double L = runs->length, least = 1.0 / (L * L);
     const double S = runs->flexibility[RD_BENDING], l = L / (double)(chain->nodes - 1);
     const size_t lateral = rd_coordinate_find(chain->width, chain->coordinate, RD_Z);
@@ -90,7 +88,8 @@ struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i)
 
 void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
                     const struct rd_factors *factors, const size_t *index,
-                    struct sweep_block *block, struct sweep_way *way)
+                    const struct sweep_extent *extent, struct sweep_block *block,
+                    struct sweep_way *way)
 {
     const size_t w = chain->width;
     cv section, tension, spring, inertia;
@@ -98,7 +97,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
         const size_t i = index[lane];
         double z[RD_WIDTH_MAX];
         load(factors, lane, i, &section, &tension, &spring, &inertia);
-        characteristic(chain, runs, factors, i, z);
+        characteristic(chain, runs, extent + lane, z);
         for (size_t c = 0; c < w; c++)
             block->z[c][lane] = z[c];
     }
@@ -177,7 +176,8 @@ static double run_wavenumber(const struct rd_chain *chain, const struct rd_run *
             double k2, a2;
             wavenumbers(1.0 / s, T - n[w - 1], n[i], &k2, &a2);
             most = fmax(most, sqrt(k2));
-            most = fmax(most, cbrt(turn * s));
+            if (turn > 0.0)
+                most = fmax(most, cbrt(turn * s));
             most = fmax(most, 1.2 * sqrt(fmax(-T * s, 0.0)));
         } else if (c == RD_Z) {
             most = fmax(most, sqrt(n[i] / fabs(T)));
@@ -211,9 +211,9 @@ struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct r
     if (chain->inertia) {
         const double whole = radians(chain, (size_t)run->element, extent);
         pieces.halvings = rd_span_halvings(whole);
-        pieces.terms = rd_span_terms(ldexp(whole, -pieces.halvings));
         pieces.count = count << pieces.halvings;
-        length = ldexp(length, -pieces.halvings);
+        pieces.radians = whole / (double)((size_t)1 << pieces.halvings);
+        length /= (double)((size_t)1 << pieces.halvings);
     }
     const double k = run_wavenumber(chain, run, extent);
     while (((size_t)2 << pieces.level) <= pieces.count && 2.0 * length * k <= 1.2) {

@@ -22,16 +22,18 @@ struct sweep_extent {
 struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i);
 
 /* Fills the block and both ways (forward, backward) for the frequencies index[0 .. RD_LANES - 1]
-   of the factors. A lane depends on its own frequency alone. */
+   of the factors, of sizes extent (RD_LANES). A lane depends on its own frequency alone. */
 void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
                     const struct rd_factors *factors, const size_t *index,
-                    struct sweep_block *block, struct sweep_way *way);
+                    const struct sweep_extent *extent, struct sweep_block *block,
+                    struct sweep_way *way);
 
 /* How a run is crossed: by pieces of 2^level first pieces, below their first cantilever resonance.
    A first piece is an element, or one of the 2^halvings parts of a continuous one. */
 struct sweep_pieces {
-    int halvings, terms; /* terms of the series of a continuous first piece */
+    int halvings;
     size_t count, level; /* first pieces in all; 2^level <= count */
+    double radians;      /* of a continuous first piece */
 };
 
 struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,

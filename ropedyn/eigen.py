@@ -97,7 +97,7 @@ def solve_modes(
     x = model.x
     if model.element == "continuous":
         points = points or _points_for(model, eigenvalue)
-        x = finer(model, points).x
+        x = _between(model.x, points)
         later = partial(_later_within, model, number, limit, eigenvalue, points)
     return Modes(
         coordinates=model.coordinates,
@@ -278,6 +278,12 @@ def _later(model: Model, solver: str, number: int | None, limit: float) -> Vecto
     found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
     eigenvalue, _, order = _merged(found, number)
     return _vectors(model, found, eigenvalue, order)
+
+
+def _between(x: Real, points: int) -> Real:
+    """Return the ends of so many equal parts between each two nodes."""
+    parts = np.multiply.outer(np.diff(x) / points, np.arange(points))
+    return np.append((x[:-1, None] + parts).ravel(), x[-1])
 
 
 def _points_for(model: Model, eigenvalue: Real) -> int:
