@@ -4,38 +4,12 @@ import dataclasses
 
 import mpmath
 import numpy as np
+from exact_scene import CHANNEL, factors, inertia, section, standing
 from mpmath import mpf
 
 import ropedyn as rd
 
 DIGITS = 60
-CHANNEL = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
-
-
-def section(rope):
-    """Flexibility of the section over (axial, torsion, bending), from the rope's numbers."""
-    EA, C, B, D, H = (
-        mpf(value or 0)
-        for value in (
-            rope.axial_stiffness,
-            rope.torsional_stiffness,
-            rope.bending_stiffness,
-            rope.lay_coupling,
-            rope.lay_slope,
-        )
-    )
-    S = [[mpf(0)] * 3 for _ in range(3)]
-    left = 1 - D * D / (EA * C) if D else mpf(1)
-    S[0][0] = 1 / (EA * left) if EA else mpf(0)
-    tt, bb = 1 / (C * left) if C else mpf(0), 1 / B if B else mpf(0)
-    at = -D / (EA * C * left) if D else mpf(0)
-    norm = mpmath.sqrt(1 + H * H)
-    c, s = 1 / norm, H / norm
-    S[0][1] = S[1][0] = c * at
-    S[0][2] = S[2][0] = s * at
-    S[1][1], S[2][2] = c * c * tt + s * s * bb, s * s * tt + c * c * bb
-    S[1][2] = S[2][1] = c * s * (tt - bb)
-    return S
 
 
 def identity(w):
@@ -173,18 +147,7 @@ class Exact:
 
     def factors(self, omega):
         """On sections, tension, springs, inertia; real where nothing is damped."""
-        section = tension = spring = mpf(1)
-        inertia = -(omega**2)
-        for damping in self.model.scene.dampings:
-            if isinstance(damping, rd.StiffnessDamping):
-                section = section + 1j * omega * mpf(damping.gamma)
-                spring = spring + 1j * omega * mpf(damping.gamma)
-            else:
-                section = section + 1j * omega * mpf(damping.stiffness)
-                tension = tension + 1j * omega * mpf(damping.stiffness)
-                spring = spring + 1j * omega * mpf(damping.stiffness)
-                inertia = inertia + 1j * omega * mpf(damping.mass)
-        return [p * q for p, q in zip((section, tension, spring, inertia), self.nudge)]
+        return [p * q for p, q in zip(factors(self.model.scene, omega), self.nudge)]
 
     def triple(self, length, omega):
         scene = self.model.scene
@@ -212,42 +175,20 @@ class Exact:
     def term(self, node, omega):
         """Node term -omega^2 M + springs and the held coordinates."""
         scene, c = self.model.scene, self.coordinates
-        rope = scene.rope
-        _, _, spring, inertia = self.factors(omega)
+        _, _, spring, of_inertia = self.factors(omega)
         left = self.lengths[node - 1] if node > 0 else mpf(0)
         right = self.lengths[node] if node < self.count else mpf(0)
-        mu = mpf(rope.linear_density)
-        own = {"x": mu, "z": mu, "alpha": mpf(rope.polar_inertia or 0)}
-        own["beta"] = mpf(rope.rotary_inertia or 0)
-        mass = {k: own[k] * (left + right) / 2 for k in c}
-        stiffness, held = dict.fromkeys(c, mpf(0)), set()
-        for at, part in self.part_at:
-            if at != node:
-                continue
-            if isinstance(part, rd.PointMass):
-                added = {"x": part.mass, "z": part.mass, "alpha": part.polar_inertia}
-                added["beta"] = part.rotary_inertia
-                mass = {k: mass[k] + mpf(added[k]) for k in c}
-            elif part.coordinate in c and isinstance(part, rd.Spring):
-                stiffness[part.coordinate] += mpf(part.stiffness)
-            elif part.coordinate in c:
-                held.add(part.coordinate)
-        if node in (0, self.count):
-            end = scene.ends[node > 0]
-            if isinstance(end, rd.End):
-                held |= {k for k in c if end.holds(k)}
-                for k in set(end.spring) & set(c):
-                    stiffness[k] += mpf(end.spring[k])
-            else:
-                holds = {"clamped": set(c), "pinned": set(c) - {"beta"}, "free": set()}
-                held |= holds[end]
+        own = inertia(scene.rope)
+        end = scene.ends[node > 0] if node in (0, self.count) else None
+        here = standing(c, [part for at, part in self.part_at if at == node], end)
         N = [[mpf(0)] * len(c) for _ in c]
         for k, name in enumerate(c):
-            N[k][k] = inertia * mass[name] + spring * stiffness[name]
+            mass = own[name] * (left + right) / 2 + here.mass[name]
+            N[k][k] = of_inertia * mass + spring * here.stiffness[name]
         if self.model.element == "tensed" and "beta" in c:
             z, beta = c.index("z"), c.index("beta")
-            N[z][beta] = N[beta][z] = -inertia * mu * (left**2 - right**2) / 12
-        return N, [name in held for name in c]
+            N[z][beta] = N[beta][z] = -of_inertia * own["z"] * (left**2 - right**2) / 12
+        return N, [name in here.held for name in c]
 
     def assembled(self, omega):
         """Diagonal blocks, held coordinates as ones, and the blocks above the diagonal."""

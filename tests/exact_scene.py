@@ -1,0 +1,100 @@
+"""What a scene is made of, read from its numbers alone: shared by the exact references."""
+
+import dataclasses
+
+import mpmath
+from mpmath import mpf
+
+import ropedyn as rd
+
+CHANNEL = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
+"""Section channel of a coordinate: axial, torsion, bending."""
+
+
+def section(rope):
+    """Flexibility of the section over (axial, torsion, bending), from the rope's numbers."""
+    EA, C, B, D, H = (
+        mpf(value or 0)
+        for value in (
+            rope.axial_stiffness,
+            rope.torsional_stiffness,
+            rope.bending_stiffness,
+            rope.lay_coupling,
+            rope.lay_slope,
+        )
+    )
+    S = [[mpf(0)] * 3 for _ in range(3)]
+    left = 1 - D * D / (EA * C) if D else mpf(1)
+    S[0][0] = 1 / (EA * left) if EA else mpf(0)
+    tt, bb = 1 / (C * left) if C else mpf(0), 1 / B if B else mpf(0)
+    at = -D / (EA * C * left) if D else mpf(0)
+    norm = mpmath.sqrt(1 + H * H)
+    c, s = 1 / norm, H / norm
+    S[0][1] = S[1][0] = c * at
+    S[0][2] = S[2][0] = s * at
+    S[1][1], S[2][2] = c * c * tt + s * s * bb, s * s * tt + c * c * bb
+    S[1][2] = S[2][1] = c * s * (tt - bb)
+    return S
+
+
+def inertia(rope):
+    """Inertia per length of each coordinate [kg/m, kg m]."""
+    mu = mpf(rope.linear_density)
+    polar, rotary = mpf(rope.polar_inertia or 0), mpf(rope.rotary_inertia or 0)
+    return {"x": mu, "z": mu, "alpha": polar, "beta": rotary}
+
+
+def factors(scene, omega):
+    """On sections, tension, springs, inertia at omega [rad/s]; real where nothing is damped."""
+    section = tension = spring = mpf(1)
+    inertia = -(omega**2)
+    for damping in scene.dampings:
+        if isinstance(damping, rd.StiffnessDamping):
+            section = section + 1j * omega * mpf(damping.gamma)
+            spring = spring + 1j * omega * mpf(damping.gamma)
+        else:
+            section = section + 1j * omega * mpf(damping.stiffness)
+            tension = tension + 1j * omega * mpf(damping.stiffness)
+            spring = spring + 1j * omega * mpf(damping.stiffness)
+            inertia = inertia + 1j * omega * mpf(damping.mass)
+    return section, tension, spring, inertia
+
+
+@dataclasses.dataclass
+class Standing:
+    """What stands at one place, per coordinate."""
+
+    mass: dict[str, mpf]
+    stiffness: dict[str, mpf]
+    held: set[str]
+    hinge: mpf | None
+    """Compliance of the hinge on the right [rad/(N m)], infinite where free, or None."""
+
+
+def standing(coordinates, parts, end=None):
+    """Sum up the parts at one place, and the end of the rope if it is there."""
+    found = Standing(
+        dict.fromkeys(coordinates, mpf(0)), dict.fromkeys(coordinates, mpf(0)), set(), None
+    )
+    for part in parts:
+        if isinstance(part, rd.PointMass):
+            added = {"x": part.mass, "z": part.mass, "alpha": part.polar_inertia}
+            added["beta"] = part.rotary_inertia
+            for k in coordinates:
+                found.mass[k] += mpf(added[k])
+        elif isinstance(part, rd.Hinge):
+            if "beta" in coordinates:
+                soft = 1 / mpf(part.stiffness) if part.stiffness else mpf("inf")
+                found.hinge = soft + (found.hinge or 0)
+        elif part.coordinate in coordinates and isinstance(part, rd.Spring):
+            found.stiffness[part.coordinate] += mpf(part.stiffness)
+        elif part.coordinate in coordinates:
+            found.held.add(part.coordinate)
+    if isinstance(end, rd.End):
+        found.held |= {k for k in coordinates if end.holds(k)}
+        for k in set(end.spring) & set(coordinates):
+            found.stiffness[k] += mpf(end.spring[k])
+    elif end is not None:
+        holds = {"clamped": set(coordinates), "pinned": set(coordinates) - {"beta"}, "free": set()}
+        found.held |= holds[end]
+    return found
