@@ -4,6 +4,8 @@ The determinant of tests/exact_span.py is entire in lambda = omega^2 and, with n
 on the real axis; its zeros are the eigenvalues, as often as they are repeated.
 """
 
+import dataclasses
+
 import mpmath
 from exact_chain import DIGITS
 from exact_span import Continuum, coupled
@@ -55,6 +57,24 @@ def frequency(exact, near, within=1e-6):
         return mpmath.sqrt(eigenvalue(exact, square, within)) / (2 * mpmath.pi)
 
 
+def sensitivity(exact, value):
+    """Return |lambda| + the sum of |d lambda/d ln p| over p = section, tension, springs.
+
+    How far a relative change of 1 in each part of the dynamic stiffness moves an eigenvalue, to
+    first order: D_p/D_lambda by differences of 1e-20.
+    """
+    step = mpf(10) ** -20
+    with mpmath.workdps(DIGITS):
+        here = exact.determinant(value)
+        slope = (exact.determinant(value * (1 + step)) - here) / value
+        total = abs(value)
+        for part in range(3):
+            nudge = tuple(1 + step * (k == part) for k in range(4))
+            near = dataclasses.replace(exact, nudge=nudge).determinant(value)
+            total += abs((near - here) / slope)
+        return total
+
+
 def cluster(exact, near, within=1e-3, points=64):
     """Return all eigenvalues within a relative distance of a number, repeated ones repeatedly.
 
@@ -99,8 +119,13 @@ def _zeros_of(sums):
     for k in range(1, count + 1):
         total = sum((-1) ** (j - 1) * elementary[k - j] * sums[j] for j in range(1, k + 1))
         elementary.append(total / k)
-    coefficients = [(-1) ** k * e for k, e in enumerate(elementary)]
-    return mpmath.polyroots(coefficients, maxsteps=500, extraprec=400) if count else []
+    # companion matrix of s^n - e_1 s^(n-1) + e_2 s^(n-2) ...
+    companion = mpmath.matrix(count, count)
+    for k in range(count):
+        companion[0, k] = (-1) ** k * elementary[k + 1]
+        if k:
+            companion[k, k - 1] = mpf(1)
+    return mpmath.eig(companion, left=False, right=False) if count else []
 
 
 def count(exact, low, high, arcs=24):
