@@ -26,9 +26,9 @@ from mpmath import mpf
 import ropedyn as rd
 
 FORCE = {"F_x": "x", "F_z": "z", "M_alpha": "alpha", "M_beta": "beta"}
-REACH = 20
-"""Wavenumber times length of a piece: motions grow apart by exp(20) there, nine digits."""
-GUARD = 40
+REACH = 40
+"""Wavenumber times length of a piece: motions grow apart by exp(40) there, 17 digits."""
+GUARD = 50
 """Digits beyond the present ones: what pieces, and scales far apart, take away."""
 
 

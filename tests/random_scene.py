@@ -47,6 +47,25 @@ def random_line(seed):
     return Line(model, frequency(random, scene), drive, response)
 
 
+def random_spans(seed):
+    """A random scene, a frequency and two points between which it responds.
+
+    Returns
+    -------
+    Scene, float, (str, float), (str, float)
+    """
+    random = np.random.default_rng(seed)
+    width = int(random.choice(list(WIDTHS), p=[0.15, 0.5, 0.2, 0.15]))
+    scene = random_scene(random, width)
+    # 0 Hz is for statics: half of these scenes cannot stand still
+    f = frequency(random, scene) or 1e-3
+    places = [*random.uniform(0.0, LENGTH, 4).tolist(), 0.0, LENGTH, *(p.x for p in scene.parts)]
+    drive, other = (
+        (str(random.choice(WIDTHS[width])), float(random.choice(places))) for _ in range(2)
+    )
+    return scene, f, drive, drive if random.random() < 0.5 else other
+
+
 def random_scene(random, width):
     """A scene whose largest component has so many coordinates."""
     rope = random_rope(random, width)

@@ -98,7 +98,7 @@ def rigid_motions(ends, tension):
 @pytest.mark.parametrize("xi2", [0.0, 1.0, 1e4, 1e8])
 @pytest.mark.parametrize("ends", PAIRS, ids="-".join)
 @pytest.mark.claim(
-    "Eigenvalues of beams of continuous spans, every pair of clamped, pinned, free and sprung ends, "
+    "Eigenvalues of beams of continuous spans, every pair of clamped, pinned, free, sprung ends, "
     "T L^2/B from 0 to 1e8: error / sensitivity",
     reference=EXACT,
     accepted=RELATIVE,

@@ -1,0 +1,150 @@
+"""Shapes and energies of modes of a rope of continuous spans, from the exact reference.
+
+Next to a simple eigenvalue, 1e-30 of it away, any response is the mode's shape to 30 digits, unless
+the force stands where the mode does not move.
+"""
+
+import itertools
+
+import mpmath
+import numpy as np
+from exact_scene import CHANNEL, inertia, section, standing
+from exact_span import FORCE, Law, backward
+from mpmath import mpf
+
+DIGITS = 90
+NEAR = mpf(1) + mpf(10) ** -30
+INTERVALS, COARSE = 256, 16
+"""Equal ones on each span, and the first of Romberg's rule: (k h)^10 is left of k h = 0.1."""
+STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
+
+
+class Mode:
+    """Motion and forces of a mode, the largest motion at a station or drive about 1.
+
+    Attributes
+    ----------
+    stations : list of float
+        [m].
+    along : dict of ndarray, shape (spans, INTERVALS + 1)
+        By coordinate and by force.
+    """
+
+    def __init__(self, exact, eigenvalue):
+        scene, c = exact.scene, exact.coordinates
+        self.exact = exact
+        self.stations = sorted({0.0, scene.rope.length, *(p.x for p in scene.parts)})
+        force = {k: f for f, k in FORCE.items()}
+        names = [*c, *(force[k] for k in c)]
+        with mpmath.workdps(DIGITS):
+            ends = self._right_ends(names, eigenvalue)
+            law = Law(scene, c, 1, 1, -eigenvalue)
+            lengths = [mpf(b) - mpf(a) for a, b in itertools.pairwise(self.stations)]
+            spans = [_carried(law, length, y) for length, y in zip(lengths, ends)]
+        self.along = {
+            name: np.array([[float(y[k]) for y in span] for span in spans])
+            for k, name in enumerate(names)
+        }
+
+    def _right_ends(self, names, eigenvalue):
+        """(u, f) at the right end of each span."""
+        c, length = self.exact.coordinates, self.exact.scene.rope.length
+        omega = mpmath.sqrt(mpmath.mpc(eigenvalue * NEAR))
+        drive = ("z" if "z" in c else c[-1], 0.3819 * length)
+        points = list(itertools.product(self.stations[1:], names))
+        value = self.exact.receptance(omega, drive, [drive, *((name, x) for x, name in points)])
+        value = [mpmath.re(v / value[0]) for v in value[1:]]
+        n = len(names)
+        return [value[i : i + n] for i in range(0, len(value), n)]
+
+    def shape(self, points):
+        """Shape at so many equal intervals of each span, the largest of its own coordinate 1.
+
+        Returns
+        -------
+        ndarray, shape (places, coordinates)
+        """
+        c, step = self.exact.coordinates, INTERVALS // points
+        # where spans meet the motion is that left of a hinge, at the right end of a span
+        parts = [
+            np.concatenate([self.along[k][0, :1], self.along[k][:, step::step].ravel()]) for k in c
+        ]
+        fractions = self.energy()
+        own = parts[max(range(len(c)), key=lambda k: fractions[c[k]])]
+        return np.stack(parts, axis=1) / own[np.abs(own).argmax()]
+
+    def energy(self):
+        """Fractions of strain energy by what stores it, and of kinetic energy by coordinate.
+
+        Integrals over the spans: section flexibility on forces, tension T beta^2 or F_z^2/T
+        without bending, inertia on motion; springs and masses at their places.
+        """
+        scene, c = self.exact.scene, self.exact.coordinates
+        weight = np.outer(np.diff(self.stations), romberg())
+        strain, kinetic = _along(scene, c, self.along, weight)
+        at = {k: np.append(self.along[k][:1, 0], self.along[k][:, -1]) for k in self.along}
+        _add_parts(scene, c, self.stations, at, strain, kinetic)
+        return {
+            **{k: v / sum(strain.values()) for k, v in strain.items()},
+            **{k: v / sum(kinetic.values()) for k, v in kinetic.items()},
+        }
+
+
+def _carried(law, length, right):
+    """(u, f) at INTERVALS + 1 places of a span, from its right end."""
+    transition, count = law.across(length / INTERVALS)
+    back, states = backward(transition), [right]
+    for _ in range(INTERVALS):
+        y = states[-1]
+        for _ in range(count):
+            y = [sum(a * b for a, b in zip(row, y)) for row in back]
+        states.append(y)
+    return states[::-1]
+
+
+def romberg():
+    """Weights of INTERVALS + 1 equal steps over the unit interval."""
+    rows, step = [], 1
+    while step <= INTERVALS // COARSE:
+        weight = np.zeros(INTERVALS + 1)
+        weight[::step] = step / INTERVALS
+        weight[[0, -1]] /= 2
+        rows.insert(0, weight)
+        step *= 2
+    # rows from the coarsest to the finest
+    order = 4.0
+    while len(rows) > 1:
+        rows = [fine + (fine - coarse) / (order - 1) for coarse, fine in itertools.pairwise(rows)]
+        order *= 4
+    return rows[0]
+
+
+def _along(scene, c, y, weight):
+    """Integrals of twice the energies."""
+    S = np.array([[float(s) for s in row] for row in section(scene.rope)])
+    force = {CHANNEL[k]: y[f] for f, k in FORCE.items() if k in c and k != "z"}
+    strain = dict.fromkeys(STRAINS, 0.0)
+    for (i, f), (j, g) in itertools.product(force.items(), repeat=2):
+        name = ("stretch", "twist", "bending")[i] if i == j else "lay"
+        strain[name] += (weight * S[i, j] * f * g).sum()
+    T = scene.tension
+    if "beta" in c:
+        strain["tension"] = (weight * T * y["beta"] ** 2).sum()
+    elif "z" in c:
+        strain["tension"] = (weight * y["F_z"] ** 2).sum() / T
+    own = inertia(scene.rope)
+    return strain, {k: float(own[k]) * (weight * y[k] ** 2).sum() for k in c}
+
+
+def _add_parts(scene, c, stations, y, strain, kinetic):
+    """Add springs, hinges (by the moment that opens them) and masses."""
+    ends = {0: scene.ends[0], len(stations) - 1: scene.ends[1]}
+    for i, x in enumerate(stations):
+        here = standing(c, [p for p in scene.parts if p.x == x], ends.get(i))
+        for k in c:
+            strain["spring"] += float(here.stiffness[k]) * y[k][i] ** 2
+            kinetic[k] += float(here.mass[k]) * y[k][i] ** 2
+        if here.hinge is not None and not mpmath.isinf(here.hinge):
+            # the moment left of the node opens the hinge where nothing else takes of it
+            assert not (here.stiffness["beta"] or here.mass["beta"] or "beta" in here.held)
+            strain["spring"] += float(here.hinge) * y["M_beta"][i] ** 2
