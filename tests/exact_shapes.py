@@ -4,6 +4,7 @@ Next to a simple eigenvalue, 1e-30 of it away, any response is the mode's shape 
 the force stands where the mode does not move.
 """
 
+import dataclasses
 import itertools
 
 import mpmath
@@ -20,7 +21,7 @@ STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
 
 
 class Mode:
-    """Motion and forces of a mode, the largest motion at a station or drive about 1.
+    """Motion and forces of an undamped mode.
 
     Attributes
     ----------
@@ -52,7 +53,8 @@ class Mode:
         omega = mpmath.sqrt(mpmath.mpc(eigenvalue * NEAR))
         drive = ("z" if "z" in c else c[-1], 0.3819 * length)
         points = list(itertools.product(self.stations[1:], names))
-        value = self.exact.receptance(omega, drive, [drive, *((name, x) for x, name in points)])
+        undamped = dataclasses.replace(self.exact, scene=self.exact.scene.replace(damping=None))
+        value = undamped.receptance(omega, drive, [drive, *((name, x) for x, name in points)])
         value = [mpmath.re(v / value[0]) for v in value[1:]]
         n = len(names)
         return [value[i : i + n] for i in range(0, len(value), n)]

@@ -7,12 +7,12 @@ import exact_roots
 import mpmath
 import numpy as np
 import pytest
-from conftest import BENDING, EPS, LENGTH, MASS, reference
+from conftest import BENDING, LENGTH, MASS, reference
 from exact_chain import DIGITS, condition, omega_of, relative
 from exact_roots import continuum
 from exact_span import Law
 from random_scene import random_spans
-from test_continuous_modes import PARTS, SCENES, UNIT, WHOLE
+from test_continuous_modes import SCENES, UNIT, WHOLE
 
 import ropedyn as rd
 

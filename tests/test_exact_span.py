@@ -1,5 +1,6 @@
 """The exact reference of continuous spans, itself against closed forms and fine chains."""
 
+import itertools
 from types import SimpleNamespace
 
 import exact_roots
@@ -9,6 +10,7 @@ import pytest
 from conftest import reference
 from exact_chain import DIGITS, omega_of
 from exact_roots import continuum
+from exact_shapes import Mode
 from mpmath import mpf
 
 import ropedyn as rd
@@ -309,3 +311,24 @@ def test_chains_converge_to_the_exact_frequencies(name):
     for k in mine[:4]:
         f = float(near.frequency[k])
         assert float(abs(exact_roots.frequency(exact, f, 1e-3) / mpf(f) - 1)) < 1e-4
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_modes_of_chains_converge_to_the_exact_shapes_and_energies(name):
+    # second order at least: 400 elements, 1e-4 as for the frequencies, energies twice that
+    scene = SCENES[name]
+    found = scene.compile(elements=400, element="tensed").modes(2)
+    exact = continuum(scene)
+    for k in range(2):
+        root = exact_roots.eigenvalue(exact, float(found.eigenvalue[k]), 1e-3)
+        mode = Mode(exact, root)
+        places = [
+            (a + (b - a) * j / 8) for a, b in itertools.pairwise(mode.stations) for j in range(8)
+        ]
+        at = [int(np.abs(found.x - x).argmin()) for x in [*places, scene.rope.length]]
+        shape, chain = mode.shape(8), found.shape[k, at]
+        chain = chain / chain[:, 1 if "x" in scene.coordinates else 0].max()
+        own = shape[:, 1 if "x" in scene.coordinates else 0].max()
+        assert (np.abs(chain - shape / own).max(axis=0) <= 1e-3 * np.abs(chain).max(axis=0)).all()
+        for name_, fraction in mode.energy().items():
+            assert abs(found.energy.get(name_, np.zeros(2))[k] - fraction) < 1e-3
