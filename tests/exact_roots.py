@@ -75,7 +75,7 @@ def sensitivity(exact, value):
         return total
 
 
-def cluster(exact, near, within=1e-3, points=64):
+def cluster(exact, near, within=1e-3, points=32):
     """Return all eigenvalues within a relative distance of a number, repeated ones repeatedly.
 
     With p_k = 1/(2 pi i) of the integral of (s - c)^k D'/D over the circle about c, integrated by
@@ -128,11 +128,12 @@ def _zeros_of(sums):
     return mpmath.eig(companion, left=False, right=False) if count else []
 
 
-def count(exact, low, high, arcs=24):
+def count(exact, low, high, arcs=8):
     """Return the number of eigenvalues between two numbers, by the argument principle.
 
     Along the upper half of the circle over them the determinant turns by pi for each zero. It is
-    followed with a few digits, arc by arc, each halved until neither half turns it by a radian.
+    followed with a few digits, arc by arc, each halved until neither half turns it by much
+    more than a radian.
     """
     with mpmath.workdps(15):
         centre, radius = (mpf(low) + mpf(high)) / 2, (mpf(high) - mpf(low)) / 2
@@ -144,7 +145,7 @@ def count(exact, low, high, arcs=24):
             middle = (a + b) / 2
             between = value(middle)
             halves = mpmath.arg(between / start), mpmath.arg(end / between)
-            if max(map(abs, halves)) < 1:
+            if max(map(abs, halves)) < 1.2:
                 return sum(halves)
             return turned(a, middle, start, between) + turned(middle, b, between, end)
 

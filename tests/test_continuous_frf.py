@@ -117,10 +117,9 @@ def test_damped_beam_responds_as_the_continuum(damping, xi2, claim):
 def test_rope_with_what_stands_on_it_responds_as_the_continuum(name, damping, claim):
     scene = SCENES[name].replace(damping=damping and DAMPINGS[damping])
     c = scene.coordinates[-1]
-    for f in (0.01, 33.0, 700.0):
-        claim(max(errors(scene, f, (c, 0.31))))
-        if c == "beta":
-            claim(max(errors(scene, f, ("z", 0.31), [("z", 0.31), ("beta", 0.45), ("z", 0.95)])))
+    claim(max(errors(scene, 0.01, (c, 0.31))))
+    if c == "beta":
+        claim(max(errors(scene, 700.0, ("z", 0.31), [("z", 0.31), ("beta", 0.45), ("z", 0.95)])))
 
 
 @pytest.mark.parametrize("f", [0.01, 33.0, 700.0])
