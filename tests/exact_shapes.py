@@ -50,7 +50,8 @@ class Mode:
     def _right_ends(self, names, eigenvalue):
         """(u, f) at the right end of each span."""
         c, length = self.exact.coordinates, self.exact.scene.rope.length
-        omega = mpmath.sqrt(mpmath.mpc(eigenvalue * NEAR))
+        # imaginary where motion grows
+        omega = mpmath.sqrt(eigenvalue * NEAR)
         drive = ("z" if "z" in c else c[-1], 0.3819 * length)
         points = list(itertools.product(self.stations[1:], names))
         undamped = dataclasses.replace(self.exact, scene=self.exact.scene.replace(damping=None))
@@ -66,17 +67,38 @@ class Mode:
         -------
         ndarray, shape (places, coordinates)
         """
-        c, step = self.exact.coordinates, INTERVALS // points
-        # where spans meet the motion is that left of a hinge, at the right end of a span
-        parts = [
-            np.concatenate([self.along[k][0, :1], self.along[k][:, step::step].ravel()]) for k in c
-        ]
-        fractions = self.energy()
-        own = parts[max(range(len(c)), key=lambda k: fractions[c[k]])]
-        return np.stack(parts, axis=1) / own[np.abs(own).argmax()]
+        return self._drawn(points) / self._largest(points)
+
+    def modal_mass(self, points):
+        """Of the shape at so many intervals [kg, kg m^2]."""
+        _, kinetic = self._stored()
+        return sum(kinetic.values()) / self._largest(points) ** 2
 
     def energy(self):
-        """Fractions of strain energy by what stores it, and of kinetic energy by coordinate.
+        """Fractions of strain energy by what stores it, and of kinetic energy by coordinate."""
+        return {k: v / sum(kind.values()) for kind in self._stored() for k, v in kind.items()}
+
+    def _drawn(self, points):
+        step = INTERVALS // points
+        # where spans meet the motion is that left of a hinge, at the right end of a span
+        return np.stack(
+            [
+                np.concatenate([self.along[k][0, :1], self.along[k][:, step::step].ravel()])
+                for k in self.exact.coordinates
+            ],
+            axis=1,
+        )
+
+    def _largest(self, points):
+        """Value of the largest motion in the coordinate with the most kinetic energy."""
+        _, kinetic = self._stored()
+        own = self._drawn(points)[
+            :, max(range(len(kinetic)), key=list(kinetic.values()).__getitem__)
+        ]
+        return own[np.abs(own).argmax()]
+
+    def _stored(self):
+        """Twice the strain energy, and twice the kinetic energy over omega^2.
 
         Integrals over the spans: section flexibility on forces, tension T beta^2 or F_z^2/T
         without bending, inertia on motion; springs and masses at their places.
@@ -86,10 +108,7 @@ class Mode:
         strain, kinetic = _along(scene, c, self.along, weight)
         at = {k: np.append(self.along[k][:1, 0], self.along[k][:, -1]) for k in self.along}
         _add_parts(scene, c, self.stations, at, strain, kinetic)
-        return {
-            **{k: v / sum(strain.values()) for k, v in strain.items()},
-            **{k: v / sum(kinetic.values()) for k, v in kinetic.items()},
-        }
+        return strain, kinetic
 
 
 def _carried(law, length, right):

@@ -137,6 +137,7 @@ def test_shapes_are_those_of_the_continuum(name, claim):
     modes = drawn(scene, 2, points=8)
     assert set(scene.coordinates) == set(mode.exact.coordinates)
     claim(apart(modes.shape[1], mode.shape(8)))
+    np.testing.assert_allclose(modes.modal_mass[1], mode.modal_mass(8), rtol=ENERGY)
 
 
 @pytest.mark.parametrize("name", SCENES)
