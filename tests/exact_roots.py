@@ -128,12 +128,13 @@ def _zeros_of(sums):
     return mpmath.eig(companion, left=False, right=False) if count else []
 
 
-def count(exact, low, high, arcs=8):
+def count(exact, low, high, arcs=16):
     """Return the number of eigenvalues between two numbers, by the argument principle.
 
+    Both must keep away from eigenvalues by some share of the largest: -high is a good `low`.
+
     Along the upper half of the circle over them the determinant turns by pi for each zero. It is
-    followed with a few digits, arc by arc, each halved until neither half turns it by much
-    more than a radian.
+    followed with a few digits, arc by arc, each halved until neither half turns it by a radian.
     """
     with mpmath.workdps(15):
         centre, radius = (mpf(low) + mpf(high)) / 2, (mpf(high) - mpf(low)) / 2
@@ -145,7 +146,7 @@ def count(exact, low, high, arcs=8):
             middle = (a + b) / 2
             between = value(middle)
             halves = mpmath.arg(between / start), mpmath.arg(end / between)
-            if max(map(abs, halves)) < 1.2:
+            if max(map(abs, halves)) < 1:
                 return sum(halves)
             return turned(a, middle, start, between) + turned(middle, b, between, end)
 
