@@ -3,11 +3,13 @@
 
 /* A response begins: E <- E + motion U + force V,  V = i (I - U), in the walk's coordinates;
    the force is the one on the part to the left of the node, so its sign turns with the walk.
-   Rounding of U moves E by eps of its largest entry in every coordinate, which its companion says. */
+   Rounding of U moves E by eps of its largest entry in every coordinate, or by eps of the force where
+   U is near I and little is left of I - U, which its companion says. */
 static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motion,
                                  const double *force, const cv *U, cv *row)
 {
     cv E[W];
+    lanes whole = {0};
     KEEP for (int j = 0; j < W; j++)
         E[j] = c_zero();
     KEEP for (int i = 0; i < W; i++) {
@@ -15,6 +17,7 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
         const lanes z = s->block->z[i];
         const double turn = s->way->backward ? -d : d;
         const lanes a = z * (motion ? d * motion[i] : 0.0), b = (force ? turn * force[i] : 0.0) / z;
+        whole += l_abs(b);
         KEEP for (int j = 0; j < W; j++) {
             const cv u = U[at(i, j)], v = {u.im, (i == j ? 1.0 : 0.0) - u.re};
             E[j] = c_add(E[j], c_add(c_scale_lanes(u, a), c_scale_lanes(v, b)));
@@ -22,7 +25,8 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
     }
     KEEP for (int j = 0; j < W; j++)
         row[j] = c_add(row[j], E[j]);
-    sweep_accompany(E, W, row + W);
+    const lanes most = sweep_most(E, W);
+    sweep_disturb(l_select(whole > most, whole, most), W, row + W);
 }
 
 /* the solution where both parts meet, and the sizes its rounding grows with */

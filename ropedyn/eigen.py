@@ -304,7 +304,13 @@ def _later_within(
     pieces = max((_steps(model.chain.only(c), highest) for c in model.components), default=1)
     more = -(-pieces // points)
     vectors = _later(finer(model, points * more), "sweep", number, limit)
-    return replace(vectors, shape=vectors.shape[:, ::more])
+    own = np.array([FAMILY[c] for c in model.coordinates])
+    size = _largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))
+    return replace(
+        vectors,
+        shape=vectors.shape[:, ::more] / size[:, None, None],
+        modal_mass=vectors.modal_mass / size**2,
+    )
 
 
 def _vectors(

@@ -54,7 +54,8 @@ def test_pinned_beam_swings_in_sines(tension):
         # the largest of 65 places is 1
         assert apart(modes.shape[k], x / np.abs(x[:, 0]).max()) <= SHAPE
         bending = B * q**2 / (B * q**2 + tension)
-        np.testing.assert_allclose(modes.energy["bending"][k], bending, rtol=ENERGY)
+        # a fraction of one sum, which is rounded as a whole
+        np.testing.assert_allclose(modes.energy["bending"][k], bending, rtol=ENERGY, atol=4 * EPS)
         if tension:
             np.testing.assert_allclose(modes.energy["tension"][k], 1 - bending, rtol=ENERGY)
         np.testing.assert_allclose(modes.energy["z"][k], 1, rtol=ENERGY)
@@ -153,13 +154,12 @@ def test_energies_are_integrals_over_the_shapes_of_the_continuum(name, claim):
     assert all(abs(fractions[s]) < ENERGY for s in fractions if s not in modes.energy)
 
 
-def test_default_shapes_are_those_of_the_drawn_at_the_stations():
-    scene = SCENES["mass and springs"]
-    model = scene.compile()
-    some, drawn_ = model.modes(3), model.modes(3, points=16)
-    at = [int(np.abs(drawn_.x - x).argmin()) for x in model.x]
-    np.testing.assert_array_equal(some.x, model.x)
-    np.testing.assert_array_equal(some.frequency, drawn_.frequency)
-    for a, b in zip(some.shape, drawn_.shape[:, at]):
-        # both have the same shape at another scale
-        assert apart(a / np.abs(a).max(), b / np.abs(b).max()) <= SHAPE
+def test_shapes_that_nobody_sized_show_the_highest_mode():
+    model = SCENES["mass and springs"].compile()
+    some, many = model.modes(12), model.modes(12, points=128)
+    np.testing.assert_array_equal(some.frequency, many.frequency)
+    assert set(model.x) <= set(some.x)
+    # a half wave between two zeros of z
+    z = some.shape[-1, :, 0]
+    zeros = np.flatnonzero(z[1:] * z[:-1] < 0)
+    assert np.diff(zeros).min() >= 8
