@@ -13,6 +13,10 @@
 
 enum { LANES = RD_LANES, ATTEMPTS = 12, POLISH = 3, ROUNDS = 3, WIDER = 3, WIDEST = 11 };
 
+/* With twice the modes a continuous span has one level more, springs that make it grow aside: they
+   are what the others are for, with which rd_certify_size soon comes to the most there are. */
+enum { LEVELS_PER_DOUBLING = 4 };
+
 static const double CLUSTER = 1e-8;    /* closer than this, relative, are found together */
 static const double FAR = 1e-4;        /* from where a cluster is looked at first, relative */
 static const double NEAR = 1e-9;       /* and then */
@@ -448,16 +452,17 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
 bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
 {
     const bool endless = rd_inertia_is_endless(walk->chain);
-    size_t elements = 0, waves = 2;
+    size_t elements = 0, finer = 0; /* levels below a piece of the rope at rest */
     for (size_t n = wanted; n > 0; n /= 2)
-        waves++;
+        finer += LEVELS_PER_DOUBLING;
     *steps = 16 * (wanted + 4);
     *pieces = 1;
     for (size_t r = 0; r < walk->legs; r++) {
         const size_t count = walk->leg[r].count;
         const double still = rd_walk_radians(walk, walk->leg + r, 0);
         const bool whole = count < 4 && still == 0 && !endless;
-        size_t levels = endless ? waves + (size_t)rd_span_halvings(still) : 0;
+        size_t levels = endless ? finer + (size_t)rd_span_halvings(still) : 0;
+        levels = levels < RD_HALVINGS_MOST ? levels : RD_HALVINGS_MOST;
         elements += count;
         for (size_t n = count; n > 1; n /= 2)
             levels++;
