@@ -18,8 +18,9 @@ from .answer import Cost
 from .chain import CHANNELS, Chain
 from .compile import finer
 from .errors import SceneError, SolveError
+from .mesh_error import mesh_of_modes
 from .model import MOST_POINTS, MOST_STEPS, Model
-from .modes import Modes, Vectors
+from .modes import Mesh, Modes, Vectors
 from .unit import FAMILY
 
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
@@ -94,8 +95,13 @@ def solve_modes(
         )
     eigenvalue, error, order = _merged(found, number)
     later: Callable[[], Vectors] = partial(_later, model, solver, number, limit)
+    frequency = np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi)
+    which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
+    mesh: Mesh | Callable[[], Mesh]
+    mesh = partial(mesh_of_modes, model.scene, model.components, which, eigenvalue)
     x = model.x
     if model.element == "continuous":
+        mesh = Mesh(mesh_error=np.zeros_like(frequency), limit=frequency)
         points = points or _points_for(model, eigenvalue)
         x = _between(model.x, points)
         later = partial(_later_within, model, number, limit, eigenvalue, points)
@@ -103,13 +109,41 @@ def solve_modes(
         coordinates=model.coordinates,
         certified=all(part.certified for part in found),
         x=x,
-        frequency=np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi),
+        frequency=frequency,
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
-        rounding_error=_in_hertz(eigenvalue, error),
+        rounding_error=error_in_hertz(eigenvalue, error),
         cost=Cost(seconds, solver, len(model.x) - 1, model.size, sum(part.work for part in found)),
         source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
+        mesh_source=mesh,
     )
+
+
+def spectrum(
+    model: Model, component: tuple[str, ...], number: int | None, limit: float = math.inf
+) -> tuple[Real, Real]:
+    """Return the lowest eigenvalues of one component and their errors [rad^2/s^2].
+
+    Parameters
+    ----------
+    model : Model
+        Whose component it is.
+    component : tuple of str
+        Coordinates.
+    number : int or None
+        How many, or as many as there are; None: all below the limit.
+    limit : float
+        [rad^2/s^2].
+
+    Returns
+    -------
+    eigenvalue, error : ndarray, shape (k,)
+    """
+    if number is None:
+        _refuse_short_waves(model, limit)
+    found = _sweep(model, component, number, limit, shaped=False)
+    eigenvalue, error, _ = _merged([found], number)
+    return eigenvalue, error
 
 
 def eigenvalue_of(below: Any) -> float:
@@ -350,7 +384,7 @@ def _largest(shape: Real, own: NDArray[np.intp]) -> Real:
     return moved[rows, np.abs(moved).argmax(axis=1)]
 
 
-def _in_hertz(eigenvalue: NDArray[np.float64], error: NDArray[np.float64]) -> NDArray[np.float64]:
+def error_in_hertz(eigenvalue: Real, error: Real) -> Real:
     """Return the largest change of frequency or growth while the eigenvalue changes by its error.
 
     sqrt(a + e) - sqrt(a) = e/(sqrt(a + e) + sqrt(a)), so that no digit is lost.

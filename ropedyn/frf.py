@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .answer import Answer, Cost, axes
+from .answer import Answer, Cost, axes, freeze, nested
 from .errors import SceneError
 from .port import Point
 from .resonance import Resonances, resonances
@@ -18,6 +20,20 @@ from .unit import QUANTITIES, label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """What continuous spans say about the response of a chain; see `FRF`."""
+
+    mesh_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +54,13 @@ class FRF(Answer):
         [m/N, rad/N, m/(N m), rad/(N m), and these per s or s^2].
     rounding_error : ndarray, as value
         Estimated relative error that rounding causes.
+    mesh_error : ndarray, as value
+        Relative error that the elements cause, computed when it is first asked for. Not an
+        estimate: the distance to the response of the continuous spans of the same scene, and the
+        rounding error of that, over the value. 0 for continuous spans, because they have none;
+        infinite where they have no answer, as on an undamped resonance of theirs, and where only
+        the value is 0. Refined, chains of difference elements lead elsewhere; theirs is the
+        distance to the same continuous spans.
     cost : Cost
         What it cost.
     """
@@ -49,6 +72,17 @@ class FRF(Answer):
     value: NDArray[np.complex128] = field(metadata=axes("drive", "response", "frequency"))
     rounding_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
+    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """What the continuous spans of the same scene say."""
+        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
+
+    @property
+    def mesh_error(self) -> NDArray[np.float64]:
+        """Relative error that the elements cause, as value."""
+        return self.mesh.mesh_error
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -95,15 +129,7 @@ class FRF(Answer):
                 f"quantity must be {self.quantity!r} where a frequency is 0, got {quantity!r}"
             )
         value = self.value * (2j * np.pi * self.frequency) ** times
-        return FRF(
-            drive=self.drive,
-            response=self.response,
-            quantity=quantity,
-            frequency=self.frequency,
-            value=value,
-            rounding_error=self.rounding_error,
-            cost=self.cost,
-        )
+        return replace(self, quantity=quantity, value=value)
 
     def peaks(self, drive: int = 0) -> tuple[Resonances, ...]:
         """Find the resonances that show as peaks, for each response.

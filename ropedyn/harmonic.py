@@ -17,7 +17,8 @@ from . import _core, check, damping
 from .answer import Cost
 from .chain import Chain
 from .errors import SceneError, SolveError
-from .frf import FRF
+from .frf import FRF, Mesh
+from .mesh_error import mesh_of_frf
 from .model import EXACT, MOST_STEPS, Model
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reaction import first_left_end
@@ -155,14 +156,21 @@ def solve_frf(
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
     value *= (2j * np.pi * f) ** QUANTITIES[quantity]
+    if not several:
+        value, error = value[0], error[0]
+    mesh: Mesh | Callable[[], Mesh]
+    mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
+    if model.element == "continuous":
+        mesh = Mesh(np.zeros_like(error))
     return FRF(
         drive=drives,
         response=responses,
         quantity=quantity,
         frequency=f,
-        value=value if several else value[0],
-        rounding_error=error if several else error[0],
+        value=value,
+        rounding_error=error,
         cost=Cost(seconds, solver, len(model.x) - 1, unknowns, len(f) if unknowns else 0),
+        mesh_source=mesh,
     )
 
 

@@ -36,11 +36,27 @@ class Vectors:
 
 
 @dataclass(frozen=True, eq=False)
+class Mesh:
+    """What continuous spans say about the modes of a chain; see `Modes`."""
+
+    mesh_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    limit: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
+
+
+@dataclass(frozen=True, eq=False)
 class Modes(Answer):
     """Natural frequencies and shapes of an undamped model, lowest first.
 
     What follows from the shapes (`shape`, `energy`, `family`, `modal_mass`, `damping_ratio`) is
-    computed when it is first asked for.
+    computed when it is first asked for, and so is what follows from the continuous spans of the
+    same scene (`mesh_error`, `limit`).
 
     Attributes
     ----------
@@ -57,6 +73,15 @@ class Modes(Answer):
     rounding_error : ndarray, shape (k,)
         Estimated absolute error of the frequency that rounding causes [Hz]; of growth/2 pi where
         motion grows.
+    mesh_error : ndarray, shape (k,)
+        Absolute error of the frequency that the elements cause [Hz]; of growth/2 pi where motion
+        grows. Not an estimate: the distance to the mode of the same number, among those of the
+        same component, of the continuous spans, and the rounding error of that. 0 for continuous
+        spans, because they have none; infinite where they have no answer.
+    limit : ndarray, shape (k,)
+        The frequency without mesh error [Hz]: that of the continuous spans, which the frequencies
+        of ever finer chains of tensed or rigid elements approach. Exact, where extrapolation from
+        two chains would be an estimate. 0 where motion grows, NaN where there is no answer.
     certified : bool
         True: no mode is missed below the last, shown by count. The assembled solver does not count.
     damping_ratio : ndarray, shape (k,)
@@ -86,11 +111,27 @@ class Modes(Answer):
     rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
     source: Vectors | Callable[[], Vectors] = field(repr=False, metadata=nested(Vectors, "vectors"))
+    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
 
     @cached_property
     def vectors(self) -> Vectors:
         """What follows from the shapes."""
         return self.source if isinstance(self.source, Vectors) else self.source()
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """What the continuous spans of the same scene say."""
+        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
+
+    @property
+    def mesh_error(self) -> NDArray[np.float64]:
+        """Error of each frequency that the elements cause [Hz], shape (k,)."""
+        return self.mesh.mesh_error
+
+    @property
+    def limit(self) -> NDArray[np.float64]:
+        """Frequencies without mesh error [Hz], shape (k,)."""
+        return self.mesh.limit
 
     @property
     def damping_ratio(self) -> NDArray[np.float64]:
@@ -122,6 +163,7 @@ class Modes(Answer):
         columns: dict[str, Any] = {
             "mode": np.arange(1, len(self.frequency) + 1),
             "frequency [Hz]": self.frequency,
+            "mesh error [Hz]": self.mesh_error,
             "rounding error [Hz]": self.rounding_error,
             "damping ratio": self.damping_ratio,
             "family": self.family,
