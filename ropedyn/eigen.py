@@ -156,7 +156,12 @@ def count_modes(model: Model, below: float) -> int:
     """Count the natural frequencies below a limit; see `Model.count`."""
     limit = eigenvalue_of(below)
     _refuse_short_waves(model, limit)
-    return sum(_count(model.chain.only(c), limit) for c in model.components)
+    return sum(count_component(model, c, limit) for c in model.components)
+
+
+def count_component(model: Model, component: tuple[str, ...], limit: float) -> int:
+    """Count the eigenvalues of one component below a limit [rad^2/s^2]."""
+    return _count(model.chain.only(component), limit)
 
 
 def _count(chain: Chain, limit: float) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,25 +42,27 @@ def mesh_of_modes(
         Infinite errors where the continuous spans have no answer.
     """
     error, limit = np.full(len(eigenvalue), np.inf), np.full(len(eigenvalue), np.nan)
+    try:
+        continuous = scene.compile()
+    except SceneError:
+        return modes.Mesh(mesh_error=error, limit=limit)
     for k, component in enumerate(components):
         mine = np.flatnonzero(which == k)
-        if len(mine) == 0:
-            continue
-        try:
-            true, uncertain = _continuous(scene, component, len(mine))
-        except (SceneError, SolveError):
-            continue
+        true, uncertain = _lowest(continuous, component, len(mine))
         mine = mine[: len(true)]
         error[mine] = distance(eigenvalue[mine], true, uncertain)
         limit[mine] = np.maximum(in_hertz(true), 0.0)
     return modes.Mesh(mesh_error=error, limit=limit)
 
 
-def _continuous(scene: Scene, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
-    """Return the lowest eigenvalues of continuous spans and their errors [rad^2/s^2]."""
+def _lowest(model: Model, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
+    """Return the lowest eigenvalues and their errors [rad^2/s^2], none where they are refused."""
     from .eigen import spectrum
 
-    return spectrum(scene.compile(), component, number)
+    if number > 0:
+        with suppress(SolveError):
+            return spectrum(model, component, number)
+    return np.zeros(0), np.zeros(0)
 
 
 def distance(eigenvalue: Real, true: Real, uncertain: Real) -> Real:

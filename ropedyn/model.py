@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .answer import freeze
 from .chain import Chain
+from .choice import Choice
 from .damping import separable
 from .errors import SceneError
 from .port import Point
@@ -74,6 +75,8 @@ class Model:
         What the core reads.
     unknowns : tuple of int
         Of each component, coordinates that can move.
+    choice : Choice or None
+        Why there are so many elements, where `Scene.compile` chose them for a tolerance.
     """
 
     scene: Scene
@@ -83,6 +86,7 @@ class Model:
     x: NDArray[np.float64]
     chain: Chain
     unknowns: tuple[int, ...]
+    choice: Choice | None = None
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)

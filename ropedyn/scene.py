@@ -224,7 +224,14 @@ class Scene:
             ),
         )
 
-    def compile(self, *, elements: int | None = None, element: str | None = None) -> Model:
+    def compile(
+        self,
+        *,
+        elements: int | None = None,
+        element: str | None = None,
+        tolerance: float | None = None,
+        below: float | None = None,
+    ) -> Model:
         """Compile the scene to continuous spans, or to a chain of nodes and elements.
 
         Parameters
@@ -239,6 +246,14 @@ class Scene:
             fourth order where there is bending (second with a hinge that moves). ``"rigid"``: beam
             elements between rigid node frames, tension as a string in parallel; second order in
             the length of elements. ``"difference"``: the kinematics of the 2015 study.
+        tolerance, below : float, optional
+            Instead of `elements`: the smallest chain, ``"tensed"`` where left out, whose relative
+            mesh error of every frequency (and rate of growth) below `below` [Hz] is within
+            `tolerance`, to 5 % of its elements. Rigid motion has no relative error; a frequency
+            that only the chain has below the limit counts too. The continuous spans are solved
+            once; one small chain tells the constant of its error C n^-p, which predicts how many
+            elements are needed, and a few more correct that. `Model.choice` says what was chosen
+            and why.
 
         Returns
         -------
@@ -251,7 +266,11 @@ class Scene:
         SceneError
             If there are fewer elements than stretches between stations or more than 10^7, the
             element is unknown, or is ``"difference"`` with bending and tension, or continuous with
-            L sqrt(T/B) beyond 10^10.
+            L sqrt(T/B) beyond 10^10, or only one of `tolerance` and `below` is given, or a
+            tolerance for a number of elements or for continuous spans.
+        SolveError
+            If no chain of this kind meets the tolerance: rounding forbids it, it needs more than
+            10^7 elements, or refinement leads elsewhere, as with ``"difference"``.
 
         Examples
         --------
@@ -261,7 +280,15 @@ class Scene:
         array([15.811388])
         >>> scene.compile(elements=8).size
         7
+        >>> str(scene.compile(tolerance=1e-3, below=20.0).choice).partition(";")[0]
+        '21 tensed elements: relative mesh error 0.000932 <= 0.001 of 1 frequency below 20 Hz'
         """
+        if tolerance is not None or below is not None:
+            from .tolerance import compile_within
+
+            return compile_within(
+                self, tolerance=tolerance, below=below, elements=elements, element=element
+            )
         from .compile import compile_scene
 
         return compile_scene(self, elements=elements, element=element)

@@ -80,6 +80,17 @@ def random_scene(random, width):
     )
 
 
+def taut_scene(random, width, most=1e6):
+    """A random scene that is not pushed, with T L^2/B up to `most` and now and then none."""
+    scene = random_scene(random, width)
+    bending = scene.rope.bending_stiffness
+    if bending is None:
+        return scene
+    unit = bending / LENGTH**2
+    pull = 0.0 if random.random() < 0.2 else unit * log_uniform(random, 1e-2, most)
+    return scene.replace(tension=pull)
+
+
 def random_rope(random, width):
     """A rope of this many coupled coordinates."""
     if width == 1:

@@ -336,6 +336,34 @@ row(
     {"unknown": "cubic", "empty": "", "no_geometric_stiffness": "difference"},
 )
 row(
+    "Scene.compile",
+    "tolerance",
+    lambda v: scene().compile(tolerance=v, below=100.0),
+    without(NOT_A_NUMBER, "none"),
+    NOT_FINITE | NEGATIVE | ZERO | {"whole": 1.0, "more": 2.5},
+)
+row(
+    "Scene.compile",
+    "below",
+    lambda v: scene().compile(tolerance=1e-3, below=v),
+    without(NOT_A_NUMBER, "none"),
+    NOT_FINITE | NEGATIVE | ZERO,
+)
+row(
+    "Scene.compile within a tolerance",
+    "element",
+    lambda v: scene().compile(tolerance=1e-3, below=100.0, element=v),
+    without(NOT_A_WORD, "none"),
+    {"unknown": "stiff", "continuous": "continuous", "no tension": "difference"},
+)
+row(
+    "Scene.compile within a tolerance",
+    "elements",
+    lambda v: scene().compile(tolerance=1e-3, below=100.0, elements=v),
+    {},
+    {"some": 4, "none at all": 0, "text": "four", "huger": HUGER},
+)
+row(
     "Scene.compile without elements",
     "elements",
     lambda v: scene().compile(element=v),
@@ -554,7 +582,7 @@ def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
         (rd.Scene, "rope"),
         (lambda: rd.Scene(rope(), 100.0), "positional"),
         (lambda: scene().replace(gravity=9.81), "gravity"),
-        (lambda: scene().compile(elements=4, tolerance=1e-6), "tolerance"),
+        (lambda: scene().compile(elements=4, accuracy=1e-6), "accuracy"),
         (lambda: MODEL.modes(1, damped=True), "damped"),
         (lambda: MODEL.frf([1.0]), "drive"),
         (lambda: MODEL.frf([1.0], ("z", 0.5)), "positional"),
@@ -573,6 +601,14 @@ def test_missing_and_unknown_arguments_are_named(call, argument):
 def test_modes_take_either_number_or_below(number, below):
     with pytest.raises(rd.SceneError, match=r"number.*below"):
         MODEL.modes(number, below=below)
+
+
+@pytest.mark.parametrize(
+    "given", [{"tolerance": 1e-3}, {"below": 100.0}], ids=["tolerance", "below"]
+)
+def test_tolerance_and_below_go_together(given):
+    with pytest.raises(rd.SceneError, match=r"tolerance.*below"):
+        scene().compile(**given)
 
 
 @pytest.mark.parametrize("number", [10, 10**9])
