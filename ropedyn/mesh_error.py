@@ -56,11 +56,14 @@ def mesh_of_modes(
 
 
 def _lowest(model: Model, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
-    """Return the lowest eigenvalues and their errors [rad^2/s^2], none where they are refused."""
+    """Return the lowest eigenvalues and their errors [rad^2/s^2].
+
+    None where they are refused or too much for the memory: the chain's own answer stands.
+    """
     from .eigen import spectrum
 
     if number > 0:
-        with suppress(SolveError):
+        with suppress(SolveError, MemoryError):
             return spectrum(model, component, number)
     return np.zeros(0), np.zeros(0)
 

@@ -34,7 +34,7 @@ BELOW = 400.0
 NEAR = 1.05
 """The chosen chain has at most so many times the elements of one that fails, or one more."""
 
-FEW, MANY = 40, 1000
+FEW, MANY = 100, 1000
 
 
 def relative_errors(scene, model, below):
