@@ -6,6 +6,7 @@ Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask f
 
 from . import study2015
 from .answer import Answer, Cost, load
+from .choice import Choice
 from .compare import Comparison, compare
 from .damping import RayleighDamping, StiffnessDamping
 from .deflection import Deflection
@@ -26,6 +27,7 @@ __version__ = "0.1.0"
 __all__ = [
     "FRF",
     "Answer",
+    "Choice",
     "Comparison",
     "Cost",
     "Deflection",

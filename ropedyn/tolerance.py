@@ -186,7 +186,8 @@ class Search:
                 self.high = n
             else:
                 self.low = n
-            if self.high - self.low <= max(1, NEAR * self.low * (self.high in self.tried)):
+            near = NEAR * self.low if self.high in self.tried else 0.0
+            if self.high - self.low <= max(1.0, near):
                 return self.tried
             between += self.low in self.tried and self.high in self.tried
             n = self._next(halve=between > SECANTS)

@@ -150,12 +150,21 @@ def test_a_frequency_that_only_the_chain_has_below_the_limit_counts():
     assert model.count(below=below) == 0
 
 
-def test_a_frequency_beside_the_limit_counts_by_its_error():
-    # f_2 of the tensed beam comes from below, f of the limit between: a hair above the true one
-    f = STRING.compile().modes(2).frequency[1]
-    choice = STRING.compile(tolerance=1e-4, below=f * (1 + 1e-9)).choice
-    assert choice.frequencies == 2
-    assert choice.mesh_error <= 1e-4
+@pytest.mark.parametrize(
+    ("scene", "element", "side", "missing"),
+    [(STRING, "tensed", -1, -1), (SCENES["pushed"], "rigid", 1, 1)],
+    ids=["a chain below the truth", "a chain above the truth"],
+)
+def test_a_frequency_beside_the_limit_counts_by_its_error(scene, element, side, missing):
+    # the limit lies between the second frequency of the chain and the true one
+    continuous = scene.compile()
+    below = continuous.modes(2).frequency[1] * (1 + side * 1e-9)
+    model = scene.compile(tolerance=1e-4, below=below, element=element)
+    assert continuous.count(below=below) - model.count(below=below) == missing
+    # within the tolerance all the same, and the search came to an end
+    modes = model.modes(2)
+    assert 0 < modes.mesh_error[1] <= 1e-4 * below
+    assert model.choice.elements < 1000
 
 
 def test_rigid_motion_has_no_relative_error():
