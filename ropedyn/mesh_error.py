@@ -123,11 +123,11 @@ def mesh_of_frf(
         return frf.Mesh(np.full(value.shape, np.inf))
     true, uncertain = true.reshape(value.shape), uncertain.reshape(value.shape)
     size, known = np.abs(value), np.isfinite(true)
-    error = np.full(value.shape, np.inf)
-    np.abs(value - true, out=error, where=known)
-    np.add(error, uncertain * np.abs(true), out=error, where=known & (true != 0))
+    rounding = np.zeros(value.shape)
+    np.multiply(uncertain, np.abs(true), out=rounding, where=known & (true != 0))
     relative = np.full(value.shape, np.inf)
-    np.divide(error, size, out=relative, where=size > 0)
+    with np.errstate(over="ignore"):  # a value of denormal size
+        np.divide(np.abs(value - true) + rounding, size, out=relative, where=known & (size > 0))
     return frf.Mesh(np.where(known & (size == 0) & (true == 0), 0.0, relative))
 
 

@@ -7,7 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from conftest import EPS
-from random_scene import WIDTHS, taut_scene
+from random_scene import WIDTHS, random_line, taut_scene
 
 import ropedyn as rd
 from ropedyn import _core
@@ -141,6 +141,18 @@ def test_mesh_error_is_infinite_where_only_the_value_is_zero():
     )
     # the held end moves in neither
     assert mesh.mesh_error[:, 0].tolist() == [math.inf, 0.0]
+
+
+@pytest.mark.filterwarnings("error")
+def test_noise_where_nothing_moves_is_wrong_by_all_of_itself():
+    # z at rest under a torque that the lay does not pass on: rounding at most is there, in one or
+    # both, with a relative error that is infinite
+    line = random_line(115)
+    x, (c, i), (d, j) = line.model.x, line.drive, line.response
+    where = {"drive": (c, float(x[i])), "response": (d, float(x[j]))}
+    frf = line.model.frf([line.frequency], **where)
+    assert frf.value[0, 0] == 0 or frf.rounding_error[0, 0] > 1
+    assert frf.mesh_error[0, 0] == 0 or frf.mesh_error[0, 0] >= 1
 
 
 def test_mesh_error_of_another_quantity_is_the_same():
