@@ -461,7 +461,7 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
         const size_t count = walk->leg[r].count;
         const double still = rd_walk_radians(walk, walk->leg + r, 0);
         const bool whole = count < 4 && still == 0 && !endless;
-        size_t levels = endless ? finer + (size_t)rd_span_halvings(still) : 0;
+        size_t levels = endless ? finer + (size_t)rd_span_halvings(still, count) : 0;
         levels = levels < RD_HALVINGS_MOST ? levels : RD_HALVINGS_MOST;
         elements += count;
         for (size_t n = count; n > 1; n /= 2)

@@ -21,7 +21,7 @@
 
 #define PIVOT_LIMIT 0.4
 
-enum { LEVELS = 40 };
+enum { LEVELS = 64 };
 
 struct piece {
     lanes D[W][W], G[W][W], Q[W][W];
@@ -299,7 +299,7 @@ RD_INLINE int pieces_fill(const struct rd_walk *walk, const struct rd_leg *leg, 
 /* halvings of the elements of a leg */
 RD_INLINE int leg_halvings(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda)
 {
-    return rd_span_halvings(rd_walk_radians(walk, leg, largest(lambda)));
+    return rd_span_halvings(rd_walk_radians(walk, leg, largest(lambda)), leg->count);
 }
 
 /* d/dlambda of a doubled piece, dN = -mass, M = I - X V, F' = dD:

@@ -34,13 +34,16 @@ double rd_span_wavenumber(const struct rd_span *span)
     return sqrt(coupled ? 2 * square : square);
 }
 
-int rd_span_halvings(double radians)
+int rd_span_halvings(double radians, size_t count)
 {
     if (!(radians > REACH))
         return 0;
     int exponent;
     frexp(radians / REACH, &exponent); /* radians < REACH 2^exponent */
-    return exponent < RD_HALVINGS_MOST ? exponent : RD_HALVINGS_MOST;
+    exponent = exponent < RD_HALVINGS_MOST ? exponent : RD_HALVINGS_MOST;
+    while (count << exponent >> exponent != count)
+        exponent--;
+    return exponent;
 }
 
 int rd_span_terms(double radians)

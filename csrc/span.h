@@ -21,11 +21,11 @@ struct rd_span {
    twice that where bending, twist and stretch are coupled. */
 double rd_span_wavenumber(const struct rd_span *span);
 
-/* How often a span of so many radians is halved until a piece has RD_SLICE_REACH of them, at most
-   RD_HALVINGS_MOST times. */
-int rd_span_halvings(double radians);
+/* How often each of `count` spans of so many radians is halved until a piece has one of them, at most
+   RD_HALVINGS_MOST times and so that all pieces can be counted. */
+int rd_span_halvings(double radians, size_t count);
 
-enum { RD_HALVINGS_MOST = 40, RD_SLICE_TERMS = 24 };
+enum { RD_HALVINGS_MOST = 60, RD_SLICE_TERMS = 24 };
 
 /* terms of the exponential series of a piece of so many radians, for all digits of all entries */
 int rd_span_terms(double radians);

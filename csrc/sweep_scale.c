@@ -210,7 +210,7 @@ struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct r
     double length = chain->length[run->element];
     if (chain->inertia) {
         const double whole = radians(chain, (size_t)run->element, extent);
-        pieces.halvings = rd_span_halvings(whole);
+        pieces.halvings = rd_span_halvings(whole, count);
         pieces.count = count << pieces.halvings;
         pieces.radians = whole / (double)((size_t)1 << pieces.halvings);
         length /= (double)((size_t)1 << pieces.halvings);

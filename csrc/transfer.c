@@ -76,7 +76,7 @@ void rd_transfer_fill(const struct rd_chain *chain, size_t e, const struct rate_
     const struct sweep_kernel *const kernels[] = {&rd_sweep_kernel_1, &rd_sweep_kernel_2,
                                                   &rd_sweep_kernel_3, &rd_sweep_kernel_4};
     const double radians = chain->length[e] * wavenumber(chain, e, rate);
-    const int halvings = rd_span_halvings(radians);
+    const int halvings = rd_span_halvings(radians, 1);
     cv triple[PACKED];
     kernels[w - 1]->make_span(rate, chain->length[e], halvings,
                               rd_span_terms(ldexp(radians, -halvings)), triple);
