@@ -4,7 +4,8 @@ Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask f
 `static`, and compare the answer with a measurement.
 """
 
-from . import study2015
+from . import ask, study2015
+from .accuracy import AccuracyCost, accuracy_cost
 from .answer import Answer, Cost, load
 from .choice import Choice
 from .compare import Comparison, compare
@@ -26,6 +27,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "FRF",
+    "AccuracyCost",
     "Answer",
     "Choice",
     "Comparison",
@@ -48,6 +50,8 @@ __all__ = [
     "StiffnessDamping",
     "Support",
     "Table",
+    "accuracy_cost",
+    "ask",
     "compare",
     "load",
     "study2015",

@@ -157,9 +157,9 @@ def frequencies(value: Any) -> NDArray[np.float64]:
 
 
 def point(
-    value: Any, name: str, present: Sequence[str], length: float, *, forces: bool = False
+    value: Any, name: str, present: Sequence[str], length: float | None, *, forces: bool = False
 ) -> tuple[str, float]:
-    """Return a coordinate and a position on the rope, such as ("z", 0.5)."""
+    """Return a coordinate and a position, such as ("z", 0.5), on the rope where that is known."""
     what = 'a coordinate and a position [m] such as ("z", 0.5)'
     if not isinstance(value, (tuple, list)):
         raise TypeError(_expected(name, what, "", value))
@@ -172,6 +172,8 @@ def point(
             f"{name}[0] must be a coordinate the scene has ({', '.join(present)}), "
             f"got {coordinate!r}"
         )
+    if length is None:
+        return coordinate, number(value[1], f"{name}[1]", "m")
     return coordinate, position(value[1], f"{name}[1]", length)
 
 

@@ -8,16 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .unit import NAME, UNIT, label
+from .unit import NAME, UNIT, label, power
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from .accuracy import AccuracyCost
     from .compare import Comparison
     from .deflection import Deflection
     from .frf import FRF
     from .modes import Modes
+
+
+COLOR = {"difference": "C3", "rigid": "C0", "tensed": "C1", "continuous": "C2"}
+LINE = {"sweep": "-", "lapack": "--", "band": ":"}
+"""Of each kind of element, and of each solver."""
 
 
 def new_axes(ax: Axes | None) -> Axes:
@@ -111,4 +117,49 @@ def plot_peaks(
     ax = new_axes(ax)
     ax.vlines(frequency, 0.0, np.ones_like(frequency) if height is None else height)
     ax.set(xlabel="frequency [Hz]", title="peaks")
+    return ax
+
+
+def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
+    """Plot true errors over time from the scene to the answer, one curve for each way."""
+    ax = new_axes(ax)
+    total = cost.total_seconds
+    spread = np.stack([cost.seconds - cost.lower_quartile, cost.upper_quartile - cost.seconds])
+    for element, solver in dict.fromkeys(zip(cost.element.tolist(), cost.solver.tolist())):
+        rows = (cost.element == element) & (cost.solver == solver) & (cost.refusal == "")
+        if not rows.any():
+            continue
+        n = cost.elements[rows]
+        chain = f"{element}, {solver}, {n[0]} to {n[-1]} elements"
+        ax.errorbar(
+            total[rows],
+            cost.error[rows],
+            xerr=spread[:, rows],
+            label="continuous" if element == "continuous" else chain,
+            color=COLOR[element],
+            linestyle=LINE[solver],
+            marker="*" if element == "continuous" else ".",
+            markersize=12 if element == "continuous" else 7,
+        )
+    found: dict[int, list[str]] = {}
+    for tolerance, row in cost.cheapest.items():
+        ax.axhline(tolerance, color="0.8", linewidth=0.8, zorder=0)
+        if row is not None:
+            found.setdefault(row, []).append(power(tolerance))
+    for (row, tolerances), marker in zip(found.items(), ("o", "s", "D", "^")):
+        ax.scatter(
+            total[row],
+            cost.error[row],
+            s=130,
+            marker=marker,
+            facecolors="none",
+            edgecolors="black",
+            zorder=3,
+            label=f"cheapest for {', '.join(tolerances)}: {cost.way(row)}",
+        )
+    ax.set(xscale="log", yscale="log")
+    ax.set(xlabel="time from the scene to the answer [s]", ylabel="largest relative error [1]")
+    ax.set_title(f"what accuracy costs: {cost.question}")
+    ax.grid(True, color="0.92")
+    ax.legend(fontsize="small")
     return ax

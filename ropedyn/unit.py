@@ -28,3 +28,8 @@ def label(
     force = FORCE_UNIT[drive]
     per = f"{unit}/{force}" if " " not in force else f"{unit}/({force})"
     return f"{name} at {x:.3f} m [{per}]"
+
+
+def power(value: float) -> str:
+    """Write a power of ten shortly, such as ``1e-3``."""
+    return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")

@@ -1,0 +1,271 @@
+"""What accuracy costs: time and error of every way to the answer of a question."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .answer import Answer, axes
+from .ask import FRFQuestion, ModesQuestion, Question
+from .chain import KINDS
+from .compile import MOST_ELEMENTS
+from .errors import SceneError
+from .progress import Progress, reporter
+from .scene import Scene
+from .stopwatch import in_turns
+from .table import Table
+from .trial import CUTS, Truth, trials
+from .unit import power
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
+"""Relative errors that the cheapest way is looked for."""
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class AccuracyCost(Answer):
+    """Time and error of every way to the answer of a question; made by `accuracy_cost`.
+
+    Attributes
+    ----------
+    question : str
+        What was asked.
+    reference : str
+        What errors were measured against.
+    element : ndarray of str, shape (rows,)
+        Kind of the elements.
+    elements : ndarray of int, shape (rows,)
+        How many; of continuous spans how many spans.
+    solver : ndarray of str, shape (rows,)
+        "sweep", "lapack" or "band".
+    seconds : ndarray, shape (rows,)
+        Processor time of the question, one thread: the median [s]; of modes that of frequencies,
+        shapes come when they are asked for.
+    lower_quartile, upper_quartile : ndarray, shape (rows,)
+        Of the same [s].
+    compile_seconds : ndarray, shape (rows,)
+        Median processor time of `Scene.compile` [s].
+    error : ndarray, shape (rows,)
+        True relative error, the largest of all modes or lines; 1.1e-16 where none is seen.
+    estimated_error : ndarray, shape (rows,)
+        Estimated relative error, of mesh and rounding together, the largest too.
+    digits_lost : ndarray, shape (rows,)
+        Decimal digits lost to rounding, of 15.7: those in which an assembled solver differs from
+        the sweep along the same chain; of the sweep those that its own bound gives up.
+    refusal : ndarray of str, shape (rows,)
+        Why there is no answer, empty where there is one; numbers of such rows are NaN.
+    """
+
+    question: str
+    reference: str
+    element: NDArray[np.str_] = field(metadata=axes("row"))
+    elements: NDArray[np.int64] = field(metadata=axes("row"))
+    solver: NDArray[np.str_] = field(metadata=axes("row"))
+    seconds: Real = field(metadata=axes("row", unit="s"))
+    lower_quartile: Real = field(metadata=axes("row", unit="s"))
+    upper_quartile: Real = field(metadata=axes("row", unit="s"))
+    compile_seconds: Real = field(metadata=axes("row", unit="s"))
+    error: Real = field(metadata=axes("row"))
+    estimated_error: Real = field(metadata=axes("row"))
+    digits_lost: Real = field(metadata=axes("row"))
+    refusal: NDArray[np.str_] = field(metadata=axes("row"))
+
+    @property
+    def total_seconds(self) -> Real:
+        """From the scene to the answer: compile and question [s], shape (rows,)."""
+        return self.compile_seconds + self.seconds
+
+    @property
+    def cheapest(self) -> dict[float, int | None]:
+        """Row that takes the least time from the scene within each of 1e-3, 1e-6, 1e-9, 1e-12.
+
+        None where no row is within it.
+        """
+        return {tolerance: self.cheapest_within(tolerance) for tolerance in TOLERANCES}
+
+    def cheapest_within(self, tolerance: float) -> int | None:
+        """Return the row that takes the least time of those whose true error is within a tolerance.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative error.
+
+        Returns
+        -------
+        int or None
+            None where no row is within it.
+        """
+        check.number(tolerance, "tolerance", sign="positive")
+        enough = np.flatnonzero(self.error <= tolerance)
+        if len(enough) == 0:
+            return None
+        return int(enough[np.argmin(self.total_seconds[enough])])
+
+    def way(self, row: int) -> str:
+        """Say in words how a row answers, such as ``tensed, 64, sweep``."""
+        check.count(row, "row", least=0, most=len(self.element) - 1)
+        if self.element[row] == "continuous":
+            return "continuous"
+        return f"{self.element[row]}, {self.elements[row]}, {self.solver[row]}"
+
+    def table(self) -> Table:
+        """Return one row for each way, the cheapest ones marked."""
+        marks: list[list[str]] = [[] for _ in self.element]
+        for tolerance, row in self.cheapest.items():
+            if row is not None:
+                marks[row].append(power(tolerance))
+        columns: dict[str, Any] = {
+            "element": self.element,
+            "elements": self.elements,
+            "solver": self.solver,
+            "compile [s]": _given(self.compile_seconds),
+            "question [s]": _given(self.seconds),
+            "lower quartile [s]": _given(self.lower_quartile),
+            "upper quartile [s]": _given(self.upper_quartile),
+            "true error": _given(self.error),
+            "estimated error": _given(self.estimated_error),
+            "digits lost to rounding": _given(self.digits_lost.round(1)),
+            "cheapest for": tuple(", ".join(mark) or None for mark in marks),
+        }
+        if self.refusal.any():
+            columns["refused"] = tuple(text or None for text in self.refusal.tolist())
+        return Table.of(f"{self.question}: relative error against {self.reference}", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot true errors over time from the scene to the answer, the cheapest rows marked."""
+        from .plotting import plot_accuracy
+
+        return plot_accuracy(self, ax)
+
+
+def accuracy_cost(
+    scene: Scene,
+    question: Question,
+    *,
+    elements: int | Sequence[int] | None = None,
+    element: str | Sequence[str] = ("rigid", "tensed", "continuous"),
+    solver: str | Sequence[str] = ("sweep", "lapack"),
+    repeat: int = 7,
+    progress: Progress = None,
+) -> AccuracyCost:
+    """Measure what every way to the answer of a question costs, and how wrong it is.
+
+    Errors are measured against continuous spans, which have no mesh; those of continuous spans
+    against the same spans cut into 3, 5 and 7 parts, the same rope by other arithmetic.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked about.
+    question : ModesQuestion or FRFQuestion
+        Such as ``rd.ask.modes(10)`` or ``rd.ask.frf(frequency, drive=("z", 0.5))``.
+    elements : int or sequence of int, optional
+        Of chains; powers of two from 8 to 4096 where left out, for assembled solvers as far as
+        they take about a second.
+    element : str or sequence of str
+        Kinds of element; continuous spans are one row, by the sweep.
+    solver : str or sequence of str
+        ``"sweep"``, ``"lapack"``, for a frequency response also ``"band"``.
+    repeat : int
+        How often each is timed, in turns, warmed up; calls that take more than 0.05 s at most three
+        times. Of the times the median and the quartiles are kept, of the processor, one thread.
+    progress : None, True or callable
+        True prints, a callable takes, the fraction that is done.
+
+    Returns
+    -------
+    AccuracyCost
+        What is refused on a chain, as more modes than it has, is a row with the reason.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If a value has no meaning, or there is nothing to measure.
+    SolveError
+        If continuous spans have no answer.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    >>> cost = rd.accuracy_cost(scene, rd.ask.modes(1), elements=[8, 16, 32], repeat=1)
+    >>> cost.error[:3].round(5)  # of a string (pi/2n)^2/6
+    array([0.00642, 0.00161, 0.0004 ])
+    >>> cost.error[-1] < 1e-14  # continuous spans
+    np.True_
+    """
+    check.instance(scene, "scene", Scene, "a Scene")
+    kinds_of_question = (ModesQuestion, FRFQuestion)
+    check.instance(question, "question", kinds_of_question, "made by ropedyn.ask")
+    kinds = _words(element, "element", KINDS)
+    solvers = _words(solver, "solver", question.solvers)
+    counts = None if elements is None else _counts(elements)
+    check.count(repeat, "repeat", most=10_000)
+    report = reporter(progress)
+    if kinds == ("continuous",) and "sweep" not in solvers:
+        raise SceneError(f'solver must have "sweep" for continuous spans, got {solvers}')
+    tried = list(trials(Truth.of(scene, question), kinds, counts, solvers))
+    calls = [call for trial in tried for call in trial.calls]
+    times = iter(in_turns(calls, repeat, report))
+    compiled, asked = zip(*((next(times), next(times)) if t.calls else _NEVER for t in tried))
+    quartiles = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T
+    return AccuracyCost(
+        question=str(question),
+        reference=f"continuous spans, of these against cuts into {_listed(CUTS)} parts",
+        element=np.array([trial.element for trial in tried]),
+        elements=np.array([trial.elements for trial in tried]),
+        solver=np.array([trial.solver for trial in tried]),
+        seconds=quartiles[1],
+        lower_quartile=quartiles[0],
+        upper_quartile=quartiles[2],
+        compile_seconds=np.array([np.median(each) for each in compiled]),
+        error=np.array([trial.error for trial in tried]),
+        estimated_error=np.array([trial.estimated_error for trial in tried]),
+        digits_lost=np.array([trial.digits_lost for trial in tried]),
+        refusal=np.array([trial.refusal for trial in tried]),
+    )
+
+
+_NEVER = (np.array([np.nan]), np.array([np.nan]))
+"""Times of what has no answer."""
+
+
+def _words(given: Any, name: str, words: Sequence[str]) -> tuple[str, ...]:
+    """Return one word or several, each once."""
+    if not isinstance(given, (tuple, list)):
+        return (check.one_of(given, name, words),)
+    if not given:
+        raise SceneError(f"{name} must have at least one of {', '.join(words)}, got {given!r}")
+    return tuple(dict.fromkeys(check.one_of(w, f"{name}[{k}]", words) for k, w in enumerate(given)))
+
+
+def _counts(given: Any) -> tuple[int, ...]:
+    """Return one number of elements or several, each once, increasing."""
+    if not isinstance(given, (tuple, list, range, np.ndarray)):
+        return (check.count(given, "elements", most=MOST_ELEMENTS),)
+    if len(given) == 0:
+        raise SceneError(f"elements must have at least one number, got {check.shown(given)}")
+    return tuple(
+        sorted({check.count(n, f"elements[{k}]", most=MOST_ELEMENTS) for k, n in enumerate(given)})
+    )
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    return ", ".join(map(str, numbers[:-1])) + f" and {numbers[-1]}"
+
+
+def _given(numbers: Real) -> tuple[float | None, ...]:
+    """Return numbers for a table, None for NaN."""
+    return tuple(None if np.isnan(value) else value for value in numbers.tolist())

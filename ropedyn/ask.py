@@ -1,0 +1,243 @@
+"""Questions: what can be asked of any model, kept apart from the model.
+
+Examples
+--------
+>>> import ropedyn as rd
+>>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+>>> question = rd.ask.modes(2)
+>>> for model in (scene.compile(), scene.compile(elements=8)):
+...     print(question.of(model).frequency.round(2))
+[15.81 31.62]
+[15.71 30.8 ]
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import check, eigen, harmonic
+from .answer import freeze
+from .errors import SceneError
+from .frf import FRF
+from .model import Model
+from .modes import Modes
+from .port import Point
+from .unit import QUANTITIES
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ModesQuestion:
+    """Which natural frequencies; made by `modes`.
+
+    Attributes
+    ----------
+    number : int or None
+        So many of the lowest.
+    below : float or None
+        All below this frequency [Hz].
+    """
+
+    number: int | None = None
+    below: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.number is None) == (self.below is None):
+            raise SceneError(
+                f"give either number or below, got number={self.number!r} and below={self.below!r}"
+            )
+        if self.number is not None:
+            check.count(self.number, "number", most=np.iinfo(np.int32).max)
+        check.optional(self.below, "below", "Hz", sign="positive")
+
+    def __str__(self) -> str:
+        return f"{self.number} modes" if self.below is None else f"modes below {self.below:g} Hz"
+
+    @property
+    def solvers(self) -> tuple[str, ...]:
+        """What can answer it."""
+        return tuple(eigen.SOLVERS)
+
+    def of(self, model: Model, *, solver: str = "sweep", threads: int | None = None) -> Modes:
+        """Ask a model; see `Model.modes`. Modes are found by one thread whatever `threads`."""
+        return model.modes(self.number, below=self.below, solver=solver)
+
+    def like(self, answer: Modes) -> ModesQuestion:
+        """Return the question for as many modes as an answer has."""
+        return self if self.below is None else ModesQuestion(number=len(answer.frequency))
+
+    def values(self, answer: Modes) -> Real:
+        """Return frequencies [Hz], where motion grows minus its growth rate over 2 pi."""
+        return np.where(answer.growth > 0, -answer.growth / (2 * math.pi), answer.frequency)
+
+    def rounding(self, answer: Modes) -> Real:
+        """Return the estimated relative error that rounding causes; 0 for rigid-body motion."""
+        size = np.abs(self.values(answer))
+        return np.divide(answer.rounding_error, size, out=np.zeros_like(size), where=size > 0)
+
+    def work(self, model: Model) -> float:
+        """Return the seconds, by their order, that the assembled solver takes: dense, n^3."""
+        return 7e-11 * sum(float(n) ** 3 for n in model.unknowns)
+
+
+@dataclass(frozen=True, eq=False)
+class FRFQuestion:
+    """Which frequency response; made by `frf`.
+
+    Attributes
+    ----------
+    frequency : ndarray, shape (f,)
+        [Hz].
+    drive, response, quantity
+        As in `Model.frf`.
+    """
+
+    frequency: Real
+    drive: Any
+    response: Any = None
+    quantity: str = "receptance"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frequency", check.frequencies(self.frequency))
+        freeze(self)
+        object.__setattr__(self, "drive", _points(self.drive, "drive", forces=False))
+        if self.response is not None:
+            response = _points(self.response, "response", forces=True)
+            object.__setattr__(self, "response", response)
+        check.one_of(self.quantity, "quantity", QUANTITIES)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
+
+    def __str__(self) -> str:
+        f = self.frequency
+        lines = f"{f[0]:g} Hz" if len(f) == 1 else f"{len(f)} lines, {f.min():g} to {f.max():g} Hz"
+        drives = (self.drive,) if isinstance(self.drive[0], str) else self.drive
+        driven = " and ".join(f"{c} at {x:.3f} m" for c, x in drives)
+        return f"{self.quantity} of {lines}, driven in {driven}"
+
+    @property
+    def solvers(self) -> tuple[str, ...]:
+        """What can answer it."""
+        return tuple(harmonic.SOLVERS)
+
+    def of(self, model: Model, *, solver: str = "sweep", threads: int | None = None) -> FRF:
+        """Ask a model; see `Model.frf`."""
+        return model.frf(
+            self.frequency,
+            drive=self.drive,
+            response=self.response,
+            quantity=self.quantity,
+            solver=solver,
+            threads=threads,
+        )
+
+    def like(self, answer: FRF) -> FRFQuestion:
+        """Return the question itself: every answer has as many lines."""
+        return self
+
+    def values(self, answer: FRF) -> NDArray[np.complex128]:
+        """Return the response."""
+        return answer.value
+
+    def rounding(self, answer: FRF) -> Real:
+        """Return the estimated relative error that rounding causes."""
+        return answer.rounding_error
+
+    def work(self, model: Model) -> float:
+        """Return the seconds, by their order, that the assembled solver takes: n a line."""
+        return 4e-7 * model.size * len(self.frequency)
+
+
+Question = ModesQuestion | FRFQuestion
+
+
+def modes(number: int | None = None, *, below: float | None = None) -> ModesQuestion:
+    """Ask for natural frequencies.
+
+    Parameters
+    ----------
+    number : int, optional
+        How many of the lowest.
+    below : float, optional
+        All below this frequency [Hz]; instead of `number`.
+
+    Returns
+    -------
+    ModesQuestion
+        ``question.of(model)`` is what ``model.modes(...)`` is.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If not exactly one of the two is given, or a value has no meaning.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> print(rd.ask.modes(below=400.0))
+    modes below 400 Hz
+    """
+    return ModesQuestion(number, below)
+
+
+def frf(
+    frequency: ArrayLike,
+    *,
+    drive: Point | list[Point],
+    response: Point | list[Point] | None = None,
+    quantity: str = "receptance",
+) -> FRFQuestion:
+    """Ask for a frequency response.
+
+    Parameters
+    ----------
+    frequency : array_like, shape (f,)
+        [Hz], each >= 0.
+    drive : point or list of points
+        Coordinate and position of a unit force or moment, such as ``("z", 0.5)``.
+    response : point or list of points, optional
+        What is watched; the drive points where left out.
+    quantity : {"receptance", "mobility", "accelerance"}
+        Displacement, velocity or acceleration per force.
+
+    Returns
+    -------
+    FRFQuestion
+        ``question.of(model)`` is what ``model.frf(...)`` is. Whether a rope has such points is
+        checked when it is asked.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If a value has no meaning.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> print(rd.ask.frf([10.0, 20.0], drive=("z", 0.5)))
+    receptance of 2 lines, 10 to 20 Hz, driven in z at 0.500 m
+    """
+    return FRFQuestion(frequency, drive, response, quantity)  # type: ignore[arg-type]
+
+
+def _points(value: Any, name: str, *, forces: bool) -> Any:
+    """Return a point, or several, of a rope that is not known yet."""
+    if isinstance(value, (tuple, list)) and len(value) > 0 and not isinstance(value[0], str):
+        every = check.COORDINATES
+        return tuple(
+            check.point(one, f"{name}[{k}]", every, None, forces=forces)
+            for k, one in enumerate(value)
+        )
+    return check.point(value, name, check.COORDINATES, None, forces=forces)

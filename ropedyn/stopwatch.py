@@ -1,0 +1,49 @@
+"""Processor times of calls that take turns."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+LONG, FEW = 0.05, 3
+"""Calls longer than this [s] are not warmed up again, and made so many times at most."""
+
+
+def in_turns(
+    calls: Sequence[Callable[[], Any]],
+    repeat: int,
+    report: Callable[[float], Any] = lambda fraction: None,
+) -> list[NDArray[np.float64]]:
+    """Return how long each call took, each time it was made [s].
+
+    In turns, so that what disturbs the machine for a while disturbs all of them alike; of the
+    processor, so that other work does not count in. Calls have run before; those that are not
+    long run twice in a row and the second is timed, for what others drove out of the caches.
+
+    Parameters
+    ----------
+    calls : sequence of callables
+        Without arguments.
+    repeat : int
+        How often each is made.
+    report : callable
+        Takes the fraction that is done.
+    """
+    times: list[list[float]] = [[] for _ in calls]
+    for turn in range(repeat):
+        for k, call in enumerate(calls):
+            if turn < FEW or times[k][-1] <= LONG:
+                first = _seconds(call)
+                times[k].append(_seconds(call) if first <= LONG else first)
+            report((turn * len(calls) + k + 1) / (repeat * len(calls)))
+    return [np.array(each) for each in times]
+
+
+def _seconds(call: Callable[[], Any]) -> float:
+    start = time.process_time()
+    call()
+    return time.process_time() - start
