@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import study2015
+from . import ask, study2015
+from .accuracy import accuracy_cost
 from .answer import Answer
 from .atomic import replacing
 from .chain import KINDS
@@ -73,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     _scene_command(commands, "modes", _modes, "natural frequencies and shapes")
     _scene_command(commands, "frf", _frf, "frequency response")
     _scene_command(commands, "compare", _compare, "calculated against measured peaks")
+    _accuracy_command(commands)
     return parser
 
 
@@ -81,23 +83,51 @@ def _scene_command(
 ) -> None:
     parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    parser.add_argument("--elements", type=int, default=64, help="over the rope (%(default)s)")
-    parser.add_argument("--element", choices=KINDS, default="tensed", help="kind (%(default)s)")
+    parser.add_argument(
+        "--elements", type=int, help="over the rope; without it spans are continuous"
+    )
+    parser.add_argument("--element", choices=KINDS, help="kind (tensed where --elements is given)")
     if name in ("modes", "compare"):
         parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
     if name == "frf":
-        parser.add_argument(
-            "--frequency", required=True, help="start:stop:lines or a comma list [Hz]"
-        )
-        parser.add_argument("--drive", required=True, help="coordinate@position [m], such as z@0.5")
-        parser.add_argument("--response", action="append", help="as --drive; may be repeated")
+        _frf_options(parser, required=True)
     if name == "compare":
         parser.add_argument("--peaks", required=True, help="measured peaks, comma list [Hz]")
+    _output_options(parser)
+    parser.set_defaults(run=run)
+
+
+def _accuracy_command(commands: Any) -> None:
+    parser = commands.add_parser(
+        "accuracy",
+        help="time and error of every element and solver",
+        description="Time and error of every element and solver, for modes (10 of them unless "
+        "--modes or --below is given) or, with --frequency and --drive, a frequency response.",
+    )
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    parser.add_argument("--elements", help="of chains, comma list (powers of two from 8 to 4096)")
+    asked = parser.add_mutually_exclusive_group()
+    asked.add_argument("--modes", type=int, help="how many")
+    asked.add_argument("--below", type=float, help="instead: modes below this [Hz]")
+    _frf_options(asked, required=False, beside=parser)
+    _output_options(parser)
+    parser.set_defaults(run=_accuracy)
+
+
+def _frf_options(parser: Any, *, required: bool, beside: Any = None) -> None:
+    parser.add_argument(
+        "--frequency", required=required, help="start:stop:lines or a comma list [Hz]"
+    )
+    beside = beside or parser
+    beside.add_argument("--drive", required=required, help="coordinate@position [m], such as z@0.5")
+    beside.add_argument("--response", action="append", help="as --drive; may be repeated")
+
+
+def _output_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plot", type=Path, metavar="FILE", help="write a figure")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print the table as JSON")
     form.add_argument("--csv", action="store_true", help="print the table as CSV")
-    parser.set_defaults(run=run)
 
 
 def _study(options: argparse.Namespace) -> None:
@@ -114,11 +144,34 @@ def _modes(options: argparse.Namespace) -> None:
 
 
 def _frf(options: argparse.Namespace) -> None:
-    response = options.response and [_point(text, "--response") for text in options.response]
-    frf = _model(options).frf(
-        _frequencies(options.frequency), drive=_point(options.drive, "--drive"), response=response
+    _show(options, _asked_frf(options).of(_model(options)))
+
+
+def _accuracy(options: argparse.Namespace) -> None:
+    scene = Scene.load(options.scene)
+    elements = options.elements and _whole_numbers(options.elements, "--elements")
+    _show(options, accuracy_cost(scene, _asked(options), elements=elements))
+
+
+def _asked(options: argparse.Namespace) -> ask.Question:
+    if options.frequency is not None:
+        if options.drive is None:
+            raise SceneError("--drive must be given with --frequency, got none")
+        return _asked_frf(options)
+    for option in ("drive", "response"):
+        if getattr(options, option) is not None:
+            raise SceneError(f"--frequency must be given with --{option}, got none")
+    if options.below is not None:
+        return ask.modes(below=options.below)
+    return ask.modes(10 if options.modes is None else options.modes)
+
+
+def _asked_frf(options: argparse.Namespace) -> ask.FRFQuestion:
+    return ask.frf(
+        _frequencies(options.frequency),
+        drive=_point(options.drive, "--drive"),
+        response=options.response and [_point(text, "--response") for text in options.response],
     )
-    _show(options, frf)
 
 
 def _compare(options: argparse.Namespace) -> None:
@@ -150,6 +203,15 @@ def _numbers(text: str, option: str) -> list[float]:
         return [float(part) for part in text.split(",")]
     except ValueError:
         raise SceneError(f"{option} must be a comma list of numbers, got {shown(text)}") from None
+
+
+def _whole_numbers(text: str, option: str) -> list[int]:
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise SceneError(
+            f"{option} must be a comma list of whole numbers, got {shown(text)}"
+        ) from None
 
 
 def _frequencies(text: str) -> NDArray[np.float64] | list[float]:

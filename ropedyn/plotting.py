@@ -125,13 +125,14 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
     ax = new_axes(ax)
     total = cost.total_seconds
     spread = np.stack([cost.seconds - cost.lower_quartile, cost.upper_quartile - cost.seconds])
+    handles: list[Any] = []
     for element, solver in dict.fromkeys(zip(cost.element.tolist(), cost.solver.tolist())):
         rows = (cost.element == element) & (cost.solver == solver) & (cost.refusal == "")
         if not rows.any():
             continue
         n = cost.elements[rows]
         chain = f"{element}, {solver}, {n[0]} to {n[-1]} elements"
-        ax.errorbar(
+        curve = ax.errorbar(
             total[rows],
             cost.error[rows],
             xerr=spread[:, rows],
@@ -141,13 +142,14 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
             marker="*" if element == "continuous" else ".",
             markersize=12 if element == "continuous" else 7,
         )
+        handles.append(curve)
     found: dict[int, list[str]] = {}
     for tolerance, row in cost.cheapest.items():
         ax.axhline(tolerance, color="0.8", linewidth=0.8, zorder=0)
         if row is not None:
             found.setdefault(row, []).append(power(tolerance))
     for (row, tolerances), marker in zip(found.items(), ("o", "s", "D", "^")):
-        ax.scatter(
+        mark = ax.scatter(
             total[row],
             cost.error[row],
             s=130,
@@ -157,9 +159,10 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
             zorder=3,
             label=f"cheapest for {', '.join(tolerances)}: {cost.way(row)}",
         )
+        handles.append(mark)
     ax.set(xscale="log", yscale="log")
     ax.set(xlabel="time from the scene to the answer [s]", ylabel="largest relative error [1]")
     ax.set_title(f"what accuracy costs: {cost.question}")
     ax.grid(True, color="0.92")
-    ax.legend(fontsize="small")
+    ax.legend(handles=handles, fontsize="small")
     return ax
