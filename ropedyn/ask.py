@@ -8,7 +8,7 @@ Examples
 >>> for model in (scene.compile(), scene.compile(elements=8)):
 ...     print(question.of(model).frequency.round(2))
 [15.81 31.62]
-[15.71 30.8 ]
+[15.71 30.82]
 """
 
 from __future__ import annotations

@@ -1,0 +1,136 @@
+"""Questions kept apart from models: the same answers, bit for bit, wherever they are asked."""
+
+import copy
+import dataclasses
+import pickle
+
+import numpy as np
+import pytest
+
+import ropedyn as rd
+
+ROPE = rd.Rope(1.2, 0.1, bending_stiffness=1.5, torsional_stiffness=0.4, polar_inertia=1e-6)
+SCENE = rd.Scene(
+    ROPE, tension=200.0, damping=rd.StiffnessDamping(1e-4), parts=[rd.PointMass(0.4, 0.02)]
+)
+GRID = np.linspace(5.0, 150.0, 40)
+POINTS = {"drive": ("z", 0.3), "response": [("z", 0.5), ("beta", 0.7), ("M_beta", 0.4)]}
+
+MODELS = {
+    "continuous": SCENE.compile(),
+    "tensed": SCENE.compile(elements=12),
+    "rigid": SCENE.compile(elements=12, element="rigid"),
+}
+PAIRS = {
+    "number": (rd.ask.modes(4), lambda model, **how: model.modes(4, **how)),
+    "below": (rd.ask.modes(below=150.0), lambda model, **how: model.modes(below=150.0, **how)),
+    "frf": (
+        rd.ask.frf(GRID, drive=("z", 0.3)),
+        lambda m, **how: m.frf(GRID, drive=("z", 0.3), **how),
+    ),
+    "points": (
+        rd.ask.frf(GRID, quantity="mobility", **POINTS),
+        lambda model, **how: model.frf(GRID, quantity="mobility", **POINTS, **how),
+    ),
+    "drives": (
+        rd.ask.frf([20.0], drive=[("z", 0.3), ("alpha", 0.3)]),
+        lambda model, **how: model.frf([20.0], drive=[("z", 0.3), ("alpha", 0.3)], **how),
+    ),
+}
+
+
+def bits(answer):
+    value = answer.frequency if isinstance(answer, rd.Modes) else answer.value
+    return value.shape, value.tobytes(), answer.rounding_error.tobytes()
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_question_has_the_answer_of_the_model(name, model):
+    if (name, model) == ("points", "rigid"):
+        pytest.skip("rigid elements have no internal force inside")
+    question, call = PAIRS[name]
+    assert bits(question.of(MODELS[model])) == bits(call(MODELS[model]))
+
+
+@pytest.mark.parametrize("name", ["number", "below", "frf", "drives"])
+def test_the_solver_is_passed_on(name):
+    question, call = PAIRS[name]
+    answer = question.of(MODELS["tensed"], solver="lapack", threads=1)
+    assert answer.cost.method == "lapack"
+    assert bits(answer) == bits(call(MODELS["tensed"], solver="lapack"))
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda q: pickle.loads(pickle.dumps(q))])
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_copy_asks_the_same(name, copied):
+    question, _ = PAIRS[name]
+    twin = copied(question)
+    assert str(twin) == str(question)
+    assert bits(twin.of(MODELS["tensed"])) == bits(question.of(MODELS["tensed"]))
+    for array in (v for v in vars(twin).values() if isinstance(v, np.ndarray)):
+        assert not array.flags.writeable
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_question_cannot_be_changed(name):
+    question, _ = PAIRS[name]
+    for field in dataclasses.fields(question):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            setattr(question, field.name, None)
+
+
+def test_a_question_keeps_no_hold_of_what_it_was_given():
+    grid, drive, response = np.array([10.0, 20.0]), ["z", 0.3], [["z", 0.5]]
+    question = rd.ask.frf(grid, drive=drive, response=response)
+    grid[0], drive[1], response[0][1] = 99.0, 99.0, 99.0
+    assert question.frequency.tolist() == [10.0, 20.0]
+    assert (question.drive, question.response) == (("z", 0.3), (("z", 0.5),))
+
+
+def test_growing_motion_counts_as_a_frequency_below_zero():
+    # beyond the first critical load of the clamped rope, 4 pi^2 B/L^2 = 41 N, not the second
+    modes = SCENE.replace(tension=-60.0).compile().modes(2)
+    value = rd.ask.modes(2).values(modes)
+    assert value[0] == -modes.growth[0] / (2 * np.pi) < 0
+    assert value[1] == modes.frequency[1] > 0
+
+
+def test_rigid_motion_has_no_relative_rounding_error():
+    modes = SCENE.replace(ends=("free", "free"), tension=0.0).compile().modes(4)
+    rounding = rd.ask.modes(4).rounding(modes)
+    assert (rounding[modes.frequency == 0] == 0).all()
+    moving = modes.frequency > 0
+    relative = modes.rounding_error[moving] / modes.frequency[moving]
+    assert rounding[moving].tolist() == relative.tolist()
+
+
+def test_the_same_question_for_an_answer_asks_for_as_many_modes():
+    question = rd.ask.modes(below=150.0)
+    modes = question.of(MODELS["continuous"])
+    assert question.like(modes) == rd.ask.modes(len(modes.frequency))
+    for other in (rd.ask.modes(3), rd.ask.frf([1.0], drive=("z", 0.3))):
+        assert other.like(other.of(MODELS["continuous"])) is other
+
+
+@pytest.mark.parametrize(
+    ("question", "text"),
+    [
+        (rd.ask.modes(10), "10 modes"),
+        (rd.ask.modes(below=400), "modes below 400 Hz"),
+        (rd.ask.frf(5.0, drive=("z", 0.5)), "receptance of 5 Hz, driven in z at 0.500 m"),
+        (
+            rd.ask.frf([9.0, 1.0], drive=[("z", 0.5), ("alpha", 1)], quantity="mobility"),
+            "mobility of 2 lines, 1 to 9 Hz, driven in z at 0.500 m and alpha at 1.000 m",
+        ),
+    ],
+)
+def test_a_question_says_what_is_asked(question, text):
+    assert str(question) == text
+
+
+@pytest.mark.parametrize("question", [PAIRS["frf"][0], PAIRS["points"][0]])
+def test_points_that_a_rope_does_not_have_are_refused_when_it_is_asked(question):
+    short = SCENE.replace(rope=ROPE.replace(length=0.2), parts=()).compile()
+    with pytest.raises(rd.SceneError, match=r"drive\[1\] must lie on the rope"):
+        question.of(short)
