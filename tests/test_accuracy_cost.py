@@ -88,7 +88,7 @@ def test_the_assembled_solver_loses_digits_with_n():
 
 
 def test_the_error_of_the_assembled_solver_turns_back_up():
-    answer = cost(STIFF, LINES, elements=(64, 2048), element="tensed")
+    answer = cost(STIFF, LINES, elements=(128, 4096), element="tensed")
     lapack, sweep = (answer.error[rows(answer, "tensed", s)] for s in ("lapack", "sweep"))
     assert lapack[1] > 10 * lapack[0]
     assert sweep[1] < sweep[0] / 1e5  # of the fourth order 32^4 = 1e6

@@ -58,6 +58,7 @@ ANSWERS = {
     "peaks with std": rd.Peaks([20.0, 50.0], std=0.1),
     "peaks with order": rd.Peaks([20.0, 50.0], std=[0.1, 0.2], order=[3, 1]),
     "resonances": MODEL.frf(GRID, drive=("z", 0.31)).peaks()[0],
+    "accuracy": rd.accuracy_cost(SCENE, rd.ask.modes(3), elements=[2, 16], repeat=2),
     "no resonances": MODEL.frf([1.0, 2.0], drive=("z", 0.31)).peaks()[0],
 }
 PAIR = {name: ANSWERS[name] for name in ("modes", "frf", "deflection", "comparison", "peaks")}
@@ -347,6 +348,8 @@ def test_xarray_holds_every_array(name):
         ("comparison", "all_calculated", ("calculated",), "Hz"),
         ("peaks", "frequency", ("peak",), "Hz"),
         ("resonances", "damping_ratio", ("peak",), ""),
+        ("accuracy", "seconds", ("row",), "s"),
+        ("accuracy", "element", ("row",), ""),
     ],
 )
 def test_xarray_names_axes_and_units(name, variable, axes, unit):

@@ -457,6 +457,119 @@ row(
     NOT_FINITE,
 )
 
+row("ask.modes", "number", rd.ask.modes, without(NOT_A_COUNT, "none"), BAD_COUNT)
+row(
+    "ask.modes",
+    "below",
+    lambda v: rd.ask.modes(below=v),
+    without(NOT_A_NUMBER, "none"),
+    NOT_FINITE | NEGATIVE | ZERO,
+)
+row(
+    "ask.frf",
+    "frequency",
+    lambda v: rd.ask.frf(v, drive=("z", 0.5)),
+    NOT_AN_ARRAY,
+    BAD_ARRAY,
+)
+# which coordinates there are and how long the rope is comes with the model
+UNKNOWN_POINT = without(BAD_POINT, "absent_coordinate", "left_of_the_rope", "right_of_the_rope")
+row("ask.frf", "drive", lambda v: rd.ask.frf([1.0], drive=v), NO_POINT, UNKNOWN_POINT)
+row(
+    "ask.frf, several drives",
+    "drive[1]",
+    lambda v: rd.ask.frf([1.0], drive=[("z", 0.5), v]),
+    NO_POINT,
+    UNKNOWN_POINT,
+)
+row(
+    "ask.frf",
+    "drive[0]",
+    lambda v: rd.ask.frf([1.0], drive=v),
+    {},
+    {"internal_force": ("F_z", 0.5)},
+)
+row(
+    "ask.frf",
+    "response",
+    lambda v: rd.ask.frf([1.0], drive=("z", 0.5), response=v),
+    without(NO_POINT, "none"),
+    UNKNOWN_POINT | {"no_points": []},
+)
+row("ask.frf", "quantity", lambda v: rd.ask.frf([1.0], drive=("z", 0.5), quantity=v), *QUANTITY)
+
+
+FIRST = rd.ask.modes(1)
+
+
+def accuracy_cost(question=FIRST, **how):
+    return rd.accuracy_cost(scene(), question, **{"elements": 8, "repeat": 1} | how)
+
+
+ACCURACY = accuracy_cost()
+row(
+    "accuracy_cost",
+    "scene",
+    lambda v: rd.accuracy_cost(v, rd.ask.modes(1)),
+    {"none": None, "model": MODEL, "rope": rope(), "class": rd.Scene, "text": "rope.toml"},
+)
+row(
+    "accuracy_cost",
+    "question",
+    accuracy_cost,
+    {"none": None, "number": 10, "text": "modes", "answer": FRF, "function": rd.ask.modes},
+)
+row(
+    "accuracy_cost",
+    "elements",
+    lambda v: accuracy_cost(elements=v),
+    {k: v for k, v in NOT_A_COUNT.items() if k not in ("none", "empty", "array")}
+    | {"floats": [2.0], "texts": ["8"], "nones": [8, None], "floats_array": np.array([8.0])},
+    BAD_COUNT | {"empty": [], "empty_array": np.array([], dtype=int), "zero_inside": [8, 0]},
+)
+row(
+    "accuracy_cost",
+    "element",
+    lambda v: accuracy_cost(element=v),
+    without(NOT_A_WORD, "list") | {"none_inside": ["rigid", None], "number_inside": (3,)},
+    {"unknown": "cubic", "empty": "", "nothing": (), "unknown_inside": ["rigid", "cubic"]},
+)
+row(
+    "accuracy_cost",
+    "solver",
+    lambda v: accuracy_cost(solver=v),
+    without(NOT_A_WORD, "list") | {"none_inside": ["sweep", None]},
+    {"unknown": "magic", "nothing": [], "of_responses_only": "band"},
+)
+row(
+    "accuracy_cost of continuous spans",
+    "solver",
+    lambda v: accuracy_cost(solver=v, element="continuous"),
+    {},
+    {"assembled": "lapack"},
+)
+row("accuracy_cost", "repeat", lambda v: accuracy_cost(repeat=v), NOT_A_COUNT, BAD_COUNT)
+row(
+    "accuracy_cost",
+    "progress",
+    lambda v: accuracy_cost(progress=v),
+    {"number": 3, "text": "yes", "nan": NAN, "list": [print]},
+)
+row(
+    "AccuracyCost.cheapest_within",
+    "tolerance",
+    ACCURACY.cheapest_within,
+    NOT_A_NUMBER,
+    NOT_FINITE | NEGATIVE | ZERO,
+)
+row(
+    "AccuracyCost.way",
+    "row",
+    ACCURACY.way,
+    {"none": None, "text": "0", "float": 0.0, "list": [0]},
+    {"beyond": len(ACCURACY.element), "negative": -1, "huge": HUGE},
+)
+
 row("Peaks", "frequency", rd.Peaks, NOT_AN_ARRAY, BAD_ARRAY | {"zero": [0.0]})
 row(
     "Peaks",
@@ -587,6 +700,10 @@ def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
         (lambda: MODEL.frf([1.0]), "drive"),
         (lambda: MODEL.frf([1.0], ("z", 0.5)), "positional"),
         (MODEL.static, "load"),
+        (lambda: rd.ask.frf([1.0]), "drive"),
+        (lambda: rd.ask.frf([1.0], ("z", 0.5)), "positional"),
+        (lambda: rd.accuracy_cost(scene()), "question"),
+        (lambda: rd.accuracy_cost(scene(), rd.ask.modes(1), [8]), "positional"),
         (rd.Peaks, "frequency"),
         (lambda: rd.compare(MODEL), "measured"),
     ],
@@ -599,8 +716,9 @@ def test_missing_and_unknown_arguments_are_named(call, argument):
 
 @pytest.mark.parametrize(("number", "below"), [(None, None), (2, 100.0)], ids=["neither", "both"])
 def test_modes_take_either_number_or_below(number, below):
-    with pytest.raises(rd.SceneError, match=r"number.*below"):
-        MODEL.modes(number, below=below)
+    for ask in (MODEL.modes, rd.ask.modes):
+        with pytest.raises(rd.SceneError, match=r"number.*below"):
+            ask(number, below=below)
 
 
 @pytest.mark.parametrize(

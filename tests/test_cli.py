@@ -1,5 +1,6 @@
 """The command line: output, exit status, messages."""
 
+import csv
 import json
 import subprocess
 import sys
@@ -19,8 +20,8 @@ def scene_file(tmp_path):
     return path
 
 
-def model(path, elements=64):
-    return rd.Scene.load(path).compile(elements=elements)
+def model(path, **how):
+    return rd.Scene.load(path).compile(**how)
 
 
 def test_modes_prints_the_frequencies_of_the_model(scene_file, capsys):
@@ -28,6 +29,21 @@ def test_modes_prints_the_frequencies_of_the_model(scene_file, capsys):
     rows = json.loads(capsys.readouterr().out)["rows"]
     frequency = [row["frequency [Hz]"] for row in rows]
     assert frequency == model(scene_file).modes(3).frequency.tolist()
+
+
+@pytest.mark.parametrize(
+    ("options", "how"),
+    [
+        (["--elements", "12"], {"elements": 12}),
+        (["--elements", "12", "--element", "rigid"], {"elements": 12, "element": "rigid"}),
+        (["--element", "continuous"], {"element": "continuous"}),
+    ],
+)
+def test_elements_are_those_of_compile(scene_file, capsys, options, how):
+    assert main(["modes", str(scene_file), "--modes", "3", "--json", *options]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    frequency = [row["frequency [Hz]"] for row in rows]
+    assert frequency == model(scene_file, **how).modes(3).frequency.tolist()
 
 
 def test_modes_prints_a_table_by_default(scene_file, capsys):
@@ -54,10 +70,48 @@ def test_compare_pairs_the_peaks(scene_file, capsys):
     assert [row["measured [Hz]"] for row in rows] == [20.0, 41.0]
 
 
+ACCURACY = ["--elements", "16,32"]
+
+
+@pytest.mark.parametrize(
+    ("options", "question"),
+    [
+        ([], rd.ask.modes(10)),
+        (["--modes", "3"], rd.ask.modes(3)),
+        (["--below", "100"], rd.ask.modes(below=100.0)),
+        (
+            ["--frequency", "10:90:5", "--drive", "z@0.3", "--response", "beta@0.6"],
+            rd.ask.frf(np.linspace(10, 90, 5), drive=("z", 0.3), response=("beta", 0.6)),
+        ),
+    ],
+)
+def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, question):
+    assert main(["accuracy", str(scene_file), *ACCURACY, *options, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    scene = rd.Scene.load(scene_file)
+    cost = rd.accuracy_cost(scene, question, elements=[16, 32], repeat=1)
+    assert printed["title"] == cost.table().title
+    for column in ("element", "elements", "solver", "true error", "estimated error"):
+        found = [row[column] for row in printed["rows"]]
+        assert found == list(cost.table().column(column))
+
+
+def test_accuracy_prints_refused_rows_and_marks(scene_file, capsys):
+    assert main(["accuracy", str(scene_file), "--elements", "4,64", "--csv"]) == 0
+    head, *rows = csv.reader(capsys.readouterr().out.splitlines())
+    assert head[-2:] == ["cheapest for", "refused"]
+    assert len(rows) == 2 * 2 * 2 + 1
+    # three nodes move, in z and in twist
+    assert rows[0][:-1] == ["rigid", "4", "sweep", *[""] * 8]
+    assert rows[0][-1] == "number must be at most 6, the modes this model has, got 10"
+    assert [row[0] for row in rows if "1e-12" in row[-2]] == ["continuous"]
+
+
 @pytest.mark.parametrize(
     "command",
     [
         ["modes", "--modes", "3"],
+        ["accuracy", "--modes", "3", *ACCURACY],
         ["frf", "--frequency", "1:100:50", "--drive", "z@0.5"],
         ["compare", "--peaks", "20,41"],
     ],
@@ -82,6 +136,17 @@ def test_plot_writes_a_figure(scene_file, tmp_path, capsys, command):
         (["frf", "{}", "--frequency", "-5", "--drive", "z@0.5"], 2, "frequency[0]"),
         (["compare", "{}", "--peaks", "a"], 2, "--peaks"),
         (["modes", "{}", "--plot", "/nowhere/figure.png"], 2, "nowhere"),
+        (["modes", "{}", "--element", "rigid"], 2, "elements must be given"),
+        (["accuracy", "nowhere.toml"], 2, "nowhere.toml"),
+        (["accuracy", "{}", "--elements", "16,x"], 2, "--elements"),
+        (["accuracy", "{}", "--elements", "0"], 2, "elements[0] must be"),
+        (["accuracy", "{}", "--modes", "0"], 2, "number must be"),
+        (["accuracy", "{}", "--below", "0.5"], 2, "question must have an answer"),
+        (["accuracy", "{}", "--below", "-1"], 2, "below must be"),
+        (["accuracy", "{}", "--frequency", "5"], 2, "--drive must be given"),
+        (["accuracy", "{}", "--drive", "z@0.5"], 2, "--frequency must be given"),
+        (["accuracy", "{}", "--response", "z@0.5"], 2, "--frequency must be given"),
+        (["accuracy", "{}", "--frequency", "5", "--drive", "q@0.5"], 2, "drive[0]"),
     ],
 )
 def test_bad_input_ends_with_a_message_and_a_status(scene_file, capsys, arguments, status, words):
@@ -90,9 +155,27 @@ def test_bad_input_ends_with_a_message_and_a_status(scene_file, capsys, argument
     assert words in capsys.readouterr().err
 
 
-def test_unknown_command_ends_with_status_2():
+def test_accuracy_that_continuous_spans_refuse_ends_with_status_1(tmp_path, capsys):
+    path = tmp_path / "free.toml"
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
+    rd.Scene(rope, ends=("free", "free")).save(path)
+    assert main(["accuracy", str(path), "--frequency", "0", "--drive", "z@0.5"]) == 1
+    assert "resonance" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["sing"],
+        ["accuracy", "rope.toml", "--modes", "3", "--below", "100"],
+        ["accuracy", "rope.toml", "--modes", "3", "--frequency", "5"],
+        ["modes", "rope.toml", "--element", "cubic"],
+    ],
+    ids=" ".join,
+)
+def test_what_cannot_be_parsed_ends_with_status_2(arguments, capsys):
     with pytest.raises(SystemExit) as stopped:
-        main(["sing"])
+        main(arguments)
     assert stopped.value.code == 2
 
 

@@ -28,11 +28,18 @@ def answers(model):
         ),
         "compare": (rd.compare(model, rd.Peaks([20.0])), "measured [Hz]", "calculated [Hz]"),
         "peaks": (rd.Peaks([20.0]), "frequency [Hz]", ""),
+        "accuracy": (
+            rd.accuracy_cost(model.scene, rd.ask.modes(2), elements=8, repeat=1),
+            "time from the scene to the answer [s]",
+            "largest relative error [1]",
+        ),
         "resonances": (frf.peaks()[0], "frequency [Hz]", "amplitude of z at 0.500 m [m/N]"),
     }
 
 
-@pytest.mark.parametrize("name", ["modes", "frf", "static", "compare", "peaks", "resonances"])
+@pytest.mark.parametrize(
+    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy"]
+)
 def test_plot_returns_labelled_axes(model, name):
     answer, xlabel, ylabel = answers(model)[name]
     ax = answer.plot()
@@ -40,7 +47,9 @@ def test_plot_returns_labelled_axes(model, name):
     assert ax.get_title()
 
 
-@pytest.mark.parametrize("name", ["modes", "frf", "static", "compare", "peaks", "resonances"])
+@pytest.mark.parametrize(
+    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy"]
+)
 def test_plot_draws_into_given_axes(model, name):
     ax = Figure().subplots()
     assert answers(model)[name][0].plot(ax) is ax
