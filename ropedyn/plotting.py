@@ -145,7 +145,7 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
         handles.append(curve)
     found: dict[int, list[str]] = {}
     for tolerance, row in cost.cheapest.items():
-        ax.axhline(tolerance, color="0.8", linewidth=0.8, zorder=0)
+        ax.axhline(tolerance, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
         if row is not None:
             found.setdefault(row, []).append(power(tolerance))
     for (row, tolerances), marker in zip(found.items(), ("o", "s", "D", "^")):
