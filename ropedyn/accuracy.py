@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from .progress import Progress, reporter
 from .scene import Scene
 from .stopwatch import in_turns
 from .table import Table
-from .trial import CUTS, Truth, trials
+from .trial import CUTS, Trial, Truth, trial, ways
 from .unit import power
 
 if TYPE_CHECKING:
@@ -55,7 +55,9 @@ class AccuracyCost(Answer):
     compile_seconds : ndarray, shape (rows,)
         Median processor time of `Scene.compile` [s].
     error : ndarray, shape (rows,)
-        True relative error, the largest of all modes or lines; 1.1e-16 where none is seen.
+        True relative error, the largest of all modes or lines; 1.1e-16 where none is seen. Modes
+        are compared in order. Values of which continuous spans have no correct digit themselves,
+        as a response that is 0 by symmetry, are left out.
     estimated_error : ndarray, shape (rows,)
         Estimated relative error, of mesh and rounding together, the largest too.
     digits_lost : ndarray, shape (rows,)
@@ -194,7 +196,7 @@ def accuracy_cost(
     SceneError
         If a value has no meaning, or there is nothing to measure.
     SolveError
-        If continuous spans have no answer.
+        If continuous spans have no answer, or no correct digit of it.
 
     Examples
     --------
@@ -216,25 +218,41 @@ def accuracy_cost(
     report = reporter(progress)
     if kinds == ("continuous",) and "sweep" not in solvers:
         raise SceneError(f'solver must have "sweep" for continuous spans, got {solvers}')
-    tried = list(trials(Truth.of(scene, question), kinds, counts, solvers))
-    calls = [call for trial in tried for call in trial.calls]
-    times = iter(in_turns(calls, repeat, report))
-    compiled, asked = zip(*((next(times), next(times)) if t.calls else _NEVER for t in tried))
-    quartiles = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T
+    truth = Truth.of(scene, question)
+    every = ways(truth, kinds, counts, solvers)
+    if not every:
+        raise SceneError(
+            f"elements must be given where {' and '.join(solvers)} would take more than about a "
+            "second, got None"
+        )
+    tried = []
+    for k, way in enumerate(every):
+        tried.append(trial(truth, way))
+        report((k + 1) / len(every) / 2)
+    return _timed(question, tried, repeat, lambda fraction: report((1 + fraction) / 2))
+
+
+def _timed(
+    question: Question, tried: Sequence[Trial], repeat: int, report: Callable[[float], Any]
+) -> AccuracyCost:
+    """Time what has been tried."""
+    times = iter(in_turns([call for one in tried for call in one.calls], repeat, report))
+    compiled, asked = zip(*((next(times), next(times)) if one.calls else _NEVER for one in tried))
+    lower, median, upper = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T
     return AccuracyCost(
         question=str(question),
         reference=f"continuous spans, of these against cuts into {_listed(CUTS)} parts",
-        element=np.array([trial.element for trial in tried]),
-        elements=np.array([trial.elements for trial in tried]),
-        solver=np.array([trial.solver for trial in tried]),
-        seconds=quartiles[1],
-        lower_quartile=quartiles[0],
-        upper_quartile=quartiles[2],
+        element=np.array([one.element for one in tried]),
+        elements=np.array([one.elements for one in tried]),
+        solver=np.array([one.solver for one in tried]),
+        seconds=median,
+        lower_quartile=lower,
+        upper_quartile=upper,
         compile_seconds=np.array([np.median(each) for each in compiled]),
-        error=np.array([trial.error for trial in tried]),
-        estimated_error=np.array([trial.estimated_error for trial in tried]),
-        digits_lost=np.array([trial.digits_lost for trial in tried]),
-        refusal=np.array([trial.refusal for trial in tried]),
+        error=np.array([one.error for one in tried]),
+        estimated_error=np.array([one.estimated_error for one in tried]),
+        digits_lost=np.array([one.digits_lost for one in tried]),
+        refusal=np.array([one.refusal for one in tried]),
     )
 
 
@@ -253,7 +271,8 @@ def _words(given: Any, name: str, words: Sequence[str]) -> tuple[str, ...]:
 
 def _counts(given: Any) -> tuple[int, ...]:
     """Return one number of elements or several, each once, increasing."""
-    if not isinstance(given, (tuple, list, range, np.ndarray)):
+    several = isinstance(given, (tuple, list, range))
+    if not several and not (isinstance(given, np.ndarray) and given.ndim > 0):
         return (check.count(given, "elements", most=MOST_ELEMENTS),)
     if len(given) == 0:
         raise SceneError(f"elements must have at least one number, got {check.shown(given)}")

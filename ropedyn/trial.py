@@ -43,6 +43,8 @@ class Truth:
         The same for exactly as many values as the true answer has.
     values : ndarray
         True ones.
+    known : ndarray of bool
+        Which of them have a correct digit: what is 0 by symmetry is nothing but rounding.
     error : float
         Their own largest relative error, seen in other cuts of the same spans.
     spans : int
@@ -53,6 +55,7 @@ class Truth:
     question: Question
     same: Question
     values: NDArray[Any]
+    known: NDArray[np.bool_]
     error: float
     spans: int
 
@@ -60,16 +63,19 @@ class Truth:
     def of(scene: Scene, question: Question) -> Truth:
         """Ask continuous spans, whole and cut."""
         model = scene.compile()
-        answer: Any = question.of(model, threads=1)
+        answer = _answer(question, model)
         values = question.values(answer)
         if values.size == 0:
             raise SceneError(f"question must have an answer, got {question}: there are none")
+        known = question.rounding(answer) < 1
+        if not known.any():
+            raise SolveError(f"continuous spans have no correct digit of the {question}")
         same, spans = question.like(answer), len(model.x) - 1
         error = 0.0
         for parts in CUTS:
-            cut = scene.compile(elements=parts * spans, element="continuous")
-            error = max(error, largest(relative(_values(same, cut, "sweep"), values)))
-        return Truth(scene, question, same, values, error, spans)
+            cut = _answer(same, scene.compile(elements=parts * spans, element="continuous"))
+            error = max(error, largest(relative(same.values(cut), values), known))
+        return Truth(scene, question, same, values, known, error, spans)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,15 +110,19 @@ def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
     return np.divide(np.abs(found - right), size, out=np.zeros(size.shape), where=size > 0)
 
 
-def largest(errors: Real) -> float:
-    """Return the largest error as a number."""
-    return float(errors.max())
+def largest(errors: Real, known: NDArray[np.bool_]) -> float:
+    """Return the largest error of values that are known."""
+    return float(errors[known].max())
 
 
-def trials(
+Way = tuple[str, int, str]
+"""Element, how many, solver."""
+
+
+def ways(
     truth: Truth, kinds: Sequence[str], counts: Sequence[int] | None, solvers: Sequence[str]
-) -> Iterator[Trial]:
-    """Try every way there is.
+) -> list[Way]:
+    """Return every way to the answer.
 
     Parameters
     ----------
@@ -123,29 +133,32 @@ def trials(
     counts : sequence of int or None
         Of elements; those that make sense where left out.
     """
+    found: list[Way] = []
     for kind in kinds:
-        if kind == "continuous":
-            if "sweep" in solvers:
-                yield continuous(truth)
-            continue
-        for solver in solvers:
-            for n in counts or _sensible(truth, kind, solver):
-                yield chain(truth, kind, n, solver)
+        if kind != "continuous":
+            found += [(kind, n, s) for s in solvers for n in counts or _sensible(truth, kind, s)]
+        elif "sweep" in solvers:
+            found.append((kind, truth.spans, "sweep"))
+    return found
+
+
+def trial(truth: Truth, way: Way) -> Trial:
+    """Try one way."""
+    return continuous(truth) if way[0] == "continuous" else chain(truth, *way)
 
 
 def continuous(truth: Truth) -> Trial:
     """Try the continuous spans themselves."""
     model = truth.scene.compile()
-    answer: Any = truth.question.of(model, threads=1)
-    rounding = truth.question.rounding(answer)
+    rounding = largest(truth.same.rounding(_answer(truth.same, model)), truth.known)
     return Trial(
         "continuous",
         truth.spans,
         "sweep",
         error=max(truth.error, EPSILON / 2),
-        estimated_error=largest(rounding),
+        estimated_error=rounding,
         digits_lost=_digits(rounding),
-        calls=(truth.scene.compile, partial(truth.question.of, model, threads=1)),
+        calls=(truth.scene.compile, partial(_answer, truth.question, model)),
     )
 
 
@@ -154,20 +167,21 @@ def chain(truth: Truth, kind: str, n: int, solver: str) -> Trial:
     compiled = partial(truth.scene.compile, elements=n, element=kind)
     try:
         model = compiled()
-        answer: Any = truth.same.of(model, solver=solver, threads=1)
-        asked = partial(truth.question.of, model, solver=solver, threads=1)
+        answer = _answer(truth.same, model, solver)
+        asked = partial(_answer, truth.question, model, solver)
         if truth.same is not truth.question:
             asked()
     except RopedynError as refusal:
         return Trial(kind, n, solver, refusal=str(refusal))
     values, bound = truth.same.values(answer), truth.same.rounding(answer)
+    rounding = bound if solver == "sweep" else _rounding(truth, model, values, bound)
     return Trial(
         kind,
         n,
         solver,
-        error=max(largest(relative(values, truth.values)), EPSILON / 2),
-        estimated_error=largest(_mesh_error(truth, values) + bound),
-        digits_lost=_digits(bound if solver == "sweep" else _rounding(truth, model, values, bound)),
+        error=max(largest(relative(values, truth.values), truth.known), EPSILON / 2),
+        estimated_error=largest(_mesh_error(truth, values) + bound, truth.known),
+        digits_lost=_digits(largest(rounding, truth.known)),
         calls=(compiled, asked),
     )
 
@@ -182,9 +196,8 @@ def _sensible(truth: Truth, kind: str, solver: str) -> Iterator[int]:
         yield 2**power
 
 
-def _values(question: Question, model: Model, solver: str) -> NDArray[Any]:
-    answer: Any = question.of(model, solver=solver, threads=1)
-    return question.values(answer)
+def _answer(question: Question, model: Model, solver: str = "sweep") -> Any:
+    return question.of(model, solver=solver, threads=1)
 
 
 def _mesh_error(truth: Truth, values: NDArray[Any]) -> Real:
@@ -195,11 +208,11 @@ def _mesh_error(truth: Truth, values: NDArray[Any]) -> Real:
 def _rounding(truth: Truth, model: Model, values: NDArray[Any], bound: Real) -> Real:
     """Return how far values are from those of the sweep along the same chain, if it has any."""
     try:
-        return relative(values, _values(truth.same, model, "sweep"))
+        return relative(values, truth.same.values(_answer(truth.same, model)))
     except SolveError:
         return bound
 
 
-def _digits(rounding: Real) -> float:
-    """Return how many decimal digits a relative error by rounding takes."""
-    return float(np.log10(max(largest(rounding) / EPSILON, 1.0)))
+def _digits(rounding: float) -> float:
+    """Return how many of the decimal digits there are a relative error by rounding takes."""
+    return float(np.log10(min(max(rounding / EPSILON, 1.0), 1 / EPSILON)))

@@ -524,7 +524,13 @@ row(
     "elements",
     lambda v: accuracy_cost(elements=v),
     {k: v for k, v in NOT_A_COUNT.items() if k not in ("none", "empty", "array")}
-    | {"floats": [2.0], "texts": ["8"], "nones": [8, None], "floats_array": np.array([8.0])},
+    | {
+        "floats": [2.0],
+        "texts": ["8"],
+        "nones": [8, None],
+        "floats_array": np.array([8.0]),
+        "no_axis": np.array(8),
+    },
     BAD_COUNT | {"empty": [], "empty_array": np.array([], dtype=int), "zero_inside": [8, 0]},
 )
 row(
