@@ -106,6 +106,8 @@ def _accuracy_command(commands: Any) -> None:
     )
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
     parser.add_argument("--elements", help="of chains, comma list (powers of two from 8 to 4096)")
+    parser.add_argument("--element", default="rigid,tensed,continuous", help="kinds (%(default)s)")
+    parser.add_argument("--solver", default="sweep,lapack", help="comma list (%(default)s)")
     asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--modes", type=int, help="how many")
     asked.add_argument("--below", type=float, help="instead: modes below this [Hz]")
@@ -150,7 +152,9 @@ def _frf(options: argparse.Namespace) -> None:
 def _accuracy(options: argparse.Namespace) -> None:
     scene = Scene.load(options.scene)
     elements = options.elements and _whole_numbers(options.elements, "--elements")
-    _show(options, accuracy_cost(scene, _asked(options), elements=elements))
+    element, solver = options.element.split(","), options.solver.split(",")
+    cost = accuracy_cost(scene, _asked(options), elements=elements, element=element, solver=solver)
+    _show(options, cost)
 
 
 def _asked(options: argparse.Namespace) -> ask.Question:

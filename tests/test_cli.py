@@ -96,6 +96,14 @@ def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, qu
         assert found == list(cost.table().column(column))
 
 
+def test_accuracy_takes_some_elements_and_solvers(scene_file, capsys):
+    options = ["--elements", "16,32", "--element", "tensed,continuous", "--solver", "sweep"]
+    assert main(["accuracy", str(scene_file), *options, "--modes", "2", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    ways = [(row["element"], row["elements"], row["solver"]) for row in rows]
+    assert ways == [("tensed", 16, "sweep"), ("tensed", 32, "sweep"), ("continuous", 1, "sweep")]
+
+
 def test_accuracy_prints_refused_rows_and_marks(scene_file, capsys):
     assert main(["accuracy", str(scene_file), "--elements", "4,64", "--csv"]) == 0
     head, *rows = csv.reader(capsys.readouterr().out.splitlines())
@@ -140,6 +148,8 @@ def test_plot_writes_a_figure(scene_file, tmp_path, capsys, command):
         (["accuracy", "nowhere.toml"], 2, "nowhere.toml"),
         (["accuracy", "{}", "--elements", "16,x"], 2, "--elements"),
         (["accuracy", "{}", "--elements", "0"], 2, "elements[0] must be"),
+        (["accuracy", "{}", "--element", "cubic"], 2, "element[0] must be"),
+        (["accuracy", "{}", "--solver", "sweep,"], 2, "solver[1] must be"),
         (["accuracy", "{}", "--modes", "0"], 2, "number must be"),
         (["accuracy", "{}", "--below", "0.5"], 2, "question must have an answer"),
         (["accuracy", "{}", "--below", "-1"], 2, "below must be"),
