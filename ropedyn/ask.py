@@ -76,10 +76,17 @@ class ModesQuestion:
         """Return frequencies [Hz], where motion grows minus its growth rate over 2 pi."""
         return np.where(answer.growth > 0, -answer.growth / (2 * math.pi), answer.frequency)
 
+    def mesh(self, answer: Modes) -> Real:
+        """Return the estimated relative error that the mesh causes; 0 for rigid-body motion."""
+        return self._relative(answer, answer.mesh_error)
+
     def rounding(self, answer: Modes) -> Real:
         """Return the estimated relative error that rounding causes; 0 for rigid-body motion."""
+        return self._relative(answer, answer.rounding_error)
+
+    def _relative(self, answer: Modes, error: Real) -> Real:
         size = np.abs(self.values(answer))
-        return np.divide(answer.rounding_error, size, out=np.zeros_like(size), where=size > 0)
+        return np.divide(error, size, out=np.zeros_like(size), where=size > 0)
 
     def work(self, model: Model) -> float:
         """Return the seconds, by their order, that the assembled solver takes: dense, n^3."""
@@ -146,6 +153,10 @@ class FRFQuestion:
     def values(self, answer: FRF) -> NDArray[np.complex128]:
         """Return the response."""
         return answer.value
+
+    def mesh(self, answer: FRF) -> Real:
+        """Return the estimated relative error that the mesh causes."""
+        return answer.mesh_error
 
     def rounding(self, answer: FRF) -> Real:
         """Return the estimated relative error that rounding causes."""

@@ -180,7 +180,7 @@ def chain(truth: Truth, kind: str, n: int, solver: str) -> Trial:
         n,
         solver,
         error=max(largest(relative(values, truth.values), truth.known), EPSILON / 2),
-        estimated_error=largest(_mesh_error(truth, values) + bound, truth.known),
+        estimated_error=largest(truth.same.mesh(answer) + bound, truth.known),
         digits_lost=_digits(largest(rounding, truth.known)),
         calls=(compiled, asked),
     )
@@ -198,11 +198,6 @@ def _sensible(truth: Truth, kind: str, solver: str) -> Iterator[int]:
 
 def _answer(question: Question, model: Model, solver: str = "sweep") -> Any:
     return question.of(model, solver=solver, threads=1)
-
-
-def _mesh_error(truth: Truth, values: NDArray[Any]) -> Real:
-    """Return the relative error that the mesh causes, by the difference to continuous spans."""
-    return relative(values, truth.values)
 
 
 def _rounding(truth: Truth, model: Model, values: NDArray[Any], bound: Real) -> Real:
