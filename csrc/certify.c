@@ -428,7 +428,7 @@ static enum rd_status bracket(struct work *work)
     if (modes->rigid > 0)
         set_rigid(work, apart, unstable);
     rd_search_isolate(&work->search, CLUSTER);
-    return RD_OK;
+    return work->search.lost ? RD_SHORT_WAVES : RD_OK;
 }
 
 enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)

@@ -4,6 +4,9 @@
 
 #include "walk.h"
 
+/* pieces of a continuous leg that are walked at most */
+enum { RD_STEPS_MOST = 1 << 24 };
+
 /* counts[i]: negative eigenvalues of K - lambda[i] M; where M is not negative and K positive that is
    the number of squared angular frequencies below lambda [rad^2/s^2]. For any real lambda.
    lambda, counts (count). */

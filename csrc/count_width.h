@@ -113,9 +113,10 @@ RD_INLINE void walk_node(struct wave *wave, const struct rd_walk *walk, int32_t 
     node(wave, V);
 }
 
-/* a leg of equal elements, by pieces of 2^k of them, the largest first */
-RD_INLINE void leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
-                        lanes lambda, const lanes *z, const lanes *inverse)
+/* a leg of equal elements, by pieces of 2^k of them, the largest first; false where its waves are
+   too short to be walked */
+RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
+                         lanes lambda, const lanes *z, const lanes *inverse)
 {
     struct piece level[LEVELS];
     struct step step;
@@ -126,6 +127,8 @@ RD_INLINE void leg_walk(struct wave *wave, const struct rd_walk *walk, const str
     term_scale(walk, leg->term, leg->element, lambda, z, inner);
     const size_t all = leg->count << halvings;
     size_t left = all;
+    if (left >> top > RD_STEPS_MOST)
+        return 0;
     for (int k = top; k >= 0; k--) {
         if (left >> k == 0)
             continue;
@@ -141,6 +144,7 @@ RD_INLINE void leg_walk(struct wave *wave, const struct rd_walk *walk, const str
             step_comply(wave, &step);
         }
     }
+    return 1;
 }
 
 /* left end: U = 0 where held; U = 1 and the angle -pi/2 where free */
@@ -182,7 +186,11 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
     struct wave wave;
     start(&wave, walk);
     for (size_t r = 0; r < walk->legs; r++)
-        leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse);
+        if (!leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse)) {
+            for (int k = 0; k < RD_LANES; k++)
+                counts[k] = NAN;
+            return;
+        }
 
     term_scale(walk, walk->last, walk->behind, lambda, z, N);
     for (int i = 0; i < W; i++)

@@ -58,12 +58,19 @@ void rd_search_learn(struct rd_search *search, double lambda, double count)
     }
 }
 
+static void learn_sound(struct rd_search *search, double lambda, double count)
+{
+    search->lost = search->lost || isnan(count);
+    if (!isnan(count))
+        rd_search_learn(search, lambda, count);
+}
+
 void rd_search_count(struct rd_search *search, const double *lambda, double *count)
 {
     rd_count(search->walk, LANES, lambda, count);
     search->counts += LANES;
     for (size_t k = 0; k < LANES; k++)
-        rd_search_learn(search, lambda[k], count[k]);
+        learn_sound(search, lambda[k], count[k]);
 }
 
 /* Counts at -at, step times deeper in each lane; true where one of them is 0. What is deeper than the
@@ -76,7 +83,7 @@ static bool look_below(struct rd_search *search, double *at, double step)
     rd_count(search->walk, LANES, lambda, count);
     search->counts += LANES;
     for (size_t k = 0; k < LANES; k++) {
-        rd_search_learn(search, lambda[k], count[k]);
+        learn_sound(search, lambda[k], count[k]);
         if (count[k] == 0)
             return true;
     }
@@ -91,10 +98,10 @@ enum rd_status rd_search_bottom(struct rd_search *search, double nearest)
         return RD_OK;
     const double deepest = DEEPEST * fmax(rd_walk_ceiling(search->walk), search->size);
     at = nearest;
-    for (int pass = 0; pass < DEEPER && at < deepest; pass++)
+    for (int pass = 0; pass < DEEPER && at < deepest && !search->lost; pass++)
         if (look_below(search, &at, 2))
             return RD_OK;
-    return RD_UNSTABLE_MASSLESS;
+    return search->lost ? RD_SHORT_WAVES : RD_UNSTABLE_MASSLESS;
 }
 
 /* In small steps at first, since a count costs what lambda has half waves. */
@@ -106,7 +113,8 @@ size_t rd_search_top(struct rd_search *search, double upper)
         for (size_t k = 0; k < LANES; k++, at *= step)
             lambda[k] = fmin(fmin(at, 1e300), upper);
         rd_search_count(search, lambda, count);
-        if (count[LANES - 1] >= (double)search->wanted || lambda[LANES - 1] >= fmin(upper, 1e300))
+        if (search->lost || count[LANES - 1] >= (double)search->wanted ||
+            lambda[LANES - 1] >= fmin(upper, 1e300))
             break;
         step = pass < 4 ? 2.5 : 16;
     }
@@ -153,7 +161,7 @@ void rd_search_isolate(struct rd_search *search, double narrow)
             if (is_open(search, i, narrow) &&
                 (n == 0 || search->low[i] != search->low[index[n - 1]]))
                 index[n++] = i;
-        if (n == 0)
+        if (n == 0 || search->lost)
             return;
         rd_search_cut(search, n, index);
     }

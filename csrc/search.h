@@ -12,6 +12,7 @@ struct rd_search {
     const struct rd_walk *walk;
     size_t wanted;
     size_t counts; /* lambda counted so far */
+    bool lost;     /* waves of some lambda were too short to be counted */
     double size;   /* [rad^2/s^2] of the order of the first mode, a lower guess */
     double *low;   /* (wanted) [rad^2/s^2] */
     double *high;  /* (wanted) */
@@ -30,7 +31,7 @@ void rd_search_learn(struct rd_search *search, double lambda, double count);
 void rd_search_count(struct rd_search *search, const double *lambda, double *count);
 
 /* Finds a lambda <= -nearest with nothing below: K - lambda M is positive definite there, so that every mode above
-   has x^T M x > 0. RD_UNSTABLE_MASSLESS: there is none. */
+   has x^T M x > 0. RD_UNSTABLE_MASSLESS: there is none; RD_SHORT_WAVES: too far to be counted. */
 enum rd_status rd_search_bottom(struct rd_search *search, double nearest);
 
 /* Raises high until all that are wanted are below it or upper, and returns how many are. */
