@@ -339,6 +339,14 @@ static bool is_crowded(const struct work *work)
     return n >= LANES;
 }
 
+static size_t unconfirmed(const struct work *work)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < work->search.wanted; i++)
+        n += work->modes->certified[i] == 0;
+    return n;
+}
+
 /* An iteration may settle on the wrong mode or between two: the counts tell, the bracket is cut
    by more each round and the iteration begins again. */
 static enum rd_status refine_all(struct work *work)
@@ -353,6 +361,8 @@ static enum rd_status refine_all(struct work *work)
             return RD_OK;
         size_t index[LANES];
         const size_t n = doubtful(work, index);
+        if (round == 0)
+            work->modes->redone = unconfirmed(work);
         for (int cut = 0; cut < 1 << round; cut++)
             rd_search_cut(&work->search, n, index);
     }
@@ -434,7 +444,8 @@ static enum rd_status bracket(struct work *work)
 enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
 {
     struct work work = {.refine = refine, .modes = modes};
-    modes->counts = modes->iterations = modes->found = modes->existing = modes->rigid = 0;
+    modes->counts = modes->iterations = modes->redone = modes->found = modes->existing =
+        modes->rigid = 0;
     memset(modes->certified, 0, modes->wanted * sizeof *modes->certified);
     if (isnan(modes->upper))
         return RD_NO_CONVERGENCE;

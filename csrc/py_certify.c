@@ -134,8 +134,10 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
     };
     if (solve(module, &walk, &modes) < 0)
         goto done;
-    result = Py_BuildValue("OOOOnn", array[LAMBDA], array[ERROR], array[CERTIFIED], array[SHAPE],
-                           (Py_ssize_t)modes.found, (Py_ssize_t)modes.counts);
+    result = Py_BuildValue("OOOOnnn", array[LAMBDA], array[ERROR], array[CERTIFIED], array[SHAPE],
+                           (Py_ssize_t)modes.found,
+                           (Py_ssize_t)(modes.counts + 2 * RD_LANES * modes.iterations),
+                           (Py_ssize_t)modes.redone);
 done:
     PyMem_RawFree(workspace.base);
     for (int k = 0; k < ARRAYS; k++)

@@ -20,7 +20,8 @@ static PyMethodDef methods[] = {
      "frf(chain, factor, drives, responses) -> value, rounding, frequencies solved"},
     {"count", py_count, METH_VARARGS, "count(chain, lambda) -> counts"},
     {"certify", py_certify, METH_VARARGS,
-     "certify(chain, wanted, upper, shaped) -> lambda, error, certified, shape, found, counts"},
+     "certify(chain, wanted, upper, shaped) -> lambda, error, certified, shape, found, sweeps, "
+     "redone"},
     {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
     {"sweep", py_sweep, METH_VARARGS,
      "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},

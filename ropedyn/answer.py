@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -34,20 +34,41 @@ class Cost:
     Attributes
     ----------
     seconds : float
-        Wall time of the core.
+        Wall time of the solution.
     method : str
         The solver.
     elements, unknowns : int
         Of the chain, and of what was solved of it.
+    sweeps : int
+        Walks from one end of the rope to the other, at one frequency each.
     factorisations : int
-        Of matrices.
+        Of matrices: of the solvers that have some.
+    redone : float
+        Share of the answer that was solved twice: modes that counts did not confirm at first.
+        0 of responses: one sweep is careful enough for all of them.
     """
 
     seconds: float
     method: str
     elements: int
     unknowns: int
-    factorisations: int
+    sweeps: int = 0
+    factorisations: int = 0
+    redone: float = 0.0
+
+
+class Work(NamedTuple):
+    """What was done for an answer, see `Cost`."""
+
+    sweeps: int = 0
+    factorisations: int = 0
+    redone: int = 0
+    """How many of its numbers were solved twice."""
+
+    @classmethod
+    def of(cls, parts: Iterable[Work]) -> Work:
+        """Return what several parts took together."""
+        return cls(*map(sum, zip(cls(), *parts)))
 
 
 def axes(*names: str, unit: str = "", keyed: bool = False) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check
-from .answer import Answer, Cost, axes
+from .answer import Answer, Cost, Work, axes
 from .chain import Chain
 from .compile import finer
 from .errors import SceneError, SolveError
@@ -83,7 +83,7 @@ def solve_static(
         x = model.x
     width = len(model.coordinates)
     displacement, force = np.zeros((len(x), width)), np.zeros((len(x), width))
-    unknowns, solved = 0, 0
+    unknowns, works = 0, []
     start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
         here = {point: value for point, value in loads.items() if point[0] in component}
@@ -91,7 +91,7 @@ def solve_static(
             continue
         at = [model.coordinates.index(c) for c in component]
         try:
-            displacement[:, at], force[:, at] = solve(model, component, here, x)
+            displacement[:, at], force[:, at], work = solve(model, component, here, x)
         except SolveError as error:
             raise SolveError(
                 f"({', '.join(component)}): the stiffness is singular to working precision: a "
@@ -99,7 +99,7 @@ def solve_static(
                 "elements for the assembled stiffness"
             ) from error
         unknowns += free
-        solved += 1
+        works.append(work)
     seconds = time.perf_counter() - start
     if not np.isfinite(displacement).all() or not np.isfinite(force).all():
         raise SolveError("the numbers of the static deflection overflow: check the units")
@@ -108,7 +108,7 @@ def solve_static(
         x=x,
         displacement=displacement,
         force=force,
-        cost=Cost(seconds, solver, len(model.x) - 1, unknowns, solved),
+        cost=Cost(seconds, solver, len(model.x) - 1, unknowns, *Work.of(works)),
     )
 
 
@@ -121,12 +121,13 @@ BLOCK = 4096
 
 def _sweep(
     model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return motion of the nodes and what the surroundings put on them."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    """Return motion of the nodes, what the surroundings put on them, and what it took."""
     longer, finer, kept = _cut(model, component, loads, nodes)
     pushed = ports(longer, finer, component, loads)
     amount = np.array(list(loads.values()))
     factor = np.array([[1.0], [1.0], [1.0], [0.0]], dtype=np.complex128)
+    asked = 0
 
     def ask(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
         """Return motion of nodes, or force on the right end of the elements left of them."""
@@ -138,6 +139,8 @@ def _sweep(
             side = np.repeat(node - left, w)
             rows[np.arange(len(rows)), side] = np.tile(np.eye(w), (len(node), 1))
         watched = Ports(np.repeat(left, w).astype(np.int32), rows, force)
+        nonlocal asked
+        asked += 1
         value, _, solved = _core.sweep(longer, factor, pushed, watched)
         if solved == 0:
             raise SolveError("singular")
@@ -151,15 +154,16 @@ def _sweep(
     u = ask_all(kept, False)
     right = ask_all(kept[1:], True)
     begins = ask_all(kept[:-1] + 1, True) if len(kept) < longer.nodes else right
-    return u, _on_nodes(longer, kept, u, right, begins)
+    return u, _on_nodes(longer, kept, u, right, begins), Work(2 * asked)
 
 
 def _band(
     model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
     u, force = _core.mixed_deflection(chain, _nodal(chain, x, component, loads))
-    return u[kept], _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
+    on_nodes = _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
+    return u[kept], on_nodes, Work(factorisations=1)
 
 
 def _on_nodes(
@@ -196,10 +200,10 @@ def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np
 
 def _lapack(
     model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
     u, _ = _core.deflection(chain, _nodal(chain, x, component, loads))
-    return u[kept], _held_up(chain, u)[kept]
+    return u[kept], _held_up(chain, u)[kept], Work(factorisations=1)
 
 
 def _cut(

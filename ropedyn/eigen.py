@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, damping
-from .answer import Cost
+from .answer import Cost, Work
 from .chain import CHANNELS, Chain
 from .compile import finer
 from .errors import SceneError, SolveError
@@ -47,15 +47,15 @@ class Found:
         Over the component's coordinates, None where it was not asked for.
     certified : bool
         Whether none is missing.
-    work : int
-        Factorisations or counts.
+    work : Work
+        What it took.
     """
 
     eigenvalue: Real
     error: Real
     shape: Real | None
     certified: bool
-    work: int
+    work: Work
 
 
 def solve_modes(
@@ -113,7 +113,7 @@ def solve_modes(
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
         rounding_error=error_in_hertz(eigenvalue, error),
-        cost=Cost(seconds, solver, len(model.x) - 1, model.size, sum(part.work for part in found)),
+        cost=_cost(model, solver, seconds, found),
         source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
         mesh_source=mesh,
     )
@@ -144,6 +144,14 @@ def spectrum(
     found = _sweep(model, component, number, limit, shaped=False)
     eigenvalue, error, _ = _merged([found], number)
     return eigenvalue, error
+
+
+def _cost(model: Model, solver: str, seconds: float, found: Sequence[Found]) -> Cost:
+    work = Work.of(part.work for part in found)
+    share = work.redone / max(sum(len(part.eigenvalue) for part in found), 1)
+    return Cost(
+        seconds, solver, len(model.x) - 1, model.size, work.sweeps, work.factorisations, share
+    )
 
 
 def eigenvalue_of(below: Any) -> float:
@@ -235,14 +243,14 @@ def _sweep(
             parts[-1][:, first : last + 1] = part.shape
         shape = np.concatenate(parts)[order]
     certified = all(part.certified for part in found)
-    return Found(eigenvalue, error, shape, certified, sum(part.work for part in found))
+    return Found(eigenvalue, error, shape, certified, Work.of(part.work for part in found))
 
 
 def _span(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
-    eigenvalue, error, certified, shape, found, counts = _in_threads(
-        _core.certify, chain.nodes, chain, wanted, _upper(limit), shaped
+    eigenvalue, error, certified, shape, found, sweeps, redone = _in_threads(
+        _core.certify, max(chain.nodes, 100 * wanted), chain, wanted, _upper(limit), shaped
     )
     if not np.isfinite(eigenvalue[:found]).all() or not np.isfinite(error[:found]).all():
         raise SolveError("the numbers of the modes overflow: check the units")
@@ -251,7 +259,7 @@ def _span(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Fo
         error[:found],
         shape[:found] if shaped else None,
         bool((certified[:found] == 1).all()),
-        counts,
+        Work(sweeps, redone=redone),
     )
 
 
@@ -284,7 +292,7 @@ def _lapack(
             f"mode {int(lost.argmax()) + 1} of ({', '.join(component)}) has no correct digit: the "
             "inertias or stiffnesses differ too much for the assembled solver"
         )
-    return Found(eigenvalue, error, shape, False, 1)
+    return Found(eigenvalue, error, shape, False, Work(factorisations=1))
 
 
 def _scale(model: Model, component: tuple[str, ...]) -> float:

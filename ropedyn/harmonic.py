@@ -140,7 +140,7 @@ def solve_frf(
     responses = drives if response is None else _points(model, response, "response")[0]
     value = np.zeros((len(drives), len(responses), len(f)), dtype=np.complex128)
     error = np.zeros(value.shape)
-    unknowns = 0
+    unknowns, solved = 0, 0
     start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if point[0] in component]
@@ -153,6 +153,7 @@ def solve_frf(
         )
         value[block], error[block] = solve(question)
         unknowns += free
+        solved += len(f)
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
     value *= (2j * np.pi * f) ** QUANTITIES[quantity]
@@ -169,7 +170,14 @@ def solve_frf(
         frequency=f,
         value=value,
         rounding_error=error,
-        cost=Cost(seconds, solver, len(model.x) - 1, unknowns, len(f) if unknowns else 0),
+        cost=Cost(
+            seconds,
+            solver,
+            len(model.x) - 1,
+            unknowns,
+            sweeps=2 * solved if solver == "sweep" else 0,
+            factorisations=0 if solver == "sweep" else solved,
+        ),
         mesh_source=mesh,
     )
 
