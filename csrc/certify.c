@@ -21,7 +21,7 @@ static const double CLUSTER = 1e-8;    /* closer than this, relative, are found 
 static const double FAR = 1e-4;        /* from where a cluster is looked at first, relative */
 static const double NEAR = 1e-9;       /* and then */
 static const double CONVERGED = 1e-13; /* last step of the quotient by the gap, for the shape */
-static const double SETTLED = 1e-7;    /* for the value alone, which is right to its square */
+static const double SETTLED = 1e-6;    /* for the value alone, which is right to its square */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
 static const double NOISE = 8;         /* what of its bound a quotient is wrong by at most times */
 
@@ -58,56 +58,119 @@ static bool has_settled(const struct work *work, size_t i, const struct rd_quoti
     return gap >= 0 && fabs(value - lambda[k]) <= fmax(near * gap, quotient->error[k] / NOISE);
 }
 
-/* the next lambda of each lane: the quotient, or the middle of a bracket that was cut because the
-   quotient had left it */
-static void next_shift(struct work *work, const size_t *index, size_t n,
-                       const struct rd_quotient *quotient, double *lambda)
+/* Lanes at work on single modes: whose mode, at which lambda, and how many iterations old. */
+struct pool {
+    size_t mode[LANES];
+    double lambda[LANES];
+    int age[LANES];
+    bool busy[LANES];
+    size_t next; /* mode to begin with when a lane is free */
+};
+
+static double middle(const struct work *work, size_t i)
 {
-    size_t lost[LANES], count = 0;
-    for (size_t k = 0; k < n; k++)
-        if (!rd_search_is_inside(&work->search, index[k], quotient->lambda[k]))
-            lost[count++] = index[k];
-    if (count > 0)
-        rd_search_cut(&work->search, count, lost);
-    for (size_t k = 0; k < n; k++) {
-        const size_t i = index[k];
-        const bool inside = rd_search_is_inside(&work->search, i, quotient->lambda[k]);
-        lambda[k] = inside ? quotient->lambda[k] : (work->search.low[i] + work->search.high[i]) / 2;
-    }
-    for (size_t k = n; k < LANES; k++)
-        lambda[k] = lambda[n - 1];
+    return (work->search.low[i] + work->search.high[i]) / 2;
 }
 
-/* Rayleigh quotient iteration of the single modes index[0 .. n - 1], one a lane */
-static enum rd_status refine_singles(struct work *work, const size_t *index, size_t n)
+/* whether two modes can share the scales of one iteration */
+static bool are_of_one_size(const struct work *work, size_t i, size_t k)
+{
+    const double a = fmax(fabs(work->search.low[i]), fabs(work->search.high[i]));
+    const double b = fmax(fabs(work->search.low[k]), fabs(work->search.high[k]));
+    return fmax(a, b) <= SPREAD * fmin(a, b);
+}
+
+/* the next single mode from i on that is not certified yet, or how many are wanted */
+static size_t next_single(const struct work *work, size_t i)
+{
+    while (i < work->search.wanted &&
+           (work->modes->certified[i] != 0 || !rd_search_is_single(&work->search, i)))
+        i++;
+    return i;
+}
+
+/* gives free lanes the modes before `end`; bits of the lanes that begin */
+static unsigned begin_lanes(struct work *work, size_t end, struct pool *pool)
+{
+    unsigned begun = 0;
+    for (size_t k = 0; k < LANES; k++) {
+        if (pool->busy[k] || pool->next >= end)
+            continue;
+        pool->mode[k] = pool->next;
+        pool->lambda[k] = middle(work, pool->next);
+        pool->age[k] = 0;
+        pool->busy[k] = true;
+        begun |= 1u << k;
+        pool->next = next_single(work, pool->next + 1);
+    }
+    return begun;
+}
+
+/* The next lambda of each lane: the quotient, or the middle of a bracket that is cut because the
+   quotient has left it. */
+static void shift_lanes(struct work *work, const struct rd_quotient *quotient, struct pool *pool)
+{
+    size_t lost[LANES], count = 0;
+    for (size_t k = 0; k < LANES; k++)
+        if (pool->busy[k] && pool->age[k] > 1 &&
+            !rd_search_is_inside(&work->search, pool->mode[k], quotient->lambda[k]))
+            lost[count++] = pool->mode[k];
+    if (count > 0)
+        rd_search_cut(&work->search, count, lost);
+    for (size_t k = 0; k < LANES; k++) {
+        const size_t i = pool->mode[k];
+        if (!pool->busy[k] || pool->age[k] < 2)
+            continue;
+        const bool inside = rd_search_is_inside(&work->search, i, quotient->lambda[k]);
+        pool->lambda[k] = inside ? quotient->lambda[k] : middle(work, i);
+    }
+}
+
+/* ends lanes that have settled or tried for too long; true while any is at work */
+static bool end_lanes(struct work *work, const struct rd_quotient *quotient, struct pool *pool)
+{
+    bool any = false;
+    for (size_t k = 0; k < LANES; k++) {
+        if (pool->busy[k] && pool->age[k] > 1 &&
+            (pool->age[k] > ATTEMPTS ||
+             has_settled(work, pool->mode[k], quotient, pool->lambda, k))) {
+            keep(work, pool->mode[k], quotient, pool->lambda, k);
+            pool->busy[k] = false;
+        }
+        any = any || pool->busy[k];
+    }
+    return any;
+}
+
+/* Rayleigh quotient iteration of the single modes from first on up to end, one a lane: a lane whose
+   mode has settled goes on with the next one. */
+static enum rd_status refine_singles(struct work *work, size_t first, size_t end)
 {
     struct rd_refine *refine = work->refine;
-    double lambda[LANES];
     struct rd_quotient quotient;
+    struct pool pool = {.next = first};
+    double extreme[LANES];
+    size_t last = first;
+    for (size_t i = first; i < end; i = next_single(work, i + 1))
+        last = i;
     for (size_t k = 0; k < LANES; k++) {
-        const size_t i = index[k < n ? k : n - 1];
-        lambda[k] = (work->search.low[i] + work->search.high[i]) / 2;
+        extreme[k] = k % 2 ? work->search.high[last] : work->search.low[first];
+        pool.lambda[k] = middle(work, first);
     }
-    const enum rd_status status = rd_refine_plan(refine, lambda);
+    const enum rd_status status = rd_refine_plan(refine, extreme);
     if (status != RD_OK)
         return status;
-    rd_refine_iterate(refine, lambda, true);
-    for (int attempt = 0;; attempt++) {
-        rd_refine_iterate(refine, lambda, false);
+    for (;;) {
+        const unsigned begun = begin_lanes(work, end, &pool);
+        rd_refine_iterate(refine, pool.lambda, begun);
         work->modes->iterations++;
-        if (attempt == 0)
-            continue;
-        rd_refine_quotient(refine, lambda, &quotient);
-        bool settled = true;
-        for (size_t k = 0; k < n; k++)
-            settled = settled && has_settled(work, index[k], &quotient, lambda, k);
-        if (settled || attempt == ATTEMPTS)
-            break;
-        next_shift(work, index, n, &quotient, lambda);
+        for (size_t k = 0; k < LANES; k++)
+            pool.age[k]++;
+        rd_refine_quotient(refine, pool.lambda, &quotient);
+        if (!end_lanes(work, &quotient, &pool) && pool.next >= end)
+            return RD_OK;
+        shift_lanes(work, &quotient, &pool);
     }
-    for (size_t k = 0; k < n; k++)
-        keep(work, index[k], &quotient, lambda, k);
-    return RD_OK;
 }
 
 /* Ritz vectors of the lanes, those n in front whose values are nearest to lambda; false where there
@@ -181,8 +244,8 @@ static enum rd_status refine_cluster(struct work *work, size_t first, size_t n, 
         if (status != RD_OK)
             return status;
         if (i == 0)
-            rd_refine_iterate(refine, lambda, true);
-        rd_refine_iterate(refine, lambda, false);
+            rd_refine_iterate(refine, lambda, RD_ALL_LANES);
+        rd_refine_iterate(refine, lambda, 0);
         work->modes->iterations++;
         if (!ritz_lanes(refine, lambda, (low + high) / 2, i == 0 ? LANES : n, n))
             return RD_NO_CONVERGENCE;
@@ -248,29 +311,19 @@ static bool certify(struct work *work, int passes)
     return all_are;
 }
 
-/* whether two modes can share the scales of one iteration */
-static bool are_of_one_size(const struct work *work, size_t i, size_t k)
-{
-    const double a = fmax(fabs(work->search.low[i]), fabs(work->search.high[i]));
-    const double b = fmax(fabs(work->search.low[k]), fabs(work->search.high[k]));
-    return fmax(a, b) <= SPREAD * fmin(a, b);
-}
-
-/* the single modes that are not certified yet, as many as there are lanes at a time */
+/* the single modes that are not certified yet, those of one size together */
 static enum rd_status refine_round(struct work *work)
 {
-    size_t index[LANES], n = 0;
     enum rd_status status = RD_OK;
-    for (size_t i = 0; i < work->search.wanted && status == RD_OK; i++) {
-        if (work->modes->certified[i] != 0 || !rd_search_is_single(&work->search, i))
-            continue;
-        if (n == LANES || (n > 0 && !are_of_one_size(work, index[0], i))) {
-            status = refine_singles(work, index, n);
-            n = 0;
-        }
-        index[n++] = i;
+    size_t first = next_single(work, 0);
+    while (first < work->search.wanted && status == RD_OK) {
+        size_t end = next_single(work, first + 1);
+        while (end < work->search.wanted && are_of_one_size(work, first, end))
+            end = next_single(work, end + 1);
+        status = refine_singles(work, first, end);
+        first = end;
     }
-    return status == RD_OK && n > 0 ? refine_singles(work, index, n) : status;
+    return status;
 }
 
 /* where mode i is: its value, or the bracket that it shares; false where that is not known yet */

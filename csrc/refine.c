@@ -32,10 +32,10 @@ enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda)
     return of[refine->walk->chain->width - 1](refine, lambda);
 }
 
-void rd_refine_iterate(struct rd_refine *refine, const double *lambda, _Bool begin)
+void rd_refine_iterate(struct rd_refine *refine, const double *lambda, unsigned begin)
 {
-    void (*const of[])(struct rd_refine *, const double *, _Bool) = {rd_iterate_1, rd_iterate_2,
-                                                                     rd_iterate_3, rd_iterate_4};
+    void (*const of[])(struct rd_refine *, const double *, unsigned) = {rd_iterate_1, rd_iterate_2,
+                                                                        rd_iterate_3, rd_iterate_4};
     of[refine->walk->chain->width - 1](refine, lambda, begin);
 }
 

@@ -46,8 +46,11 @@ void rd_refine_take(const struct rd_walk *walk, size_t steps, size_t pieces,
 /* Plans the steps for all lambda (RD_LANES). RD_NO_MEMORY: more than fit. */
 enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda);
 
-/* One inverse iteration at lambda from the present x, or from a fixed load with `begin`. */
-void rd_refine_iterate(struct rd_refine *refine, const double *lambda, _Bool begin);
+/* One inverse iteration at lambda from the present x, or from a fixed load in the lanes whose bit of
+   `begin` is set. */
+void rd_refine_iterate(struct rd_refine *refine, const double *lambda, unsigned begin);
+
+enum { RD_ALL_LANES = (1 << RD_LANES) - 1 };
 
 /* lambda (RD_LANES) of the last iteration */
 void rd_refine_quotient(struct rd_refine *refine, const double *lambda,
@@ -61,7 +64,7 @@ void rd_refine_shape(struct rd_refine *refine, const double *lambda, int lane, d
 
 #define RD_REFINE_WIDTH(w)                                                                         \
     enum rd_status rd_plan_##w(struct rd_refine *, const double *);                                \
-    void rd_iterate_##w(struct rd_refine *, const double *, _Bool);                                \
+    void rd_iterate_##w(struct rd_refine *, const double *, unsigned);                             \
     void rd_quotient_##w(struct rd_refine *, const double *, struct rd_quotient *);                \
     void rd_gram_##w(struct rd_refine *, const double *, double *, double *);                      \
     void rd_shape_##w(struct rd_refine *, const double *, int, double *);

@@ -158,17 +158,28 @@ RD_INLINE lanes fixed_load(size_t m, int i)
     return p;
 }
 
+RD_INLINE lane_mask lanes_of(unsigned bits)
+{
+    lane_mask mask = {0};
+    for (int k = 0; k < RD_LANES; k++)
+        mask[k] = -(long long)(bits >> k & 1);
+    return mask;
+}
+
 /* the loads of the next iteration, b = -A' x: p = -(dV u_a - dF^T f_b), d = dF u_a + dG f_b */
-RD_INLINE void load(const struct rd_refine *r, size_t m, const struct rate *rate, _Bool begin,
+RD_INLINE void load(const struct rd_refine *r, size_t m, const struct rate *rate, unsigned begin,
                     lanes *p, lanes *d)
 {
     const lanes *u = r->u + m * W, *f = r->f + m * W;
     for (int i = 0; i < W; i++) {
-        p[i] = begin ? fixed_load(m, i) : l_fill(0);
-        d[i] = l_fill(0);
-        for (int j = 0; !begin && j < W; j++) {
+        p[i] = d[i] = l_fill(0);
+        for (int j = 0; begin != RD_ALL_LANES && j < W; j++) {
             p[i] -= rate->dV[i][j] * u[j] - rate->dD[j][i] * f[j];
             d[i] += rate->dD[i][j] * u[j] + rate->dG[i][j] * f[j];
+        }
+        if (begin) {
+            p[i] = l_select(lanes_of(begin), fixed_load(m, i), p[i]);
+            d[i] = l_select(lanes_of(begin), l_fill(0), d[i]);
         }
     }
 }
@@ -346,7 +357,7 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
     }
 }
 
-static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, _Bool begin)
+static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, unsigned begin)
 {
     const lanes lambda = lanes_load(lambdas);
     struct rate rate;
@@ -381,9 +392,11 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
     memset(&rate, 0, sizeof rate);
     rate_node(r, last, r->walk->behind, lambda, &rate);
     for (int i = 0; i < W; i++) {
-        p[i] = begin ? fixed_load(n, i) : l_fill(0);
-        for (int j = 0; !begin && j < W; j++)
+        p[i] = l_fill(0);
+        for (int j = 0; begin != RD_ALL_LANES && j < W; j++)
             p[i] -= rate.dV[i][j] * r->u[n * W + (size_t)j];
+        if (begin)
+            p[i] = l_select(lanes_of(begin), fixed_load(n, i), p[i]);
     }
     end_solve(&left, &rate, held_at(r, last), p, s);
     lanes f[W];
@@ -518,7 +531,7 @@ static RD_CLONES void quotient_lanes(struct rd_refine *r, const double *lambdas,
     }
 }
 
-void WIDTH(iterate)(struct rd_refine *r, const double *lambdas, _Bool begin)
+void WIDTH(iterate)(struct rd_refine *r, const double *lambdas, unsigned begin)
 {
     iterate_lanes(r, lambdas, begin);
 }

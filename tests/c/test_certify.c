@@ -95,8 +95,8 @@ static void check_found(const struct solved *solved, size_t found)
 }
 
 /* That, and each is between counts when these are taken again: two side by side share other pieces
-   than the eight that made the bracket, so that their rounding, 1e-13, is another one, and they are
-   taken three times as far away. */
+   than the eight that made the bracket, so that their rounding, 1e-13 of lambda, is another one, and
+   they are taken three times as far away and no nearer than twice that. */
 static void check_certified(const struct solved *solved, size_t found)
 {
     const struct rd_certified *modes = &solved->modes;
@@ -104,7 +104,9 @@ static void check_certified(const struct solved *solved, size_t found)
     for (size_t k = 0; k < modes->found; k++) {
         const double lambda = modes->lambda[k];
         const double low = modes->bracket[k], high = modes->bracket[modes->wanted + k];
-        const double ends[] = {lambda + 3 * (low - lambda), lambda + 3 * (high - lambda)};
+        const double least = 2e-13 * fabs(lambda);
+        const double ends[] = {lambda - fmax(3 * (lambda - low), least),
+                               lambda + fmax(3 * (high - lambda), least)};
         double count[2];
         rd_count(&solved->walked.walk, 2, ends, count);
         CHECK(count[0] <= (double)k && count[1] > (double)k);
