@@ -105,7 +105,8 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
-    const struct sweep_pieces all = rd_sweep_pieces(s->chain, run, count, s->extent);
+    const struct sweep_pieces all =
+        rd_sweep_pieces(s->chain, run, count, rd_sweep_waves(s->chain, run, s->extent));
     if (all.level == 0 && !s->chain->inertia) {
         cross_each(s, way, node, count);
         return;

@@ -1,6 +1,9 @@
 /* Which frequencies go side by side. */
 #include "sweep_order.h"
 
+#include <stdbool.h>
+#include <string.h>
+
 /* |inertia|^2 */
 static double key(const struct rd_factors *factors, size_t i)
 {
@@ -28,14 +31,24 @@ void rd_sweep_order(const struct rd_factors *factors, size_t *order)
         }
 }
 
-/* how many of the frequencies x cross a run by pieces of as many elements as the first does */
+/* whether the waves of two continuous runs are the same */
+static bool is_same_rope(const struct rd_chain *chain, int32_t a, int32_t b)
+{
+    const size_t w = chain->width, i = (size_t)a, j = (size_t)b;
+    const double *S = chain->flexibility, *p = chain->inertia;
+    return chain->tension[i] == chain->tension[j] &&
+           memcmp(S + 9 * i, S + 9 * j, 9 * sizeof *S) == 0 &&
+           memcmp(p + w * i, p + w * j, w * sizeof *p) == 0;
+}
+
+/* how many of the frequencies cross a run by as many pieces as the first does */
 static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
-                    const struct sweep_extent *x, size_t count)
+                    const struct sweep_waves *waves, size_t count)
 {
     const size_t n = run->last - run->first;
-    const struct sweep_pieces first = rd_sweep_pieces(chain, run, n, x);
+    const struct sweep_pieces first = rd_sweep_pieces(chain, run, n, waves[0]);
     for (size_t i = 1; i < count; i++) {
-        const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, x + i);
+        const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, waves[i]);
         if (own.level != first.level || own.halvings != first.halvings)
             return i;
     }
@@ -49,8 +62,15 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
     size_t used = factors->count - first < RD_LANES ? factors->count - first : RD_LANES;
     for (size_t lane = 0; lane < used; lane++)
         extent[lane] = rd_sweep_extent(factors, order[first + lane]);
-    for (size_t r = 0; r < runs->count; r++)
-        used = alike(chain, runs->run + r, extent, used);
+    struct sweep_waves waves[RD_LANES];
+    for (size_t r = 0; r < runs->count; r++) {
+        const struct rd_run *run = runs->run + r;
+        const bool known =
+            r > 0 && chain->inertia && is_same_rope(chain, run[-1].element, run->element);
+        for (size_t lane = 0; lane < used && !known; lane++)
+            waves[lane] = rd_sweep_waves(chain, run, extent + lane);
+        used = alike(chain, run, waves, used);
+    }
     for (size_t lane = 0; lane < RD_LANES; lane++)
         index[lane] = order[first + (lane < used ? lane : used - 1)];
     for (size_t lane = used; lane < RD_LANES; lane++)

@@ -23,6 +23,8 @@ static void wavenumbers(double B, double T, double q, double *k2, double *a2)
 
 static double size_of(const double *factor)
 {
+    if (factor[1] == 0.0)
+        return fabs(factor[0]);
     return sqrt(factor[0] * factor[0] + factor[1] * factor[1]);
 }
 
@@ -86,21 +88,11 @@ struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i)
     };
 }
 
-void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
-                    const struct rd_factors *factors, const size_t *index,
-                    const struct sweep_extent *extent, struct sweep_block *block,
-                    struct sweep_way *way)
+/* what follows from the scales and the factors of all lanes */
+static RD_CLONES void fill(const struct rd_chain *chain, cv section, cv tension, cv spring,
+                           cv inertia, struct sweep_block *block, struct sweep_way *way)
 {
     const size_t w = chain->width;
-    cv section, tension, spring, inertia;
-    for (size_t lane = 0; lane < RD_LANES; lane++) {
-        const size_t i = index[lane];
-        double z[RD_WIDTH_MAX];
-        load(factors, lane, i, &section, &tension, &spring, &inertia);
-        characteristic(chain, runs, extent + lane, z);
-        for (size_t c = 0; c < w; c++)
-            block->z[c][lane] = z[c];
-    }
     block->bends = chain->coordinate[w - 1] == RD_BETA;
     way[0].backward = 0;
     way[1].backward = 1;
@@ -118,7 +110,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
     }
     block->spring = spring;
     block->inertia = inertia;
-    if (block->bends)
+    if (block->bends && chain->kind != RD_CONTINUOUS)
         shape_prepare(c_mul(tension, soft), &block->series);
     block->real = 1;
     for (size_t lane = 0; lane < RD_LANES; lane++)
@@ -134,6 +126,24 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
                 way[b].inertia[p] = times(inertia, zz * d);
             }
         }
+}
+
+void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
+                    const struct rd_factors *factors, const size_t *index,
+                    const struct sweep_extent *extent, struct sweep_block *block,
+                    struct sweep_way *way)
+{
+    const size_t w = chain->width;
+    cv section, tension, spring, inertia;
+    for (size_t lane = 0; lane < RD_LANES; lane++) {
+        const size_t i = index[lane];
+        double z[RD_WIDTH_MAX];
+        load(factors, lane, i, &section, &tension, &spring, &inertia);
+        characteristic(chain, runs, extent + lane, z);
+        for (size_t c = 0; c < w; c++)
+            block->z[c][lane] = z[c];
+    }
+    fill(chain, section, tension, spring, inertia, block, way);
 }
 
 /* what the nodes of a run, or its own inertia, add to the stiffness per length of each coordinate, and
@@ -188,8 +198,9 @@ static double run_wavenumber(const struct rd_chain *chain, const struct rd_run *
     return most;
 }
 
-/* radians of the shortest wave over one continuous element */
-static double radians(const struct rd_chain *chain, size_t e, const struct sweep_extent *extent)
+/* of a continuous element, evanescent waves included */
+static double all_wavenumber(const struct rd_chain *chain, size_t e,
+                             const struct sweep_extent *extent)
 {
     struct rd_span span = {
         .width = chain->width,
@@ -200,23 +211,32 @@ static double radians(const struct rd_chain *chain, size_t e, const struct sweep
     };
     for (size_t i = 0; i < chain->width; i++)
         span.load[i] = extent->inertia * chain->inertia[e * chain->width + i];
-    return chain->length[e] * rd_span_wavenumber(&span);
+    return rd_span_wavenumber(&span);
+}
+
+struct sweep_waves rd_sweep_waves(const struct rd_chain *chain, const struct rd_run *run,
+                                  const struct sweep_extent *extent)
+{
+    const size_t e = (size_t)run->element;
+    return (struct sweep_waves){
+        .propagating = run_wavenumber(chain, run, extent),
+        .all = chain->inertia ? all_wavenumber(chain, e, extent) : 0.0,
+    };
 }
 
 struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,
-                                    size_t count, const struct sweep_extent *extent)
+                                    size_t count, struct sweep_waves waves)
 {
     struct sweep_pieces pieces = {.count = count};
     double length = chain->length[run->element];
     if (chain->inertia) {
-        const double whole = radians(chain, (size_t)run->element, extent);
+        const double whole = length * waves.all;
         pieces.halvings = rd_span_halvings(whole, count);
         pieces.count = count << pieces.halvings;
         pieces.radians = whole / (double)((size_t)1 << pieces.halvings);
         length /= (double)((size_t)1 << pieces.halvings);
     }
-    const double k = run_wavenumber(chain, run, extent);
-    while (((size_t)2 << pieces.level) <= pieces.count && 2.0 * length * k <= 1.2) {
+    while (((size_t)2 << pieces.level) <= pieces.count && 2.0 * length * waves.propagating <= 1.2) {
         pieces.level++;
         length *= 2.0;
     }
@@ -229,8 +249,8 @@ size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *e
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         const struct rd_run run = {.element = chain->element[k],
                                    .term = chain->inertia ? RD_NO_NODE : chain->term[k]};
-        const struct sweep_pieces pieces =
-            rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k), extent);
+        const struct sweep_pieces pieces = rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k),
+                                                           rd_sweep_waves(chain, &run, extent));
         steps += (pieces.count >> pieces.level) + 2 * pieces.level;
     }
     return steps;

@@ -36,8 +36,16 @@ struct sweep_pieces {
     double radians;      /* of a continuous first piece */
 };
 
+/* the largest wavenumber of a run, and of a continuous one that with evanescent waves [1/m] */
+struct sweep_waves {
+    double propagating, all;
+};
+
+struct sweep_waves rd_sweep_waves(const struct rd_chain *chain, const struct rd_run *run,
+                                  const struct sweep_extent *extent);
+
 struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,
-                                    size_t count, const struct sweep_extent *extent);
+                                    size_t count, struct sweep_waves waves);
 
 /* steps of a walk through all of the chain, runs by pieces */
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent);
