@@ -255,7 +255,8 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
     direct = [p for p in question.responses if not _at_start(x, p)]
     reactions = len(direct) < len(question.responses)
     pushed = ports(chain, x, component, question.drives)
-    watched = ports(chain, x, component, direct + (_hidden(component, x) if reactions else []))
+    asked = direct + (_hidden(component, x) if reactions else [])
+    watched = pushed if asked == question.drives else ports(chain, x, component, asked)
 
     def solve(part: slice) -> tuple[Complex, Real]:
         value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)

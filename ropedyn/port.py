@@ -145,7 +145,7 @@ def cut(
     if not inside:
         return chain, x
     left = np.searchsorted(x, inside) - 1
-    nodes = np.insert(x, left + 1, inside)
+    nodes = np.sort(np.concatenate([x, inside]))
     # stretches begin where they did, at both ends of an element that is cut, and at new nodes
     old = np.unique(np.concatenate([chain.first, left, left + 1]))
     stretch = np.searchsorted(chain.first, old, side="right") - 1
@@ -155,7 +155,9 @@ def cut(
     around = np.searchsorted(chain.first, left, side="right") - 1
     term = np.concatenate([chain.term[stretch], new_term])[order]
     element = np.append(chain.element, 0)[np.concatenate([stretch, around])][order]
-    pieces = np.flatnonzero(np.concatenate([np.isin(old, left), np.ones(len(left), bool)])[order])
+    is_cut = np.zeros(len(old) + len(left), dtype=np.bool_)
+    is_cut[np.searchsorted(old, left)] = is_cut[len(old) :] = True
+    pieces = np.flatnonzero(is_cut[order])
     first, source = start[order], element[pieces]
     element[pieces] = len(chain.length) + np.arange(len(pieces))
     width = chain.mass.shape[1]
