@@ -206,7 +206,8 @@ class Hinge:
     The node and whatever else stands at the same place (inertia, springs and supports of the
     rotation) are on the left of the hinge; deflection and force pass through. Hinges at one place
     are springs in series. The rope's damping of springs damps this one too. Where a hinge moves,
-    the inertia of tensed elements is lumped to second order; held by a `Support`, to fourth.
+    the inertia of tensed elements is lumped to second order, to first where the rope has rotary
+    inertia; held by a `Support`, to fourth. Continuous spans lump nothing.
 
     Parameters
     ----------
