@@ -17,27 +17,29 @@ struct beam_slice {
     cv Dzz, Dzb, Dbz, Dbb, Gzz, Gzb, Gbb, Qzz, Qzb, Qbb;
 };
 
-/* S_0 - 1 and S_1 .. S_5 */
+/* S_0 - 1 = theta S_2 + kappa S_4, S_1 = 1 + theta S_3 + kappa S_5, and S_2 .. S_5 summed */
 RD_INLINE void beam_series(cv theta, cv kappa, int terms, cv *S)
 {
     cv before = c_zero(), g = c_real(1.0);
-    double part = 1.0; /* 1/(2 n)! */
-    for (int k = 0; k < 6; k++) {
-        S[k] = c_real(k == 0 ? 0.0 : part);
-        part /= (double)(k + 1);
-    }
-    part = 1.0;
-    for (int n = 1; n <= terms; n++) {
+    double first = 0.5; /* 1/(2 n + 2)! */
+    for (int k = 2; k < 6; k++)
+        S[k] = c_zero();
+    for (int n = 0;; n++) {
+        double part = first;
+        for (int k = 2; k < 6; k++) {
+            S[k] = c_add(S[k], c_scale(g, part));
+            part /= (double)(2 * n + k + 1);
+        }
+        if (n == terms)
+            break;
         const cv next = c_add(c_mul(theta, g), c_mul(kappa, before));
         before = g;
         g = next;
-        part /= (double)((2 * n - 1) * (2 * n));
-        double each = part;
-        for (int k = 0; k < 6; k++) {
-            S[k] = c_add(S[k], c_scale(g, each));
-            each /= (double)(2 * n + k + 1);
-        }
+        first /= (double)((2 * n + 3) * (2 * n + 4));
     }
+    S[0] = c_add(c_mul(theta, S[2]), c_mul(kappa, S[4]));
+    S[1] = c_add(c_mul(theta, S[3]), c_mul(kappa, S[5]));
+    S[1].re += 1.0;
 }
 
 /* terms: of the series in powers of theta and kappa */

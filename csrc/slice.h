@@ -140,7 +140,7 @@ RD_INLINE void slice_fill(const struct rate_matrix *s, double l, int terms, cv D
                           cv Q[W][W])
 {
     if (W == 2 && s->z >= 0)
-        slice_bend(s, l, terms / 2, D, G, Q);
+        slice_bend(s, l, terms / 2 - 1, D, G, Q);
     else
         slice_sum(s, l, terms, D, G, Q);
 }

@@ -156,7 +156,8 @@ def solve_frf(
         solved += len(f)
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
-    value *= (2j * np.pi * f) ** QUANTITIES[quantity]
+    if QUANTITIES[quantity] > 0:
+        value *= (2j * np.pi * f) ** QUANTITIES[quantity]
     if not several:
         value, error = value[0], error[0]
     mesh: Mesh | Callable[[], Mesh]
