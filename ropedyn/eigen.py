@@ -32,6 +32,9 @@ LARGEST_DENSE = 8_000
 HIGHEST = 1e100
 """Of eigenvalues that are counted [rad^2/s^2], so that their products do not overflow."""
 
+UNSEEN = 1e-8
+"""Of the largest component of a shape: less at all points is rounding at nodes of the mode."""
+
 Real = NDArray[np.float64]
 
 
@@ -192,7 +195,7 @@ def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
     if model.element != "continuous":
         return
     for component in model.components:
-        steps = _steps(model.chain.only(component), eigenvalue)
+        steps = _steps(model.chain.only(component), min(eigenvalue, HIGHEST))
         if steps > MOST_STEPS:
             raise SolveError(
                 f"below is too high: ({', '.join(component)}) has {steps} pieces shorter than its "
@@ -333,10 +336,20 @@ def _between(x: Real, points: int) -> Real:
     return np.append((x[:-1, None] + parts).ravel(), x[-1])
 
 
+def _most_pieces(model: Model, eigenvalue: Real) -> int:
+    """Return how many pieces shorter than the waves of the highest mode an element has at most.
+
+    Elements differ in nothing but their length: the longest one has the most.
+    """
+    highest = float(np.abs(eigenvalue).max(initial=0.0))
+    longest = int(np.diff(model.x).argmax())
+    element = model.chain.between(longest, longest + 1)
+    return max((_steps(element.only(c), highest) for c in model.components), default=1)
+
+
 def _points_for(model: Model, eigenvalue: Real) -> int:
     """Return how many parts of each element show the highest mode."""
-    highest = float(np.abs(eigenvalue).max(initial=0.0))
-    pieces = max((_steps(model.chain.only(c), highest) for c in model.components), default=1)
+    pieces = _most_pieces(model, eigenvalue)
     return min(max(32, 8 * pieces), MOST_POINTS)
 
 
@@ -345,14 +358,15 @@ def _later_within(
 ) -> Vectors:
     """Solve continuous spans once more, with shapes inside them.
 
-    Energies want elements below their own resonance, so there may be more of them than points.
+    Energies want elements below their own resonance, and a mode may have its nodes at all points,
+    so there may be more elements than points. A mode that the points show nothing of is as large as
+    its largest component elsewhere is 1.
     """
-    highest = float(np.abs(eigenvalue).max(initial=0.0))
-    pieces = max((_steps(model.chain.only(c), highest) for c in model.components), default=1)
-    more = -(-pieces // points)
+    more = -(-_points_for(model, eigenvalue) // points)
     vectors = _later(finer(model, points * more), "sweep", number, limit)
     own = np.array([FAMILY[c] for c in model.coordinates])
     size = _largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))
+    size = np.where(np.abs(size) < UNSEEN, 1.0, size)
     return replace(
         vectors,
         shape=vectors.shape[:, ::more] / size[:, None, None],

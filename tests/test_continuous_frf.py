@@ -315,3 +315,10 @@ def test_most_random_lines_have_an_answer(sample):
     # seven of eight at least: the sample is one of answers, not of refusals
     assert len(sample) >= LINES * 7 / 8
     assert sum(at_drive for *_, at_drive in sample) >= LINES / 4
+
+
+@pytest.mark.parametrize("ends", [("clamped", "clamped"), ("free", "free")])
+def test_cost_counts_the_lines_of_a_rope_without_nodes_that_move(ends):
+    model = rd.Scene(BEAM, tension=100.0, ends=ends).compile()
+    cost = model.frf([10.0, 20.0, 30.0], drive=("z", 0.4)).cost
+    assert (cost.elements, cost.factorisations) == (1, 3)

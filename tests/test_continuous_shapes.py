@@ -163,3 +163,28 @@ def test_shapes_that_nobody_sized_show_the_highest_mode():
     z = some.shape[-1, :, 0]
     zeros = np.flatnonzero(z[1:] * z[:-1] < 0)
     assert np.diff(zeros).min() >= 8
+
+
+def test_many_parts_do_not_make_each_span_longer():
+    """Shapes are given at as many points as the waves in a span ask for, not those in the rope."""
+    x = np.linspace(0.0, L, 402)[1:-1]
+    scene = rd.Scene(
+        rd.Rope(L, 0.1), tension=100.0, parts=[rd.PointMass(float(at), 1e-3) for at in x]
+    )
+    modes = scene.compile().modes(3)
+    assert len(modes.x) == 401 * 32 + 1
+
+
+@pytest.mark.parametrize("points", [1, 2, 3])
+def test_a_mode_with_nodes_at_all_points_keeps_a_finite_size(points):
+    """Of a pinned string-like beam sin(k pi x/L) vanishes at the points where k is a multiple."""
+    scene = rd.Scene(BEAM, tension=T, ends=("pinned", "pinned"))
+    modes = scene.compile().modes(4, points=points)
+    unseen = [(k + 1) % points == 0 for k in range(4)]
+    largest = np.abs(modes.shape[:, :, 0]).max(axis=1)
+    # nodes are exact to rounding: a few EPS of 1, times the wave number
+    assert (largest[unseen] < 100 * EPS).all()
+    assert (largest[~np.array(unseen)] == 1.0).all()
+    # 1 is at one of 8 points to a half wave: the largest of sin is within cos(pi/16) of it
+    within = 1 / math.cos(math.pi / 16) ** 2 - 1
+    np.testing.assert_allclose(modes.modal_mass[unseen], MU * L / 2, rtol=within)

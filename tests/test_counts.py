@@ -203,3 +203,11 @@ def test_no_more_modes_are_counted_than_exist(element):
     # far above the spectrum node terms leave no digit of the elements
     model = beam(9, tension=300.0, rotary=False).compile(elements=9, element=element)
     assert {model.count(below=10.0**k) for k in (9, 12, 13, 14, 20, 60, 100, 300)} == {8}
+
+
+@pytest.mark.parametrize("below", [1e60, 1e149, 1e300])
+def test_more_half_waves_than_can_be_walked_are_refused_at_once(below):
+    """As many pieces as no whole number of the machine counts; the limit goes as their square."""
+    model = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=2.0), tension=10.0).compile()
+    with pytest.raises(rd.SolveError, match="below is too high"):
+        model.count(below=below)
