@@ -55,7 +55,7 @@ class Triples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A chain of nodes and elements; plain data that pickles.
+    """A chain of nodes and elements, or of continuous spans; plain data that pickles.
 
     Made by `Scene.compile`.
 

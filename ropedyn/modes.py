@@ -63,7 +63,7 @@ class Modes(Answer):
     coordinates : tuple of str
         Of every node.
     x : ndarray, shape (nodes,)
-        [m].
+        Where shapes are given [m]: at the nodes, of continuous spans also at points within.
     frequency : ndarray, shape (k,)
         [Hz]; 0 for rigid-body motion and where motion grows.
     eigenvalue : ndarray, shape (k,)
@@ -91,9 +91,11 @@ class Modes(Answer):
         "transverse", "bending rotation", "torsional" or "axial": the coordinate with the most
         kinetic energy.
     modal_mass : ndarray, shape (k,)
-        shape^T M shape [kg, kg m^2].
+        shape^T M shape, of continuous spans its integral [kg, kg m^2]: of the shape as it is given,
+        so that shape^2/modal_mass at a place does not depend on the other points.
     shape : ndarray, shape (k, nodes, coordinates)
-        The largest component of the family's own coordinate is 1 [m, rad].
+        The largest component of the family's own coordinate at `x` is 1 [m, rad]; where a mode has
+        its nodes at all of them, that elsewhere.
     energy : dict of ndarray, shape (k,)
         Fractions: strain "bending", "twist", "stretch", "lay", "tension", "spring" as far as the
         scene has them, sum 1 (all 0 for rigid-body motion); kinetic "x", "z", "alpha", "beta" of
