@@ -9,7 +9,7 @@ PyObject *py_assemble(PyObject *module, PyObject *arguments)
     PyObject *object, *array[6] = {NULL}, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "O", &object))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0)
+    if (py_chain_parse(object, &parsed) < 0 || py_chain_is_lumped(&parsed, "assemble") < 0)
         goto done;
     const npy_intp nodes = (npy_intp)parsed.chain.nodes;
     const npy_intp w = (npy_intp)parsed.chain.width;

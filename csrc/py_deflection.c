@@ -12,7 +12,7 @@ PyObject *py_deflection(PyObject *module, PyObject *arguments)
     PyObject *chain, *load, *displacement = NULL, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "OO", &chain, &load))
         return NULL;
-    if (py_chain_parse(chain, &parsed) < 0)
+    if (py_chain_parse(chain, &parsed) < 0 || py_chain_is_lumped(&parsed, "deflection") < 0)
         goto done;
     const npy_intp shape[] = {(npy_intp)parsed.chain.nodes, (npy_intp)parsed.chain.width};
     force = py_array(load, NPY_DOUBLE, 2, shape, "force");

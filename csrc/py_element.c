@@ -52,7 +52,7 @@ PyObject *py_triples(PyObject *module, PyObject *arguments)
     PyObject *object, *F = NULL, *G = NULL, *Q = NULL, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "O", &object))
         return NULL;
-    if (py_chain_view(object, &parsed) < 0)
+    if (py_chain_view(object, &parsed) < 0 || py_chain_is_lumped(&parsed, "triples") < 0)
         goto done;
     const size_t w = parsed.chain.width;
     const npy_intp shape[] = {(npy_intp)parsed.chain.distinct, (npy_intp)w, (npy_intp)w};
@@ -114,8 +114,7 @@ static int check_distance(const struct rd_element *element, double s, const char
     return -1;
 }
 
-/* the triple of one element at many complex factors of its section and its tension */
-/* F, G, Q (count, width, width) of massless elements */
+/* F, G, Q (count, width, width) of a massless element at many factors */
 static enum rd_status massless(const struct rd_chain *chain, size_t e, size_t count,
                                const double _Complex *factor, double _Complex *const *triple)
 {
@@ -202,8 +201,8 @@ PyObject *py_shape(PyObject *module, PyObject *arguments)
     double s;
     if (!PyArg_ParseTuple(arguments, "Ond", &object, &node, &s))
         return NULL;
-    if (py_chain_view(object, &parsed) < 0 || span_at(&parsed.chain, node, &element) < 0 ||
-        check_distance(&element, s, "s") < 0)
+    if (py_chain_view(object, &parsed) < 0 || py_chain_is_lumped(&parsed, "shape") < 0 ||
+        span_at(&parsed.chain, node, &element) < 0 || check_distance(&element, s, "s") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;
     shape = py_new(NPY_DOUBLE, 3, (npy_intp[]){w, 2, w});
@@ -229,8 +228,9 @@ PyObject *py_local(PyObject *module, PyObject *arguments)
     double s, p;
     if (!PyArg_ParseTuple(arguments, "Ondd", &object, &node, &s, &p))
         return NULL;
-    if (py_chain_view(object, &parsed) < 0 || span_at(&parsed.chain, node, &element) < 0 ||
-        check_distance(&element, s, "s") < 0 || check_distance(&element, p, "p") < 0)
+    if (py_chain_view(object, &parsed) < 0 || py_chain_is_lumped(&parsed, "local") < 0 ||
+        span_at(&parsed.chain, node, &element) < 0 || check_distance(&element, s, "s") < 0 ||
+        check_distance(&element, p, "p") < 0)
         goto done;
     const npy_intp w = (npy_intp)element.width;
     local = py_new(NPY_DOUBLE, 2, (npy_intp[]){w, w});

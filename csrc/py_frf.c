@@ -64,7 +64,7 @@ PyObject *py_frf(PyObject *module, PyObject *arguments)
     struct py_response response = {0};
     PyObject *motion = NULL, *result = NULL;
     if (py_response_parse(arguments, PY_FREQUENCY_FIRST, &response) < 0 ||
-        py_chain_expand(&response.parsed) < 0)
+        py_chain_is_lumped(&response.parsed, "frf") < 0 || py_chain_expand(&response.parsed) < 0)
         goto done;
     motion =
         py_new(NPY_DOUBLE, 2, (npy_intp[]){response.count, (npy_intp)response.drives.ports.count});

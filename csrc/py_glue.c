@@ -268,6 +268,15 @@ int py_chain_parse(PyObject *object, struct py_chain *parsed)
     return py_chain_view(object, parsed) < 0 ? -1 : py_chain_expand(parsed);
 }
 
+int py_chain_is_lumped(const struct py_chain *parsed, const char *entry)
+{
+    if (parsed->chain.kind != RD_CONTINUOUS)
+        return 0;
+    PyErr_Format(PyExc_ValueError,
+                 "%s needs inertia lumped at the nodes: continuous elements have their own", entry);
+    return -1;
+}
+
 void py_chain_release(struct py_chain *parsed)
 {
     PyMem_RawFree(parsed->each);

@@ -47,6 +47,10 @@ int py_chain_expand(struct py_chain *parsed);
 int py_chain_parse(PyObject *object, struct py_chain *parsed);
 void py_chain_release(struct py_chain *parsed);
 
+/* For what has a meaning only where inertia is lumped at the nodes: 0, or -1 and ValueError where
+   elements are continuous. */
+int py_chain_is_lumped(const struct py_chain *parsed, const char *entry);
+
 /* ports and the arrays they view, from the tuple (node (count), row (count, 2, width), force (count,
    width) or None) */
 struct py_ports {

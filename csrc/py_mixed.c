@@ -53,7 +53,7 @@ PyObject *py_mixed(PyObject *module, PyObject *arguments)
     struct py_response response = {0};
     PyObject *result = NULL;
     if (py_response_parse(arguments, PY_FREQUENCY_LAST, &response) < 0 ||
-        py_chain_expand(&response.parsed) < 0)
+        py_chain_is_lumped(&response.parsed, "mixed") < 0 || py_chain_expand(&response.parsed) < 0)
         goto done;
     const npy_intp solved = solve_all(module, &response);
     if (solved >= 0)
@@ -72,7 +72,7 @@ PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments)
     PyObject *chain, *object, *displacement = NULL, *force = NULL, *result = NULL;
     if (!PyArg_ParseTuple(arguments, "OO", &chain, &object))
         return NULL;
-    if (py_chain_parse(chain, &parsed) < 0)
+    if (py_chain_parse(chain, &parsed) < 0 || py_chain_is_lumped(&parsed, "mixed_deflection") < 0)
         goto done;
     const npy_intp shape[] = {(npy_intp)parsed.chain.nodes, (npy_intp)parsed.chain.width};
     load = py_array(object, NPY_DOUBLE, 2, shape, "force");

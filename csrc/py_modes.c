@@ -67,7 +67,7 @@ PyObject *py_modes(PyObject *module, PyObject *arguments)
     double below, scale;
     if (!PyArg_ParseTuple(arguments, "Ondd", &object, &wanted, &below, &scale))
         return NULL;
-    if (py_chain_parse(object, &parsed) < 0)
+    if (py_chain_parse(object, &parsed) < 0 || py_chain_is_lumped(&parsed, "modes") < 0)
         goto done;
     if (wanted < 0) {
         PyErr_SetString(PyExc_ValueError, "wanted must be >= 0");
