@@ -484,7 +484,10 @@ static enum rd_status bracket(struct work *work)
         modes->existing = finite;
         return RD_OK;
     }
-    const size_t below = rd_search_top(&work->search, modes->upper);
+    size_t below;
+    status = rd_search_top(&work->search, modes->upper, &below);
+    if (status != RD_OK)
+        return status;
     modes->existing = modes->upper < INFINITY && below < finite ? below : finite;
     if (work->search.wanted > below)
         work->search.wanted = below;

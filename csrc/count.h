@@ -4,11 +4,9 @@
 
 #include "walk.h"
 
-/* pieces of a continuous leg that are walked at most */
-enum { RD_STEPS_MOST = 1 << 24 };
-
 /* counts[i]: negative eigenvalues of K - lambda[i] M; where M is not negative and K positive that is
-   the number of squared angular frequencies below lambda [rad^2/s^2]. For any real lambda.
+   the number of squared angular frequencies below lambda [rad^2/s^2]. For any real lambda; NaN where
+   a span has more pieces shorter than its waves than are walked (span.h), or numbers overflow.
    lambda, counts (count). */
 void rd_count(const struct rd_walk *walk, size_t count, const double *lambda, double *counts);
 

@@ -113,8 +113,8 @@ RD_INLINE void walk_node(struct wave *wave, const struct rd_walk *walk, int32_t 
     node(wave, V);
 }
 
-/* a leg of equal elements, by pieces of 2^k of them, the largest first; false where its waves are
-   too short to be walked */
+/* A leg of equal elements, by pieces of 2^k of them, the largest first; false where they are too
+   many. */
 RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
                          lanes lambda, const lanes *z, const lanes *inverse)
 {
@@ -123,12 +123,12 @@ RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const st
     lanes first[W][W], inner[W][W];
     const int halvings = leg_halvings(walk, leg, lambda);
     const int top = pieces_fill(walk, leg, halvings, lambda, level);
+    if (is_endless(walk, leg, halvings, top))
+        return 0;
     term_scale(walk, leg->first, leg->before, lambda, z, first);
     term_scale(walk, leg->term, leg->element, lambda, z, inner);
     const size_t all = leg->count << halvings;
     size_t left = all;
-    if (left >> top > RD_STEPS_MOST)
-        return 0;
     for (int k = top; k >= 0; k--) {
         if (left >> k == 0)
             continue;

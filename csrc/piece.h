@@ -296,6 +296,14 @@ RD_INLINE int pieces_fill(const struct rd_walk *walk, const struct rd_leg *leg, 
     return top;
 }
 
+/* whether a leg of so many first pieces, 2^top of them joined, is more than is walked; a lumped one
+   is not, which has no pieces but its elements */
+RD_INLINE _Bool is_endless(const struct rd_walk *walk, const struct rd_leg *leg, int halvings,
+                           int top)
+{
+    return leg_is_continuous(walk, leg) && (leg->count << halvings) >> top > RD_PIECES_MOST;
+}
+
 /* halvings of the elements of a leg */
 RD_INLINE int leg_halvings(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda)
 {

@@ -4,6 +4,8 @@
 #include "certify.h"
 #include "count.h"
 
+#include <math.h>
+
 /* fills the walk; the workspace then owns its arrays. 0, or -1 and an exception */
 static int prepare(PyObject *module, const struct rd_chain *chain, struct rd_workspace *workspace,
                    struct rd_walk *walk)
@@ -42,6 +44,12 @@ PyObject *py_count(PyObject *module, PyObject *arguments)
     rd_count(&walk, (size_t)PyArray_SIZE(lambda), PyArray_DATA(lambda),
              PyArray_DATA((PyArrayObject *)counts));
     Py_END_ALLOW_THREADS
+    const double *count = PyArray_DATA((PyArrayObject *)counts);
+    for (npy_intp i = 0; i < PyArray_SIZE(lambda); i++)
+        if (isnan(count[i])) {
+            py_raise(module, RD_SHORT_WAVES);
+            goto done;
+        }
     result = Py_NewRef(counts);
 done:
     PyMem_RawFree(workspace.base);

@@ -19,10 +19,11 @@ static const char *text_of(enum rd_status status)
                "coordinates an inertia or use more elements";
     case RD_NO_CONVERGENCE:
         return "the eigensolver did not converge";
-    case RD_SHORT_WAVES:
-        return "the waves of a mode are too short: more than 1.6e7 pieces of rope, check the units";
     case RD_CLUSTER:
         return "8 modes or more lie within a relative 1e-8 of each other and are not told apart";
+    case RD_SHORT_WAVES:
+        return "a span has more than 10000000 pieces shorter than its waves, or numbers overflow: "
+               "check the units";
     default:
         return "unexpected status of the core";
     }

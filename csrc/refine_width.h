@@ -656,24 +656,26 @@ static _Bool are_equal(const struct rd_leg *a, const struct rd_leg *b)
 
 /* Steps of a leg: single elements where it is short, pieces of 2^k otherwise. Equal spans side by
    side share their pieces. */
-static _Bool plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
+static enum rd_status plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
 {
     const struct rd_leg *leg = r->walk->leg + index;
     const _Bool joined = leg->count >= 4 || leg_is_continuous(r->walk, leg);
     struct piece level[LEVELS];
     const int halvings = leg_halvings(r->walk, leg, lambda);
     const int top = joined ? pieces_fill(r->walk, leg, halvings, lambda, level) : 0;
+    if (is_endless(r->walk, leg, halvings, top))
+        return RD_SHORT_WAVES;
     const _Bool kept = top > 0 || leg_is_continuous(r->walk, leg);
     const struct rd_step *last = r->steps > 0 ? r->step + r->steps - 1 : NULL;
     const _Bool shared = last && last->piece >= 0 && index > 0 && are_equal(leg - 1, leg);
     const int32_t base = shared ? last->piece - last->level : *pieces;
     if (kept && !shared && (size_t)(base + top + 1) > r->pieces)
-        return 0;
+        return RD_NO_MEMORY;
     size_t left = leg->count << halvings, at = 0;
     for (int k = top; k >= 0; k--)
         for (; left >> k > 0; left -= (size_t)1 << k, at += (size_t)1 << k) {
             if (r->steps == r->capacity)
-                return 0;
+                return RD_NO_MEMORY;
             r->step[r->steps++] = (struct rd_step){
                 .at = at,
                 .halvings = halvings,
@@ -686,7 +688,7 @@ static _Bool plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t 
             };
         }
     *pieces += kept && !shared ? top + 1 : 0;
-    return 1;
+    return RD_OK;
 }
 
 enum rd_status WIDTH(plan)(struct rd_refine *r, const double *lambdas)
@@ -698,8 +700,8 @@ enum rd_status WIDTH(plan)(struct rd_refine *r, const double *lambdas)
         most = fmax(most, fabs(lambdas[k]));
     rd_walk_scale(r->walk, most, r->z);
     r->steps = 0;
-    for (size_t i = 0; i < r->walk->legs; i++)
-        if (!plan_leg(r, (int32_t)i, lambda, &pieces))
-            return RD_NO_MEMORY;
-    return RD_OK;
+    enum rd_status status = RD_OK;
+    for (size_t i = 0; i < r->walk->legs && status == RD_OK; i++)
+        status = plan_leg(r, (int32_t)i, lambda, &pieces);
+    return status;
 }

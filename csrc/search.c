@@ -105,7 +105,7 @@ enum rd_status rd_search_bottom(struct rd_search *search, double nearest)
 }
 
 /* In small steps at first, since a count costs what lambda has half waves. */
-size_t rd_search_top(struct rd_search *search, double upper)
+enum rd_status rd_search_top(struct rd_search *search, double upper, size_t *below)
 {
     double lambda[LANES], count[LANES];
     double at = search->size, step = 2.5;
@@ -113,12 +113,14 @@ size_t rd_search_top(struct rd_search *search, double upper)
         for (size_t k = 0; k < LANES; k++, at *= step)
             lambda[k] = fmin(fmin(at, 1e300), upper);
         rd_search_count(search, lambda, count);
-        if (search->lost || count[LANES - 1] >= (double)search->wanted ||
-            lambda[LANES - 1] >= fmin(upper, 1e300))
+        if (search->lost)
+            return RD_SHORT_WAVES;
+        if (count[LANES - 1] >= (double)search->wanted || lambda[LANES - 1] >= fmin(upper, 1e300))
             break;
         step = pass < 4 ? 2.5 : 16;
     }
-    return (size_t)fmax(count[LANES - 1], 0);
+    *below = (size_t)fmax(count[LANES - 1], 0);
+    return RD_OK;
 }
 
 /* part 0..1 of the way from low to high, by ratio where they differ much */

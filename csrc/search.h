@@ -34,8 +34,9 @@ void rd_search_count(struct rd_search *search, const double *lambda, double *cou
    has x^T M x > 0. RD_UNSTABLE_MASSLESS: there is none; RD_SHORT_WAVES: too far to be counted. */
 enum rd_status rd_search_bottom(struct rd_search *search, double nearest);
 
-/* Raises high until all that are wanted are below it or upper, and returns how many are. */
-size_t rd_search_top(struct rd_search *search, double upper);
+/* Raises high until all that are wanted are below it or upper; *below is how many are. RD_SHORT_WAVES:
+   what is to be counted has more pieces than are walked. */
+enum rd_status rd_search_top(struct rd_search *search, double upper, size_t *below);
 
 /* Cuts the brackets of the modes index (n), all lanes at work. */
 void rd_search_cut(struct rd_search *search, size_t n, const size_t *index);

@@ -38,9 +38,9 @@ int rd_span_halvings(double radians, size_t count)
 {
     if (!(radians > REACH))
         return 0;
-    int exponent;
-    frexp(radians / REACH, &exponent); /* radians < REACH 2^exponent */
-    exponent = exponent < RD_HALVINGS_MOST ? exponent : RD_HALVINGS_MOST;
+    int exponent = RD_HALVINGS_MOST;
+    if (radians < REACH * 0x1p60)
+        frexp(radians / REACH, &exponent); /* radians < REACH 2^exponent */
     while (count << exponent >> exponent != count)
         exponent--;
     return exponent;

@@ -25,7 +25,8 @@ double rd_span_wavenumber(const struct rd_span *span);
    RD_HALVINGS_MOST times and so that all pieces can be counted. */
 int rd_span_halvings(double radians, size_t count);
 
-enum { RD_HALVINGS_MOST = 60, RD_SLICE_TERMS = 24 };
+/* RD_PIECES_MOST: of one span that are walked one after another */
+enum { RD_HALVINGS_MOST = 60, RD_SLICE_TERMS = 24, RD_PIECES_MOST = 10000000 };
 
 /* terms of the exponential series of a piece of so many radians, for all digits of all entries */
 int rd_span_terms(double radians);

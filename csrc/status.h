@@ -10,8 +10,8 @@ enum rd_status {
     RD_SINGULAR,              /* a factorisation met an exact zero */
     RD_UNSTABLE_MASSLESS,     /* stiffness is not positive on coordinates without mass */
     RD_NO_CONVERGENCE,        /* an eigensolver gave up */
-    RD_SHORT_WAVES,           /* more pieces of a continuous span than are walked */
     RD_CLUSTER,               /* more modes lie closer together than are told apart */
+    RD_SHORT_WAVES,           /* a span has more pieces shorter than its waves than are walked */
 };
 
 #endif

@@ -1,6 +1,7 @@
 /* Frequency response by one sweep from each end, in scattering form. */
 #include "sweep.h"
 
+#include "span.h"
 #include "sweep_order.h"
 #include "sweep_plan.h"
 
@@ -19,11 +20,27 @@ static int is_planar(const struct sweep *s, size_t lane)
     return s->minors && s->shear * ratio * ratio <= SHEAR_MOST;
 }
 
-/* the frequencies order[first] .. that fit together */
-static void begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
+/* whether one of the spans has more pieces than are walked; the lanes of a block have equally many */
+static int is_endless(const struct sweep *s)
+{
+    int any = 0;
+    for (size_t r = 0; s->chain->inertia && r < s->runs.count; r++) {
+        const struct rd_run *run = s->runs.run + r;
+        const struct sweep_waves waves = rd_sweep_waves(s->chain, run, s->extent);
+        const struct sweep_pieces pieces =
+            rd_sweep_pieces(s->chain, run, run->last - run->first, waves);
+        any |= pieces.count >> pieces.level > RD_PIECES_MOST;
+    }
+    return any;
+}
+
+/* the frequencies order[first] .. that fit together; RD_SHORT_WAVES */
+static enum rd_status begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
 {
     s->used =
         rd_sweep_block_from(s->chain, &s->runs, factors, s->order, first, s->index, s->extent);
+    if (is_endless(s))
+        return RD_SHORT_WAVES;
     rd_sweep_scale(s->chain, &s->runs, factors, s->index, s->extent, &s->block, s->way);
     s->planar = is_planar(s, 0);
     for (size_t lane = 1; lane < s->used; lane++)
@@ -35,6 +52,7 @@ static void begin_block(struct sweep *s, const struct rd_factors *factors, size_
         s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);
     for (size_t e = 0; s->plain && s->planar && e < s->chain->distinct; e++)
         s->kernel->make_plain(s->chain, &s->block, e, s->plain + e * RD_PLAIN);
+    return RD_OK;
 }
 
 /* overflow counts as a resonance too */
@@ -60,7 +78,9 @@ enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_factor
     memset(error, 0, rows * count * sizeof *error);
     rd_sweep_order(factors, s->order);
     for (size_t first = 0; first < count; first += s->used) {
-        begin_block(s, factors, first);
+        const enum rd_status status = begin_block(s, factors, first);
+        if (status != RD_OK)
+            return status;
         rd_sweep_left(s);
         rd_sweep_right(s, count, all, value, error);
     }

@@ -16,6 +16,7 @@
    No stiffness is assembled and nothing grows with a stiffness ratio: the part behind the walk
    is u = U s, f = i (I - U) s, |I - 2U| <= 1, from a free end U = I on.
    RD_NO_MEMORY: the workspace measures too small (base NULL: `used` says what is needed).
+   RD_SHORT_WAVES: a span has more pieces than are walked (span.h).
    RD_SINGULAR: frequency *failed is a resonance to the last digit; it has no response. */
 enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_factors *factors,
                             const struct rd_ports *drives, const struct rd_ports *responses,
