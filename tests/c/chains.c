@@ -49,6 +49,8 @@ static void fill_elements(const struct recipe *recipe, struct rope *rope)
         rope->length[k] = recipe->length;
         rope->tension[k] = recipe->tension;
         rd_section_flexibility(&recipe->section, rope->flexibility + 9 * k);
+        for (size_t a = 0; a < rope->chain.width; a++)
+            rope->inertia[k * rope->chain.width + a] = recipe->inertia[rope->coordinate[a]];
     }
 }
 
@@ -60,7 +62,8 @@ static void fill_terms(const struct recipe *recipe, struct rope *rope)
         const char *held = k == LEFT_END ? recipe->left : k == RIGHT_END ? recipe->right : "";
         for (size_t a = 0; a < w; a++) {
             const double inertia = recipe->inertia[rope->coordinate[a]];
-            rope->mass[k * w * w + a * (w + 1)] = end ? inertia / 2 : inertia;
+            const double lumped = recipe->kind == RD_CONTINUOUS ? 0 : inertia;
+            rope->mass[k * w * w + a * (w + 1)] = end ? lumped / 2 : lumped;
             rope->held[k * w + a] = strchr(held, recipe->coordinates[a]) != NULL;
         }
     }
@@ -77,6 +80,7 @@ struct rope rope_make(const struct recipe *recipe)
         .length = exact_memory(distinct, sizeof *rope.length),
         .tension = exact_memory(distinct, sizeof *rope.tension),
         .flexibility = exact_memory(9 * distinct, sizeof *rope.flexibility),
+        .inertia = exact_memory(w * distinct, sizeof *rope.inertia),
         .element_of = exact_memory(recipe->elements, sizeof *rope.element_of),
         .mass = exact_memory(terms * w * w, sizeof *rope.mass),
         .stiffness = exact_memory(terms * w * w, sizeof *rope.stiffness),
@@ -97,6 +101,7 @@ struct rope rope_make(const struct recipe *recipe)
         .length = rope.length,
         .tension = rope.tension,
         .flexibility = rope.flexibility,
+        .inertia = recipe->kind == RD_CONTINUOUS ? rope.inertia : NULL,
         .first = rope.first,
         .element = rope.element_of,
         .term = rope.term_of,
@@ -123,6 +128,7 @@ void rope_free(struct rope *rope)
     free(rope->length);
     free(rope->tension);
     free(rope->flexibility);
+    free(rope->inertia);
     free(rope->element_of);
     free(rope->mass);
     free(rope->stiffness);

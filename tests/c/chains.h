@@ -17,9 +17,11 @@ struct recipe {
     double length;           /* [m] of one element */
     double tension;          /* [N] */
     struct rd_section section;
-    double inertia[RD_WIDTH_MAX]; /* of an inner node by enum rd_coordinate; ends carry half */
-    const char *left, *right;     /* held coordinates of the ends, "" where free */
-    size_t distinct;              /* copies of the element for the test to change, 0: one */
+    double
+        inertia[RD_WIDTH_MAX]; /* by enum rd_coordinate: of an inner node, ends carry half; or per
+                                     length of continuous elements, whose nodes have none */
+    const char *left, *right;  /* held coordinates of the ends, "" where free */
+    size_t distinct;           /* copies of the element for the test to change, 0: one */
     size_t more;
 };
 
@@ -30,6 +32,7 @@ struct rope {
     double *length;
     double *tension;
     double *flexibility;
+    double *inertia;
     int32_t *element_of;
     double *mass;
     double *stiffness;

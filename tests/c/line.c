@@ -16,7 +16,8 @@ void line_make(struct line *line, enum rd_kind kind, size_t width, size_t elemen
     line->flexibility[8] = width == 2 ? 1.0 / B : 0.0;
     for (size_t i = 0; i <= elements; i++)
         line->term_of[i] = i == 0 ? LEFT : i < elements ? INNER : RIGHT;
-    for (size_t t = 0; t < 5; t++)
+    line->inertia[0] = mu;
+    for (size_t t = 0; t < 5 && kind != RD_CONTINUOUS; t++)
         line->mass[t * width * width] = mu / (double)elements * (t == LEFT || t == RIGHT ? 0.5 : 1);
     for (size_t i = 0; i < width; i++)
         line->held[LEFT * width + i] = line->held[RIGHT * width + i] = i == 0 || hold_beta;
@@ -29,6 +30,7 @@ void line_find(struct line *line)
     chain->length = line->length;
     chain->tension = line->tension;
     chain->flexibility = line->flexibility;
+    chain->inertia = chain->kind == RD_CONTINUOUS ? line->inertia : NULL;
     chain->mass = line->mass;
     chain->stiffness = line->stiffness;
     chain->held = line->held;

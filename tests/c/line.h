@@ -16,6 +16,7 @@ struct line {
     int32_t coordinate[2], first[LINE_NODES], element[LINE_NODES], term[LINE_NODES];
     int32_t term_of[LINE_NODES]; /* the stretches follow from it */
     double length[1], tension[1], flexibility[9];
+    double inertia[2]; /* of continuous elements */
     double mass[5 * 4], stiffness[5 * 4], hinge[5 * 2];
     uint8_t held[5 * 2];
 };

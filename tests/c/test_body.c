@@ -197,6 +197,36 @@ static void pinned_body_turns_about_its_pin(void)
     rope_free(&rope);
 }
 
+/* A bar of mass m: moment m L^2/12 about its middle, in one element as in many, and beside a point of
+   mass n at its end m L^2/12 + m n/(m + n) L^2/4. */
+static void continuous_span_is_a_bar(double point)
+{
+    struct recipe recipe = beam;
+    recipe.kind = RD_CONTINUOUS;
+    recipe.inertia[RD_Z] = 0.2;
+    recipe.inertia[RD_BETA] = 3e-5;
+    for (size_t n = 1; n < 100; n *= 4)
+        for (int gathered = 0; gathered < 2; gathered++) {
+            struct rd_body body;
+            recipe.elements = n;
+            recipe.length = 3.0 / (double)n;
+            struct rope rope = rope_make(&recipe);
+            *of_term(rope.mass, RIGHT_END, 0) = point;
+            if (gathered)
+                rope_gather(&rope);
+            rd_body_find(&rope.chain, &body);
+            const double m = 0.2 * 3, both = m + point;
+            static const char reason[] = "a rounding of positive sums for each of 64 elements";
+            CHECK_REL(body.weight[MASS], both, 64 * EPS, reason);
+            CHECK_REL(body.sum[0][MASS], both, 64 * EPS, reason);
+            CHECK_REL(body.sum[1][MASS], 3e-5 * 3, 64 * EPS, reason);
+            CHECK_REL(body.centre[MASS], (m * 1.5 + point * 3) / both, 128 * EPS, reason);
+            CHECK_REL(body.moment[MASS], m * 9 / 12 + m * (point / both) * 9 / 4, 512 * EPS,
+                      "centres wrong by 64 EPS, as above");
+            rope_free(&rope);
+        }
+}
+
 int main(void)
 {
     stretches_weigh_what_their_nodes_weigh();
@@ -206,5 +236,8 @@ int main(void)
     held_nodes_are_pins_and_carry_no_weight();
     free_body_is_resisted_by_its_masses_alone();
     pinned_body_turns_about_its_pin();
+    continuous_span_is_a_bar(0);
+    continuous_span_is_a_bar(0.3);
+    continuous_span_is_a_bar(1e9);
     return check_report("test_body");
 }

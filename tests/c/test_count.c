@@ -243,6 +243,107 @@ static void no_lambda_is_no_count(void)
     rope_free(&rope);
 }
 
+/* Pinned, with rotary inertia: lambda_k = (B p^4 + T p^2)/(mu + j p^2), p = k pi/L; held rods and
+   strings, lambda_k = (stiffness/inertia) p^2. On both sides of each, whatever the span is cut into. */
+static void continuous_span_is_counted_as_its_closed_form(const char *names, double tension)
+{
+    static const size_t mode[] = {1, 2, 3, 17, 100, 1000};
+    enum { MODES = sizeof mode / sizeof *mode };
+    const double L = 1.5, B = 54.626, mu = 0.1, j = 3e-5;
+    const double stiffness = *names == 'z' ? tension : *names == 'x' ? 8.5e5 : 0.1485;
+    double lambda[2 * MODES], count[2 * MODES];
+    for (int k = 0; k < MODES; k++) {
+        const double p = (double)mode[k] * PI / L;
+        const double exact = names[1] ? p * p * (B * p * p + tension) / (mu + j * p * p)
+                                      : stiffness / (*names == 'a' ? 2e-6 : mu) * p * p;
+        /* 2000 pieces of about 64 EPS each; measured 1e-14 */
+        lambda[2 * k] = exact * (1 - 1e-11);
+        lambda[2 * k + 1] = exact * (1 + 1e-11);
+    }
+    static const size_t elements[] = {1, 2, 7};
+    for (int n = 0; n < 3; n++)
+        for (int gathered = 0; gathered < 2; gathered++) {
+            const struct recipe recipe = {
+                .kind = RD_CONTINUOUS,
+                .elements = elements[n],
+                .coordinates = names,
+                .length = L / (double)elements[n],
+                .tension = tension,
+                .section = {.axial = 8.5e5, .torsion = 0.1485, .bending = B},
+                .inertia = {mu, mu, 2e-6, j},
+                .left = names[1] ? "z" : names,
+                .right = names[1] ? "z" : names,
+            };
+            struct rope rope = rope_make(&recipe);
+            if (gathered)
+                rope_gather(&rope);
+            struct walked walked = walked_make(&rope.chain);
+            rd_count(&walked.walk, 2 * MODES, lambda, count);
+            for (int k = 0; k < MODES; k++) {
+                CHECK_EXACT(count[2 * k], (double)(mode[k] - 1));
+                CHECK_EXACT(count[2 * k + 1], (double)mode[k]);
+            }
+            walked_free(&walked);
+            rope_free(&rope);
+        }
+}
+
+/* A clamped span hinged freely at both ends is a pinned one. */
+static void continuous_span_is_hinged_as_a_pinned_one(void)
+{
+    const double B = 54.626, p = 3 * PI / 1.5, lambda = B * p * p * p * p / 0.1;
+    const double ends[] = {lambda * (1 - 1e-11), lambda * (1 + 1e-11)};
+    double hinge[4 * 2] = {0}, count[2];
+    const struct recipe recipe = {
+        .kind = RD_CONTINUOUS,
+        .elements = 2,
+        .coordinates = "zb",
+        .length = 0.75,
+        .section = {.bending = B},
+        .inertia = {[RD_Z] = 0.1},
+        .left = "zb",
+        .right = "z",
+        .more = 1,
+    };
+    struct rope rope = rope_make(&recipe);
+    hinge[LEFT_END * 2 + 1] = INFINITY;
+    rope.chain.hinge = hinge;
+    struct walked walked = walked_make(&rope.chain);
+    rd_count(&walked.walk, 2, ends, count);
+    CHECK_EXACT(count[0], 2);
+    CHECK_EXACT(count[1], 3);
+    walked_free(&walked);
+    rope_free(&rope);
+}
+
+/* 1e12 m at a wave of 1 m: no number, and soon */
+static void more_waves_than_are_walked_are_no_count(void)
+{
+    const struct recipe recipe = {
+        .kind = RD_CONTINUOUS,
+        .elements = 1,
+        .coordinates = "z",
+        .length = 1e12,
+        .tension = 1,
+        .inertia = {[RD_Z] = 1},
+        .left = "z",
+        .right = "z",
+    };
+    struct rope rope = rope_make(&recipe);
+    struct walked walked = walked_make(&rope.chain);
+    static const double lambda[] = {0, 1e-24, 1e-20, 40, 1e60, INFINITY};
+    double count;
+    for (int k = 0; k < 6; k++) {
+        rd_count(&walked.walk, 1, lambda + k, &count);
+        if (k < 3)
+            CHECK_EXACT(count, floor(1e12 * sqrt(lambda[k]) / PI));
+        else
+            CHECK(isnan(count));
+    }
+    walked_free(&walked);
+    rope_free(&rope);
+}
+
 int main(void)
 {
     static const enum rd_kind kinds[] = {RD_RIGID, RD_TENSED};
@@ -265,5 +366,13 @@ int main(void)
         loads_above_eulers_are_counted_at_zero(kinds[k]);
     fixed_string_is_counted_as_its_closed_form();
     no_lambda_is_no_count();
+    continuous_span_is_counted_as_its_closed_form("x", 0);
+    continuous_span_is_counted_as_its_closed_form("z", 300);
+    continuous_span_is_counted_as_its_closed_form("a", 0);
+    continuous_span_is_counted_as_its_closed_form("zb", 0);
+    continuous_span_is_counted_as_its_closed_form("zb", 300);
+    continuous_span_is_counted_as_its_closed_form("zb", 3e6);
+    continuous_span_is_hinged_as_a_pinned_one();
+    more_waves_than_are_walked_are_no_count();
     return check_report("test_count");
 }

@@ -258,6 +258,61 @@ static void motion_without_mass_has_no_frequency(void)
     rope_free(&rope);
 }
 
+/* int u^T m u' dx, u linear between the nodes in z: int z z' = l (2 a a' + a b' + b a' + 2 b b')/6 */
+static double carried(const struct rd_chain *chain, const double *u, const double *v)
+{
+    const size_t w = chain->width;
+    double sum = 0;
+    for (size_t i = 0; i + 1 < chain->nodes; i++)
+        for (size_t c = 0; c < w; c++) {
+            const double *a = u + i * w + c, *b = v + i * w + c;
+            sum += chain->length[0] * chain->inertia[c] *
+                   (2 * a[0] * b[0] + a[0] * b[w] + a[w] * b[0] + 2 * a[w] * b[w]) / 6;
+        }
+    return sum;
+}
+
+/* as many as expected, M-orthonormal by the rope's own mass and nowhere bent or twisted */
+static void continuous_span_moves_as_a_bar(const char *names, double tension, const char *left,
+                                           size_t expected)
+{
+    static const size_t elements[] = {1, 2, 30};
+    for (int n = 0; n < 3; n++)
+        for (int gathered = 0; gathered < 2; gathered++) {
+            struct recipe recipe = recipe_of(RD_CONTINUOUS, names, left, "");
+            struct rd_rigid rigid;
+            recipe.tension = tension;
+            recipe.elements = elements[n];
+            recipe.length = 1.2 / (double)elements[n];
+            struct rope rope = rope_make(&recipe);
+            if (gathered)
+                rope_gather(&rope);
+            struct walked walked = walked_make(&rope.chain);
+            const size_t w = rope.chain.width, size = rope.chain.nodes * w;
+            double *u = zeros(W * size);
+            CHECK_INT(rd_rigid_fill(&walked.walk, &rigid), RD_OK);
+            CHECK_INT(rigid.count, expected);
+            for (size_t k = 0; k < rigid.count; k++)
+                rd_rigid_shape(&walked.walk, &rigid, k, u + k * size);
+            for (size_t a = 0; a < rigid.count; a++)
+                for (size_t b = 0; b < rigid.count; b++)
+                    CHECK_ABS(carried(&rope.chain, u + a * size, u + b * size), a == b, 512 * EPS,
+                              "sums over 30 elements, shares of the motions before taken off");
+            const size_t z = rope_find(&rope.chain, 'z'), beta = rope_find(&rope.chain, 'b');
+            for (size_t k = 0; k < rigid.count; k++)
+                for (size_t i = 0; i + 1 < rope.chain.nodes; i++)
+                    for (size_t c = 0; c < w; c++) {
+                        const double *at = u + k * size + i * w;
+                        const bool rises = c == z && beta < w;
+                        CHECK_ABS(at[w + c] - at[c], rises ? recipe.length * at[beta] : 0,
+                                  64 * EPS * (fabs(at[c]) + fabs(at[w + c])), "n F^n of a lever");
+                    }
+            free(u);
+            walked_free(&walked);
+            rope_free(&rope);
+        }
+}
+
 int main(void)
 {
     static const enum rd_kind kinds[] = {RD_RIGID, RD_TENSED};
@@ -275,5 +330,13 @@ int main(void)
     pinned_beam_turns_about_its_pin();
     elastic_hinges_move_along();
     motion_without_mass_has_no_frequency();
+    continuous_span_moves_as_a_bar("z", 300, "", 1);
+    continuous_span_moves_as_a_bar("xa", 300, "", 2);
+    continuous_span_moves_as_a_bar("zb", 0, "", 2);
+    continuous_span_moves_as_a_bar("zb", 0, "z", 1);
+    continuous_span_moves_as_a_bar("zb", 300, "", 1);
+    continuous_span_moves_as_a_bar("xzab", 0, "", 4);
+    continuous_span_moves_as_a_bar("xzab", 300, "x", 2);
+    continuous_span_moves_as_a_bar("xzab", 300, "xza", 0);
     return check_report("test_rigid");
 }

@@ -56,8 +56,33 @@ static void test_pieces_agree_with_nodes(enum rd_kind kind, size_t width, size_t
         CHECK(cabs(h[i] - g[i]) <= error[i] + other[i]);
 }
 
+/* elements with nothing between them are one run, parts end it, however short */
+static void test_continuous_runs(void)
+{
+    struct line line;
+    line_make(&line, RD_CONTINUOUS, 2, 10, 10.0, 1.0, 0.7, 1);
+    line_find(&line);
+    CHECK_INT(line.runs.count, 1);
+    CHECK_INT(line.runs.least, 1);
+    CHECK_INT(line.runs.run[0].first, 0);
+    CHECK_INT(line.runs.run[0].last, 10);
+    CHECK_INT(line.runs.run[0].term, RD_NO_NODE);
+    CHECK_REL(line.runs.mass[0], 0.7, 32 * EPS, "a sum of ten");
+    line.term_of[4] = FIRST;
+    line.mass[FIRST * 4] = 100.0;
+    line.term_of[5] = SECOND;
+    line.hinge[SECOND * 2 + 1] = 1.0;
+    line_find(&line);
+    CHECK_INT(line.runs.count, 3);
+    CHECK_INT(line.runs.run[1].first, 4);
+    CHECK_INT(line.runs.run[1].last, 5);
+    CHECK_REL(line.runs.mass[0], 0.7, 32 * EPS, "the rope's own, whatever stands on it");
+    CHECK(rd_runs_capacity(&line.chain) >= 3);
+}
+
 int main(void)
 {
+    test_continuous_runs();
     test_what_ends_a_run();
     for (size_t n = 20; n < LINE_NODES; n *= 3)
         for (size_t width = 1; width <= 2; width++)

@@ -157,8 +157,61 @@ static void test_failures(void)
     CHECK_INT(line_frf_less(&line, 1, 1, omega, 1, h, error, 1, &failed), RD_NO_MEMORY);
 }
 
+/* sin(k a) sin(k (1 - b))/(T k sin k), k^2 = omega^2 mu/T, a <= b, of any cut */
+static void test_continuous_string(size_t n)
+{
+    const double omega[] = {0.3, 5.0, 40.0, 3000.0};
+    double complex h[4];
+    double error[4];
+    struct line line;
+    line_make(&line, RD_CONTINUOUS, 1, n, 3.0, 0.0, 4.0, 0);
+    line_find(&line);
+    CHECK_INT(line_frf(&line, (int32_t)n / 2, (int32_t)n / 3, omega, 4, h, error), RD_OK);
+    const double a = (double)(n / 3) / (double)n, b = (double)(n / 2) / (double)n;
+    for (size_t i = 0; i < 4; i++) {
+        const double k = omega[i] * sqrt(4.0 / 3.0);
+        const double exact = sin(k * a) * sin(k * (1 - b)) / (3 * k * sin(k));
+        /* the closed form has the argument k to EPS, times the slopes of its sines */
+        CHECK_ABS(creal(h[i]), exact, error[i] + 16 * EPS * k / (3 * k * sin(k) * sin(k)),
+                  "the bound that is reported, and the closed form's own arguments");
+        CHECK(error[i] <= 1e-12 / (3 * sin(k) * sin(k))); /* k dh/dk; measured 1e-14 */
+        CHECK_ABS(cimag(h[i]), 0.0, error[i], "undamped");
+    }
+}
+
+/* static: the middle of a clamped tensed beam, as of tensed elements */
+static void test_continuous_beam_at_rest(void)
+{
+    const double omega[] = {0.0}, xi = 5.0;
+    double complex h;
+    double error;
+    struct line line;
+    line_make(&line, RD_CONTINUOUS, 2, 2, 50.0, 2.0, 1.0, 1);
+    line_find(&line);
+    CHECK_INT(line_frf(&line, 1, 1, omega, 1, &h, &error), RD_OK);
+    CHECK_REL(creal(h), (xi / 4 - tanh(xi / 4)) / (50.0 * xi), 1e-12, "measured 1e-14");
+    CHECK(error < 1e-12 * creal(h));
+}
+
+/* at 1e12 rad/s there are more pieces than are walked; nothing hangs */
+static void test_continuous_string_of_too_many_waves(void)
+{
+    const double omega[] = {1.0, 1e12};
+    double complex h[2];
+    double error[2];
+    struct line line;
+    line_make(&line, RD_CONTINUOUS, 1, 2, 3.0, 0.0, 4.0, 0);
+    line_find(&line);
+    CHECK_INT(line_frf(&line, 1, 1, omega, 2, h, error), RD_SHORT_WAVES);
+    CHECK_INT(line_frf(&line, 1, 1, omega, 1, h, error), RD_OK);
+}
+
 int main(void)
 {
+    for (size_t n = 3; n < 500; n *= 3)
+        test_continuous_string(n);
+    test_continuous_beam_at_rest();
+    test_continuous_string_of_too_many_waves();
     (void)PI;
     test_one_mass_on_a_string();
     for (size_t n = 3; n < 300; n *= 3)

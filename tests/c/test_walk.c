@@ -297,6 +297,77 @@ static void scales_exist_at_any_lambda(const char *coordinates, double tension)
     rope_free(&rope);
 }
 
+static struct recipe continuous_recipe(void)
+{
+    struct recipe recipe = beam;
+    recipe.kind = RD_CONTINUOUS;
+    recipe.inertia[RD_Z] = 0.1;
+    recipe.inertia[RD_BETA] = 3e-5;
+    return recipe;
+}
+
+/* of bare nodes there is nothing in a leg; a part begins another one */
+static void continuous_elements_go_on_across_bare_nodes(void)
+{
+    const struct recipe recipe = continuous_recipe();
+    struct rope rope = rope_make(&recipe);
+    rope.stiffness[4 * HEAVY] = 100;
+    rope.term_of[40] = HEAVY;
+    rope_gather(&rope);
+    struct walked walked = walked_make(&rope.chain);
+    CHECK_INT(walked.walk.legs, 2);
+    check_leg(walked.walk.leg, 0, 40, 0, -1, LEFT_END, RD_NO_TERM);
+    check_leg(walked.walk.leg + 1, 40, 60, 0, 0, HEAVY, RD_NO_TERM);
+    walked_free(&walked);
+    rope_free(&rope);
+}
+
+/* the rope's own mass, no end of eigenvalues, and radians of the shortest wave, a l, where
+   a^2 = h + sqrt(h^2 + lambda mu/B), h = (T + lambda j)/2B; of a hinge there are none */
+static void continuous_walk_knows_its_mass_and_its_waves(void)
+{
+    struct recipe recipe = continuous_recipe();
+    double hinge[5 * 2] = {0};
+    recipe.elements = 3;
+    struct rope rope = rope_make(&recipe);
+    rope.mass[4 * HEAVY] = 7;
+    rope.term_of[1] = HEAVY;
+    hinge[2 * HEAVY + 1] = 0.1;
+    rope.chain.hinge = hinge;
+    struct walked walked = walked_make(&rope.chain);
+    const double L = 3 * 0.0135, lambda = 5e4, B = 54.626;
+    const double h = (300 + lambda * 3e-5) / (2 * B);
+    CHECK_REL(walked.walk.mass[0], 0.1 * L + 7, 8 * EPS, "a sum of four");
+    CHECK_REL(walked.walk.carried[0], 0.1 * L, 8 * EPS, "a sum of three");
+    CHECK_REL(walked.walk.carried[1], 3e-5 * L, 8 * EPS, "a sum of three");
+    CHECK(isinf(rd_walk_ceiling(&walked.walk)));
+    for (size_t r = 0; r < walked.walk.legs; r++) {
+        const struct rd_leg *leg = walked.walk.leg + r;
+        const double radians = rd_walk_radians(&walked.walk, leg, -lambda);
+        if (leg->element >= 2)
+            CHECK_EXACT(radians, 0);
+        else
+            CHECK_REL(radians, 0.0135 * sqrt(h + sqrt(h * h + lambda * 0.1 / B)), 8 * EPS,
+                      "a few operations");
+    }
+    walked_free(&walked);
+    rope_free(&rope);
+}
+
+static void inertia_that_is_none_is_refused(double bad)
+{
+    const struct recipe recipe = continuous_recipe();
+    struct rope rope = rope_make(&recipe);
+    struct rd_walk walk;
+    struct rd_workspace workspace = {0};
+    rope.inertia[3] = bad;
+    rd_walk_fill(&rope.chain, &workspace, &walk);
+    workspace = exact_workspace(workspace.used);
+    CHECK_INT(rd_walk_fill(&rope.chain, &workspace, &walk), RD_NOT_POSITIVE_DEFINITE);
+    free(workspace.base);
+    rope_free(&rope);
+}
+
 int main(void)
 {
     uniform_rope_is_one_leg();
@@ -322,5 +393,9 @@ int main(void)
         scales_exist_at_any_lambda(coordinates[k], 300);
         scales_exist_at_any_lambda(coordinates[k], 1e-3);
     }
+    continuous_elements_go_on_across_bare_nodes();
+    continuous_walk_knows_its_mass_and_its_waves();
+    inertia_that_is_none_is_refused(NAN);
+    inertia_that_is_none_is_refused(INFINITY);
     return check_report("test_walk");
 }
