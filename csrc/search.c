@@ -75,7 +75,7 @@ void rd_search_count(struct rd_search *search, const double *lambda, double *cou
 
 /* Counts at -at, step times deeper in each lane; true where one of them is 0. What is deeper than the
    first of those is not learnt: an M that is not positive has eigenvalues there that are no modes. */
-static bool look_below(struct rd_search *search, double *at, double step)
+static bool look_below(struct rd_search *search, double *at, double step, bool *unknown)
 {
     double lambda[LANES], count[LANES];
     for (size_t k = 0; k < LANES; k++, *at *= step)
@@ -83,7 +83,8 @@ static bool look_below(struct rd_search *search, double *at, double step)
     rd_count(search->walk, LANES, lambda, count);
     search->counts += LANES;
     for (size_t k = 0; k < LANES; k++) {
-        learn_sound(search, lambda[k], count[k]);
+        rd_search_learn(search, lambda[k], count[k]);
+        *unknown = *unknown || isnan(count[k]);
         if (count[k] == 0)
             return true;
     }
@@ -94,14 +95,15 @@ static bool look_below(struct rd_search *search, double *at, double step)
 enum rd_status rd_search_bottom(struct rd_search *search, double nearest)
 {
     double at = nearest;
-    if (look_below(search, &at, 16))
+    bool unknown = false;
+    if (look_below(search, &at, 16, &unknown))
         return RD_OK;
     const double deepest = DEEPEST * fmax(rd_walk_ceiling(search->walk), search->size);
     at = nearest;
-    for (int pass = 0; pass < DEEPER && at < deepest && !search->lost; pass++)
-        if (look_below(search, &at, 2))
+    for (int pass = 0; pass < DEEPER && at < deepest; pass++)
+        if (look_below(search, &at, 2, &unknown))
             return RD_OK;
-    return search->lost ? RD_SHORT_WAVES : RD_UNSTABLE_MASSLESS;
+    return unknown ? RD_SHORT_WAVES : RD_UNSTABLE_MASSLESS;
 }
 
 /* In small steps at first, since a count costs what lambda has half waves. */

@@ -31,7 +31,8 @@ void rd_search_learn(struct rd_search *search, double lambda, double count);
 void rd_search_count(struct rd_search *search, const double *lambda, double *count);
 
 /* Finds a lambda <= -nearest with nothing below: K - lambda M is positive definite there, so that every mode above
-   has x^T M x > 0. RD_UNSTABLE_MASSLESS: there is none; RD_SHORT_WAVES: too far to be counted. */
+   has x^T M x > 0. RD_UNSTABLE_MASSLESS: there is none, RD_SHORT_WAVES: there was what could
+   not be counted. */
 enum rd_status rd_search_bottom(struct rd_search *search, double nearest);
 
 /* Raises high until all that are wanted are below it or upper; *below is how many are. RD_SHORT_WAVES:

@@ -481,6 +481,89 @@ static void both_kinds(enum rd_kind kind)
     buckled_chain_has_negative_eigenvalues(kind, 3.5);
 }
 
+static struct rope span_of(const char *names, size_t elements, double length, double tension,
+                           const char *left, const char *right)
+{
+    const struct recipe recipe = {
+        .kind = RD_CONTINUOUS,
+        .elements = elements,
+        .coordinates = names,
+        .length = length / (double)elements,
+        .tension = tension,
+        .section = {.axial = 8.5e5, .torsion = 0.1485, .bending = 54.626},
+        .inertia = {0.1, 0.1, 2e-6, 3e-5},
+        .left = left,
+        .right = right,
+    };
+    struct rope rope = rope_make(&recipe);
+    rope_gather(&rope);
+    return rope;
+}
+
+/* lambda_k = p^2 (B p^2 + T)/(mu + j p^2), z = sin(p x), beta = p cos(p x), p = k pi/L; without
+   bending p^2 T/mu. There is no end of modes. */
+static void continuous_span_has_the_modes_of_its_closed_form(const char *names, size_t elements)
+{
+    const double L = 1.5, j = names[1] ? 3e-5 : 0, B = names[1] ? 54.626 : 0;
+    struct solved solved;
+    solve(&solved, span_of(names, elements, L, 300, "z", "z"), 12);
+    check_certified(&solved, 12);
+    CHECK_INT(solved.modes.rigid, 0);
+    const size_t w = solved.rope.chain.width;
+    for (size_t k = 0; k < solved.modes.found; k++) {
+        const double p = (double)(k + 1) * PI / L;
+        const double exact = p * p * (B * p * p + 300) / (0.1 + j * p * p);
+        const double *u = shape_of(&solved, k);
+        CHECK_ABS(solved.modes.lambda[k], exact, solved.modes.error[k] + 8 * EPS * exact,
+                  "the bound that is reported, and the closed form's own");
+        CHECK(solved.modes.error[k] < 1e-12 * exact);
+        if (w == 1)
+            continue;
+        for (size_t i = 0; i <= elements; i++) {
+            const double x = (double)i / (double)elements * L;
+            CHECK_ABS(u[i * w] * p, u[1] * sin(p * x), 1e-10 * fabs(u[1]),
+                      "1e-13 of the gap in the last step, times the slope at the left end");
+            CHECK_ABS(u[i * w + 1], u[1] * cos(p * x), 1e-10 * fabs(u[1]), "the same");
+        }
+    }
+    solved_free(&solved);
+}
+
+/* cosh(x) cos(x) = -1 of the cantilever, +1 free, where two are rigid: lambda = B (x/L)^4/mu */
+static void continuous_cantilever_and_free_beam_have_their_classical_modes(void)
+{
+    for (size_t rigid = 0; rigid <= 2; rigid += 2) {
+        struct solved solved;
+        struct rope rope = span_of("zb", 3, 1.5, 0, rigid ? "" : "zb", "");
+        rope.inertia[1] = 0;
+        solve(&solved, rope, 8);
+        check_certified(&solved, 8);
+        CHECK_INT(solved.modes.rigid, rigid);
+        for (size_t k = rigid; k < solved.modes.found; k++) {
+            double x = ((double)(k - rigid) + (rigid ? 1.5 : 0.5)) * PI;
+            for (int i = 0; i < 20; i++) {
+                const double f = cos(x) - (rigid ? 1 : -1) / cosh(x);
+                x += f / (sin(x) - (rigid ? 1 : -1) * tanh(x) / cosh(x));
+            }
+            const double k4 = pow(x / 1.5, 4);
+            CHECK_ABS(solved.modes.lambda[k], 54.626 * k4 / 0.1,
+                      solved.modes.error[k] + 64 * EPS * 546.26 * k4,
+                      "the bound that is reported, and four times the root's own");
+        }
+        solved_free(&solved);
+    }
+}
+
+/* a rope that is stiffened by 1e25 boundary layers has no mode that could be walked to */
+static void more_waves_than_are_walked_have_no_modes(void)
+{
+    struct solved solved;
+    solve(&solved, span_of("zb", 2, 1e12, 1e40, "zb", "zb"), 3);
+    CHECK_INT(solved.status, RD_SHORT_WAVES);
+    CHECK_INT(solved.modes.found, 0);
+    solved_free(&solved);
+}
+
 int main(void)
 {
     both_kinds(RD_RIGID);
@@ -499,5 +582,11 @@ int main(void)
     eight_modes_in_one_place_are_refused_by_name();
     negative_stiffness_without_mass_is_refused();
     eigenvalues_do_not_need_shapes();
+    for (size_t elements = 1; elements < 30; elements *= 5) {
+        continuous_span_has_the_modes_of_its_closed_form("z", elements);
+        continuous_span_has_the_modes_of_its_closed_form("zb", elements);
+    }
+    continuous_cantilever_and_free_beam_have_their_classical_modes();
+    more_waves_than_are_walked_have_no_modes();
     return check_report("test_certify");
 }

@@ -37,12 +37,12 @@ static struct recipe recipe_of(const char *names, size_t elements, double tensio
     };
 }
 
-/* Twelve elements of at most 1.2 rad have F, G, Q to some 64 EPS, and their forces divide by G, which
-   is smaller than what is subtracted in it by 1/x^3 at the most, x = p l. */
+/* Elements, x = p l long, have F, G, Q to some 16 EPS, and their forces divide by G, which is smaller
+   than what is subtracted in it by x^3 at the most. */
 static double rounding(double p)
 {
     const double x = p * LENGTH / 12;
-    return 12 * 64 * EPS * (1 + 1 / (x * x * x));
+    return 16 * EPS * (1 + 1 / (x * x * x));
 }
 
 /* u = cos(p x + phase), K p^2 = lambda m: all strain is K p^2 sin^2, all motion m cos^2 */
