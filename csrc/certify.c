@@ -519,7 +519,8 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
 bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, size_t *pieces)
 {
     const bool endless = rd_inertia_is_endless(walk->chain);
-    size_t elements = 0, finer = 0; /* levels below a piece of the rope at rest */
+    size_t finer = 0; /* levels below a piece of the rope at rest */
+    double most = 0;  /* first pieces of the rope at rest */
     for (size_t n = wanted; n > 0; n /= 2)
         finer += LEVELS_PER_DOUBLING;
     *steps = 16 * (wanted + 4);
@@ -528,17 +529,17 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
         const size_t count = walk->leg[r].count;
         const double still = rd_walk_radians(walk, walk->leg + r, 0);
         const bool whole = count < 4 && still == 0 && !endless;
-        size_t levels = endless ? finer + (size_t)rd_span_halvings(still, count) : 0;
+        const int halvings = rd_span_halvings(still, count);
+        size_t levels = (endless ? finer : 0) + (size_t)halvings;
         levels = levels < RD_HALVINGS_MOST ? levels : RD_HALVINGS_MOST;
-        elements += count;
+        most += ldexp((double)count, halvings);
         for (size_t n = count; n > 1; n /= 2)
             levels++;
         *steps += whole ? count : 2 + 2 * levels;
         *pieces += whole ? 0 : levels + 1;
     }
-    if (*steps >= elements && !endless) {
-        *steps = elements;
-        return true;
-    }
-    return false;
+    if (endless || (double)*steps < most)
+        return false;
+    *steps = (size_t)most;
+    return true;
 }

@@ -28,6 +28,7 @@ SCENE = rd.Scene(
 )
 MODEL = SCENE.compile(elements=8, element="rigid")
 CHAIN = MODEL.chain  # 9 nodes, width 3
+SPAN = SCENE.compile().chain  # continuous, 4 nodes, width 3
 FIELDS = tuple(f for f in CHAIN._fields[1:] if getattr(CHAIN, f) is not None)
 NODES, WIDTH = 9, 3
 FACTOR = np.array([[1, 1, 1, -1.0 + 0j], [1, 1, 1, -400.0]])
@@ -54,10 +55,29 @@ ENTRIES = {
     "triple": lambda chain: _core.triple(chain, 0, FACTOR.T.copy()),
     "energy": lambda chain: _core.energy(chain, SHAPES, np.array([1e4, 1e6])),
 }
+# those that have a meaning for continuous chains
+SPANS = {
+    "count": ENTRIES["count"],
+    "certify": ENTRIES["certify"],
+    "sweep": ENTRIES["sweep"],
+    "steps": ENTRIES["steps"],
+    "triple": ENTRIES["triple"],
+    # below the first resonance of each element as a cantilever
+    "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
+}
 OTHERS = {
     "section": lambda _: _core.section(1.0, 1.0, 1.0, 0.1, 0.1),
     "invert": lambda _: _core.invert(MATRIX),
 }
+
+
+# entry points and the chains that they are tried with
+TRIED = [(name, CHAIN) for name in ENTRIES] + [(name, SPAN) for name in SPANS]
+TRIED_IDS = [f"{name}-{'continuous' if chain is SPAN else 'lumped'}" for name, chain in TRIED]
+
+
+def call_of(entry, chain):
+    return (SPANS if chain is SPAN else ENTRIES | OTHERS)[entry]
 
 
 def flat(answer):
@@ -67,14 +87,14 @@ def flat(answer):
     return [np.asarray(answer).tobytes()]
 
 
-def swapped(name, change):
-    return CHAIN._replace(**{name: change(getattr(CHAIN, name))})
+def swapped(name, change, chain=CHAIN):
+    return chain._replace(**{name: change(getattr(chain, name))})
 
 
-def put(name, value, at=0):
-    array = np.array(getattr(CHAIN, name))
+def put(name, value, at=0, chain=CHAIN):
+    array = np.array(getattr(chain, name))
     array.flat[at] = value
-    return CHAIN._replace(**{name: array})
+    return chain._replace(**{name: array})
 
 
 def test_entries_are_all_of_the_module():
@@ -339,6 +359,74 @@ for what, (chain, error, message) in MALFORMED.items():
     for entry, call in ENTRIES.items():
         REFUSED[f"{what}-{entry}"] = (lambda c=call, g=given: c(g), error, message)
 
+# malformed continuous chains
+SPOILT = {
+    "inertia missing": (
+        SPAN._replace(inertia=None),
+        ValueError,
+        "continuous elements and no others",
+    ),
+    "inertia of others": (SPAN._replace(kind=2), ValueError, "continuous elements and no others"),
+    "inertia of text": (SPAN._replace(inertia="abc"), (TypeError, ValueError), ""),
+    "inertia a number": (SPAN._replace(inertia=1.0), (TypeError, ValueError), ""),
+    "inertia complex": (swapped("inertia", lambda a: a + 0j, SPAN), TypeError, "cast"),
+    "inertia of objects": (swapped("inertia", lambda a: a.astype(object), SPAN), TypeError, "cast"),
+    "inertia with an axis more": (swapped("inertia", lambda a: a[..., None], SPAN), ValueError, ""),
+    "inertia with an axis less": (swapped("inertia", lambda a: a[0], SPAN), ValueError, ""),
+    "inertia too short": (
+        swapped("inertia", lambda a: a[1:], SPAN),
+        ValueError,
+        "inertia must have 2 entries along axis 0, got 1",
+    ),
+    "inertia too narrow": (
+        swapped("inertia", lambda a: a[:, 1:], SPAN),
+        ValueError,
+        "inertia must have 3 entries along axis 1, got 2",
+    ),
+    "inertia negative": (
+        put("inertia", -1e-300, at=4, chain=SPAN),
+        ValueError,
+        r"inertia\[1, 1\] must be >= 0",
+    ),
+    "inertia of nan": (put("inertia", math.nan, chain=SPAN), ValueError, r"inertia\[0, 0\] must"),
+    # nodes 1 and 2 with the mass of node 1, with the spring, and with the hinge of node 2
+    **{
+        f"{what} inside a stretch": (
+            SPAN._replace(
+                first=np.array([0, 1, 3], np.int32),
+                element=np.array([0, 1], np.int32),
+                term=np.array([0, term, 3], np.int32),
+                **bare,
+            ),
+            ValueError,
+            "nothing may stand inside continuous stretches",
+        )
+        for what, term, bare in (
+            ("mass", 1, {}),
+            ("spring", 2, {"hinge": None}),
+            ("hinge", 2, {"stiffness": SPAN.stiffness * 0}),
+            ("support", 0, {}),
+        )
+    },
+}
+for what, (chain, error, message) in SPOILT.items():
+    for entry, call in SPANS.items():
+        REFUSED[f"continuous: {what}-{entry}"] = (
+            lambda c=call, g=tuple(chain): c(g),
+            error,
+            message,
+        )
+# what reads massless elements
+REFUSED |= {
+    f"continuous-{entry}": (
+        lambda c=call: c(SPAN),
+        ValueError,
+        f"{entry} needs inertia lumped at the nodes",
+    )
+    for entry, call in ENTRIES.items()
+    if entry not in SPANS
+}
+
 # arrays of the right form with numbers that no rope has: answered or refused
 MEANINGLESS = {
     f"{field} {value}-{entry}": lambda c=call, f=field, v=value: c(
@@ -347,6 +435,30 @@ MEANINGLESS = {
     for field in ("length", "tension", "flexibility", "mass", "stiffness")
     for value in (math.nan, math.inf, -math.inf, 0.0, -1.0, 1e308, 5e-324)
     for entry, call in ENTRIES.items()
+}
+# and the same of continuous chains, where waves may be without number
+MEANINGLESS |= {
+    f"continuous {field} {value}-{entry}": lambda c=call, f=field, v=value: c(
+        swapped(f, lambda a: np.full_like(a, v), SPAN)
+    )
+    for field in ("length", "tension", "flexibility", "inertia", "mass", "stiffness", "hinge")
+    for value in (math.nan, math.inf, -math.inf, 0.0, -1.0, 1e50, 1e308, 1e-300, 5e-324)
+    for entry, call in SPANS.items()
+}
+MEANINGLESS |= {
+    f"continuous lambda {value}": lambda v=value: _core.count(SPAN, np.array([v]))
+    for value in (math.nan, math.inf, -math.inf, 1e308, -1e308)
+}
+MEANINGLESS |= {
+    f"continuous factor {value}-{entry}": lambda v=value, e=entry: (
+        _core.sweep(SPAN, np.full((4, 3), v, complex), PORT, PORT)
+        if e == "sweep"
+        else _core.triple(SPAN, 0, np.full((4, 3), v, complex))
+        if e == "triple"
+        else _core.steps(SPAN, np.full((4, 3), v, complex))
+    )
+    for value in (math.nan, math.inf, complex(0, math.nan), 0.0, 1e200)
+    for entry in ("sweep", "steps", "triple")
 }
 MEANINGLESS |= {
     f"modes below {below} with scale {scale}": lambda b=below, s=scale: _core.modes(CHAIN, 0, b, s)
@@ -455,20 +567,24 @@ def unaligned(array):
 LAYOUTS = [other_order, with_gaps, other_bytes, unaligned]
 
 
-@pytest.mark.parametrize("entry", ENTRIES)
+@pytest.mark.parametrize(("entry", "chain"), TRIED, ids=TRIED_IDS)
 @pytest.mark.parametrize("layout", LAYOUTS, ids=lambda layout: layout.__name__)
-def test_layout_of_arrays_in_memory_does_not_matter(layout, entry):
-    laid_out = CHAIN._replace(**{f: layout(getattr(CHAIN, f)) for f in FIELDS})
-    assert flat(ENTRIES[entry](laid_out)) == flat(ENTRIES[entry](CHAIN))
+def test_layout_of_arrays_in_memory_does_not_matter(layout, entry, chain):
+    fields = FIELDS if chain is CHAIN else (*FIELDS, "inertia")
+    laid_out = chain._replace(**{f: layout(getattr(chain, f)) for f in fields})
+    call = call_of(entry, chain)
+    assert flat(call(laid_out)) == flat(call(chain))
 
 
 def test_the_core_leaves_its_arguments_alone():
     def given():
-        return [np.array(a) for a in (*CHAIN, FACTOR, *PORT, FORCE, SHAPES, MATRIX)]
+        return [np.array(a) for a in (*CHAIN, *SPAN, FACTOR, *PORT, FORCE, SHAPES, MATRIX)]
 
     before = given()
     for call in (*ENTRIES.values(), *OTHERS.values()):
         call(CHAIN)
+    for call in SPANS.values():
+        call(SPAN)
     assert flat(tuple(before)) == flat(tuple(given()))
 
 
@@ -480,15 +596,15 @@ import _testcapi
 sys.path.insert(0, {tests!r})
 import test_glue as glue
 
-entry = {entry!r}
-call = (glue.ENTRIES | glue.OTHERS)[entry]
-expected = glue.flat(call(glue.CHAIN))
+chain = glue.{chain}
+call = glue.call_of({entry!r}, chain)
+expected = glue.flat(call(chain))
 
 def failed(start, stop):
     # the allocations from start to stop fail; from start on where stop is 0
     _testcapi.set_nomemory(start, stop)
     try:
-        answer = call(glue.CHAIN)
+        answer = call(chain)
     except MemoryError:
         answer = None
     finally:
@@ -503,7 +619,7 @@ def sweep():
     return once, on
 
 def counts():
-    return [sys.getrefcount(a) for a in (*glue.CHAIN[1:], *glue.PORT, glue.FACTOR, glue.FORCE)]
+    return [sys.getrefcount(a) for a in (*chain[1:], *glue.PORT, glue.FACTOR, glue.FORCE)]
 
 tracemalloc.start()
 once, on = sweep()  # and warm up
@@ -518,10 +634,15 @@ print(sum(once), sum(on), once[-1], on[-1], tracemalloc.get_traced_memory()[0] -
 """
 
 
-@pytest.mark.parametrize("entry", [*ENTRIES, *OTHERS])
-def test_a_failing_allocation_is_a_memory_error_and_leaks_nothing(entry):
+@pytest.mark.parametrize(
+    ("entry", "chain"),
+    [(name, "SPAN" if chain is SPAN else "CHAIN") for name, chain in TRIED]
+    + [(name, "CHAIN") for name in OTHERS],
+)
+def test_a_failing_allocation_is_a_memory_error_and_leaks_nothing(entry, chain):
     pytest.importorskip("_testcapi")
-    done = python(OUT_OF_MEMORY.format(tests=str(Path(__file__).parent), entry=entry), check=False)
+    code = OUT_OF_MEMORY.format(tests=str(Path(__file__).parent), entry=entry, chain=chain)
+    done = python(code, check=False)
     assert done.returncode == 0, done.stderr
     once, on, last_once, last_on, grown = done.stdout.split()
     assert int(once) > 0

@@ -554,6 +554,25 @@ static void continuous_cantilever_and_free_beam_have_their_classical_modes(void)
     }
 }
 
+/* Without inertia of its own a span is a spring, however many boundary layers it has: between two of
+   length a that are clamped outside, xi = a sqrt(T/B), a mass m has lambda = K/m with
+   K = 2 T/(a - 2 tanh(xi/2)/sqrt(T/B)), symmetric, and a rotation without mass none. */
+static void massless_span_is_a_spring(double tension)
+{
+    struct solved solved;
+    struct rope rope = span_of("zb", 2, 3, tension, "zb", "zb");
+    const double r = sqrt(tension / 54.626), mass = 0.7;
+    rope.inertia[0] = rope.inertia[1] = 0;
+    rope.mass[INNER * 4] = mass;
+    solve(&solved, rope, 3);
+    check_certified(&solved, 1);
+    CHECK_INT(solved.modes.existing, 1);
+    const double exact = 2 * tension / (1.5 - 2 * tanh(1.5 * r / 2) / r) / mass;
+    CHECK_ABS(solved.modes.lambda[0], exact, solved.modes.error[0] + 64 * EPS * exact,
+              "the bound that is reported, and tanh(xi/2), which takes at most 3/4 of xi/2 away");
+    solved_free(&solved);
+}
+
 /* a rope that is stiffened by 1e25 boundary layers has no mode that could be walked to */
 static void more_waves_than_are_walked_have_no_modes(void)
 {
@@ -587,6 +606,8 @@ int main(void)
         continuous_span_has_the_modes_of_its_closed_form("zb", elements);
     }
     continuous_cantilever_and_free_beam_have_their_classical_modes();
+    for (double tension = 300; tension < 1e9; tension *= 100)
+        massless_span_is_a_spring(tension);
     more_waves_than_are_walked_have_no_modes();
     return check_report("test_certify");
 }
