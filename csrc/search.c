@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { LANES = RD_LANES, DEEPER = 48, HIGHER = 60, CUTS = 200 };
+enum { LANES = RD_LANES, DEEPER = 48, HIGHER = 60, CUTS = 200, CUTS_EACH = 8 };
 
 /* deeper than this times the stiffest there is, a count is of rounding */
 static const double DEEPEST = 1e8;
@@ -159,7 +159,8 @@ static bool is_open(const struct rd_search *search, size_t i, double narrow)
 /* one mode of each bracket that is open */
 void rd_search_isolate(struct rd_search *search, double narrow)
 {
-    for (int pass = 0; pass < CUTS; pass++) {
+    const size_t passes = CUTS + CUTS_EACH * search->wanted;
+    for (size_t pass = 0; pass < passes; pass++) {
         size_t index[LANES], n = 0;
         for (size_t i = 0; i < search->wanted && n < LANES; i++)
             if (is_open(search, i, narrow) &&

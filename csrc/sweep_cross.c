@@ -13,6 +13,7 @@ void rd_sweep_begin(struct sweep *s)
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++)
             s->state.U[p] = c_real(i == j ? 1.0 : 0.0);
+    memset(s->state.A, 0, sizeof s->state.A);
     memset(s->rows, 0, 2 * s->carried * w * sizeof *s->rows);
     s->state.stretch = 0;
     s->state.absorbed = 0;

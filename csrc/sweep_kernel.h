@@ -66,11 +66,13 @@ static inline bool sweep_is_strut(const struct rd_chain *chain, size_t e)
 /* The part behind the walk: u = U s, f = i (I - U) s, and responses in it as rows over s. */
 struct sweep_state {
     cv U[RD_PAIRS_MAX];
-    size_t stretch; /* of the node ahead */
-    int absorbed;   /* the node ahead is part of U already */
-    size_t rows;    /* of E that are under way */
-    cv *E;          /* (rows, width), inside E_all: a port's row, its companion, .. */
-    cv *E_all;      /* (all carried ports, 2, width) */
+    lanes A
+        [RD_PAIRS_MAX]; /* sizes of what the last step added to: U may be a small difference of it */
+    size_t stretch;     /* of the node ahead */
+    int absorbed;       /* the node ahead is part of U already */
+    size_t rows;        /* of E that are under way */
+    cv *E;              /* (rows, width), inside E_all: a port's row, its companion, .. */
+    cv *E_all;          /* (all carried ports, 2, width) */
 };
 
 /* the largest of some sizes */
@@ -118,7 +120,7 @@ struct sweep_kernel {
     void (*absorb)(const struct sweep_walk *, size_t term, struct sweep_state *);
     void (*open)(const struct sweep_walk *, size_t term, struct sweep_state *);
     void (*listen)(const struct sweep_walk *, const double *motion, const double *force,
-                   const cv *U, cv *row);
+                   const struct sweep_state *, cv *row);
     void (*meet)(const struct sweep_walk *, const double *motion, const double *force,
                  const cv *left, const struct sweep_state *right, size_t rows, cv *value,
                  lanes *error, lanes *singular);

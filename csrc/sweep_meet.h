@@ -3,13 +3,15 @@
 
 /* A response begins: E <- E + motion U + force V,  V = i (I - U), in the walk's coordinates;
    the force is the one on the part to the left of the node, so its sign turns with the walk.
-   Rounding of U moves E by eps of its largest entry in every coordinate, or by eps of the force where
-   U is near I and little is left of I - U, which its companion says. */
+   Rounding of U moves E by eps of its largest entry in every coordinate, by eps of A where U is little
+   of what the last step added, or by eps of the force where it is near I and little is left of I - U:
+   its companion says so. */
 static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motion,
-                                 const double *force, const cv *U, cv *row)
+                                 const double *force, const struct sweep_state *state, cv *row)
 {
+    const cv *U = state->U;
     cv E[W];
-    lanes whole = {0};
+    lanes whole = {0}, added = {0};
     KEEP for (int j = 0; j < W; j++)
         E[j] = c_zero();
     KEEP for (int i = 0; i < W; i++) {
@@ -18,6 +20,8 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
         const double turn = s->way->backward ? -d : d;
         const lanes a = z * (motion ? d * motion[i] : 0.0), b = (force ? turn * force[i] : 0.0) / z;
         whole += l_abs(b);
+        KEEP for (int j = 0; j < W; j++)
+            added += (l_abs(a) + l_abs(b)) * state->A[at(i, j)];
         KEEP for (int j = 0; j < W; j++) {
             const cv u = U[at(i, j)], v = {u.im, (i == j ? 1.0 : 0.0) - u.re};
             E[j] = c_add(E[j], c_add(c_scale_lanes(u, a), c_scale_lanes(v, b)));
@@ -25,8 +29,9 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
     }
     KEEP for (int j = 0; j < W; j++)
         row[j] = c_add(row[j], E[j]);
-    const lanes most = sweep_most(E, W);
-    sweep_disturb(l_select(whole > most, whole, most), W, row + W);
+    lanes most = sweep_most(E, W);
+    most = l_select(whole > most, whole, most);
+    sweep_disturb(l_select(added > most, added, most), W, row + W);
 }
 
 /* the solution where both parts meet, and the sizes its rounding grows with */
@@ -37,9 +42,9 @@ struct K_(meeting) {
     lanes cL[W], cR[W];          /* error of b_L, b_R per eps */
 };
 
-/* H = U_L + U_R - 2 U_R U_L,  |H| = |U_L| + |U_R| + 2 |U_R| |U_L| */
-RD_INLINE void K_(couple)(const struct sweep_walk *s, const cv *UL, const cv *right,
-                          struct K_(meeting) *m)
+/* H = U_L + U_R - 2 U_R U_L,  |H| = |U_L| + |U_R| + 2 |U_R| |U_L| and what U_L, U_R are left of */
+RD_INLINE void K_(couple)(const struct sweep_walk *s, const cv *UL, const cv *AL, const cv *right,
+                          const lanes *AR, struct K_(meeting) *m)
 {
     cv prod[FULL], H[FULL];
     KEEP for (int i = 0; i < W; i++)
@@ -52,6 +57,7 @@ RD_INLINE void K_(couple)(const struct sweep_walk *s, const cv *UL, const cv *ri
             const cv sum = c_add(UL[at(i, j)], UR[at(i, j)]);
             H[i * W + j] = c_sub(sum, c_scale(prod[i * W + j], 2.0));
             lanes size = c_size(UL[at(i, j)]) + c_size(UR[at(i, j)]);
+            size += AL[at(i, j)].re + AR[at(i, j)];
             KEEP for (int k = 0; k < W; k++)
                 size += 2.0 * c_size(UR[at(i, k)]) * c_size(UL[at(k, j)]);
             m->size[i * W + j] = size;
@@ -127,9 +133,9 @@ static RD_CLONES void K_(meet)(const struct sweep_walk *s, const double *motion,
                                const double *force, const cv *left, const struct sweep_state *right,
                                size_t rows, cv *value, lanes *error, lanes *singular)
 {
-    const cv *EL = left + SYM, *ER = right->E_all;
+    const cv *EL = left + 2 * SYM, *ER = right->E_all;
     struct K_(meeting) m;
-    K_(couple)(s, left, right->U, &m);
+    K_(couple)(s, left, left + SYM, right->U, right->A, &m);
     K_(load)(s, motion, force, left, &m);
     *singular = K_(singular)(&m);
     KEEP for (size_t r = 0; r < rows; r++) {

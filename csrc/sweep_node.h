@@ -32,19 +32,22 @@ RD_INLINE void K_(hold)(int e, cv *U, cv *E, size_t rows)
         U[at(i, e)] = c_zero();
 }
 
-static RD_CLONES void K_(hold_all)(const struct rd_chain *chain, size_t t, cv *U, cv *E,
-                                   size_t rows)
+static RD_CLONES void K_(hold_all)(const struct rd_chain *chain, size_t t,
+                                   struct sweep_state *state)
 {
     const uint8_t *held = chain->held + t * W;
     KEEP for (int e = 0; e < W; e++)
-        if (held[e])
-            K_(hold)(e, U, E, rows);
+        if (held[e]) {
+            K_(hold)(e, state->U, state->E, state->rows);
+            KEEP for (int i = 0; i < W; i++)
+                state->A[at(i, e)] = (lanes){0};
+        }
 }
 
 /* A rank-one node term c v v^T: U <- U + U v (i c/(1 - i c v^T U v)) v^T U, E likewise. Stable
    for any c: it tends to holding v^T u. Where v has the one coordinate `own`, its row is
    U_own/(1 - i c v^T U v), without the difference that a heavy mass would leave of it. */
-RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, cv *E, size_t rows)
+RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, lanes *A, cv *E, size_t rows)
 {
     cv Uv[W], q = c_zero();
     lanes most = {0};
@@ -84,6 +87,9 @@ RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, cv *E, size_
     }
     KEEP for (int j = 0; own >= 0 && j < W; j++)
         U[at(own, j)] = kept[j];
+    /* what is left of its rounding */
+    KEEP for (int j = 0; own >= 0 && j < W; j++)
+        A[at(own, j)] *= c_size(j == own ? c_mul(left, left) : left);
 }
 
 /* the only coordinate of a row, or -1 */
@@ -162,8 +168,10 @@ static RD_CLONES void K_(absorb_whole)(const struct sweep_walk *s, const double 
                 sum = c_add(sum, c_mul(state->U[at(i, k)], inverse[k * W + j]));
             U[at(i, j)] = sum;
         }
-    KEEP for (int i = 0; i < SYM; i++)
+    KEEP for (int i = 0; i < SYM; i++) {
         state->U[i] = U[i];
+        state->A[i] = (lanes){0};
+    }
     KEEP for (size_t r = 0; r < state->rows; r++) {
         cv *row = state->E + r * W, old[W];
         KEEP for (int i = 0; i < W; i++)
@@ -213,7 +221,7 @@ static void K_(free_part)(const struct sweep_walk *s, size_t t, const double *gi
 static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sweep_state *state)
 {
     if (s->trait[t] & RD_COUPLED)
-        K_(hold_all)(s->chain, t, state->U, state->E, state->rows);
+        K_(hold_all)(s->chain, t, state);
     KEEP for (int part = 0; part < 2; part++) {
         const double *given = (part ? s->chain->mass : s->chain->stiffness) + t * FULL;
         const cv factor = part ? s->block->inertia : s->block->spring;
@@ -230,8 +238,8 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
             lanes v[W];
             KEEP for (int i = 0; i < W; i++)
                 v[i] = s->block->z[i] * (s->way->sign[i] * row[k][i]);
-            K_(absorb_one)(v, K_(only)(row[k]), c_scale(factor, d[k]), state->U, state->E,
-                           state->rows);
+            K_(absorb_one)(v, K_(only)(row[k]), c_scale(factor, d[k]), state->U, state->A,
+                           state->E, state->rows);
         }
     }
     state->absorbed = 1;

@@ -13,7 +13,7 @@ static const double ROUNDING = 20.0;
 
 static void listen(struct sweep *s, int way, const struct tap *tap)
 {
-    s->kernel->listen(&s->walk[way], tap->motion, tap->force, s->state.U,
+    s->kernel->listen(&s->walk[way], tap->motion, tap->force, &s->state,
                       s->rows + 2 * tap->rank * s->chain->width);
 }
 
@@ -50,7 +50,7 @@ static void weigh(struct sweep *s)
 /* the left parts at the nodes where parts will meet, with the rows carried so far */
 void rd_sweep_left(struct sweep *s)
 {
-    const size_t w = s->chain->width, size = s->sym + 2 * s->carried * w;
+    const size_t w = s->chain->width, size = 2 * s->sym + 2 * s->carried * w;
     size_t c = 0, m = 0, node = 0, run = 0;
     rd_sweep_begin(s);
     weigh(s);
@@ -68,7 +68,9 @@ void rd_sweep_left(struct sweep *s)
         node = stop;
         cv *to = s->record + record * size;
         memcpy(to, s->state.U, s->sym * sizeof *to);
-        memcpy(to + s->sym, s->rows, 2 * s->carried * w * sizeof *to);
+        for (size_t i = 0; i < s->sym; i++)
+            to[s->sym + i] = (cv){s->state.A[i], (lanes){0}};
+        memcpy(to + 2 * s->sym, s->rows, 2 * s->carried * w * sizeof *to);
         while (m < s->meet.count && s->meet.tap[m].node == stop)
             m++;
     }
@@ -113,7 +115,7 @@ static void dislocate(struct sweep *s, const struct tap *tap, size_t before)
 static void meet(struct sweep *s, const struct tap *tap, size_t record, size_t before, size_t count,
                  size_t all, double *value, double *error)
 {
-    const size_t size = s->sym + 2 * s->carried * s->chain->width;
+    const size_t size = 2 * s->sym + 2 * s->carried * s->chain->width;
     const double c = ROUNDING * DBL_EPSILON * sqrt(s->steps);
     lanes singular;
     s->kernel->meet(&s->walk[1], tap->motion, tap->force, s->record + record * size, &s->state,

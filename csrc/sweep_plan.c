@@ -107,7 +107,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
     struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
     size_t *rank = rd_take(workspace, carry->count, sizeof *rank);
     const size_t records = meeting.tap ? rd_taps_nodes(&meeting) : meeting.count;
-    cv *record = take_lanes(workspace, records * (sym + 2 * carry->count * w), sizeof *record);
+    cv *record = take_lanes(workspace, records * 2 * (sym + carry->count * w), sizeof *record);
     cv *rows = take_lanes(workspace, 2 * carry->count * w, sizeof *rows);
     cv *table = take_lanes(workspace, levels_most(chain) * coefs, sizeof *table);
     cv *triple = take_lanes(workspace, 2 * coefs, sizeof *triple);

@@ -29,7 +29,7 @@ struct sweep {
     struct taps carry, meet;
     size_t *rank;           /* (carried) */
     size_t records;         /* different nodes where parts meet */
-    cv *record;             /* (records, sym + 2 carried width) left parts there */
+    cv *record;             /* (records, 2 sym + 2 carried width) left parts there */
     cv *rows;               /* (carried, 2, width) each with its companion */
     cv *table;              /* (levels, coefs) of the pieces of one run */
     cv *triple;             /* (2, coefs) */

@@ -349,4 +349,6 @@ static RD_CLONES void K_(walk_plain)(const struct sweep_walk *s, size_t node, si
     }
     state->stretch = stretch;
     K_(scatter)(s->block, &p, state->U);
+    KEEP for (int i = 0; count > 0 && i < SYM; i++)
+        state->A[i] = (lanes){0};
 }

@@ -16,6 +16,8 @@ static RD_CLONES void K_(walk_pieces)(const struct sweep_walk *s, const cv *piec
         K_(step)(piece, N, U, state->E, state->rows);
     UNROLL for (int i = 0; i < SYM; i++)
         state->U[i] = U[i];
+    KEEP for (int i = 0; count > 0 && i < SYM; i++)
+        state->A[i] = c_size(piece[i]);
 }
 
 /* Count steps from `node` in the direction of the way, over the chain's own elements and nodes. */
@@ -70,4 +72,6 @@ static RD_CLONES void K_(walk)(const struct sweep_walk *s, size_t node, size_t c
     state->stretch = stretch;
     UNROLL for (int i = 0; i < SYM; i++)
         state->U[i] = U[i];
+    KEEP for (int i = 0; count > 0 && i < SYM; i++)
+        state->A[i] = c_size(coef[i]);
 }
