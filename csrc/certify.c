@@ -258,6 +258,21 @@ static enum rd_status refine_cluster(struct work *work, size_t first, size_t n, 
     return RD_OK;
 }
 
+/* how far from a mode it is counted */
+static double reach_of(const struct work *work, size_t i, double width)
+{
+    const struct rd_certified *modes = work->modes;
+    return width * fmax(modes->error[i], DBL_EPSILON * fabs(modes->lambda[i]));
+}
+
+/* Whether counts so near can be of the mode: a value far above its bracket is not one of it, and to
+   count the waves that are there may take long. */
+static bool is_in_reach(const struct work *work, size_t i, double width)
+{
+    const double value = work->modes->lambda[i], apart = reach_of(work, i, width);
+    return value - apart <= work->search.high[i] && value + apart >= work->search.low[i];
+}
+
 /* Counts at lambda -+ width times the error: the modes index (n) are between them, these become their
    brackets, and the error is what was counted. */
 static void certify_some(struct work *work, const size_t *index, size_t n, double width)
@@ -266,7 +281,7 @@ static void certify_some(struct work *work, const size_t *index, size_t n, doubl
     double lambda[LANES], count[LANES];
     for (size_t k = 0; k < LANES; k++) {
         const size_t j = index[k / 2 < n ? k / 2 : n - 1];
-        const double apart = width * fmax(modes->error[j], DBL_EPSILON * fabs(modes->lambda[j]));
+        const double apart = reach_of(work, j, width);
         lambda[k] = modes->lambda[j] + (k % 2 ? apart : -apart);
     }
     rd_count(work->refine->walk, LANES, lambda, count);
@@ -293,7 +308,7 @@ static bool certify(struct work *work, int passes)
     for (int pass = 0; pass < passes; pass++, width *= 8) {
         size_t index[LANES / 2], n = 0;
         for (size_t i = 0; i < work->search.wanted; i++) {
-            if (work->modes->certified[i] == 0)
+            if (work->modes->certified[i] == 0 && is_in_reach(work, i, width))
                 index[n++] = i;
             if (n == LANES / 2) {
                 certify_some(work, index, n, width);
