@@ -174,7 +174,9 @@ def core_certify(model: rd.Model) -> Callable[[], Any]:
 
     def certify() -> None:
         for one in chains:
-            _core.certify(one, NUMBER if one.finite is None else min(NUMBER, one.finite), math.inf, False)
+            _core.certify(
+                one, NUMBER if one.finite is None else min(NUMBER, one.finite), math.inf, False
+            )
 
     return certify
 

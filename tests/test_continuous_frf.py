@@ -321,4 +321,4 @@ def test_most_random_lines_have_an_answer(sample):
 def test_cost_counts_the_lines_of_a_rope_without_nodes_that_move(ends):
     model = rd.Scene(BEAM, tension=100.0, ends=ends).compile()
     cost = model.frf([10.0, 20.0, 30.0], drive=("z", 0.4)).cost
-    assert (cost.elements, cost.factorisations) == (1, 3)
+    assert (cost.elements, cost.sweeps) == (1, 6)
