@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .answer import Answer, axes
+from .answer import Answer, Cost, axes
 from .ask import FRFQuestion, ModesQuestion, Question
 from .chain import KINDS
 from .compile import MOST_ELEMENTS
@@ -90,12 +90,15 @@ class AccuracyCost(Answer):
     def cheapest(self) -> dict[float, int | None]:
         """Row that takes the least time from the scene within each of 1e-3, 1e-6, 1e-9, 1e-12.
 
-        None where no row is within it.
+        None where no row is within it; see `cheapest_within`.
         """
         return {tolerance: self.cheapest_within(tolerance) for tolerance in TOLERANCES}
 
     def cheapest_within(self, tolerance: float) -> int | None:
         """Return the row that takes the least time of those whose true error is within a tolerance.
+
+        Of rows whose time is not told apart from the least, because quartiles overlap, it is the
+        most accurate.
 
         Parameters
         ----------
@@ -111,7 +114,24 @@ class AccuracyCost(Answer):
         enough = np.flatnonzero(self.error <= tolerance)
         if len(enough) == 0:
             return None
-        return int(enough[np.argmin(self.total_seconds[enough])])
+        quickest = enough[np.argmin(self.total_seconds[enough])]
+        soonest = self.compile_seconds + self.lower_quartile
+        latest = self.compile_seconds[quickest] + self.upper_quartile[quickest]
+        tied = enough[soonest[enough] <= latest]
+        # of equal errors the quickest
+        order = np.lexsort((self.total_seconds[tied], self.error[tied]))
+        return int(tied[order[0]])
+
+    @property
+    def cost(self) -> Cost:
+        """What all the trials took together: a pass over each, without the repetitions."""
+        asked = self.refusal == ""
+        return Cost(
+            seconds=float(self.total_seconds[asked].sum()),
+            method="trials",
+            elements=int(self.elements[asked].sum()),
+            unknowns=0,
+        )
 
     def way(self, row: int) -> str:
         """Say in words how a row answers, such as ``tensed, 64, sweep``."""

@@ -53,6 +53,25 @@ class Triples(NamedTuple):
     element: NDArray[np.int32]
 
 
+class NodeTerms(NamedTuple):
+    """What stands at the nodes: inertia, springs to the ground, supports.
+
+    Attributes
+    ----------
+    mass, stiffness : ndarray, shape (terms, width, width)
+        Over the model's coordinates [kg, kg m, kg m^2; N/m, N, N m].
+    held : ndarray of uint8, shape (terms, width)
+        1 where a coordinate cannot move.
+    term : ndarray of int, shape (nodes,)
+        Which of them stands where.
+    """
+
+    mass: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    held: NDArray[np.uint8]
+    term: NDArray[np.int32]
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """A chain of nodes and elements, or of continuous spans; plain data that pickles.
@@ -118,6 +137,12 @@ class Model:
             If the compression is exactly the critical load of one element.
         """
         return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
+
+    @property
+    def node_terms(self) -> NodeTerms:
+        """The distinct node terms."""
+        chain = self.chain
+        return NodeTerms(chain.mass, chain.stiffness, chain.held, chain.term_of)
 
     def stiffness(self) -> sp.csr_array:
         """Assemble the stiffness matrix, tension included.

@@ -386,3 +386,16 @@ def test_ends_of_coordinates_that_the_scene_lacks_are_ignored():
     assert bits(other.compile(elements=3, element="rigid")) == bits(
         string.compile(elements=3, element="rigid")
     )
+
+
+def test_model_shows_what_stands_at_its_nodes():
+    rope = rd.Rope(1.0, 0.1)
+    parts = [rd.PointMass(0.5, 0.2), rd.Spring(0.25, 30.0)]
+    model = rd.Scene(rope, tension=10.0, parts=parts).compile(elements=4)
+    terms = model.node_terms
+    at = terms.term
+    assert len(at) == 5
+    # a quarter of 0.1 kg at each inner node, half of that at the ends
+    np.testing.assert_allclose(terms.mass[at, 0, 0], [0.0125, 0.025, 0.225, 0.025, 0.0125])
+    np.testing.assert_array_equal(terms.stiffness[at, 0, 0], [0, 30, 0, 0, 0])
+    np.testing.assert_array_equal(terms.held[at, 0], [1, 0, 0, 0, 1])
