@@ -357,38 +357,58 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
     }
 }
 
-static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, unsigned begin)
-{
-    const lanes lambda = lanes_load(lambdas);
+/* rates and kernel of the step m, made anew where they are not those of the last one */
+struct made {
+    const struct rd_step *step;
     struct rate rate;
     struct kernel kernel;
-    struct left left;
+};
+
+RD_INLINE void make(const struct rd_refine *r, const struct rd_step *step, lanes lambda,
+                    struct made *made)
+{
+    if (is_alike(made->step, step))
+        return;
+    rate_load(r, step, lambda, &made->rate);
+    kernel_fill(&made->rate, &made->kernel);
+    made->step = step;
+}
+
+/* the coordinates that a node holds, but for the first, where the left part begins with them held */
+RD_INLINE void hold_all(const struct rd_refine *r, size_t m, struct left *left)
+{
+    const uint8_t *held = held_at(r, r->step[m].term);
+    for (int i = 0; m > 0 && i < W; i++)
+        if (held[i])
+            left_hold(left, i);
+}
+
+/* to the right: the left part at every node, in r->receptance, and at the right end */
+RD_INLINE void sweep_right(struct rd_refine *r, lanes lambda, unsigned begin, struct left *left)
+{
+    struct made made = {.step = NULL};
     lanes p[W], d[W];
-    cv s[W], EBt[W][W], Eh[W];
-    const struct rd_step *made = NULL;
-    pieces_change(r, lambda);
     const uint8_t *held = held_at(r, r->step[0].term);
-    memset(&left, 0, sizeof left);
+    memset(left, 0, sizeof *left);
     for (int i = 0; i < W; i++)
-        left.U[i][i].re += !held[i];
+        left->U[i][i].re += !held[i];
     for (size_t m = 0; m < r->steps; m++) {
-        const struct rd_step *step = r->step + m;
-        if (!is_alike(made, step)) {
-            rate_load(r, step, lambda, &rate);
-            kernel_fill(&rate, &kernel);
-            made = step;
-        }
-        load(r, m, &rate, begin, p, d);
-        held = held_at(r, step->term);
-        left_store(&left, r->receptance + m * LEFT);
-        for (int i = 0; m > 0 && i < W; i++)
-            if (held[i])
-                left_hold(&left, i);
-        left_advance(&left, &rate, &kernel, p, d);
+        make(r, r->step + m, lambda, &made);
+        load(r, m, &made.rate, begin, p, d);
+        left_store(left, r->receptance + m * LEFT);
+        hold_all(r, m, left);
+        left_advance(left, &made.rate, &made.kernel, p, d);
     }
+}
+
+/* s, u and f at the right end */
+RD_INLINE void turn_round(struct rd_refine *r, lanes lambda, unsigned begin,
+                          const struct left *left, cv *s, lanes *f)
+{
     const size_t n = r->steps;
     const int32_t last = r->walk->last;
-    made = NULL;
+    struct rate rate;
+    lanes p[W];
     memset(&rate, 0, sizeof rate);
     rate_node(r, last, r->walk->behind, lambda, &rate);
     for (int i = 0; i < W; i++) {
@@ -398,56 +418,64 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
         if (begin)
             p[i] = l_select(lanes_of(begin), fixed_load(n, i), p[i]);
     }
-    end_solve(&left, &rate, held_at(r, last), p, s);
-    lanes f[W];
-    state(&left, s, r->u + n * W, f);
-    for (size_t m = n; m-- > 0;) {
-        const struct rd_step *step = r->step + m;
-        if (!is_alike(made, step)) {
-            rate_load(r, step, lambda, &rate);
-            kernel_fill(&rate, &kernel);
-            made = step;
-        }
-        load(r, m, &rate, begin, p, d);
-        memcpy(r->f + m * W, f, sizeof f);
-        held = held_at(r, step->term);
+    end_solve(left, &rate, held_at(r, last), p, s);
+    state(left, s, r->u + n * W, f);
+}
+
+/* Undoes the holds of a node, last first: s_j -= (U s + g)_j/U_jj with U, g before each. */
+RD_INLINE void release_all(const struct left *left, const uint8_t *held, cv *s)
+{
+    for (int i = W - 1; i >= 0; i--) {
+        if (!held[i])
+            continue;
+        struct left before = *left;
+        for (int j = 0; j < i; j++)
+            if (held[j])
+                left_hold(&before, j);
+        cv x = before.g[i];
+        for (int j = 0; j < W; j++)
+            x = c_add(x, c_mul(before.U[i][j], s[j]));
+        s[i] = c_sub(s[i], c_mul(x, c_invert(before.U[i][i])));
+    }
+}
+
+/* back to the left: u and f of every node and step from s and f at the right end */
+RD_INLINE void sweep_left(struct rd_refine *r, lanes lambda, unsigned begin, cv *s, lanes *f)
+{
+    struct made made = {.step = NULL};
+    struct left left;
+    lanes p[W], d[W];
+    cv EBt[W][W], Eh[W], sa[W];
+    for (size_t m = r->steps; m-- > 0;) {
+        make(r, r->step + m, lambda, &made);
+        load(r, m, &made.rate, begin, p, d);
+        memcpy(r->f + m * W, f, W * sizeof *f);
         left_load(r->receptance + m * LEFT, &left);
         struct left inner = left;
-        for (int i = 0; m > 0 && i < W; i++)
-            if (held[i])
-                left_hold(&inner, i);
-        solve(&kernel, &inner, p, d, EBt, Eh);
-        cv sa[W];
+        hold_all(r, m, &inner);
+        solve(&made.kernel, &inner, p, d, EBt, Eh);
         for (int i = 0; i < W; i++) {
             sa[i] = Eh[i];
             for (int j = 0; j < W; j++)
                 sa[i] = c_add(sa[i], c_mul(EBt[i][j], s[j]));
         }
-        /* undo the holds, last first: s_j -= (U s + g)_j/U_jj with U, g before each */
-        for (int i = W - 1; m > 0 && i >= 0; i--) {
-            if (!held[i])
-                continue;
-            struct left before = left;
-            for (int j = 0; j < i; j++)
-                if (held[j])
-                    left_hold(&before, j);
-            cv x = before.g[i];
-            for (int j = 0; j < W; j++)
-                x = c_add(x, c_mul(before.U[i][j], sa[j]));
-            sa[i] = c_sub(sa[i], c_mul(x, c_invert(before.U[i][i])));
-        }
-        memcpy(s, sa, sizeof s);
+        if (m > 0)
+            release_all(&left, held_at(r, r->step[m].term), sa);
+        memcpy(s, sa, sizeof sa);
         state(&left, s, r->u + m * W, f);
+    }
+}
+
+/* held coordinates exactly 0, the largest of u 1 */
+RD_INLINE void normalise_lanes(struct rd_refine *r)
+{
+    const size_t n = r->steps;
+    for (size_t m = 0; m <= n; m++) {
+        const uint8_t *held = held_at(r, m < n ? r->step[m].term : r->walk->last);
         for (int i = 0; i < W; i++)
             if (held[i])
                 r->u[m * W + (size_t)i] = l_fill(0);
     }
-    held = held_at(r, last);
-    for (int i = 0; i < W; i++)
-        if (held[i])
-            r->u[n * W + (size_t)i] = l_fill(0);
-
-    /* largest value 1 */
     lanes most = l_fill(1e-300);
     for (size_t i = 0; i < (n + 1) * W; i++)
         most = l_select(l_abs(r->u[i]) > most, l_abs(r->u[i]), most);
@@ -456,6 +484,19 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
         r->u[i] *= most;
     for (size_t i = 0; i < n * W; i++)
         r->f[i] *= most;
+}
+
+static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, unsigned begin)
+{
+    const lanes lambda = lanes_load(lambdas);
+    struct left left;
+    cv s[W];
+    lanes f[W];
+    pieces_change(r, lambda);
+    sweep_right(r, lambda, begin, &left);
+    turn_round(r, lambda, begin, &left, s, f);
+    sweep_left(r, lambda, begin, s, f);
+    normalise_lanes(r);
 }
 
 /* residuals of a step at x: node a (W) and piece (W), and M x of both */
