@@ -121,9 +121,10 @@ static enum rd_status refine_singles(struct rd_work *work, size_t first, size_t 
     const enum rd_status status = rd_refine_plan(refine, extreme);
     if (status != RD_OK)
         return status;
-    for (;;) {
-        const unsigned begun = begin_lanes(work, end, &pool);
-        rd_refine_iterate(refine, pool.lambda, begun);
+    for (bool begun = false;; begun = true) {
+        const unsigned fresh = begin_lanes(work, end, &pool);
+        /* lanes without a mode begin too: nothing is read that was not written */
+        rd_refine_iterate(refine, pool.lambda, begun ? fresh : RD_ALL_LANES);
         work->modes->iterations++;
         for (size_t k = 0; k < LANES; k++)
             pool.age[k]++;
