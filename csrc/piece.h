@@ -44,28 +44,9 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
 {
     const struct rd_chain *chain = walk->chain;
     const size_t e = (size_t)leg->element;
-    const double *S = chain->flexibility + 9 * e;
-    const _Bool bends = chain->coordinate[W - 1] == RD_BETA;
-    const lanes step = l_fill(change ? SLICE_STEP : 0);
-    struct rate_matrix rate = {.z = -1, .lever = l_fill(1)};
-    for (int i = 0; i < W; i++) {
-        const _Bool is_z = chain->coordinate[i] == RD_Z;
-        const double p = chain->inertia[e * W + (size_t)i];
-        rate.q[i] = c_make(-lambda * p, -step * p);
-        if (is_z && bends)
-            rate.z = i;
-        for (int j = 0; j < W; j++) {
-            const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
-            const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);
-            double s = is_z || chain->coordinate[j] == RD_Z ? 0 : S[c * RD_CHANNELS + d];
-            if (is_z && i == j && !bends)
-                s = 1 / chain->tension[e];
-            rate.S[i][j] = c_real(s);
-            rate.elastic[i][j] = s != 0;
-        }
-    }
-    if (bends)
-        rate.q[W - 1].re += chain->tension[e];
+    const cv inertia = c_make(-lambda, l_fill(change ? -SLICE_STEP : 0));
+    struct rate_matrix rate;
+    rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, &rate);
     cv D[W][W], G[W][W], Q[W][W];
     const double part = ldexp(1, -halvings);
     const int terms = rd_span_terms(part * rd_walk_radians(walk, leg, largest(lambda)));

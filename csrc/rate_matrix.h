@@ -17,4 +17,8 @@ struct rate_matrix {
     int z;       /* index of z where it bends, beta being the last; else -1 */
 };
 
+/* The rate matrix of distinct element e with S/section, T tension and inertia times the node mass. */
+void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension, cv inertia,
+                  struct rate_matrix *rate);
+
 #endif

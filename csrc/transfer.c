@@ -10,35 +10,6 @@
 
 enum { W = RD_WIDTH_MAX, PACKED = W * W + 2 * RD_PAIRS_MAX };
 
-void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension, cv inertia,
-                  struct rate_matrix *rate)
-{
-    const size_t w = chain->width;
-    const double *S = chain->flexibility + e * RD_CHANNELS * RD_CHANNELS;
-    const bool bends = chain->coordinate[w - 1] == RD_BETA;
-    const cv soft = c_inverse(section);
-    *rate = (struct rate_matrix){.z = -1, .lever = l_fill(1)};
-    for (size_t i = 0; i < w; i++) {
-        const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
-        const bool is_z = chain->coordinate[i] == RD_Z;
-        rate->q[i] = c_scale(inertia, chain->inertia[e * w + i]);
-        rate->z = is_z && bends ? (int)i : rate->z;
-        for (size_t j = 0; j < w; j++) {
-            const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);
-            if (is_z || chain->coordinate[j] == RD_Z)
-                continue;
-            rate->S[i][j] = c_scale(soft, S[c * RD_CHANNELS + d]);
-            rate->elastic[i][j] = S[c * RD_CHANNELS + d] != 0;
-        }
-        if (is_z && !bends) {
-            rate->S[i][i] = c_scale(c_inverse(tension), 1 / chain->tension[e]);
-            rate->elastic[i][i] = 1;
-        }
-    }
-    if (bends)
-        rate->q[w - 1] = c_add(rate->q[w - 1], c_scale(tension, chain->tension[e]));
-}
-
 static double largest(cv x)
 {
     double most = 0;

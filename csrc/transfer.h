@@ -7,10 +7,6 @@
 
 #include <complex.h>
 
-/* The rate matrix of distinct element e with S/section, T tension and inertia times the node mass. */
-void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension, cv inertia,
-                  struct rate_matrix *rate);
-
 /* An element's u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a, each (RD_LANES, width, width). */
 struct rd_transfer {
     double _Complex F[RD_LANES][RD_WIDTH_MAX * RD_WIDTH_MAX];
