@@ -16,6 +16,8 @@ enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED, RD_CONTINUOUS };
 
 enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
 
+enum { RD_NO_TERM = -1 }; /* where nothing stands: between continuous pieces, right of a hinge */
+
 /* Nodes first[k] .. first[k + 1] - 1 are a stretch: the same term and the same element on their
    right. The last node, which has no element on its right, is the last stretch. Where elements are
    continuous nothing stands at the nodes of a stretch of more than one. */

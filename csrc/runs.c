@@ -78,7 +78,7 @@ static size_t find_spans(const struct rd_chain *chain, struct rd_run *run)
         if (count > 0 && run[count - 1].element == e && rd_term_is_bare(chain, chain->term[k]))
             run[count - 1].last = last;
         else
-            run[count++] = (struct rd_run){first, last, e, RD_NO_NODE};
+            run[count++] = (struct rd_run){first, last, e, RD_NO_TERM};
     }
     return count;
 }

@@ -12,10 +12,10 @@
 struct rd_run {
     size_t first, last;
     int32_t element;
-    int32_t term; /* RD_NO_NODE: nothing */
+    int32_t term; /* RD_NO_TERM: nothing */
 };
 
-enum { RD_RUN_LEAST = 8, RD_NO_NODE = -1 };
+enum { RD_RUN_LEAST = 8 };
 
 struct rd_runs {
     size_t count;

@@ -39,7 +39,7 @@ static int turns(const struct sweep *s, int32_t term)
 {
     const size_t w = s->chain->width, at = (size_t)term * w * w;
     int any = 0;
-    if (term == RD_NO_NODE)
+    if (term == RD_NO_TERM)
         return 0;
     for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j < w; j++)

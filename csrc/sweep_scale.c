@@ -155,7 +155,7 @@ static double load_of(const struct rd_chain *chain, const struct rd_run *run,
     double turn = 0.0;
     for (size_t i = 0; chain->inertia && i < w; i++)
         n[i] = chain->inertia[e * w + i] * x->inertia;
-    if (run->term == RD_NO_NODE)
+    if (run->term == RD_NO_TERM)
         return turn;
     const double l = chain->length[e];
     const double *m = chain->mass + (size_t)run->term * w * w;
@@ -248,7 +248,7 @@ size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *e
     size_t steps = 1;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         const struct rd_run run = {.element = chain->element[k],
-                                   .term = chain->inertia ? RD_NO_NODE : chain->term[k]};
+                                   .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
         const struct sweep_pieces pieces = rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k),
                                                            rd_sweep_waves(chain, &run, extent));
         steps += (pieces.count >> pieces.level) + 2 * pieces.level;

@@ -18,8 +18,6 @@ struct rd_leg {
     int32_t term;   /* node term at the inner nodes and, of a continuous leg, inside elements */
 };
 
-enum { RD_NO_TERM = -1 }; /* on the right of a hinge and between continuous pieces */
-
 struct rd_walk {
     const struct rd_chain *chain;
     size_t legs;

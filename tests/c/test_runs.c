@@ -66,7 +66,7 @@ static void test_continuous_runs(void)
     CHECK_INT(line.runs.least, 1);
     CHECK_INT(line.runs.run[0].first, 0);
     CHECK_INT(line.runs.run[0].last, 10);
-    CHECK_INT(line.runs.run[0].term, RD_NO_NODE);
+    CHECK_INT(line.runs.run[0].term, RD_NO_TERM);
     CHECK_REL(line.runs.mass[0], 0.7, 32 * EPS, "a sum of ten");
     line.term_of[4] = FIRST;
     line.mass[FIRST * 4] = 100.0;
