@@ -150,9 +150,17 @@ static void add_stretch(const struct rd_chain *chain, size_t k, const struct sto
     }
 }
 
-enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain)
+double rd_energy_springs(const struct rd_chain *chain, const double *shape)
 {
     const size_t w = chain->width;
+    double energy = 0;
+    for (size_t i = 0; i < chain->nodes; i++)
+        energy += quadratic(w, chain->stiffness + (size_t)chain->term_of[i] * w * w, shape + i * w);
+    return energy;
+}
+
+enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain)
+{
     struct store store;
     memset(strain, 0, RD_STRAINS * sizeof *strain);
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
@@ -161,10 +169,7 @@ enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shap
             return status;
         add_stretch(chain, k, &store, shape, strain);
     }
-    for (size_t i = 0; i < chain->nodes; i++) {
-        const double *spring = chain->stiffness + (size_t)chain->term_of[i] * w * w;
-        strain[RD_STRAIN_SPRING] += quadratic(w, spring, shape + i * w);
-    }
+    strain[RD_STRAIN_SPRING] += rd_energy_springs(chain, shape);
     return RD_OK;
 }
 

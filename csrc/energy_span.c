@@ -169,15 +169,6 @@ static double slope(const struct rd_transfer *t, int lane, size_t w, const doubl
     return sum / STEP;
 }
 
-static double quadratic(size_t n, const double *A, const double *u)
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            sum += u[i] * A[i * n + j] * u[j];
-    return sum;
-}
-
 /* the elements of a stretch */
 static void add_stretch(const struct rope *rope, size_t k, const double *shape, double *strain)
 {
@@ -198,7 +189,6 @@ static void add_stretch(const struct rope *rope, size_t k, const double *shape, 
 enum rd_status rd_energy_span(const struct rd_chain *chain, double lambda, const double *shape,
                               double *strain, double *kinetic)
 {
-    const size_t w = chain->width;
     struct rope rope;
     size_t made = chain->distinct;
     memset(strain, 0, RD_STRAINS * sizeof *strain);
@@ -213,9 +203,6 @@ enum rd_status rd_energy_span(const struct rd_chain *chain, double lambda, const
         }
         add_stretch(&rope, k, shape, strain);
     }
-    for (size_t i = 0; i < chain->nodes; i++) {
-        const double *spring = chain->stiffness + (size_t)chain->term_of[i] * w * w;
-        strain[RD_STRAIN_SPRING] += quadratic(w, spring, shape + i * w);
-    }
+    strain[RD_STRAIN_SPRING] += rd_energy_springs(chain, shape);
     return RD_OK;
 }
