@@ -1,7 +1,6 @@
 /* Frequency response by one sweep from each end, in scattering form. */
 #include "sweep.h"
 
-#include "span.h"
 #include "sweep_order.h"
 #include "sweep_plan.h"
 
@@ -20,26 +19,12 @@ static int is_planar(const struct sweep *s, size_t lane)
     return s->minors && s->shear * ratio * ratio <= SHEAR_MOST;
 }
 
-/* whether one of the spans has more pieces than are walked; the lanes of a block have equally many */
-static int is_endless(const struct sweep *s)
-{
-    int any = 0;
-    for (size_t r = 0; s->chain->inertia && r < s->runs.count; r++) {
-        const struct rd_run *run = s->runs.run + r;
-        const struct sweep_waves waves = rd_sweep_waves(s->chain, run, s->extent);
-        const struct sweep_pieces pieces =
-            rd_sweep_pieces(s->chain, run, run->last - run->first, waves);
-        any |= pieces.count >> pieces.level > RD_PIECES_MOST;
-    }
-    return any;
-}
-
 /* the frequencies order[first] .. that fit together; RD_SHORT_WAVES */
 static enum rd_status begin_block(struct sweep *s, const struct rd_factors *factors, size_t first)
 {
     s->used =
         rd_sweep_block_from(s->chain, &s->runs, factors, s->order, first, s->index, s->extent);
-    if (is_endless(s))
+    if (s->used == 0)
         return RD_SHORT_WAVES;
     rd_sweep_scale(s->chain, &s->runs, factors, s->index, s->extent, &s->block, s->way);
     s->planar = is_planar(s, 0);

@@ -1,6 +1,8 @@
 /* Which frequencies go side by side. */
 #include "sweep_order.h"
 
+#include "span.h"
+
 #include <stdbool.h>
 #include <string.h>
 
@@ -41,12 +43,15 @@ static bool is_same_rope(const struct rd_chain *chain, int32_t a, int32_t b)
            memcmp(p + w * i, p + w * j, w * sizeof *p) == 0;
 }
 
-/* how many of the frequencies cross a run by as many pieces as the first does */
+/* how many of the frequencies cross a run by as many pieces as the first does, 0 where those are more
+   than are walked */
 static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
                     const struct sweep_waves *waves, size_t count)
 {
     const size_t n = run->last - run->first;
     const struct sweep_pieces first = rd_sweep_pieces(chain, run, n, waves[0]);
+    if (chain->inertia && first.count >> first.level > RD_PIECES_MOST)
+        return 0;
     for (size_t i = 1; i < count; i++) {
         const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, waves[i]);
         if (own.level != first.level || own.halvings != first.halvings)
@@ -63,7 +68,7 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
     for (size_t lane = 0; lane < used; lane++)
         extent[lane] = rd_sweep_extent(factors, order[first + lane]);
     struct sweep_waves waves[RD_LANES];
-    for (size_t r = 0; r < runs->count; r++) {
+    for (size_t r = 0; r < runs->count && used > 0; r++) {
         const struct rd_run *run = runs->run + r;
         const bool known =
             r > 0 && chain->inertia && is_same_rope(chain, run[-1].element, run->element);
@@ -71,6 +76,8 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
             waves[lane] = rd_sweep_waves(chain, run, extent + lane);
         used = alike(chain, run, waves, used);
     }
+    if (used == 0)
+        return 0;
     for (size_t lane = 0; lane < RD_LANES; lane++)
         index[lane] = order[first + (lane < used ? lane : used - 1)];
     for (size_t lane = used; lane < RD_LANES; lane++)
