@@ -58,19 +58,14 @@ void rd_search_learn(struct rd_search *search, double lambda, double count)
     }
 }
 
-static void learn_sound(struct rd_search *search, double lambda, double count)
-{
-    search->lost = search->lost || isnan(count);
-    if (!isnan(count))
-        rd_search_learn(search, lambda, count);
-}
-
 void rd_search_count(struct rd_search *search, const double *lambda, double *count)
 {
     rd_count(search->walk, LANES, lambda, count);
     search->counts += LANES;
-    for (size_t k = 0; k < LANES; k++)
-        learn_sound(search, lambda[k], count[k]);
+    for (size_t k = 0; k < LANES; k++) {
+        rd_search_learn(search, lambda[k], count[k]);
+        search->lost = search->lost || isnan(count[k]);
+    }
 }
 
 /* Counts at -at, step times deeper in each lane; true where one of them is 0. What is deeper than the

@@ -24,7 +24,7 @@ struct rd_search {
 void rd_search_begin(const struct rd_walk *walk, size_t wanted, double *bracket,
                      struct rd_search *search);
 
-/* Tightens the brackets by the count at one lambda. */
+/* Tightens the brackets by the count at one lambda; NaN says nothing. */
 void rd_search_learn(struct rd_search *search, double lambda, double count);
 
 /* Counts RD_LANES lambda and tightens all brackets. */
