@@ -11,6 +11,21 @@ enum { LEADING = 3 };
 
 static const double NEGLIGIBLE = 1e-18;
 
+struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section, double tension,
+                          double inertia)
+{
+    struct rd_span span = {
+        .width = chain->width,
+        .coordinate = chain->coordinate,
+        .flexibility = chain->flexibility + e * RD_CHANNELS * RD_CHANNELS,
+        .section = section,
+        .tension = fabs(chain->tension[e]) * tension,
+    };
+    for (size_t i = 0; i < chain->width; i++)
+        span.load[i] = inertia * chain->inertia[e * chain->width + i];
+    return span;
+}
+
 double rd_span_wavenumber(const struct rd_span *span)
 {
     const size_t w = span->width;

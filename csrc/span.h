@@ -14,6 +14,10 @@ struct rd_span {
     double load[RD_WIDTH_MAX]; /* (width) |lambda| times inertia per length [N/m^2, N] */
 };
 
+/* that of distinct continuous element e, with sizes of the factors on sections, tension and inertia */
+struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section, double tension,
+                          double inertia);
+
 /* A bound of the largest wavenumber [1/m], evanescent ones included: with h = (T + lambda j) S_bb/2
 
        a^2 = h + sqrt(h^2 + lambda mu S_bb) + lambda (mu S_aa + p S_tt)

@@ -198,30 +198,16 @@ static double run_wavenumber(const struct rd_chain *chain, const struct rd_run *
     return most;
 }
 
-/* of a continuous element, evanescent waves included */
-static double all_wavenumber(const struct rd_chain *chain, size_t e,
-                             const struct sweep_extent *extent)
-{
-    struct rd_span span = {
-        .width = chain->width,
-        .coordinate = chain->coordinate,
-        .flexibility = chain->flexibility + 9 * e,
-        .section = 1.0 / extent->section,
-        .tension = fabs(chain->tension[e]) * extent->tension,
-    };
-    for (size_t i = 0; i < chain->width; i++)
-        span.load[i] = extent->inertia * chain->inertia[e * chain->width + i];
-    return rd_span_wavenumber(&span);
-}
-
 struct sweep_waves rd_sweep_waves(const struct rd_chain *chain, const struct rd_run *run,
                                   const struct sweep_extent *extent)
 {
-    const size_t e = (size_t)run->element;
-    return (struct sweep_waves){
-        .propagating = run_wavenumber(chain, run, extent),
-        .all = chain->inertia ? all_wavenumber(chain, e, extent) : 0.0,
-    };
+    struct sweep_waves waves = {.propagating = run_wavenumber(chain, run, extent)};
+    if (chain->inertia) {
+        const struct rd_span span = rd_span_of(chain, (size_t)run->element, 1.0 / extent->section,
+                                               extent->tension, extent->inertia);
+        waves.all = rd_span_wavenumber(&span);
+    }
+    return waves;
 }
 
 struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,

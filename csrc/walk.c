@@ -294,14 +294,6 @@ double rd_walk_radians(const struct rd_walk *walk, const struct rd_leg *leg, dou
     const size_t e = (size_t)leg->element;
     if (!chain->inertia || e >= chain->distinct)
         return 0;
-    struct rd_span span = {
-        .width = chain->width,
-        .coordinate = chain->coordinate,
-        .flexibility = chain->flexibility + 9 * e,
-        .section = 1,
-        .tension = fabs(chain->tension[e]),
-    };
-    for (size_t i = 0; i < chain->width; i++)
-        span.load[i] = fabs(lambda) * chain->inertia[e * chain->width + i];
+    const struct rd_span span = rd_span_of(chain, e, 1, 1, fabs(lambda));
     return chain->length[e] * rd_span_wavenumber(&span);
 }
