@@ -11,7 +11,7 @@ from . import _core, check, mesh
 from .chain import CONTINUOUS, KINDS, Chain, components
 from .end import end_of
 from .errors import SceneError
-from .model import Model
+from .model import MOST_POINTS, Model
 from .part import NodeTerm
 from .rope import Rope
 from .scene import Scene
@@ -96,6 +96,15 @@ def finer(model: Model, points: int) -> Model:
     stations = stations_of(model.scene)
     counts = np.diff(np.searchsorted(model.x, stations)) * points
     return divided(model.scene, model.element, stations, counts)
+
+
+def check_points(model: Model, points: int | None) -> None:
+    """Refuse points inside the elements of a chain, and numbers of them without meaning."""
+    if points is None:
+        return
+    check.count(points, "points", most=MOST_POINTS)
+    if model.element != "continuous":
+        raise SceneError(f"points must be left out for chains, got {points}: answers are at nodes")
 
 
 def _check_layers(scene: Scene) -> None:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from . import _core, check
 from .answer import Answer, Cost, Work, axes
 from .chain import Chain
-from .compile import finer
+from .compile import check_points, finer
 from .errors import SceneError, SolveError
-from .model import EXACT, MOST_POINTS, Model
+from .model import EXACT, Model
 from .port import Point, Ports, cut, ports, stops
 from .reaction import left_ends
 from .table import Table
@@ -72,10 +72,7 @@ def solve_static(
     """Find the static deflection; see `Model.static`."""
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
     loads = _checked(model, load)
-    if model.element != "continuous" and points is not None:
-        raise SceneError(f"points must be left out for chains, got {points}: answers are at nodes")
-    if points is not None:
-        check.count(points, "points", most=MOST_POINTS)
+    check_points(model, points)
     if model.element == "continuous":
         model = finer(model, points or POINTS)
         x = cut(model.chain, model.x, [at for _, at in loads])[1]

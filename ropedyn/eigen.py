@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from . import _core, check, damping
 from .answer import Cost, Work
 from .chain import CHANNELS, Chain
-from .compile import finer
+from .compile import check_points, finer
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
 from .model import MOST_POINTS, MOST_STEPS, Model
@@ -75,12 +75,9 @@ def solve_modes(
     Without `strict` fewer modes than asked for are no error.
     """
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
-    if points is not None:
-        check.count(points, "points", most=MOST_POINTS)
+    check_points(model, points)
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
-    if model.element != "continuous" and points is not None:
-        raise SceneError(f"points must be left out for chains, got {points}: shapes are at nodes")
     if (number is None) == (below is None):
         raise SceneError(f"give either number or below, got number={number!r} and below={below!r}")
     if number is not None:
