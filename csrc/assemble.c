@@ -73,6 +73,10 @@ enum rd_status rd_assemble(const struct rd_chain *chain, struct rd_assembly *ass
         const size_t term = (size_t)chain->term_of[i] * block;
         memcpy(assembly->springs + i * block, chain->stiffness + term, block * sizeof(double));
         memcpy(assembly->mass + i * block, chain->mass + term, block * sizeof(double));
+        if (chain->damping)
+            memcpy(assembly->dashpots + i * block, chain->damping + term, block * sizeof(double));
+        else
+            memset(assembly->dashpots + i * block, 0, block * sizeof(double));
     }
     return rd_assemble_elements(chain, NULL, assembly);
 }

@@ -13,8 +13,8 @@ struct rd_blocks {
     double *coupling; /* (nodes - 1, width, width): rows of node i, columns of node i + 1 */
 };
 
-/* dynamic stiffness = section elastic + tension string + spring springs + inertia mass */
-enum rd_part { RD_ELASTIC, RD_STRING, RD_SPRINGS, RD_MASS, RD_PARTS };
+/* dynamic stiffness = section elastic + tension string + spring springs + inertia mass + rate dashpots */
+enum rd_part { RD_ELASTIC, RD_STRING, RD_SPRINGS, RD_MASS, RD_DASHPOTS, RD_PARTS };
 
 struct rd_assembly {
     size_t nodes;
@@ -23,6 +23,7 @@ struct rd_assembly {
     struct rd_blocks string;  /* of the tension */
     double *springs;          /* (nodes, width, width) of the node terms */
     double *mass;             /* (nodes, width, width) of the node terms */
+    double *dashpots;         /* (nodes, width, width) of the node terms */
 };
 
 /* Fills every array of the assembly, all of them the caller's. */

@@ -39,6 +39,7 @@ static bool diagonal_entry(const struct rd_assembly *assembly, const int32_t *nu
     entry->part[RD_STRING] = assembly->string.diagonal[at];
     entry->part[RD_SPRINGS] = assembly->springs[at];
     entry->part[RD_MASS] = assembly->mass[at];
+    entry->part[RD_DASHPOTS] = assembly->dashpots[at];
     return entry->i >= 0 && entry->j >= entry->i;
 }
 
@@ -54,6 +55,7 @@ static bool coupling_entry(const struct rd_assembly *assembly, const int32_t *nu
     entry->part[RD_STRING] = assembly->string.coupling[at];
     entry->part[RD_SPRINGS] = 0;
     entry->part[RD_MASS] = 0;
+    entry->part[RD_DASHPOTS] = 0;
     return entry->i >= 0 && entry->j >= 0;
 }
 

@@ -16,6 +16,11 @@ enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED, RD_CONTINUOUS };
 
 enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
 
+/* structures that nodes carry, condensed to their foot: see attached.h */
+enum rd_attached_kind { RD_ATTACHED_KINDS };
+
+enum { RD_ATTACHED_VALUES = 4 }; /* numbers of one */
+
 enum { RD_NO_TERM = -1 }; /* where nothing stands: between continuous pieces, right of a hinge */
 
 /* Nodes first[k] .. first[k + 1] - 1 are a stretch: the same term and the same element on their
@@ -27,6 +32,7 @@ struct rd_chain {
     size_t width;              /* coordinates of a node, 1 to 4 */
     size_t distinct;           /* different elements */
     size_t terms;              /* different node terms */
+    size_t attached;           /* structures that nodes carry */
     enum rd_kind kind;         /* of every element */
     const int32_t *coordinate; /* (width)                 enum rd_coordinate, increasing */
     const double *length;      /* (distinct)              [m] */
@@ -43,9 +49,23 @@ struct rd_chain {
     const double *hinge;       /* (terms, width) or NULL   compliance between the node and the
                                                            element on its right [rad/(N m), m/N],
                                                            INFINITY: free */
+    const double *damping;     /* (terms, width, width) or NULL  [N s/m, N s, N m s] */
+    const double *drag;        /* (distinct, width) or NULL      of continuous elements, per length
+                                                          [N s/m^2, N s] */
+    const double *sag;         /* (distinct) or NULL      weight per length over tension [1/m] */
+    const int32_t *attached_kind; /* (attached)           enum rd_attached_kind */
+    const int32_t *attached_term; /* (attached)           node term that carries it */
+    const double *attached_row;   /* (attached, 2, width) displacement and rotation of its foot */
+    const double *attached_value; /* (attached, RD_ATTACHED_VALUES) its numbers */
     const int32_t *element_of; /* (nodes - 1)             element node by node: right of node i */
     const int32_t *term_of; /* (nodes)                 term node by node; a sweep reads neither */
 };
+
+/* whether anything of the chain itself is in proportion to velocity */
+static inline int rd_chain_is_dragged(const struct rd_chain *chain)
+{
+    return chain->damping != NULL || chain->drag != NULL;
+}
 
 /* nodes of a stretch */
 static inline size_t rd_stretch_nodes(const struct rd_chain *chain, size_t k)
@@ -59,9 +79,12 @@ static inline int rd_term_is_bare(const struct rd_chain *chain, int32_t term)
     const size_t w = chain->width, t = (size_t)term;
     int any = 0;
     for (size_t i = 0; i < w * w; i++)
-        any |= chain->mass[t * w * w + i] != 0 || chain->stiffness[t * w * w + i] != 0;
+        any |= chain->mass[t * w * w + i] != 0 || chain->stiffness[t * w * w + i] != 0 ||
+               (chain->damping && chain->damping[t * w * w + i] != 0);
     for (size_t i = 0; i < w; i++)
         any |= chain->held[t * w + i] || (chain->hinge && chain->hinge[t * w + i] != 0);
+    for (size_t k = 0; k < chain->attached; k++)
+        any |= chain->attached_term[k] == term;
     return !any;
 }
 

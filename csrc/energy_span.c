@@ -79,7 +79,7 @@ static void prepare(const struct rd_chain *chain, size_t e, double lambda, doubl
     size_t n = 0;
     *rope = (struct rope){.chain = chain, .e = e};
     for (int g = 0; g < GROUPS; g++)
-        rd_rate_fill(chain, e, c_real(1), c_real(1), c_real(-lambda), rate + g);
+        rd_rate_fill(chain, e, c_real(1), c_real(1), c_real(-lambda), c_zero(), rate + g);
     for (int s = RD_STRAIN_BENDING; s <= RD_STRAIN_TENSION; s++) {
         const int lane = (int)(n % RD_LANES);
         struct rate_matrix *of = rate + n / RD_LANES;

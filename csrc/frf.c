@@ -27,7 +27,7 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
 
 /* The elements are assembled again at each frequency, since sections and tension of a tensed element
    are one matrix: what is `elastic` elsewhere is their real part here, `string` the imaginary one.
-   part: what of the four makes the real and the imaginary part of D */
+   part: what of the five makes the real and the imaginary part of D */
 static enum rd_status factorise(struct rd_frf *frf, const double _Complex *factor)
 {
     const struct rd_system *system = &frf->system;
@@ -36,10 +36,12 @@ static enum rd_status factorise(struct rd_frf *frf, const double _Complex *facto
     const double part[2][RD_PARTS] = {
         {[RD_ELASTIC] = 1,
          [RD_SPRINGS] = creal(factor[RD_SPRINGS]),
-         [RD_MASS] = creal(factor[RD_MASS])},
+         [RD_MASS] = creal(factor[RD_MASS]),
+         [RD_DASHPOTS] = creal(factor[RD_DASHPOTS])},
         {[RD_STRING] = 1,
          [RD_SPRINGS] = cimag(factor[RD_SPRINGS]),
-         [RD_MASS] = cimag(factor[RD_MASS])},
+         [RD_MASS] = cimag(factor[RD_MASS]),
+         [RD_DASHPOTS] = cimag(factor[RD_DASHPOTS])},
     };
     const enum rd_status status = rd_assemble_elements(frf->chain, factor, &frf->system.assembly);
     if (status != RD_OK)
@@ -131,6 +133,7 @@ enum rd_status rd_frf_solve(struct rd_frf *frf, const double _Complex *factor,
         [RD_STRING] = 1,
         [RD_SPRINGS] = cabs(factor[RD_SPRINGS]),
         [RD_MASS] = cabs(factor[RD_MASS]),
+        [RD_DASHPOTS] = cabs(factor[RD_DASHPOTS]),
     };
     const size_t responses = frf->responses.count;
     for (size_t d = 0; d < frf->drives.count; d++) {

@@ -95,8 +95,10 @@ static void add_node(struct rd_mixed *mixed, size_t node, const double _Complex 
     const size_t p = mixed->block[node];
     for (size_t a = 0; a < w; a++)
         for (size_t b = 0; b < w; b++) {
-            const double _Complex N = factor[RD_SPRINGS] * chain->stiffness[term + a * w + b] +
-                                      factor[RD_MASS] * chain->mass[term + a * w + b];
+            const double _Complex N =
+                factor[RD_SPRINGS] * chain->stiffness[term + a * w + b] +
+                factor[RD_MASS] * chain->mass[term + a * w + b] +
+                (chain->damping ? factor[RD_DASHPOTS] * chain->damping[term + a * w + b] : 0);
             add(mixed, p, a, p, b, N * mixed->z[a] * mixed->z[b]);
         }
 }

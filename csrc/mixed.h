@@ -36,7 +36,7 @@ struct rd_mixed {
 enum rd_status rd_mixed_prepare(const struct rd_chain *chain, struct rd_mixed *mixed,
                                 struct rd_workspace *workspace);
 
-/* Fills at the factors (RD_PARTS) of sections, tension, springs and inertia, and factorises.
+/* Fills at the factors (RD_PARTS) of sections, tension, springs, inertia and dashpots, and factorises.
    RD_SINGULAR where that meets an exact zero, RD_CRITICAL_ELEMENT where an element has no triple. */
 enum rd_status rd_mixed_factorise(struct rd_mixed *mixed, const double _Complex *factor);
 

@@ -46,7 +46,7 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
     const size_t e = (size_t)leg->element;
     const cv inertia = c_make(-lambda, l_fill(change ? -SLICE_STEP : 0));
     struct rate_matrix rate;
-    rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, &rate);
+    rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, c_zero(), &rate);
     cv D[W][W], G[W][W], Q[W][W];
     const double part = ldexp(1, -halvings);
     const int terms = rd_span_terms(part * rd_walk_radians(walk, leg, largest(lambda)));

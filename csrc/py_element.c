@@ -1,6 +1,7 @@
 /* Sections and elements for reading. */
 #include "py_glue.h"
 
+#include "assemble.h"
 #include "dense.h"
 #include "element.h"
 #include "section.h"
@@ -135,14 +136,15 @@ static void continuous(const struct rd_chain *chain, size_t e, size_t count,
     for (size_t i = 0; i < count; i += RD_LANES) {
         struct rate_matrix rate;
         struct rd_transfer transfer;
-        cv part[4];
+        cv part[RD_PARTS];
         for (size_t k = 0; k < RD_LANES; k++)
-            for (size_t p = 0; p < 4; p++) {
+            for (size_t p = 0; p < RD_PARTS; p++) {
                 const double _Complex x = factor[p * count + (i + k < count ? i + k : count - 1)];
                 part[p].re[k] = creal(x);
                 part[p].im[k] = cimag(x);
             }
-        rd_rate_fill(chain, e, part[0], part[1], part[3], &rate);
+        rd_rate_fill(chain, e, part[RD_ELASTIC], part[RD_STRING], part[RD_MASS], part[RD_DASHPOTS],
+                     &rate);
         rd_transfer_fill(chain, e, &rate, &transfer);
         for (size_t k = 0; k < RD_LANES && i + k < count; k++) {
             memcpy(triple[0] + (i + k) * block, transfer.F[k], block * sizeof **triple);
@@ -163,7 +165,7 @@ PyObject *py_triple(PyObject *module, PyObject *arguments)
         return NULL;
     if (py_chain_view(object, &parsed) < 0 || element_at(&parsed.chain, index, &element) < 0)
         goto done;
-    factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){4, -1}, "factor");
+    factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
     if (factor == NULL)
         goto done;
     const npy_intp count = PyArray_DIM(factor, 1);

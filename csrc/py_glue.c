@@ -77,7 +77,7 @@ __attribute__((optimize("O3"))) static int check_range(PyArrayObject *array, siz
     return -1;
 }
 
-enum {
+enum field {
     COORDINATE,
     LENGTH,
     TENSION,
@@ -88,8 +88,44 @@ enum {
     STIFFNESS,
     HELD,
     TERM,
-    HINGE,
-    INERTIA
+    HINGE, /* from here on NULL where None is given */
+    INERTIA,
+    DAMPING,
+    DRAG,
+    SAG,
+    ATTACHED_KIND,
+    ATTACHED_TERM,
+    ATTACHED_ROW,
+    ATTACHED_VALUE
+};
+
+/* how many entries an axis has: as many as the first array that has it, or one less */
+enum axis { FREE, WIDTH, DISTINCT, STRETCHES, JOINTS, TERMS, ATTACHED, TWO, THREE, FOUR, AXES };
+
+static const struct {
+    const char *name;
+    int type, dimensions;
+    enum axis axis[3];
+} field_of[PY_CHAIN_ARRAYS] = {
+    [COORDINATE] = {"coordinate", NPY_INT32, 1, {WIDTH}},
+    [LENGTH] = {"length", NPY_DOUBLE, 1, {DISTINCT}},
+    [TENSION] = {"tension", NPY_DOUBLE, 1, {DISTINCT}},
+    [FLEXIBILITY] = {"flexibility", NPY_DOUBLE, 3, {DISTINCT, THREE, THREE}},
+    [FIRST] = {"first", NPY_INT32, 1, {STRETCHES}},
+    [ELEMENT] = {"element", NPY_INT32, 1, {JOINTS}},
+    [MASS] = {"mass", NPY_DOUBLE, 3, {TERMS, WIDTH, WIDTH}},
+    [STIFFNESS] = {"stiffness", NPY_DOUBLE, 3, {TERMS, WIDTH, WIDTH}},
+    [HELD] = {"held", NPY_UINT8, 2, {TERMS, WIDTH}},
+    [TERM] = {"term", NPY_INT32, 1, {STRETCHES}},
+    [HINGE] = {"hinge", NPY_DOUBLE, 2, {TERMS, WIDTH}},
+    [INERTIA] = {"inertia", NPY_DOUBLE, 2, {DISTINCT, WIDTH}},
+    [DAMPING] = {"damping", NPY_DOUBLE, 3, {TERMS, WIDTH, WIDTH}},
+    [DRAG] = {"drag", NPY_DOUBLE, 2, {DISTINCT, WIDTH}},
+    [SAG] = {"sag", NPY_DOUBLE, 1, {DISTINCT}},
+    [ATTACHED_KIND] = {"attached_kind", NPY_INT32, 1, {ATTACHED}},
+    [ATTACHED_TERM] = {"attached_term", NPY_INT32, 1, {ATTACHED}},
+    [ATTACHED_ROW] = {"attached_row", NPY_DOUBLE, 3, {ATTACHED, TWO, WIDTH}},
+    [ATTACHED_VALUE] = {"attached_value", NPY_DOUBLE, 2, {ATTACHED, FOUR}},
 };
 
 /* what the core asserts of the numbers */
@@ -150,6 +186,10 @@ static int check_indices(const struct py_chain *parsed)
         PyErr_Format(PyExc_ValueError, "kind must be 0, 1, 2 or 3, got %d", (int)chain->kind);
         return -1;
     }
+    if (chain->drag != NULL && chain->inertia == NULL) {
+        PyErr_SetString(PyExc_ValueError, "only continuous elements have drag");
+        return -1;
+    }
     if ((chain->kind == RD_CONTINUOUS) != (chain->inertia != NULL)) {
         PyErr_SetString(PyExc_ValueError, "continuous elements and no others have inertia");
         return -1;
@@ -174,74 +214,95 @@ static int check_indices(const struct py_chain *parsed)
     return check_stretches(chain) < 0 ? -1 : check_values(chain);
 }
 
+/* the arrays of a chain, each as long as the others say; 0, or -1 and an exception */
+static int take_arrays(PyObject *const *item, struct py_chain *parsed, npy_intp *entries)
+{
+    for (int k = 0; k < PY_CHAIN_ARRAYS; k++) {
+        npy_intp shape[3];
+        if (k >= HINGE && item[k] == Py_None)
+            continue;
+        for (int a = 0; a < field_of[k].dimensions; a++)
+            shape[a] = entries[field_of[k].axis[a]];
+        parsed->array[k] =
+            py_array(item[k], field_of[k].type, field_of[k].dimensions, shape, field_of[k].name);
+        if (parsed->array[k] == NULL)
+            return -1;
+        const npy_intp first = PyArray_DIM(parsed->array[k], 0);
+        entries[field_of[k].axis[0]] = first;
+        if (k == FIRST)
+            entries[JOINTS] = first > 0 ? first - 1 : 0;
+    }
+    return 0;
+}
+
+/* all arrays of attached structures or none; 0, or -1 and an exception */
+static int check_attached(const struct py_chain *parsed)
+{
+    const struct rd_chain *chain = &parsed->chain;
+    for (int k = ATTACHED_KIND; k <= ATTACHED_VALUE; k++)
+        if ((parsed->array[k] == NULL) != (parsed->array[ATTACHED_KIND] == NULL)) {
+            PyErr_Format(PyExc_ValueError, "%s must be given with attached_kind", field_of[k].name);
+            return -1;
+        }
+    if (chain->attached == 0)
+        return 0;
+    return check_range(parsed->array[ATTACHED_KIND], RD_ATTACHED_KINDS, "attached_kind") < 0
+               ? -1
+               : check_range(parsed->array[ATTACHED_TERM], chain->terms, "attached_term");
+}
+
+static const void *data_of(const struct py_chain *parsed, enum field field)
+{
+    return parsed->array[field] == NULL ? NULL : PyArray_DATA(parsed->array[field]);
+}
+
 int py_chain_view(PyObject *object, struct py_chain *parsed)
 {
-    static const char *const name[PY_CHAIN_ARRAYS] = {
-        "coordinate", "length",    "tension", "flexibility", "first", "element",
-        "mass",       "stiffness", "held",    "term",        "hinge", "inertia"};
-    static const int type[PY_CHAIN_ARRAYS] = {NPY_INT32, NPY_DOUBLE, NPY_DOUBLE, NPY_DOUBLE,
-                                              NPY_INT32, NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE,
-                                              NPY_UINT8, NPY_INT32,  NPY_DOUBLE, NPY_DOUBLE};
-    static const int dimensions[PY_CHAIN_ARRAYS] = {1, 1, 1, 3, 1, 1, 3, 3, 2, 1, 2, 2};
     struct rd_chain *chain = &parsed->chain;
-    int kind;
     PyObject *item[PY_CHAIN_ARRAYS];
+    int kind;
     if (!PyTuple_Check(object)) {
         PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
                           item + 4, item + 5, item + 6, item + 7, item + 8, item + 9, item + 10,
-                          item + 11))
+                          item + 11, item + 12, item + 13, item + 14, item + 15, item + 16,
+                          item + 17, item + 18))
         return -1;
-    npy_intp width = -1, distinct = -1, stretches = -1, terms = -1;
-    for (int k = 0; k < PY_CHAIN_ARRAYS; k++) {
-        const npy_intp shape[PY_CHAIN_ARRAYS][3] = {
-            {-1},
-            {-1},
-            {distinct},
-            {distinct, 3, 3},
-            {-1},
-            {stretches > 0 ? stretches - 1 : 0},
-            {-1, width, width},
-            {terms, width, width},
-            {terms, width},
-            {stretches},
-            {terms, width},
-            {distinct, width},
-        };
-        if (k >= HINGE && item[k] == Py_None)
-            continue;
-        parsed->array[k] = py_array(item[k], type[k], dimensions[k], shape[k], name[k]);
-        if (parsed->array[k] == NULL)
-            return -1;
-        const npy_intp entries = PyArray_DIM(parsed->array[k], 0);
-        width = k == COORDINATE ? entries : width;
-        distinct = k == LENGTH ? entries : distinct;
-        stretches = k == FIRST ? entries : stretches;
-        terms = k == MASS ? entries : terms;
-    }
+    npy_intp entries[AXES] = {-1, -1, -1, -1, -1, -1, -1, 2, 3, 4};
+    if (take_arrays(item, parsed, entries) < 0)
+        return -1;
     *chain = (struct rd_chain){
-        .stretches = (size_t)stretches,
-        .width = (size_t)width,
-        .distinct = (size_t)distinct,
-        .terms = (size_t)terms,
+        .stretches = (size_t)entries[STRETCHES],
+        .width = (size_t)entries[WIDTH],
+        .distinct = (size_t)entries[DISTINCT],
+        .terms = (size_t)entries[TERMS],
+        .attached = entries[ATTACHED] < 0 ? 0 : (size_t)entries[ATTACHED],
         .kind = (enum rd_kind)kind,
-        .coordinate = PyArray_DATA(parsed->array[COORDINATE]),
-        .length = PyArray_DATA(parsed->array[LENGTH]),
-        .tension = PyArray_DATA(parsed->array[TENSION]),
-        .flexibility = PyArray_DATA(parsed->array[FLEXIBILITY]),
-        .first = PyArray_DATA(parsed->array[FIRST]),
-        .element = PyArray_DATA(parsed->array[ELEMENT]),
-        .mass = PyArray_DATA(parsed->array[MASS]),
-        .stiffness = PyArray_DATA(parsed->array[STIFFNESS]),
-        .held = PyArray_DATA(parsed->array[HELD]),
-        .term = PyArray_DATA(parsed->array[TERM]),
-        .hinge = parsed->array[HINGE] == NULL ? NULL : PyArray_DATA(parsed->array[HINGE]),
-        .inertia = parsed->array[INERTIA] == NULL ? NULL : PyArray_DATA(parsed->array[INERTIA]),
+        .coordinate = data_of(parsed, COORDINATE),
+        .length = data_of(parsed, LENGTH),
+        .tension = data_of(parsed, TENSION),
+        .flexibility = data_of(parsed, FLEXIBILITY),
+        .first = data_of(parsed, FIRST),
+        .element = data_of(parsed, ELEMENT),
+        .mass = data_of(parsed, MASS),
+        .stiffness = data_of(parsed, STIFFNESS),
+        .held = data_of(parsed, HELD),
+        .term = data_of(parsed, TERM),
+        .hinge = data_of(parsed, HINGE),
+        .inertia = data_of(parsed, INERTIA),
+        .damping = data_of(parsed, DAMPING),
+        .drag = data_of(parsed, DRAG),
+        .sag = data_of(parsed, SAG),
+        .attached_kind = data_of(parsed, ATTACHED_KIND),
+        .attached_term = data_of(parsed, ATTACHED_TERM),
+        .attached_row = data_of(parsed, ATTACHED_ROW),
+        .attached_value = data_of(parsed, ATTACHED_VALUE),
     };
-    chain->nodes = stretches > 0 ? (size_t)(uint32_t)chain->first[stretches - 1] + 1 : 0;
-    return check_indices(parsed);
+    chain->nodes =
+        chain->stretches > 0 ? (size_t)(uint32_t)chain->first[chain->stretches - 1] + 1 : 0;
+    return check_indices(parsed) < 0 ? -1 : check_attached(parsed);
 }
 
 int py_chain_expand(struct py_chain *parsed)

@@ -29,14 +29,13 @@ PyObject *py_raise(PyObject *module, enum rd_status status);
 PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_intp *shape,
                         const char *name);
 
-enum { PY_CHAIN_ARRAYS = 12 };
+enum { PY_CHAIN_ARRAYS = 19 };
 
 /* a chain and the arrays it views */
 struct py_chain {
     struct rd_chain chain;
-    PyArrayObject
-        *array[PY_CHAIN_ARRAYS]; /* the last two NULL where nothing is hinged or continuous */
-    int32_t *each;               /* element_of and term_of */
+    PyArrayObject *array[PY_CHAIN_ARRAYS]; /* NULL where the chain has none */
+    int32_t *each;                         /* element_of and term_of */
 };
 
 /* 0, or -1 and an exception; to be released in both cases. py_chain_view leaves element_of and

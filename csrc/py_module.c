@@ -11,7 +11,7 @@ static PyMethodDef methods[] = {
     {"shape", py_shape, METH_VARARGS, "shape(chain, node, s) -> (width, 2, width)"},
     {"local", py_local, METH_VARARGS, "local(chain, node, s, p) -> (width, width)"},
     {"assemble", py_assemble, METH_VARARGS,
-     "assemble(chain) -> elastic, its coupling, string, its coupling, springs, mass"},
+     "assemble(chain) -> elastic, its coupling, string, its coupling, springs, mass, dashpots"},
     {"deflection", py_deflection, METH_VARARGS,
      "deflection(chain, force) -> displacement, reciprocal condition"},
     {"modes", py_modes, METH_VARARGS,

@@ -8,7 +8,14 @@ static struct rd_factors factors_of(PyArrayObject *factor)
 {
     const size_t count = (size_t)PyArray_DIM(factor, 1);
     const double *row = PyArray_DATA(factor);
-    return (struct rd_factors){count, row, row + 2 * count, row + 4 * count, row + 6 * count};
+    return (struct rd_factors){
+        .count = count,
+        .section = row,
+        .tension = row + 2 * count,
+        .spring = row + 4 * count,
+        .inertia = row + 6 * count,
+        .dashpot = row + 8 * count,
+    };
 }
 
 PyObject *py_steps(PyObject *module, PyObject *arguments)

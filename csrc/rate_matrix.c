@@ -6,7 +6,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension, cv inertia,
-                  struct rate_matrix *rate)
+                  cv dashpot, struct rate_matrix *rate)
 {
     const size_t w = chain->width;
     const double *S = chain->flexibility + e * RD_CHANNELS * RD_CHANNELS;
@@ -17,6 +17,8 @@ void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension
         const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
         const bool is_z = chain->coordinate[i] == RD_Z;
         rate->q[i] = c_scale(inertia, chain->inertia[e * w + i]);
+        if (chain->drag)
+            rate->q[i] = c_add(rate->q[i], c_scale(dashpot, chain->drag[e * w + i]));
         rate->z = is_z && bends ? (int)i : rate->z;
         for (size_t j = 0; j < w; j++) {
             const size_t d = (size_t)rd_channel_of(chain->coordinate[j]);

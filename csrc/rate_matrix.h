@@ -7,7 +7,7 @@
 
 /* y = (u, f), f the force of the right part on the left, has y' = E y,
 
-       E = | Phi  S'    |   Phi_z,beta = 1,  q = -lambda inertia, + T for beta,
+       E = | Phi  S'    |   Phi_z,beta = 1,  q = -lambda inertia + s drag, + T for beta,
            | q   -Phi^T |   S' the section flexibility, 1/T for z without bending */
 struct rate_matrix {
     cv S[RD_WIDTH_MAX][RD_WIDTH_MAX];          /* S' */
@@ -17,8 +17,9 @@ struct rate_matrix {
     int z;       /* index of z where it bends, beta being the last; else -1 */
 };
 
-/* The rate matrix of distinct element e with S/section, T tension and inertia times the node mass. */
+/* The rate matrix of distinct element e with S/section, T tension, and inertia and
+   dashpot times what a node of unit length would have. */
 void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension, cv inertia,
-                  struct rate_matrix *rate);
+                  cv dashpot, struct rate_matrix *rate);
 
 #endif

@@ -12,7 +12,7 @@ enum { LEADING = 3 };
 static const double NEGLIGIBLE = 1e-18;
 
 struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section, double tension,
-                          double inertia)
+                          double inertia, double dashpot)
 {
     struct rd_span span = {
         .width = chain->width,
@@ -22,7 +22,8 @@ struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section
         .tension = fabs(chain->tension[e]) * tension,
     };
     for (size_t i = 0; i < chain->width; i++)
-        span.load[i] = inertia * chain->inertia[e * chain->width + i];
+        span.load[i] = inertia * chain->inertia[e * chain->width + i] +
+                       (chain->drag ? dashpot * chain->drag[e * chain->width + i] : 0);
     return span;
 }
 

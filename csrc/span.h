@@ -11,12 +11,13 @@ struct rd_span {
     const double *flexibility; /* (3, 3) S, to be divided by section */
     double section;            /* |factor of the sections| */
     double tension;            /* |T| [N] */
-    double load[RD_WIDTH_MAX]; /* (width) |lambda| times inertia per length [N/m^2, N] */
+    double load[RD_WIDTH_MAX]; /* (width) of |lambda| inertia and |s| drag per length [N/m^2, N] */
 };
 
-/* that of distinct continuous element e, with sizes of the factors on sections, tension and inertia */
+/* that of distinct continuous element e, with sizes of the factors on sections, tension,
+   inertia and drag */
 struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section, double tension,
-                          double inertia);
+                          double inertia, double dashpot);
 
 /* A bound of the largest wavenumber [1/m], evanescent ones included: with h = (T + lambda j) S_bb/2
 

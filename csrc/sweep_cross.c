@@ -45,7 +45,8 @@ static int turns(const struct sweep *s, int32_t term)
         for (size_t j = 0; j < w; j++)
             if (s->way[1].sign[i] * s->way[1].sign[j] < 0.0)
                 any |= s->chain->mass[at + i * w + j] != 0.0 ||
-                       s->chain->stiffness[at + i * w + j] != 0.0;
+                       s->chain->stiffness[at + i * w + j] != 0.0 ||
+                       (s->chain->damping && s->chain->damping[at + i * w + j] != 0.0);
     return any;
 }
 

@@ -12,7 +12,7 @@ enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
 
 /* what a node term needs besides adding masses */
 enum rd_trait {
-    RD_COUPLED = 1, /* a coordinate is held or two are coupled */
+    RD_COUPLED = 1, /* a coordinate is held, two are coupled or one is damped */
     RD_SPRUNG = 2,  /* it has stiffness */
     RD_HINGED = 4,  /* a hinge on its right */
     RD_SKEW = 8,    /* its mass couples z and beta, far from an eccentric one */
@@ -32,6 +32,7 @@ struct sweep_block {
     cv pull;                    /* tension z_beta^2 */
     cv slack;                   /* 1/(tension z_z^2) */
     cv spring, inertia;         /* factors of node stiffness and mass */
+    cv dashpot;                 /* of node damping, 0 where the chain has none */
     int real;                   /* spring and inertia are */
 };
 
@@ -41,6 +42,7 @@ struct sweep_way {
     double sign[RD_WIDTH_MAX]; /* D */
     cv spring[RD_PAIRS_MAX];   /* factor z_i z_j D_i D_j */
     cv inertia[RD_PAIRS_MAX];
+    cv dashpot[RD_PAIRS_MAX]; /* filled where the chain has damping */
 };
 
 struct sweep_walk {

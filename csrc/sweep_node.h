@@ -222,9 +222,12 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
 {
     if (s->trait[t] & RD_COUPLED)
         K_(hold_all)(s->chain, t, state);
-    KEEP for (int part = 0; part < 2; part++) {
-        const double *given = (part ? s->chain->mass : s->chain->stiffness) + t * FULL;
-        const cv factor = part ? s->block->inertia : s->block->spring;
+    const double *const all[] = {s->chain->stiffness, s->chain->mass, s->chain->damping};
+    const cv factors[] = {s->block->spring, s->block->inertia, s->block->dashpot};
+    const int given_parts = s->chain->damping ? 3 : 2;
+    KEEP for (int part = 0; part < given_parts; part++) {
+        const double *given = all[part] + t * FULL;
+        const cv factor = factors[part];
         double m[FULL], d[2 * W], row[2 * W][RD_WIDTH_MAX];
         int indefinite;
         K_(free_part)(s, t, given, m);

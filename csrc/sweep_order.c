@@ -37,10 +37,12 @@ void rd_sweep_order(const struct rd_factors *factors, size_t *order)
 static bool is_same_rope(const struct rd_chain *chain, int32_t a, int32_t b)
 {
     const size_t w = chain->width, i = (size_t)a, j = (size_t)b;
-    const double *S = chain->flexibility, *p = chain->inertia;
+    const double *S = chain->flexibility, *p = chain->inertia, *drag = chain->drag;
     return chain->tension[i] == chain->tension[j] &&
            memcmp(S + 9 * i, S + 9 * j, 9 * sizeof *S) == 0 &&
-           memcmp(p + w * i, p + w * j, w * sizeof *p) == 0;
+           memcmp(p + w * i, p + w * j, w * sizeof *p) == 0 &&
+           (!drag || memcmp(drag + w * i, drag + w * j, w * sizeof *drag) == 0) &&
+           (!chain->sag || chain->sag[i] == chain->sag[j]);
 }
 
 /* how many of the frequencies cross a run by as many pieces as the first does, 0 where those are more

@@ -28,7 +28,9 @@ static lanes weight(const struct sweep *s, const struct tap *tap)
         const size_t at = (tap->term * w + i) * w + i;
         if (tap->motion[i] == 0.0)
             continue;
-        const lanes N = spring * fabs(s->chain->stiffness[at]) + inertia * fabs(s->chain->mass[at]);
+        lanes N = spring * fabs(s->chain->stiffness[at]) + inertia * fabs(s->chain->mass[at]);
+        if (s->chain->damping)
+            N += c_size(s->block.dashpot) * fabs(s->chain->damping[at]);
         const lanes own = 1.0 + N * s->block.z[i] * s->block.z[i];
         most = l_select(own > most, own, most);
     }

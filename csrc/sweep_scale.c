@@ -65,17 +65,26 @@ static cv times(cv a, lanes s)
     return c_scale_lanes(a, s);
 }
 
-static void load(const struct rd_factors *f, size_t lane, size_t i, cv *section, cv *tension,
-                 cv *spring, cv *inertia)
+/* the factors of a block */
+struct factors {
+    cv section, tension, spring, inertia, dashpot;
+};
+
+static void load_one(const double *factor, size_t lane, cv *into)
 {
-    section->re[lane] = f->section[2 * i];
-    section->im[lane] = f->section[2 * i + 1];
-    tension->re[lane] = f->tension[2 * i];
-    tension->im[lane] = f->tension[2 * i + 1];
-    spring->re[lane] = f->spring[2 * i];
-    spring->im[lane] = f->spring[2 * i + 1];
-    inertia->re[lane] = f->inertia[2 * i];
-    inertia->im[lane] = f->inertia[2 * i + 1];
+    into->re[lane] = factor[0];
+    into->im[lane] = factor[1];
+}
+
+static void load(const struct rd_chain *chain, const struct rd_factors *f, size_t lane, size_t i,
+                 struct factors *into)
+{
+    load_one(f->section + 2 * i, lane, &into->section);
+    load_one(f->tension + 2 * i, lane, &into->tension);
+    load_one(f->spring + 2 * i, lane, &into->spring);
+    load_one(f->inertia + 2 * i, lane, &into->inertia);
+    if (rd_chain_is_dragged(chain))
+        load_one(f->dashpot + 2 * i, lane, &into->dashpot);
 }
 
 struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i)
@@ -85,19 +94,20 @@ struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i)
         .tension = size_of(factors->tension + 2 * i),
         .spring = size_of(factors->spring + 2 * i),
         .inertia = size_of(factors->inertia + 2 * i),
+        .dashpot = factors->dashpot ? size_of(factors->dashpot + 2 * i) : 0.0,
     };
 }
 
 /* what follows from the scales and the factors of all lanes */
-static RD_CLONES void fill(const struct rd_chain *chain, cv section, cv tension, cv spring,
-                           cv inertia, struct sweep_block *block, struct sweep_way *way)
+static RD_CLONES void fill(const struct rd_chain *chain, const struct factors *of,
+                           struct sweep_block *block, struct sweep_way *way)
 {
     const size_t w = chain->width;
     block->bends = chain->coordinate[w - 1] == RD_BETA;
     way[0].backward = 0;
     way[1].backward = 1;
     const lanes last = block->z[w - 1];
-    const cv soft = c_inverse(section);
+    const cv soft = c_inverse(of->section);
     for (size_t i = 0; i < w; i++) {
         const int32_t c = chain->coordinate[i];
         block->channel[i] = rd_channel_of(c);
@@ -106,24 +116,27 @@ static RD_CLONES void fill(const struct rd_chain *chain, cv section, cv tension,
         way[0].sign[i] = 1.0;
         way[1].sign[i] = c == RD_Z || chain->kind == RD_DIFFERENCE ? 1.0 : -1.0;
         if (c == RD_Z)
-            block->slack = times(c_inverse(tension), 1.0 / (block->z[i] * block->z[i]));
+            block->slack = times(c_inverse(of->tension), 1.0 / (block->z[i] * block->z[i]));
     }
-    block->spring = spring;
-    block->inertia = inertia;
+    block->spring = of->spring;
+    block->inertia = of->inertia;
+    block->dashpot = of->dashpot;
     if (block->bends && chain->kind != RD_CONTINUOUS)
-        shape_prepare(c_mul(tension, soft), &block->series);
+        shape_prepare(c_mul(of->tension, soft), &block->series);
     block->real = 1;
     for (size_t lane = 0; lane < RD_LANES; lane++)
-        block->real = block->real && spring.im[lane] == 0.0 && inertia.im[lane] == 0.0;
-    block->pull = times(tension, last * last);
+        block->real = block->real && of->spring.im[lane] == 0.0 && of->inertia.im[lane] == 0.0;
+    block->pull = times(of->tension, last * last);
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++) {
             const lanes zz = block->z[i] * block->z[j];
             block->flex[p] = times(soft, 1.0 / zz);
             for (size_t b = 0; b < 2; b++) {
                 const double d = way[b].sign[i] * way[b].sign[j];
-                way[b].spring[p] = times(spring, zz * d);
-                way[b].inertia[p] = times(inertia, zz * d);
+                way[b].spring[p] = times(of->spring, zz * d);
+                way[b].inertia[p] = times(of->inertia, zz * d);
+                if (chain->damping)
+                    way[b].dashpot[p] = times(of->dashpot, zz * d);
             }
         }
 }
@@ -134,16 +147,16 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
                     struct sweep_way *way)
 {
     const size_t w = chain->width;
-    cv section, tension, spring, inertia;
+    struct factors all = {.dashpot = c_zero()};
     for (size_t lane = 0; lane < RD_LANES; lane++) {
         const size_t i = index[lane];
         double z[RD_WIDTH_MAX];
-        load(factors, lane, i, &section, &tension, &spring, &inertia);
+        load(chain, factors, lane, i, &all);
         characteristic(chain, runs, extent + lane, z);
         for (size_t c = 0; c < w; c++)
             block->z[c][lane] = z[c];
     }
-    fill(chain, section, tension, spring, inertia, block, way);
+    fill(chain, &all, block, way);
 }
 
 /* what the nodes of a run, or its own inertia, add to the stiffness per length of each coordinate, and
@@ -154,14 +167,18 @@ static double load_of(const struct rd_chain *chain, const struct rd_run *run,
     const size_t w = chain->width, e = (size_t)run->element;
     double turn = 0.0;
     for (size_t i = 0; chain->inertia && i < w; i++)
-        n[i] = chain->inertia[e * w + i] * x->inertia;
+        n[i] = chain->inertia[e * w + i] * x->inertia +
+               (chain->drag ? chain->drag[e * w + i] * x->dashpot : 0.0);
     if (run->term == RD_NO_TERM)
         return turn;
     const double l = chain->length[e];
     const double *m = chain->mass + (size_t)run->term * w * w;
     const double *k = chain->stiffness + (size_t)run->term * w * w;
+    const double *d = chain->damping ? chain->damping + (size_t)run->term * w * w : NULL;
     for (size_t i = 0; i < w; i++) {
         n[i] = (fabs(k[i * (w + 1)]) * x->spring + fabs(m[i * (w + 1)]) * x->inertia) / l;
+        if (d)
+            n[i] += fabs(d[i * (w + 1)]) * x->dashpot / l;
         if (chain->coordinate[i] == RD_Z)
             turn = (fabs(k[i * w + w - 1]) * x->spring + fabs(m[i * w + w - 1]) * x->inertia) / l;
     }
@@ -204,7 +221,7 @@ struct sweep_waves rd_sweep_waves(const struct rd_chain *chain, const struct rd_
     struct sweep_waves waves = {.propagating = run_wavenumber(chain, run, extent)};
     if (chain->inertia) {
         const struct rd_span span = rd_span_of(chain, (size_t)run->element, 1.0 / extent->section,
-                                               extent->tension, extent->inertia);
+                                               extent->tension, extent->inertia, extent->dashpot);
         waves.all = rd_span_wavenumber(&span);
     }
     return waves;

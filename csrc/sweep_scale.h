@@ -5,18 +5,20 @@
 #include "runs.h"
 #include "sweep_kernel.h"
 
-/* The four complex factors of each frequency, real and imaginary part side by side. */
+/* The five complex factors of each frequency, real and imaginary part side by side. */
 struct rd_factors {
     size_t count;
     const double *section; /* (count, 2)  S/section */
     const double *tension; /* (count, 2)  T tension */
     const double *spring;  /* (count, 2)  node stiffness times it */
     const double *inertia; /* (count, 2)  node mass times it: -omega^2 [1/s^2] */
+    const double *dashpot; /* (count, 2)  node damping times it: i omega [1/s]; read where the chain
+                                          has any */
 };
 
 /* sizes of the factors of a frequency, for the length of pieces */
 struct sweep_extent {
-    double section, tension, spring, inertia; /* 1/|section|, |tension|, |spring|, |inertia| */
+    double section, tension, spring, inertia, dashpot; /* 1/|section|, |others| */
 };
 
 struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i);

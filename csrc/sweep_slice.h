@@ -2,7 +2,7 @@
    Included by sweep_width.h, once per width. */
 #include "slice.h"
 
-/* q_i = inertia p_i z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j) */
+/* q_i = (inertia p_i + dashpot drag_i) z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j) */
 RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *b, size_t e,
                         struct rate_matrix *rate)
 {
@@ -11,6 +11,9 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
     rate->lever = l_fill(1.0);
     KEEP for (int i = 0; i < W; i++) {
         rate->q[i] = c_scale(c_scale_lanes(b->inertia, b->z[i] * b->z[i]), p[i]);
+        if (chain->drag)
+            rate->q[i] = c_add(rate->q[i], c_scale(c_scale_lanes(b->dashpot, b->z[i] * b->z[i]),
+                                                   chain->drag[e * W + (size_t)i]));
         if (b->arm[i]) {
             rate->z = i;
             rate->lever = b->ratio[i];

@@ -1,7 +1,7 @@
 /* One step of the walk: across an element and the node before it.
    Included by sweep_width.h, once per width. */
 
-/* N = spring stiffness + inertia mass, scaled, seen in the direction of the walk */
+/* N = spring stiffness + inertia mass + dashpot damping, scaled, seen in the direction of the walk */
 RD_INLINE void K_(node_term)(const struct rd_chain *chain, const struct sweep_way *way, size_t t,
                              cv *N)
 {
@@ -10,6 +10,11 @@ RD_INLINE void K_(node_term)(const struct rd_chain *chain, const struct sweep_wa
         UNROLL for (int j = i; j < W; j++)
             N[at(i, j)] = c_add(c_scale(way->spring[at(i, j)], k[i * W + j]),
                                 c_scale(way->inertia[at(i, j)], m[i * W + j]));
+    const double *d = chain->damping ? chain->damping + t * FULL : NULL;
+    if (d)
+        KEEP for (int i = 0; i < W; i++)
+            KEEP for (int j = i; j < W; j++)
+                N[at(i, j)] = c_add(N[at(i, j)], c_scale(way->dashpot[at(i, j)], d[i * W + j]));
 }
 
 /* m = W U + i I, its adjugate and 1/det */

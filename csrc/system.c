@@ -16,6 +16,7 @@ enum rd_status rd_system_prepare(const struct rd_chain *chain, struct rd_system 
     assembly->string.coupling = rd_take(workspace, chain->nodes * block, sizeof(double));
     assembly->springs = rd_take(workspace, chain->nodes * block, sizeof(double));
     assembly->mass = rd_take(workspace, chain->nodes * block, sizeof(double));
+    assembly->dashpots = rd_take(workspace, chain->nodes * block, sizeof(double));
     system->number = rd_take(workspace, entries, sizeof *system->number);
     system->scale = rd_take(workspace, entries, sizeof *system->scale);
     system->reach = rd_band_reach(chain);

@@ -294,6 +294,6 @@ double rd_walk_radians(const struct rd_walk *walk, const struct rd_leg *leg, dou
     const size_t e = (size_t)leg->element;
     if (!chain->inertia || e >= chain->distinct)
         return 0;
-    const struct rd_span span = rd_span_of(chain, e, 1, 1, fabs(lambda));
+    const struct rd_span span = rd_span_of(chain, e, 1, 1, fabs(lambda), 0);
     return chain->length[e] * rd_span_wavenumber(&span);
 }

@@ -53,6 +53,22 @@ class Chain(NamedTuple):
     free; None where nothing is hinged."""
     inertia: NDArray[np.float64] | None = None
     """(distinct, width) per length of continuous elements [kg/m, kg m]; None for others."""
+    damping: NDArray[np.float64] | None = None
+    """(terms, width, width) of dashpots [N s/m, N m s]; None where there are none."""
+    drag: NDArray[np.float64] | None = None
+    """(distinct, width) damping per length of continuous elements [N s/m^2, N s]; None where there
+    is none."""
+    sag: NDArray[np.float64] | None = None
+    """(distinct,) weight per length over tension [1/m]; None without gravity."""
+    attached_kind: NDArray[np.int32] | None = None
+    """(attached,) kinds of the structures that nodes carry, see csrc/attached.h; None where there
+    are none, as the rest of them."""
+    attached_term: NDArray[np.int32] | None = None
+    """(attached,) node term that carries it."""
+    attached_row: NDArray[np.float64] | None = None
+    """(attached, 2, width) displacement and rotation of its foot per motion of the node."""
+    attached_value: NDArray[np.float64] | None = None
+    """(attached, 4) its numbers."""
 
     @property
     def nodes(self) -> int:
@@ -121,22 +137,52 @@ class Chain(NamedTuple):
             return self
         kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
         square = np.ix_(range(len(self.mass)), kept, kept)
-        hinge = None if self.hinge is None else np.ascontiguousarray(self.hinge[:, kept])
+
+        def columns(array: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+            return None if array is None else np.ascontiguousarray(array[..., kept])
+
+        damping = None if self.damping is None else np.ascontiguousarray(self.damping[square])
         return self._replace(
             coordinate=np.array(wanted, dtype=np.int32),
             mass=np.ascontiguousarray(self.mass[square]),
             stiffness=np.ascontiguousarray(self.stiffness[square]),
             held=np.ascontiguousarray(self.held[:, kept]),
-            hinge=hinge if hinge is not None and hinge.any() else None,
-            inertia=None if self.inertia is None else np.ascontiguousarray(self.inertia[:, kept]),
+            hinge=_present(columns(self.hinge)),
+            inertia=columns(self.inertia),
+            damping=_present(damping),
+            drag=_present(columns(self.drag)),
+            sag=self.sag if {"x", "z"} <= set(coordinates) else None,
+        )._with_attached(columns(self.attached_row))
+
+    def _with_attached(self, row: NDArray[np.float64] | None) -> Chain:
+        """Return the chain with those structures alone whose feet these coordinates move."""
+        if row is None or self.attached_kind is None:
+            return self
+        moved = row.any(axis=(1, 2))
+        if not moved.any():
+            return self._replace(
+                attached_kind=None, attached_term=None, attached_row=None, attached_value=None
+            )
+        assert self.attached_term is not None
+        assert self.attached_value is not None
+        return self._replace(
+            attached_kind=self.attached_kind[moved],
+            attached_term=self.attached_term[moved],
+            attached_row=row[moved],
+            attached_value=self.attached_value[moved],
         )
+
+
+def _present(array: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+    """Return an array that has something in it, else None."""
+    return array if array is not None and array.any() else None
 
 
 def components(chain: Chain, coordinates: Sequence[str]) -> tuple[tuple[str, ...], ...]:
     """Group the coordinates that move together.
 
-    Two coordinates are joined where the section flexibility couples their channels or a node term
-    couples them; z and beta are one bending motion.
+    Two coordinates are joined where the section flexibility couples their channels, a node term or
+    an attached structure couples them, or sag does x and z; z and beta are one bending motion.
 
     Parameters
     ----------
@@ -153,6 +199,14 @@ def components(chain: Chain, coordinates: Sequence[str]) -> tuple[tuple[str, ...
     width = len(coordinates)
     channel = [CHANNELS[c] for c in coordinates]
     coupled = (chain.mass != 0).any(axis=0) | (chain.stiffness != 0).any(axis=0)
+    if chain.damping is not None:
+        coupled |= (chain.damping != 0).any(axis=0)
+    if chain.sag is not None:
+        x, z = coordinates.index("x"), coordinates.index("z")
+        coupled[x, z] = coupled[z, x] = True
+    if chain.attached_row is not None:
+        moved = (chain.attached_row != 0).any(axis=1)
+        coupled |= (moved[:, :, None] & moved[:, None, :]).any(axis=0)
     coupled |= (chain.flexibility != 0).any(axis=0)[np.ix_(channel, channel)]
     group = list(range(width))
     for i in range(width):

@@ -1,11 +1,11 @@
-"""Damping: complex factors on the four parts of the dynamic stiffness.
+"""Damping: complex factors on the five parts of the dynamic stiffness.
 
 Whatever the damping, the dynamic stiffness at the angular frequency omega is
 
-    section K_elastic + tension K_tension + spring K_springs + inertia M
+    section K_elastic + tension K_tension + spring K_springs + inertia M + dashpot C
 
-with section = tension = spring = 1 and inertia = -omega^2 where nothing is damped. A kind of
-damping is what it adds to the four factors.
+with section = tension = spring = 1, inertia = -omega^2 and dashpot = i omega where nothing else is
+damped. A kind of damping is what it adds to the factors.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from . import check
 
-SECTION, TENSION, SPRING, INERTIA = range(4)
+SECTION, TENSION, SPRING, INERTIA, DASHPOT = PARTS = range(5)
 
 
 class Damping(Protocol):
@@ -29,7 +29,7 @@ class Damping(Protocol):
     """Name of the effect."""
 
     def factors(self, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
-        """Return what it adds to the factors, shape (..., 4)."""
+        """Return what it adds to the factors, shape (..., 5)."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class StiffnessDamping:
 
     def factors(self, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
         """Return i omega gamma on sections and springs."""
-        return 1j * omega[..., None] * np.array([self.gamma, 0.0, self.gamma, 0.0])
+        return 1j * omega[..., None] * np.array([self.gamma, 0.0, self.gamma, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class RayleighDamping:
 
     def factors(self, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
         """Return i omega times the coefficients."""
-        coefficients = [self.stiffness, self.stiffness, self.stiffness, self.mass]
+        coefficients = [self.stiffness, self.stiffness, self.stiffness, self.mass, 0.0]
         return 1j * omega[..., None] * np.array(coefficients)
 
 
@@ -125,11 +125,12 @@ def factors(dampings: Sequence[Damping], omega: NDArray[np.float64]) -> NDArray[
 
     Returns
     -------
-    ndarray, shape (..., 4)
-        On sections, tension, springs and inertia.
+    ndarray, shape (..., 5)
+        On sections, tension, springs, inertia and dashpots.
     """
-    total = np.ones((*omega.shape, 4), dtype=np.complex128)
+    total = np.ones((*omega.shape, len(PARTS)), dtype=np.complex128)
     total[..., INERTIA] = -(omega**2)
+    total[..., DASHPOT] = 1j * omega
     for damping in dampings:
         total = total + damping.factors(omega)
     return total

@@ -123,7 +123,7 @@ def _sweep(
     longer, finer, kept = _cut(model, component, loads, nodes)
     pushed = ports(longer, finer, component, loads)
     amount = np.array(list(loads.values()))
-    factor = np.array([[1.0], [1.0], [1.0], [0.0]], dtype=np.complex128)
+    factor = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
     asked = 0
 
     def ask(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
@@ -246,7 +246,7 @@ def _nodal(
 
 def _held_up(chain: Chain, u: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return what the elements need from outside at every node: K_elements u."""
-    elastic, elastic_beside, string, string_beside, _, _ = _core.assemble(chain)
+    elastic, elastic_beside, string, string_beside, _, _, _ = _core.assemble(chain)
     force = np.einsum("nij,nj->ni", elastic + string, u)
     beside = elastic_beside + string_beside
     force[:-1] += np.einsum("nij,nj->ni", beside, u[1:])

@@ -202,7 +202,7 @@ def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
 
 def _steps(chain: Chain, eigenvalue: float) -> int:
     """Return how many pieces shorter than its waves a component is walked in."""
-    factor = np.array([[1.0], [1.0], [1.0], [-eigenvalue]], dtype=np.complex128)
+    factor = np.array([[1.0], [1.0], [1.0], [-eigenvalue], [0.0]], dtype=np.complex128)
     return int(_core.steps(chain, factor))
 
 
@@ -438,7 +438,8 @@ def _damping_ratio(
         ],
         axis=1,
     )
-    lost = (damping.factors(model.scene.dampings, omega).imag * part).sum(axis=1)
+    factors = damping.factors(model.scene.dampings, omega)[..., : damping.DASHPOT]
+    lost = (factors.imag * part).sum(axis=1)
     return np.divide(lost, 2 * omega**2 * part[:, 3], out=np.zeros_like(omega), where=omega > 0)
 
 

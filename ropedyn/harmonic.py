@@ -61,7 +61,7 @@ class Question:
 
     @cached_property
     def factor(self) -> Complex:
-        """Factors on sections, tension, springs and inertia, shape (4, f)."""
+        """Factors on sections, tension, springs, inertia and dashpots, shape (5, f)."""
         omega = 2 * np.pi * self.frequency
         return np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
 
@@ -75,6 +75,7 @@ class Question:
             damping.TENSION: "z" in self.component and self.model.scene.tension != 0,
             damping.SPRING: bool(chain.stiffness.any()),
             damping.INERTIA: True,
+            damping.DASHPOT: chain.damping is not None or chain.drag is not None,
         }
         return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
 
@@ -106,7 +107,7 @@ class Question:
 
     @property
     def fastest(self) -> Complex:
-        """The factors of the highest frequency, shape (4, 1), or none where there is none."""
+        """The factors of the highest frequency, shape (5, 1), or none where there is none."""
         factor = self.factor
         highest = [np.argmax(np.abs(factor[damping.INERTIA]))] if factor.size else []
         return np.ascontiguousarray(factor[:, highest])

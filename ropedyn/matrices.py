@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import Chain
-from .damping import INERTIA, SECTION, SPRING, TENSION, Damping, factors
+from .damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, Damping, factors
 
 
 def stiffness(chain: Chain) -> sp.csr_array:
     """Assemble sections, tension and springs."""
-    elastic, elastic_coupling, string, string_coupling, springs, _ = _core.assemble(chain)
+    elastic, elastic_coupling, string, string_coupling, springs, _, _ = _core.assemble(chain)
     return _sparse(chain, elastic + string + springs, elastic_coupling + string_coupling)
 
 
@@ -29,12 +29,14 @@ def damping(chain: Chain, dampings: Sequence[Damping]) -> sp.csr_array:
     """Assemble what the dampings add to the dynamic stiffness per i omega."""
     # every damping here is i omega times a constant on each part
     share = factors(dampings, np.array(1.0)).imag
-    elastic, elastic_coupling, string, string_coupling, springs, inertia = _core.assemble(chain)
+    parts = _core.assemble(chain)
+    elastic, elastic_coupling, string, string_coupling, springs, inertia, dashpots = parts
     diagonal = (
         share[SECTION] * elastic
         + share[TENSION] * string
         + share[SPRING] * springs
         + share[INERTIA] * inertia
+        + share[DASHPOT] * dashpots
     )
     coupling = share[SECTION] * elastic_coupling + share[TENSION] * string_coupling
     return _sparse(chain, diagonal, coupling)

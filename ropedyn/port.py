@@ -165,7 +165,7 @@ def cut(
     closed = np.zeros((1, width))
     return chain._replace(
         length=np.concatenate([chain.length, nodes[first[pieces] + 1] - nodes[first[pieces]]]),
-        tension=np.concatenate([chain.tension, chain.tension[source]]),
+        tension=np.append(chain.tension, chain.tension[source]),
         flexibility=np.concatenate([chain.flexibility, chain.flexibility[source]]),
         first=first.astype(np.int32),
         element=element[:-1].astype(np.int32),
@@ -173,8 +173,16 @@ def cut(
         stiffness=np.concatenate([chain.stiffness, none]),
         held=np.concatenate([chain.held, np.zeros((1, width), dtype=np.uint8)]),
         term=term.astype(np.int32),
-        inertia=None
-        if chain.inertia is None
-        else np.concatenate([chain.inertia, chain.inertia[source]]),
         hinge=None if chain.hinge is None else np.concatenate([chain.hinge, closed]),
+        inertia=_repeated(chain.inertia, source),
+        damping=None if chain.damping is None else np.concatenate([chain.damping, none]),
+        drag=_repeated(chain.drag, source),
+        sag=_repeated(chain.sag, source),
     ), nodes
+
+
+def _repeated(
+    array: NDArray[np.float64] | None, source: NDArray[np.int32]
+) -> NDArray[np.float64] | None:
+    """Append those rows of an array of the distinct elements again."""
+    return None if array is None else np.concatenate([array, array[source]])

@@ -42,7 +42,7 @@ def left_ends(chain: Chain) -> LeftEnd:
 
 
 def first_left_end(chain: Chain, factor: NDArray[np.complex128]) -> LeftEnd:
-    """Return that of the first element at the factors (4, f)."""
+    """Return that of the first element at the factors (5, f)."""
     e = int(chain.element[0])
     if _is_strut(chain)[e]:
         E, bent = _strut(chain, e)

@@ -31,7 +31,7 @@ CHAIN = MODEL.chain  # 9 nodes, width 3
 SPAN = SCENE.compile().chain  # continuous, 4 nodes, width 3
 FIELDS = tuple(f for f in CHAIN._fields[1:] if getattr(CHAIN, f) is not None)
 NODES, WIDTH = 9, 3
-FACTOR = np.array([[1, 1, 1, -1.0 + 0j], [1, 1, 1, -400.0]])
+FACTOR = np.array([[1, 1, 1, -1.0 + 0j, 1j], [1, 1, 1, -400.0, 20j]])
 PORT = (np.array([2], dtype=np.int32), np.ones((1, 2, WIDTH)))
 FORCE = np.ones((NODES, WIDTH))
 SHAPES = np.ones((2, NODES, WIDTH))
@@ -107,9 +107,9 @@ MALFORMED = {
     "none": (None, TypeError, "chain must be a tuple"),
     "list": (list(CHAIN), TypeError, "chain must be a tuple"),
     "model": (MODEL, TypeError, "chain must be a tuple"),
-    "empty": ((), TypeError, "13 arguments"),
-    "one less": (tuple(CHAIN)[:-1], TypeError, "13 arguments"),
-    "one more": ((*CHAIN, 1), TypeError, "13 arguments"),
+    "empty": ((), TypeError, "20 arguments"),
+    "one less": (tuple(CHAIN)[:-1], TypeError, "20 arguments"),
+    "one more": ((*CHAIN, 1), TypeError, "20 arguments"),
     "kind of text": (CHAIN._replace(kind="rigid"), TypeError, ""),
     "kind of a float": (CHAIN._replace(kind=1.0), TypeError, ""),
     "kind too large": (CHAIN._replace(kind=2**40), OverflowError, ""),
@@ -247,7 +247,7 @@ REFUSED = {
     "factor with too few parts": (
         lambda: _core.frf(CHAIN, FACTOR[:, 1:], PORT, PORT),
         ValueError,
-        "factor must have 4 entries along axis 1, got 3",
+        "factor must have 5 entries along axis 1, got 4",
     ),
     "factor of one axis": (lambda: _core.frf(CHAIN, FACTOR[0], PORT, PORT), ValueError, ""),
     "factor of text": (
@@ -451,11 +451,11 @@ MEANINGLESS |= {
 }
 MEANINGLESS |= {
     f"continuous factor {value}-{entry}": lambda v=value, e=entry: (
-        _core.sweep(SPAN, np.full((4, 3), v, complex), PORT, PORT)
+        _core.sweep(SPAN, np.full((5, 3), v, complex), PORT, PORT)
         if e == "sweep"
-        else _core.triple(SPAN, 0, np.full((4, 3), v, complex))
+        else _core.triple(SPAN, 0, np.full((5, 3), v, complex))
         if e == "triple"
-        else _core.steps(SPAN, np.full((4, 3), v, complex))
+        else _core.steps(SPAN, np.full((5, 3), v, complex))
     )
     for value in (math.nan, math.inf, complex(0, math.nan), 0.0, 1e200)
     for entry in ("sweep", "steps", "triple")
@@ -466,7 +466,7 @@ MEANINGLESS |= {
     for scale in (math.nan, math.inf, 0.0, -1.0)
 }
 MEANINGLESS |= {
-    f"factor {value}": lambda v=value: _core.frf(CHAIN, np.full((3, 4), v, complex), PORT, PORT)
+    f"factor {value}": lambda v=value: _core.frf(CHAIN, np.full((3, 5), v, complex), PORT, PORT)
     for value in (math.nan, math.inf, complex(0, math.nan), 0.0)
 }
 CALLS = {name: call for name, (call, _, _) in REFUSED.items()} | MEANINGLESS

@@ -186,7 +186,8 @@ double *rope_dense(const struct rd_chain *chain, const double *part)
             for (size_t b = 0; b < w; b++) {
                 const size_t at = ((size_t)chain->term_of[i] * w + a) * w + b;
                 dense[(i * w + a) * n + i * w + b] +=
-                    part[RD_SPRINGS] * chain->stiffness[at] + part[RD_MASS] * chain->mass[at];
+                    part[RD_SPRINGS] * chain->stiffness[at] + part[RD_MASS] * chain->mass[at] +
+                    (chain->damping ? part[RD_DASHPOTS] * chain->damping[at] : 0);
             }
     return dense;
 }

@@ -60,7 +60,8 @@ enum rd_status line_frf_less(const struct line *line, int32_t drive, int32_t res
         inertia[2 * i] = -omega[i] * omega[i];
     }
     const double row[4] = {1.0};
-    const struct rd_factors factors = {count, one, one, one, inertia};
+    const struct rd_factors factors = {
+        .count = count, .section = one, .tension = one, .spring = one, .inertia = inertia};
     const struct rd_ports drives = {1, &drive, row, NULL};
     const struct rd_ports responses = {1, &response, row, NULL};
     struct rd_workspace space = {0};

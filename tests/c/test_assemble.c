@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const struct rd_section section = {8.5e5, 0.1485, 54.626, 120, 0.3};
-static const double all[RD_PARTS] = {1, 1, 1, 1};
+static const double all[RD_PARTS] = {1, 1, 1, 1, 1};
 
 /* an assembly with arrays of its own exact size */
 static struct rd_assembly assembly_make(const struct rd_chain *chain)
@@ -18,11 +18,12 @@ static struct rd_assembly assembly_make(const struct rd_chain *chain)
         .string = {zeros(chain->nodes * block), zeros((chain->nodes - 1) * block)},
         .springs = zeros(chain->nodes * block),
         .mass = zeros(chain->nodes * block),
+        .dashpots = zeros(chain->nodes * block),
     };
     /* what was there before is overwritten */
     for (size_t k = 0; k < chain->nodes * block; k++)
         assembly.elastic.diagonal[k] = assembly.string.diagonal[k] = assembly.springs[k] =
-            assembly.mass[k] = (double)NAN;
+            assembly.mass[k] = assembly.dashpots[k] = (double)NAN;
     for (size_t k = 0; k < (chain->nodes - 1) * block; k++)
         assembly.elastic.coupling[k] = assembly.string.coupling[k] = (double)NAN;
     return assembly;
@@ -36,6 +37,7 @@ static void assembly_free(struct rd_assembly *assembly)
     free(assembly->string.coupling);
     free(assembly->springs);
     free(assembly->mass);
+    free(assembly->dashpots);
 }
 
 /* two kinds of element in alternation, an own term with full matrices at one node */

@@ -71,7 +71,7 @@ static void mode_of_one_coordinate_stores_all_in_one_place(const char *coordinat
 static void shares_add_up_to_the_whole(const char *coordinates, enum rd_kind kind, double tension,
                                        double H, double D)
 {
-    static const double K_of[RD_PARTS] = {1, 1, 1, 0}, M_of[RD_PARTS] = {0, 0, 0, 1};
+    static const double K_of[RD_PARTS] = {1, 1, 1}, M_of[RD_PARTS] = {0, 0, 0, 1};
     const struct recipe recipe = {
         .kind = kind,
         .elements = 6,

@@ -102,7 +102,8 @@ static void test_hinge_is_damped_as_a_spring(void)
     line.hinge[2 * FIRST + 1] = 0.3;
     line.term_of[10] = FIRST;
     line_find(&line);
-    const struct rd_factors factors = {1, g, g, g, none};
+    const struct rd_factors factors = {
+        .count = 1, .section = g, .tension = g, .spring = g, .inertia = none};
     double complex h[3];
     for (size_t k = 0; k < 3; k++) {
         const struct rd_ports port = {1, node + k, row, NULL}, middle = {1, node + 1, row, NULL};

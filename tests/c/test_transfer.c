@@ -58,7 +58,7 @@ static void transfer_at(const struct span *span, struct factors factors,
 {
     struct rate_matrix rate;
     rd_rate_fill(&span->chain, 0, lanes_of(factors.section), lanes_of(factors.tension),
-                 lanes_of(factors.inertia), &rate);
+                 lanes_of(factors.inertia), c_zero(), &rate);
     rd_transfer_fill(&span->chain, 0, &rate, transfer);
 }
 
@@ -417,7 +417,7 @@ static void lanes_do_not_see_each_other(void)
     span_make(&span, "xzab", &laid, 0.1, 300, everywhere);
     for (int k = 0; k < LANES; k++)
         inertia.re[k] = -1e3 * k;
-    rd_rate_fill(&span.chain, 0, c_real(1), c_real(1), inertia, &rate);
+    rd_rate_fill(&span.chain, 0, c_real(1), c_real(1), inertia, c_zero(), &rate);
     rd_transfer_fill(&span.chain, 0, &rate, &together);
     for (int k = 0; k < LANES; k++) {
         transfer_at(&span, (struct factors){1, 1, -1e3 * k}, &alone);
