@@ -61,7 +61,8 @@ class Recorder:
 def collected(*arguments):
     """Run or only collect the claims; exit with pytest's status if it fails."""
     recorder = Recorder()
-    options = ["-q", "-p", "no:cacheprovider", *arguments]
+    # one process: what tests measured is gathered in this one
+    options = ["-q", "-p", "no:cacheprovider", "--numprocesses=0", *arguments]
     status = pytest.main([*options, str(ROOT / "tests")], [recorder])
     if status:
         sys.exit(int(status))
