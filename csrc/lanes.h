@@ -6,8 +6,9 @@
 
 enum { RD_LANES = 8 };
 
-/* one copy of a function per instruction set, chosen when the library is loaded */
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) &&                            \
+/* one copy of a function per instruction set, chosen when the library is loaded; one for all where it
+   is not optimised */
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&   \
     !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 #define RD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
