@@ -16,7 +16,7 @@ from .errors import RopedynError, SceneError, SolveError
 from .frf import FRF
 from .model import Model
 from .modes import Modes
-from .part import Hinge, PointMass, Spring, Support
+from .part import Dashpot, Hinge, PointMass, Spring, Support
 from .peaks import Peaks
 from .resonance import Resonances
 from .rope import Rope
@@ -32,6 +32,7 @@ __all__ = [
     "Choice",
     "Comparison",
     "Cost",
+    "Dashpot",
     "Deflection",
     "End",
     "Hinge",

@@ -97,11 +97,15 @@ class Chain(NamedTuple):
         return self.free if self.inertia is None or not self.inertia.any() else None
 
     @property
+    def undamped(self) -> Chain:
+        """The chain without what is in proportion to velocity."""
+        return self._replace(damping=None, drag=None)
+
+    @property
     def at_rest(self) -> Chain:
-        """The chain without inertia, where continuous elements are tensed ones exactly."""
-        if self.inertia is None:
-            return self
-        return self._replace(kind=TENSED, inertia=None)
+        """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
+        kind = self.kind if self.inertia is None else TENSED
+        return self.undamped._replace(kind=kind, inertia=None)
 
     def stretch(self, node: int) -> int:
         """Return the stretch that a node belongs to."""

@@ -181,7 +181,8 @@ def _chain(
     element = np.repeat(which, 2)[present[:-1]]
     term = term[present]
     del nodes, present
-    mass, stiffness, held, hinge = _terms(scene, kind, stations, length[which], length[inside])
+    terms = _terms(scene, kind, stations, length[which], length[inside])
+    mass, stiffness, damping, held, hinge = terms
     return Chain(
         kind=kind,
         coordinate=np.array(
@@ -198,6 +199,7 @@ def _chain(
         term=term,
         hinge=hinge,
         inertia=np.tile(_inertia(scene), (len(length), 1)) if kind == CONTINUOUS else None,
+        damping=damping,
     )
 
 
@@ -207,8 +209,14 @@ def _terms(
     stations: NDArray[np.float64],
     lengths: NDArray[np.float64],
     inside: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None]:
-    """Return mass, stiffness, held of the distinct node terms, and hinges.
+) -> tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64] | None,
+    NDArray[np.uint8],
+    NDArray[np.float64] | None,
+]:
+    """Return mass, stiffness, damping, held of the distinct node terms, and hinges.
 
     Those of the stations, then those inside spans, one for each of the lengths `inside`; `lengths`
     are those of the elements of all spans.
@@ -223,22 +231,23 @@ def _terms(
             np.multiply(beside, inertia, out=mass[:, k, k])
     if kind == KINDS.index("tensed") and "beta" in scene.coordinates:
         _correct_ends(scene, lengths, mass[: len(stations)])
-    stiffness = np.zeros(mass.shape)
+    stiffness, damping = np.zeros(mass.shape), np.zeros(mass.shape)
     held = np.zeros((len(beside), width), dtype=np.uint8)
     hinge = None
     number = {c: k for k, c in enumerate(scene.coordinates)}
     for station, term in _standing(scene, stations):
-        for values, into in ((term.mass, mass), (term.stiffness, stiffness)):
+        given = ((term.mass, mass), (term.stiffness, stiffness), (term.damping, damping))
+        for values, into in given:
             for coordinate, value in values.items():
                 if value != 0.0 and coordinate in number:
                     k = number[coordinate]
                     into[station, k, k] += value
-        for coordinate in term.held:
+        for coordinate in set(term.held) & set(number):
             held[station, number[coordinate]] = 1
         for coordinate, compliance in term.hinge.items():
             hinge = np.zeros((len(beside), width)) if hinge is None else hinge
             hinge[station, number[coordinate]] += compliance
-    return mass, stiffness, held, hinge
+    return mass, stiffness, damping if damping.any() else None, held, hinge
 
 
 def _correct_ends(scene: Scene, lengths: NDArray[np.float64], mass: NDArray[np.float64]) -> None:
@@ -275,8 +284,7 @@ def _inertia(scene: Scene) -> NDArray[np.float64]:
 def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
     """Return what stands at which station."""
     for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
-        held = [c for c in scene.coordinates if end.holds(c)]
-        yield station, NodeTerm(stiffness=end.spring, held=held)
+        yield station, end.term()
     between = (stations[1:] + stations[:-1]) / 2
     nearest = np.searchsorted(between, [part.x for part in scene.parts])
     for station, part in zip(nearest, scene.parts):

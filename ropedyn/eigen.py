@@ -169,7 +169,7 @@ def count_modes(model: Model, below: float) -> int:
 
 def count_component(model: Model, component: tuple[str, ...], limit: float) -> int:
     """Count the eigenvalues of one component below a limit [rad^2/s^2]."""
-    return _count(model.chain.only(component), limit)
+    return _count(model.chain.undamped.only(component), limit)
 
 
 def _count(chain: Chain, limit: float) -> int:
@@ -192,7 +192,7 @@ def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
     if model.element != "continuous":
         return
     for component in model.components:
-        steps = _steps(model.chain.only(component), min(eigenvalue, HIGHEST))
+        steps = _steps(model.chain.undamped.only(component), min(eigenvalue, HIGHEST))
         if steps > MOST_STEPS:
             raise SolveError(
                 f"below is too high: ({', '.join(component)}) has {steps} pieces shorter than its "
@@ -224,7 +224,7 @@ def _sweep(
     model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> Found:
     """Solve each span between nodes that nothing moves for itself."""
-    chain = model.chain.only(component)
+    chain = model.chain.undamped.only(component)
     found = []
     for first, last in chain.spans:
         try:
@@ -274,7 +274,7 @@ def _upper(limit: float) -> float:
 def _lapack(
     model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> Found:
-    chain = model.chain.only(component)
+    chain = model.chain.undamped.only(component)
     if chain.free > LARGEST_DENSE:
         raise SolveError(
             f"({', '.join(component)}) has {chain.free} unknowns: solver 'lapack' needs a dense "
@@ -340,7 +340,7 @@ def _most_pieces(model: Model, eigenvalue: Real) -> int:
     """
     highest = float(np.abs(eigenvalue).max(initial=0.0))
     longest = int(np.diff(model.x).argmax())
-    element = model.chain.between(longest, longest + 1)
+    element = model.chain.undamped.between(longest, longest + 1)
     return max((_steps(element.only(c), highest) for c in model.components), default=1)
 
 
@@ -375,7 +375,7 @@ def _vectors(
     model: Model, found: Sequence[Found], eigenvalue: Real, order: NDArray[np.intp]
 ) -> Vectors:
     shape = _spread(model, found)[order]
-    strain, kinetic = _core.energy(model.chain, shape, eigenvalue)
+    strain, kinetic = _core.energy(model.chain.undamped, shape, eigenvalue)
     own = kinetic.argmax(axis=1)
     size = _largest(shape, own)
     shape /= size[:, None, None]

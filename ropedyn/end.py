@@ -1,4 +1,4 @@
-"""Ends of the rope: what is held, what is free, and the springs there."""
+"""Ends of the rope: what is held, what is free, and what stands there."""
 
 from __future__ import annotations
 
@@ -8,6 +8,16 @@ from typing import Any
 
 from . import check
 from .errors import SceneError
+from .part import Dashpot, NodeTerm, PointMass, Spring
+
+STANDING = {"spring": Spring.kind, "dashpot": Dashpot.kind, "mass": PointMass.kind}
+"""What can stand at an end, and the effect it is."""
+
+_NUMBER = {
+    "spring": ("N/m or N m", "nonzero"),
+    "dashpot": ("N s/m or N m s", "positive"),
+    "mass": ("kg or kg m^2", "nonnegative"),
+}
 
 
 class PerCoordinate(Mapping[str, float]):
@@ -50,14 +60,18 @@ class End:
     spring : mapping, optional
         Stiffness from the end to the ground at free coordinates, such as ``{"beta": 12.0}``
         [N/m for x and z, N m for alpha and beta].
+    dashpot : mapping, optional
+        Damping from the end to the ground at free coordinates [N s/m, N m s].
+    mass : mapping, optional
+        Inertia at free coordinates, of one the other has no part of [kg, kg m^2].
 
     Raises
     ------
     TypeError
-        If a word is not a string or a stiffness not a number.
+        If a word is not a string or a value not a number.
     SceneError
-        If a word or coordinate is unknown, a stiffness not finite or 0, or a spring stands at a
-        held coordinate.
+        If a word or coordinate is unknown, a value not finite, a stiffness 0, a damping not
+        positive, a mass negative, or something stands at a held coordinate.
 
     Examples
     --------
@@ -72,22 +86,36 @@ class End:
     beta: str = "held"
     _: KW_ONLY
     spring: Mapping[str, float] = field(default_factory=dict)
+    dashpot: Mapping[str, float] = field(default_factory=dict)
+    mass: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for coordinate in check.COORDINATES:
             check.one_of(getattr(self, coordinate), coordinate, ("held", "free"))
-        spring = PerCoordinate(self.spring, "spring", "N/m or N m", "nonzero")
-        for coordinate in spring:
-            if getattr(self, coordinate) == "held":
-                raise SceneError(
-                    f"spring must stand at free coordinates, got one at {coordinate!r}, "
-                    "which is held"
-                )
-        object.__setattr__(self, "spring", spring)
+        for name, (unit, sign) in _NUMBER.items():
+            values = PerCoordinate(getattr(self, name), name, unit, sign)
+            for coordinate in values:
+                if self.holds(coordinate):
+                    raise SceneError(
+                        f"{name} must stand at free coordinates, got one at {coordinate!r}, "
+                        "which is held"
+                    )
+            object.__setattr__(self, name, values)
 
     def holds(self, coordinate: str) -> bool:
         """Whether the coordinate cannot move."""
         return bool(getattr(self, coordinate) == "held")
+
+    @property
+    def standing(self) -> dict[str, Mapping[str, float]]:
+        """What stands there, by the name of the argument; nothing where nothing does."""
+        values = {name: getattr(self, name) for name in STANDING}
+        return {name: value for name, value in values.items() if value}
+
+    def term(self) -> NodeTerm:
+        """Return what it adds to its node."""
+        held = [c for c in check.COORDINATES if self.holds(c)]
+        return NodeTerm(self.mass, self.spring, held, damping=self.dashpot)
 
 
 NAMED = {

@@ -184,6 +184,7 @@ class Model:
             If there is none: tensed elements with tension and stiffness damping.
         """
         self._refuse_matrices()
+        self._refuse_nonlinear()
         if not self.separable:
             raise SceneError(
                 "damping must scale sections and tension alike for tensed elements with tension "
@@ -244,6 +245,7 @@ class Model:
         >>> print(model.modes(2).frequency.round(2))
         [15.81 31.61]
         """
+        self._refuse_nonlinear()
         from .eigen import solve_modes
 
         return solve_modes(self, number, below=below, solver=solver, points=points)
@@ -275,6 +277,7 @@ class Model:
         >>> model.count(below=40.0)
         2
         """
+        self._refuse_nonlinear()
         from .eigen import count_modes
 
         return count_modes(self, below)
@@ -343,6 +346,7 @@ class Model:
         >>> print(model.frf([0.0], drive=("z", 0.5)).value[0, 0].real.round(6))
         0.0025
         """
+        self._refuse_nonlinear()
         from .harmonic import solve_frf
 
         return solve_frf(
@@ -391,6 +395,7 @@ class Model:
         >>> print(model.static({("z", 0.5): 8.0}).displacement[2])
         [0.02]
         """
+        self._refuse_nonlinear()
         from .deflection import solve_static
 
         return solve_static(self, load, solver=solver, points=points)
@@ -401,6 +406,12 @@ class Model:
                 "elements must be given for matrices: continuous spans have none, their stiffness "
                 "depends on the frequency"
             )
+
+    def _refuse_nonlinear(self) -> None:
+        for i, part in enumerate(self.scene.parts):
+            must_be = part.term().nonlinear
+            if must_be:
+                raise SceneError(f"parts[{i}].{must_be}: only integration over time takes others")
 
     def component_of(self, coordinate: str) -> tuple[str, ...]:
         """Return the coordinates that move with this one."""

@@ -22,6 +22,10 @@ class NodeTerm(NamedTuple):
     """Coordinates that cannot move."""
     hinge: Mapping[str, float] = MappingProxyType({})
     """Compliance between the node and the rope on its right [rad/(N m)], infinite where free."""
+    damping: Mapping[str, float] = MappingProxyType({})
+    """To the ground, in proportion to velocity [N s/m, N m s]."""
+    nonlinear: str = ""
+    """What must be otherwise where time is not integrated, empty where nothing must."""
 
 
 class Part(Protocol):
@@ -155,6 +159,66 @@ class Spring:
 
 
 @dataclass(frozen=True)
+class Dashpot:
+    """A dashpot from the rope to the ground, of force c |v|^exponent sign(v).
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    damping : float
+        c [N s/m for x and z, N m s for alpha and beta, of exponent 1].
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it acts on.
+    exponent : float
+        1: in proportion to velocity. Others have a meaning in the time domain alone: frequencies,
+        frequency response, static deflection and matrices are refused.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number or the coordinate not a string.
+    SceneError
+        If something is not finite, the damping or exponent is not positive or the coordinate is
+        unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Dashpot(0.5, 3.0).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "dashpot"
+
+    x: float
+    damping: float
+    _: KW_ONLY
+    coordinate: str = "z"
+    exponent: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+        unit = "N s/m" if self.coordinate in ("x", "z") else "N m s"
+        damping = check.number(self.damping, "damping", unit, sign="positive")
+        object.__setattr__(self, "damping", damping)
+        exponent = check.number(self.exponent, "exponent", sign="positive")
+        object.__setattr__(self, "exponent", exponent)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self) -> NodeTerm:
+        """Damping on the diagonal, if it is linear."""
+        if self.exponent != 1.0:
+            return NodeTerm(nonlinear=f"exponent must be 1, got {self.exponent!r}")
+        return NodeTerm(damping={self.coordinate: self.damping})
+
+
+@dataclass(frozen=True)
 class Support:
     """A rigid support of one coordinate.
 
@@ -258,5 +322,5 @@ class Hinge:
         return NodeTerm(hinge={"beta": compliance})
 
 
-KINDS = (PointMass, Spring, Support, Hinge)
+KINDS = (PointMass, Spring, Dashpot, Support, Hinge)
 """Every kind of part."""

@@ -58,7 +58,7 @@ class Scene:
         Left and right end.
     damping : StiffnessDamping, RayleighDamping or tuple of them, optional
         A tuple is their sum.
-    parts : sequence of PointMass, Spring, Support, Hinge
+    parts : sequence of PointMass, Spring, Dashpot, Support, Hinge
         What stands on the rope.
 
     Raises
@@ -122,12 +122,13 @@ class Scene:
             if isinstance(part, _part.Hinge):
                 self._check_hinge(i, part.x)
         for i, end in enumerate(self.ends):
-            for coordinate in _end.end_of(end).spring:
-                if coordinate not in self.coordinates:
-                    raise SceneError(
-                        f"ends[{i}].spring must stand on coordinates the scene has "
-                        f"({present}), got {coordinate!r}"
-                    )
+            for name, values in _end.end_of(end).standing.items():
+                for coordinate in values:
+                    if coordinate not in self.coordinates:
+                        raise SceneError(
+                            f"ends[{i}].{name} must stand on coordinates the scene has "
+                            f"({present}), got {coordinate!r}"
+                        )
 
     def _check_hinge(self, i: int, x: float) -> None:
         margin = check.NEAR * self.rope.length
@@ -161,8 +162,8 @@ class Scene:
         """What acts in this scene, in a fixed order."""
         rope = self.rope
         stands = {part.kind for part in self.parts} | {d.kind for d in self.dampings}
-        if any(_end.end_of(end).spring for end in self.ends):
-            stands.add(_part.Spring.kind)
+        for end in self.ends:
+            stands |= {_end.STANDING[name] for name in _end.end_of(end).standing}
         acts = {
             "tension": self.tension != 0,
             "bending": rope.bending_stiffness is not None,
@@ -370,9 +371,11 @@ def _checked_parts(parts: Any) -> tuple[Part, ...]:
 
 
 def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
-    """Return an end without the springs that go with coordinates or with the effect itself."""
+    """Return an end without what goes with coordinates or with the effect itself."""
     if isinstance(end, str):
         return end
-    gone = _part.Spring.kind in effects
-    spring = {c: k for c, k in end.spring.items() if c in present and not gone}
-    return dataclasses.replace(end, spring=spring)
+    kept: dict[str, Any] = {}
+    for name, values in end.standing.items():
+        gone = _end.STANDING[name] in effects
+        kept[name] = {c: v for c, v in values.items() if c in present and not gone}
+    return dataclasses.replace(end, **kept)

@@ -161,24 +161,30 @@ for name in ("x", "z", "alpha", "beta"):
         NOT_A_WORD | {"bool": True},
         {"unknown": "glued", "empty": "", "capital": "Held"},
     )
-row(
-    "End",
-    "spring",
-    lambda v: rd.End(z="free", spring=v),
-    {"none": None, "number": 3.0, "list": [("z", 1.0)], "text": "z", "number_key": {3: 1.0}},
-    {"unknown_key": {"y": 1.0}, "held_key": {"beta": 1.0}},
-)
-row(
-    "End",
-    "spring['z']",
-    lambda v: rd.End(z="free", spring={"z": v}),
-    NOT_A_NUMBER,
-    NOT_FINITE | ZERO,
-)
+for name, wrong in (
+    ("spring", ZERO),
+    ("dashpot", ZERO | NEGATIVE),
+    ("mass", NEGATIVE),
+):
+    row(
+        "End",
+        name,
+        lambda v, name=name: rd.End(z="free", **{name: v}),
+        {"none": None, "number": 3.0, "list": [("z", 1.0)], "text": "z", "number_key": {3: 1.0}},
+        {"unknown_key": {"y": 1.0}, "held_key": {"beta": 1.0}},
+    )
+    row(
+        "End",
+        f"{name}['z']",
+        lambda v, name=name: rd.End(z="free", **{name: {"z": v}}),
+        NOT_A_NUMBER,
+        NOT_FINITE | wrong,
+    )
 
 PARTS = {
     "PointMass": lambda **v: rd.PointMass(**{"x": 0.5, "mass": 1.0} | v),
     "Spring": lambda **v: rd.Spring(**{"x": 0.5, "stiffness": 1.0} | v),
+    "Dashpot": lambda **v: rd.Dashpot(**{"x": 0.5, "damping": 1.0} | v),
     "Support": lambda **v: rd.Support(**{"x": 0.5} | v),
 }
 for part, build in PARTS.items():
@@ -205,7 +211,15 @@ row(
     NOT_A_NUMBER,
     NOT_FINITE | ZERO,
 )
-for part in ("Spring", "Support"):
+for name in ("damping", "exponent"):
+    row(
+        "Dashpot",
+        name,
+        lambda v, name=name: PARTS["Dashpot"](**{name: v}),
+        NOT_A_NUMBER,
+        NOT_FINITE | ZERO | NEGATIVE,
+    )
+for part in ("Spring", "Dashpot", "Support"):
     row(
         part,
         "coordinate",
@@ -757,10 +771,11 @@ def test_lay_needs_the_stiffnesses_it_couples(name, missing):
         rope(**whole | {missing: None})
 
 
-def test_spring_of_an_end_needs_a_coordinate_that_the_scene_has():
-    end = rd.End(x="free", spring={"x": 1.0})
+@pytest.mark.parametrize("name", ["spring", "dashpot", "mass"])
+def test_what_stands_at_an_end_needs_a_coordinate_that_the_scene_has(name):
+    end = rd.End(x="free", **{name: {"x": 1.0}})
     with pytest.raises(
-        rd.SceneError, match=r"ends\[1\].spring must .* \(z, alpha, beta\), got 'x'"
+        rd.SceneError, match=rf"ends\[1\].{name} must .* \(z, alpha, beta\), got 'x'"
     ):
         scene(ends=("clamped", end))
 
@@ -826,3 +841,22 @@ def test_frequencies_whose_square_overflows_are_refused_by_name(frequency):
 def test_a_limit_above_every_mode_finds_all_of_them(below):
     # a bound that is larger than any frequency has a meaning, whatever its square does
     assert len(MODEL.modes(below=below).frequency) == 3
+
+
+@pytest.mark.parametrize("exponent", [0.5, 2])
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda model: model.modes(2),
+        lambda model: model.count(below=50.0),
+        lambda model: model.frf([10.0], drive=("z", 0.5)),
+        lambda model: model.static({("z", 0.5): 1.0}),
+        lambda model: model.damping(),
+    ],
+    ids=["modes", "count", "frf", "static", "damping"],
+)
+def test_a_dashpot_that_is_not_linear_is_refused_where_time_is_not_integrated(ask, exponent):
+    parts = [rd.Support(0.3), rd.Dashpot(0.5, 1.0, exponent=exponent)]
+    model = scene(parts=parts).compile(elements=4)
+    with pytest.raises(rd.SceneError, match=rf"parts\[1\].exponent must be 1, got {exponent:.1f}"):
+        ask(model)

@@ -20,6 +20,7 @@ ORDER = (
     "polar inertia",
     "point mass",
     "spring",
+    "dashpot",
     "support",
     "stiffness damping",
     "rayleigh damping",
@@ -37,13 +38,23 @@ ROPE = {
 }
 MASS = rd.PointMass(0.3, 0.05, rotary_inertia=1e-6, polar_inertia=1e-7)
 SPRINGS = {c: rd.Spring(0.5, 700.0, coordinate=c) for c in ("x", "z", "alpha", "beta")}
+DASHPOTS = {c: rd.Dashpot(0.5, 2.0, coordinate=c) for c in ("x", "z", "alpha", "beta")}
 SUPPORTS = {c: rd.Support(0.8, coordinate=c) for c in ("x", "z", "alpha", "beta")}
-SPRUNG = {"x": 4e3, "z": 900.0, "alpha": 0.7, "beta": 3.0}
+STANDING = {
+    "spring": {"x": 4e3, "z": 900.0, "alpha": 0.7, "beta": 3.0},
+    "dashpot": {"x": 2.0, "z": 0.4, "alpha": 1e-3, "beta": 2e-3},
+    "mass": {"x": 0.2, "z": 0.3, "alpha": 1e-6, "beta": 2e-6},
+}
 STIFFNESS, RAYLEIGH = rd.StiffnessDamping(1e-4), rd.RayleighDamping(0.3, 2e-5)
 
 
-def end(spring):
-    return rd.End(x="free", z="free", alpha="free", beta="free", spring=spring)
+def end(gone=(), **changes):
+    """Return a free end where everything stands, but not on the coordinates that are gone."""
+    standing = {
+        name: {c: v for c, v in values.items() if c not in gone}
+        for name, values in (STANDING | changes).items()
+    }
+    return rd.End(x="free", z="free", alpha="free", beta="free", **standing)
 
 
 def full():
@@ -51,9 +62,9 @@ def full():
     return rd.Scene(
         rd.Rope(**ROPE),
         tension=250.0,
-        ends=(end(SPRUNG), "pinned"),
+        ends=(end(), "pinned"),
         damping=(STIFFNESS, RAYLEIGH),
-        parts=[MASS, *SPRINGS.values(), *SUPPORTS.values()],
+        parts=[MASS, *SPRINGS.values(), *DASHPOTS.values(), *SUPPORTS.values()],
     )
 
 
@@ -61,11 +72,12 @@ def never(*properties, gone=(), **changes):
     """Return the scene that was never given these properties and what stood on `gone`."""
     given = {
         "tension": 250.0,
-        "ends": (end({c: k for c, k in SPRUNG.items() if c not in gone}), "pinned"),
+        "ends": (end(gone), "pinned"),
         "damping": (STIFFNESS, RAYLEIGH),
         "parts": [
             MASS,
             *(s for c, s in SPRINGS.items() if c not in gone),
+            *(d for c, d in DASHPOTS.items() if c not in gone),
             *(s for c, s in SUPPORTS.items() if c not in gone),
         ],
     }
@@ -84,9 +96,17 @@ NEVER_GIVEN = {
     "lay": never("lay_coupling", "lay_slope"),
     "rotary inertia": never("rotary_inertia"),
     "polar inertia": never("polar_inertia"),
-    "point mass": never(parts=[*SPRINGS.values(), *SUPPORTS.values()]),
-    "spring": never(parts=[MASS, *SUPPORTS.values()], ends=(end({}), "pinned")),
-    "support": never(parts=[MASS, *SPRINGS.values()]),
+    "point mass": never(
+        parts=[*SPRINGS.values(), *DASHPOTS.values(), *SUPPORTS.values()],
+        ends=(end(mass={}), "pinned"),
+    ),
+    "spring": never(
+        parts=[MASS, *DASHPOTS.values(), *SUPPORTS.values()], ends=(end(spring={}), "pinned")
+    ),
+    "dashpot": never(
+        parts=[MASS, *SPRINGS.values(), *SUPPORTS.values()], ends=(end(dashpot={}), "pinned")
+    ),
+    "support": never(parts=[MASS, *SPRINGS.values(), *DASHPOTS.values()]),
     "stiffness damping": never(damping=(RAYLEIGH,)),
     "rayleigh damping": never(damping=(STIFFNESS,)),
 }
@@ -179,15 +199,16 @@ def test_replace_changes_what_it_names_alone():
 
 def test_replace_checks_like_the_scene():
     # the parts stand at up to 0.8 m
-    with pytest.raises(rd.SceneError, match=r"parts\[5\].x must lie on the rope, .* got 0.8"):
+    with pytest.raises(rd.SceneError, match=r"parts\[9\].x must lie on the rope, .* got 0.8"):
         full().replace(rope=rd.Rope(**ROPE | {"length": 0.7}))
 
 
 THINGS = {
     "rope": rd.Rope(**ROPE),
-    "end": end(SPRUNG),
+    "end": end(),
     "point mass": MASS,
     "spring": SPRINGS["z"],
+    "dashpot": DASHPOTS["z"],
     "support": SUPPORTS["z"],
     "stiffness damping": STIFFNESS,
     "rayleigh damping": RAYLEIGH,
@@ -220,7 +241,7 @@ def test_descriptions_can_be_read_back_from_their_repr(name):
 
 
 def test_springs_of_an_end_cannot_be_changed():
-    spring = end(SPRUNG).spring
+    spring = end().spring
     with pytest.raises(TypeError):
         spring["z"] = 1.0
     with pytest.raises(TypeError):
@@ -228,15 +249,15 @@ def test_springs_of_an_end_cannot_be_changed():
 
 
 def test_springs_of_an_end_do_not_follow_the_dictionary_they_came_from():
-    given = dict(SPRUNG)
-    made = end(given)
+    given = dict(STANDING["spring"])
+    made = end(spring=given)
     given["z"] = -1.0
-    assert made.spring["z"] == SPRUNG["z"]
+    assert made.spring["z"] == STANDING["spring"]["z"]
 
 
 def test_springs_of_an_end_do_not_depend_on_the_order_they_were_given_in():
-    turned = end(dict(reversed(SPRUNG.items())))
-    assert (turned, hash(turned)) == (end(SPRUNG), hash(end(SPRUNG)))
+    turned = end(spring=dict(reversed(STANDING["spring"].items())))
+    assert (turned, hash(turned)) == (end(), hash(end()))
 
 
 def test_parts_do_not_follow_the_list_they_came_from():
@@ -315,11 +336,10 @@ def test_absent_inertia_has_no_entry_in_the_mass_matrix(effect):
 @pytest.mark.parametrize("effect", ["stiffness damping", "rayleigh damping"])
 def test_absent_damping_has_no_entry_in_the_damping_matrix(effect):
     other = {"stiffness damping": "rayleigh damping", "rayleigh damping": "stiffness damping"}
-    assert full().without(effect).compile(elements=9, element="rigid").damping().nnz > 0
-    assert (
-        full().without(effect, other[effect]).compile(elements=9, element="rigid").damping().nnz
-        == 0
-    )
+    one = full().without("dashpot", effect)
+    assert one.compile(elements=9, element="rigid").damping().nnz > 0
+    none = one.without(other[effect])
+    assert none.compile(elements=9, element="rigid").damping().nnz == 0
 
 
 def test_without_lay_bending_and_twist_are_not_coupled():

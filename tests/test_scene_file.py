@@ -63,8 +63,12 @@ def ends(draw):
         return draw(st.sampled_from(["clamped", "pinned", "free"]))
     words_of = {c: draw(words) for c in ("x", "z", "alpha", "beta")}
     free = [c for c, word in words_of.items() if word == "free"]
-    spring = {c: draw(other_than_zero) for c in free if draw(st.booleans())}
-    return rd.End(**words_of, spring=spring)
+    values = {"spring": other_than_zero, "dashpot": positive, "mass": at_least_zero}
+    standing = {
+        name: {c: draw(value) for c in free if draw(st.booleans())}
+        for name, value in values.items()
+    }
+    return rd.End(**words_of, **standing)
 
 
 coordinates = st.sampled_from(["x", "z", "alpha", "beta"])
@@ -77,6 +81,7 @@ parts = st.one_of(
         polar_inertia=at_least_zero,
     ),
     st.builds(rd.Spring, places, other_than_zero, coordinate=coordinates),
+    st.builds(rd.Dashpot, places, positive, coordinate=coordinates, exponent=positive),
     st.builds(rd.Support, places, coordinate=coordinates),
 )
 dampings = st.one_of(
@@ -130,7 +135,13 @@ def test_every_effect_survives_the_file(effect, tmp_path):
         rope,
         tension=1.0,
         damping=(rd.StiffnessDamping(1e-4), rd.RayleighDamping(0.1, 1e-5)),
-        parts=[rd.PointMass(0.2, 0.1), rd.Spring(0.3, 5.0), rd.Support(0.4), rd.Hinge(0.6)],
+        parts=[
+            rd.PointMass(0.2, 0.1),
+            rd.Spring(0.3, 5.0),
+            rd.Dashpot(0.7, 2.0),
+            rd.Support(0.4),
+            rd.Hinge(0.6),
+        ],
     )
     path = tmp_path / "rope.toml"
     whole.without(effect).save(path)
@@ -206,7 +217,7 @@ REFUSED = {
     ),
     "missing kind of part": (
         changed("parts", 2, "kind", drop=True),
-        "key parts[2].kind is missing: one of PointMass, Spring, Support, Hinge",
+        "key parts[2].kind is missing: one of PointMass, Spring, Dashpot, Support, Hinge",
     ),
     "missing mass": (changed("parts", 0, "mass", drop=True), "key parts[0].mass is missing"),
     "missing x": (changed("parts", 2, "x", drop=True), "key parts[2].x is missing"),
@@ -245,8 +256,8 @@ REFUSED = {
     ),
     "parts of numbers": (changed("parts", value=[1, 2]), "parts[0] must be a table, got 1"),
     "unknown part": (
-        changed("parts", 1, "kind", value="Dashpot"),
-        'parts[1].kind must be one of "PointMass", "Spring", "Support", "Hinge", got \'Dashpot\'',
+        changed("parts", 1, "kind", value="Damper"),
+        'parts[1].kind must be one of "PointMass", "Spring", "Dashpot", "Support", "Hinge", got',
     ),
     "kind of a number": (changed("parts", 1, "kind", value=1), "parts[1].kind must be one of"),
     "mass of text": (changed("parts", 0, "mass", value="heavy"), "parts[0].mass must be"),
