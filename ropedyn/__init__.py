@@ -21,6 +21,7 @@ from .peaks import Peaks
 from .resonance import Resonances
 from .rope import Rope
 from .scene import Scene
+from .stretch import AddedMass, LocalChange
 from .table import Table
 
 __version__ = "0.1.0"
@@ -28,6 +29,7 @@ __version__ = "0.1.0"
 __all__ = [
     "FRF",
     "AccuracyCost",
+    "AddedMass",
     "Answer",
     "Choice",
     "Comparison",
@@ -36,6 +38,7 @@ __all__ = [
     "Deflection",
     "End",
     "Hinge",
+    "LocalChange",
     "Model",
     "Modes",
     "Peaks",

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, mesh
-from .chain import CONTINUOUS, KINDS, Chain, components
+from .chain import CONTINUOUS, KINDS, TENSED, Chain, components
 from .end import end_of
 from .errors import SceneError
 from .model import MOST_POINTS, Model
-from .part import NodeTerm
+from .part import NodeTerm, places, standing, stretches
 from .rope import Rope
 from .scene import Scene
+from .stretch import ropes
 
 MOST_ELEMENTS = 10_000_000
 
@@ -42,8 +44,8 @@ def compile_scene(scene: Scene, *, elements: int | None, element: str | None) ->
 
 
 def stations_of(scene: Scene) -> NDArray[np.float64]:
-    """Return where the ends and parts of a scene stand [m]."""
-    return mesh.stations(scene.rope.length, (part.x for part in scene.parts))
+    """Return where the ends and parts of a scene stand, begin and end [m]."""
+    return mesh.stations(scene.rope.length, places(scene.parts))
 
 
 def divided(
@@ -73,9 +75,11 @@ def divided(
             f"elements must be longer than the smallest number, got {int(counts.sum())} on "
             f"{scene.rope.length!r} m"
         )
+    local, rope = ropes(scene.rope, stretches(scene.parts), stations)
     if element == "continuous":
-        _check_layers(scene)
-    chain = _chain(scene, kind, stations, counts)
+        _check_layers(scene, local)
+    elements = _distinct(scene.coordinates, local, rope, np.diff(stations), counts)
+    chain = _chain(scene, kind, stations, counts, elements)
     groups = components(chain, scene.coordinates)
     for array in chain:
         if isinstance(array, np.ndarray):
@@ -107,12 +111,12 @@ def check_points(model: Model, points: int | None) -> None:
         raise SceneError(f"points must be left out for chains, got {points}: answers are at nodes")
 
 
-def _check_layers(scene: Scene) -> None:
+def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
     """Refuse boundary layers too thin for the rope to be halved into them."""
-    bending = scene.rope.bending_stiffness
-    if bending is None:
+    bending = [rope.bending_stiffness for rope in local if rope.bending_stiffness is not None]
+    if not bending:
         return
-    radians = scene.rope.length * np.sqrt(abs(scene.tension)) / np.sqrt(bending)
+    radians = scene.rope.length * np.sqrt(abs(scene.tension)) / np.sqrt(min(bending))
     if not radians <= MOST_RADIANS:
         raise SceneError(
             f"bending_stiffness must leave L sqrt(T/B) at most {MOST_RADIANS:g} in continuous "
@@ -148,10 +152,27 @@ def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArr
     return x
 
 
+class Elements(NamedTuple):
+    """The distinct elements in the order they come in."""
+
+    length: NDArray[np.float64]
+    """(distinct,) [m]."""
+    flexibility: NDArray[np.float64]
+    """(distinct, 3, 3) of the section."""
+    inertia: NDArray[np.float64]
+    """(distinct, width) per length [kg/m, kg m]."""
+    which: NDArray[np.int32]
+    """(spans,) which of them each span has."""
+
+
 def _distinct(
-    spans: NDArray[np.float64], counts: NDArray[np.intp]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return the different lengths of elements in the order they come in, and which each span has.
+    coordinates: Sequence[str],
+    local: Sequence[Rope],
+    rope: NDArray[np.intp],
+    spans: NDArray[np.float64],
+    counts: NDArray[np.intp],
+) -> Elements:
+    """Tell elements of spans apart by length and by which of the local ropes they are of.
 
     Lengths that differ by the rounding of positions are one, their mean.
     """
@@ -159,16 +180,31 @@ def _distinct(
     order = np.argsort(each, kind="stable")
     group = np.empty(len(each), dtype=np.intp)
     group[order] = np.cumsum(np.diff(each[order], prepend=0.0) > ROUNDING * spans.sum())
-    _, first, group = np.unique(group, return_index=True, return_inverse=True)
-    which = np.argsort(np.argsort(first))[group]
-    return np.bincount(which, spans) / np.bincount(which, counts), which.astype(np.int32)
+    length = (np.bincount(group, spans) / np.maximum(np.bincount(group, counts), 1))[group]
+    pair = group * len(local) + rope
+    _, first, pair = np.unique(pair, return_index=True, return_inverse=True)
+    which = np.argsort(np.argsort(first))[pair]
+    first = np.sort(first)
+    flexibility = np.stack([section(one) for one in local])
+    inertia = np.stack([_inertia(coordinates, one) for one in local])
+    return Elements(
+        length=length[first],
+        flexibility=flexibility[rope[first]],
+        inertia=inertia[rope[first]],
+        which=which.astype(np.int32),
+    )
 
 
 def _chain(
-    scene: Scene, kind: int, stations: NDArray[np.float64], counts: NDArray[np.intp]
+    scene: Scene,
+    kind: int,
+    stations: NDArray[np.float64],
+    counts: NDArray[np.intp],
+    elements: Elements,
 ) -> Chain:
     """Return the chain with so many equal elements between stations."""
-    length, which = _distinct(np.diff(stations), counts)
+    length, flexibility, inertia, which = elements
+    width = len(scene.coordinates)
     # a station is a stretch of its own, and so are the nodes of a span if there are any
     nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
     nodes[1::2] = counts - 1
@@ -181,8 +217,13 @@ def _chain(
     element = np.repeat(which, 2)[present[:-1]]
     term = term[present]
     del nodes, present
-    terms = _terms(scene, kind, stations, length[which], length[inside])
-    mass, stiffness, damping, held, hinge = terms
+    if kind == CONTINUOUS:
+        mass = np.zeros((len(stations) + len(inside), width, width))
+    else:
+        mass = _lumps(elements, inside)
+    if kind == TENSED and "beta" in scene.coordinates:
+        _correct_ends(scene, elements, mass[: len(stations)])
+    stiffness, damping, held, hinge = _terms(scene, stations, mass)
     return Chain(
         kind=kind,
         coordinate=np.array(
@@ -190,7 +231,7 @@ def _chain(
         ),
         length=length,
         tension=np.full(len(length), scene.tension),
-        flexibility=np.tile(section(scene.rope), (len(length), 1, 1)),
+        flexibility=flexibility,
         first=first,
         element=element,
         mass=mass,
@@ -198,41 +239,38 @@ def _chain(
         held=held,
         term=term,
         hinge=hinge,
-        inertia=np.tile(_inertia(scene), (len(length), 1)) if kind == CONTINUOUS else None,
+        inertia=inertia if kind == CONTINUOUS else None,
         damping=damping,
     )
 
 
-def _terms(
-    scene: Scene,
-    kind: int,
-    stations: NDArray[np.float64],
-    lengths: NDArray[np.float64],
-    inside: NDArray[np.float64],
-) -> tuple[
-    NDArray[np.float64],
-    NDArray[np.float64],
-    NDArray[np.float64] | None,
-    NDArray[np.uint8],
-    NDArray[np.float64] | None,
-]:
-    """Return mass, stiffness, damping, held of the distinct node terms, and hinges.
+def _lumps(elements: Elements, inside: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return the mass at stations, then that at nodes inside spans, between two equal elements.
 
-    Those of the stations, then those inside spans, one for each of the lengths `inside`; `lengths`
-    are those of the elements of all spans.
+    Half of each element's inertia is at each of its nodes.
+    """
+    own = elements.length[:, None] * elements.inertia
+    halves = own[elements.which] / 2
+    none = np.zeros((1, own.shape[1]))
+    stations = np.concatenate([none, halves]) + np.concatenate([halves, none])
+    return np.concatenate([stations, own[inside]])[:, :, None] * np.eye(own.shape[1])
+
+
+def _terms(
+    scene: Scene, stations: NDArray[np.float64], mass: NDArray[np.float64]
+) -> tuple[
+    NDArray[np.float64], NDArray[np.float64] | None, NDArray[np.uint8], NDArray[np.float64] | None
+]:
+    """Add the masses of parts to those of the distinct node terms, stations first.
+
+    Returns
+    -------
+    stiffness, damping, held, hinge
+        Of the same node terms; None where nothing is damped or hinged.
     """
     width = len(scene.coordinates)
-    beside = np.concatenate([lengths, [0.0], inside])
-    beside[1 : len(stations)] += lengths
-    beside[: len(stations)] /= 2
-    mass = np.zeros((len(beside), width, width))
-    if kind != CONTINUOUS:
-        for k, inertia in enumerate(_inertia(scene)):
-            np.multiply(beside, inertia, out=mass[:, k, k])
-    if kind == KINDS.index("tensed") and "beta" in scene.coordinates:
-        _correct_ends(scene, lengths, mass[: len(stations)])
     stiffness, damping = np.zeros(mass.shape), np.zeros(mass.shape)
-    held = np.zeros((len(beside), width), dtype=np.uint8)
+    held = np.zeros((len(mass), width), dtype=np.uint8)
     hinge = None
     number = {c: k for k, c in enumerate(scene.coordinates)}
     for station, term in _standing(scene, stations):
@@ -245,47 +283,47 @@ def _terms(
         for coordinate in set(term.held) & set(number):
             held[station, number[coordinate]] = 1
         for coordinate, compliance in term.hinge.items():
-            hinge = np.zeros((len(beside), width)) if hinge is None else hinge
+            hinge = np.zeros((len(mass), width)) if hinge is None else hinge
             hinge[station, number[coordinate]] += compliance
-    return mass, stiffness, damping if damping.any() else None, held, hinge
+    return stiffness, damping if damping.any() else None, held, hinge
 
 
-def _correct_ends(scene: Scene, lengths: NDArray[np.float64], mass: NDArray[np.float64]) -> None:
-    """Add M_z,beta = -(mu h_left^2 - mu h_right^2)/12 at stations, the Euler-Maclaurin correction.
+def _correct_ends(scene: Scene, elements: Elements, mass: NDArray[np.float64]) -> None:
+    """Add M_z,beta = -(mu_left h_left^2 - mu_right h_right^2)/12 at stations.
 
-    Lumping is the trapezoidal rule; this is its first error term, zero inside a uniform span. With
-    it the frequencies of tensed chains converge with the fourth power of the element's length.
+    Lumping is the trapezoidal rule; this is its first error term by Euler and Maclaurin, zero
+    inside a uniform span. With it the frequencies of tensed chains converge with the fourth power
+    of the element's length.
     """
+    z, beta = scene.coordinates.index("z"), scene.coordinates.index("beta")
+    lengths, density = elements.length[elements.which], elements.inertia[elements.which, z]
     with np.errstate(over="ignore", invalid="ignore"):
-        squares = np.concatenate([[0.0], lengths**2, [0.0]])
-        correction = -scene.rope.linear_density * (squares[:-1] - squares[1:]) / 12
+        moment = np.concatenate([[0.0], density * lengths**2, [0.0]])
+        correction = -(moment[:-1] - moment[1:]) / 12
     if not np.isfinite(correction).all():
         raise SceneError(
             f"elements must be short enough for linear_density length^2 to be a number [kg m], got "
-            f"{scene.rope.linear_density!r} kg/m and {float(lengths.max())!r} m"
+            f"{float(density.max())!r} kg/m and {float(lengths.max())!r} m"
         )
-    z, beta = scene.coordinates.index("z"), scene.coordinates.index("beta")
     mass[:, z, beta] += correction
     mass[:, beta, z] += correction
 
 
-def _inertia(scene: Scene) -> NDArray[np.float64]:
+def _inertia(coordinates: Sequence[str], rope: Rope) -> NDArray[np.float64]:
     """Return the inertia per length of each coordinate [kg/m, kg m]."""
-    rope = scene.rope
     inertia = {
         "x": rope.linear_density,
         "z": rope.linear_density,
         "alpha": rope.polar_inertia or 0.0,
         "beta": rope.rotary_inertia or 0.0,
     }
-    return np.array([inertia[c] for c in scene.coordinates])
+    return np.array([inertia[c] for c in coordinates])
 
 
 def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
     """Return what stands at which station."""
     for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
         yield station, end.term()
-    between = (stations[1:] + stations[:-1]) / 2
-    nearest = np.searchsorted(between, [part.x for part in scene.parts])
-    for station, part in zip(nearest, scene.parts):
+    parts = standing(scene.parts)
+    for station, part in zip(mesh.nearest(stations, places(parts)), parts):
         yield station, part.term()

@@ -296,13 +296,15 @@ def _lapack(
 
 
 def _scale(model: Model, component: tuple[str, ...]) -> float:
-    """Return the order of the first elastic eigenvalue: half a wave over the uniform rope."""
+    """Return the order of the first elastic eigenvalue: half a wave over the rope."""
     rope, chain = model.scene.rope, model.chain
     with np.errstate(over="ignore"):
         wave = float(np.square(np.pi / rope.length))
     inertia = chain.mass[chain.term_of].sum(axis=0).diagonal() / rope.length
+    share = np.bincount(chain.element, np.diff(chain.first), len(chain.length)) * chain.length
+    soft = np.average(chain.flexibility, axis=0, weights=share).diagonal()
     with np.errstate(divide="ignore", over="ignore"):
-        own = np.divide(1.0, chain.flexibility[0].diagonal())
+        own = np.divide(1.0, soft)
     stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}
     stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.tension)
     orders = [
@@ -334,14 +336,13 @@ def _between(x: Real, points: int) -> Real:
 
 
 def _most_pieces(model: Model, eigenvalue: Real) -> int:
-    """Return how many pieces shorter than the waves of the highest mode an element has at most.
-
-    Elements differ in nothing but their length: the longest one has the most.
-    """
+    """Return how many pieces shorter than the waves of the highest mode an element has at most."""
     highest = float(np.abs(eigenvalue).max(initial=0.0))
-    longest = int(np.diff(model.x).argmax())
-    element = model.chain.undamped.between(longest, longest + 1)
-    return max((_steps(element.only(c), highest) for c in model.components), default=1)
+    chain = model.chain.undamped
+    _, stretch = np.unique(chain.element, return_index=True)
+    elements = [chain.between(node, node + 1) for node in chain.first[stretch].tolist()]
+    parts = [element.only(c) for element in elements for c in model.components]
+    return max((_steps(part, highest) for part in parts), default=1)
 
 
 def _points_for(model: Model, eigenvalue: Real) -> int:

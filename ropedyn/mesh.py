@@ -36,6 +36,12 @@ def stations(length: float, positions: Iterable[float]) -> NDArray[np.float64]:
     return np.array([*kept, length])
 
 
+def nearest(stations: NDArray[np.float64], positions: Iterable[float]) -> NDArray[np.intp]:
+    """Return the number of the station next to each position."""
+    between = (stations[1:] + stations[:-1]) / 2
+    return np.searchsorted(between, list(positions))
+
+
 def shares(lengths: NDArray[np.float64], elements: int) -> NDArray[np.intp]:
     """Share out elements over spans so that the longest element is as short as can be.
 

@@ -17,6 +17,7 @@ from .damping import separable
 from .errors import SceneError
 from .port import Point
 from .scene import Scene
+from .stretch import KINDS as STRETCHES
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
@@ -409,7 +410,7 @@ class Model:
 
     def _refuse_nonlinear(self) -> None:
         for i, part in enumerate(self.scene.parts):
-            must_be = part.term().nonlinear
+            must_be = "" if isinstance(part, STRETCHES) else part.term().nonlinear
             if must_be:
                 raise SceneError(f"parts[{i}].{must_be}: only integration over time takes others")
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple, Protocol
 
 from . import check
+from . import stretch as _stretch
+from .stretch import Stretch
 
 
 class NodeTerm(NamedTuple):
@@ -29,7 +32,7 @@ class NodeTerm(NamedTuple):
 
 
 class Part(Protocol):
-    """What the compiler asks of a part."""
+    """What the compiler asks of a part that stands at one place."""
 
     kind: ClassVar[str]
     """Name of the effect."""
@@ -322,5 +325,21 @@ class Hinge:
         return NodeTerm(hinge={"beta": compliance})
 
 
-KINDS = (PointMass, Spring, Dashpot, Support, Hinge)
+KINDS = (PointMass, Spring, Dashpot, Support, Hinge, *_stretch.KINDS)
 """Every kind of part."""
+
+
+def standing(parts: Iterable[Part | Stretch]) -> list[Part]:
+    """Return the parts that stand at one place."""
+    return [part for part in parts if not isinstance(part, _stretch.KINDS)]
+
+
+def stretches(parts: Iterable[Part | Stretch]) -> list[Stretch]:
+    """Return the parts that change the rope over a stretch."""
+    return [part for part in parts if isinstance(part, _stretch.KINDS)]
+
+
+def places(parts: Iterable[Part | Stretch]) -> list[float]:
+    """Return where parts stand, begin and end [m]."""
+    at = ((p.start, p.stop) if isinstance(p, _stretch.KINDS) else (p.x,) for p in parts)
+    return list(itertools.chain.from_iterable(at))

@@ -8,15 +8,17 @@ from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
-from . import check
+from . import check, mesh
 from . import damping as _damping
 from . import end as _end
 from . import part as _part
+from . import stretch as _stretch
 from .damping import Damping
 from .end import End
 from .errors import SceneError
 from .part import Part
 from .rope import Rope
+from .stretch import Stretch
 
 if TYPE_CHECKING:
     from .model import Model
@@ -58,8 +60,8 @@ class Scene:
         Left and right end.
     damping : StiffnessDamping, RayleighDamping or tuple of them, optional
         A tuple is their sum.
-    parts : sequence of PointMass, Spring, Dashpot, Support, Hinge
-        What stands on the rope.
+    parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, AddedMass, LocalChange
+        What stands on the rope, and what changes it over a stretch.
 
     Raises
     ------
@@ -84,7 +86,7 @@ class Scene:
     tension: float = 0.0
     ends: tuple[str | End, str | End] = ("clamped", "clamped")
     damping: Damping | tuple[Damping, ...] | None = None
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Part | Stretch, ...] = ()
 
     def __post_init__(self) -> None:
         check.instance(self.rope, "rope", Rope, "a Rope")
@@ -94,6 +96,10 @@ class Scene:
         object.__setattr__(self, "parts", _checked_parts(self.parts))
         self._check_coordinates()
         self._check_places()
+        # a rope that is changed must be one
+        changing = _part.stretches(self.parts)
+        ends = mesh.stations(self.rope.length, _part.places(changing))
+        _stretch.ropes(self.rope, changing, ends)
 
     def _check_coordinates(self) -> None:
         bends = self.rope.bending_stiffness is not None
@@ -111,6 +117,9 @@ class Scene:
     def _check_places(self) -> None:
         present = ", ".join(self.coordinates)
         for i, part in enumerate(self.parts):
+            if isinstance(part, _stretch.KINDS):
+                self._check_stretch(i, part)
+                continue
             check.position(part.x, f"parts[{i}].x", self.rope.length)
             for coordinate in part.stands_on:
                 if coordinate not in self.coordinates:
@@ -129,6 +138,23 @@ class Scene:
                             f"ends[{i}].{name} must stand on coordinates the scene has "
                             f"({present}), got {coordinate!r}"
                         )
+
+    def _check_stretch(self, i: int, part: Stretch) -> None:
+        for name in ("start", "stop"):
+            check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
+        least = check.NEAR * self.rope.length
+        if not part.stop - part.start > least:
+            raise SceneError(
+                f"parts[{i}].stop must lie more than {least:g} m beyond start, {part.start!r} m, "
+                f"got {part.stop!r}"
+            )
+        for name, coordinate in part.acts_on.items():
+            factor = getattr(part, name)
+            if factor != 1 and coordinate not in self.coordinates:
+                raise SceneError(
+                    f"parts[{i}].{name} must be 1 where the scene has no {coordinate} "
+                    f"({', '.join(self.coordinates)}), got {factor!r}"
+                )
 
     def _check_hinge(self, i: int, x: float) -> None:
         margin = check.NEAR * self.rope.length
@@ -219,9 +245,10 @@ class Scene:
             ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
             damping=kept,
             parts=tuple(
-                part
+                left
                 for part in self.parts
-                if part.kind not in effects and set(part.stands_on) <= set(bare.coordinates)
+                if part.kind not in effects
+                and (left := _left_of(part, bare.coordinates)) is not None
             ),
         )
 
@@ -360,7 +387,7 @@ def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | No
     return dampings if len(dampings) > 1 else (*dampings, None)[0]
 
 
-def _checked_parts(parts: Any) -> tuple[Part, ...]:
+def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
     names = ", ".join(kind.__name__ for kind in _part.KINDS)
     if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
         raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
@@ -368,6 +395,13 @@ def _checked_parts(parts: Any) -> tuple[Part, ...]:
     for i, part in enumerate(parts):
         check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {names}")
     return parts
+
+
+def _left_of(part: Part | Stretch, present: tuple[str, ...]) -> Part | Stretch | None:
+    """Return what is left of a part on these coordinates, None where nothing is."""
+    if isinstance(part, _stretch.KINDS):
+        return part.on(present)
+    return part if set(part.stands_on) <= set(present) else None
 
 
 def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:

@@ -4,7 +4,16 @@ import dataclasses
 
 import mpmath
 import numpy as np
-from exact_scene import CHANNEL, factors, inertia, section, standing
+from exact_scene import (
+    CHANNEL,
+    factors,
+    inertia,
+    is_stretch,
+    places,
+    rope_at,
+    section,
+    standing,
+)
 from mpmath import mpf
 
 import ropedyn as rd
@@ -138,21 +147,24 @@ class Exact:
     def __post_init__(self):
         scene, model = self.model.scene, self.model
         self.count = len(model.x) - 1
-        stations = sorted({mpf(0), mpf(scene.rope.length), *(mpf(p.x) for p in scene.parts)})
+        stations = sorted({mpf(0), mpf(scene.rope.length), *map(mpf, places(scene))})
         node = [int(np.abs(model.x - float(s)).argmin()) for s in stations]
-        self.lengths = []
+        self.lengths, self.ropes = [], []
         for a, b, i, j in zip(stations, stations[1:], node, node[1:]):
             self.lengths += [(b - a) / (j - i)] * (j - i)
-        self.part_at = [(node[stations.index(mpf(p.x))], p) for p in scene.parts]
+            self.ropes += [rope_at(scene, (a + b) / 2)] * (j - i)
+        self.part_at = [
+            (node[stations.index(mpf(p.x))], p) for p in scene.parts if not is_stretch(p)
+        ]
 
     def factors(self, omega):
         """On sections, tension, springs, inertia; real where nothing is damped."""
         return [p * q for p, q in zip(factors(self.model.scene, omega), self.nudge)]
 
-    def triple(self, length, omega):
-        scene = self.model.scene
+    def triple(self, e, omega):
+        scene, length = self.model.scene, self.lengths[e]
         c, (g, of_tension, _, _) = self.coordinates, self.factors(omega)
-        S = [[s / g for s in row] for row in section(scene.rope)]
+        S = [[s / g for s in row] for row in section(self.ropes[e])]
         T = mpf(scene.tension) * of_tension if "z" in c else mpf(0)
         if c == ("z",):
             return [[mpf(1)]], [[length / T]], [[mpf(0)]]
@@ -176,18 +188,24 @@ class Exact:
         """Node term -omega^2 M + springs and the held coordinates."""
         scene, c = self.model.scene, self.coordinates
         _, _, spring, of_inertia = self.factors(omega)
-        left = self.lengths[node - 1] if node > 0 else mpf(0)
-        right = self.lengths[node] if node < self.count else mpf(0)
-        own = inertia(scene.rope)
+        # (length, inertia per length) of the elements on both sides
+        left, right = (
+            (self.lengths[e], inertia(self.ropes[e]))
+            if 0 <= e < self.count
+            else (mpf(0), dict.fromkeys(c, mpf(0)))
+            for e in (node - 1, node)
+        )
         end = scene.ends[node > 0] if node in (0, self.count) else None
         here = standing(c, [part for at, part in self.part_at if at == node], end)
         N = [[mpf(0)] * len(c) for _ in c]
         for k, name in enumerate(c):
-            mass = own[name] * (left + right) / 2 + here.mass[name]
+            mass = sum(length * own[name] for length, own in (left, right)) / 2 + here.mass[name]
             N[k][k] = of_inertia * mass + spring * here.stiffness[name]
         if self.model.element == "tensed" and "beta" in c:
             z, beta = c.index("z"), c.index("beta")
-            N[z][beta] = N[beta][z] = -of_inertia * own["z"] * (left**2 - right**2) / 12
+            N[z][beta] = N[beta][z] = (
+                -of_inertia * (left[0] ** 2 * left[1]["z"] - right[0] ** 2 * right[1]["z"]) / 12
+            )
         return N, [name in here.held for name in c]
 
     def assembled(self, omega):
@@ -199,12 +217,13 @@ class Exact:
             diagonal.append(N)
             masks.append(held)
         for e, length in enumerate(self.lengths):
-            if length not in memory:
-                F, G, Q = self.triple(length, omega)
+            same = length, id(self.ropes[e])
+            if same not in memory:
+                F, G, Q = self.triple(e, omega)
                 Gi = inverse(G)
                 FtGi = times(turned(F), Gi)
-                memory[length] = plus(Q, times(FtGi, F)), [[-x for x in r] for r in FtGi], Gi
-            here, between, there = memory[length]
+                memory[same] = plus(Q, times(FtGi, F)), [[-x for x in r] for r in FtGi], Gi
+            here, between, there = memory[same]
             diagonal[e] = plus(diagonal[e], here)
             diagonal[e + 1] = plus(diagonal[e + 1], there)
             beside.append([list(row) for row in between])

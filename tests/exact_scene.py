@@ -1,6 +1,7 @@
 """What a scene is made of, read from its numbers alone: shared by the exact references."""
 
 import dataclasses
+import types
 
 import mpmath
 from mpmath import mpf
@@ -9,6 +10,37 @@ import ropedyn as rd
 
 CHANNEL = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 """Section channel of a coordinate: axial, torsion, bending."""
+
+
+def is_stretch(part):
+    """Whether a part changes the rope over a stretch instead of standing at one place."""
+    return isinstance(part, rd.AddedMass | rd.LocalChange)
+
+
+def places(scene):
+    """Where the parts of a scene stand, begin and end [m], as they come."""
+    return [x for p in scene.parts for x in ((p.start, p.stop) if is_stretch(p) else (p.x,))]
+
+
+def parts_at(scene, x):
+    """The parts that stand at a place."""
+    return [p for p in scene.parts if not is_stretch(p) and mpf(p.x) == mpf(x)]
+
+
+def rope_at(scene, x):
+    """Properties of the rope at a place inside a span: its own with what the parts do to them."""
+    own = {name: mpf(value or 0) for name, value in vars(scene.rope).items() if name != "_"}
+    here = types.SimpleNamespace(**own)
+    over = [p for p in scene.parts if is_stretch(p) and p.start < x < p.stop]
+    for change in (p for p in over if isinstance(p, rd.LocalChange)):
+        here.bending_stiffness *= mpf(change.bending)
+        here.torsional_stiffness *= mpf(change.torsion)
+        for inertia_of in ("linear_density", "rotary_inertia", "polar_inertia"):
+            setattr(here, inertia_of, getattr(here, inertia_of) * mpf(change.density))
+    for added in (p for p in over if isinstance(p, rd.AddedMass)):
+        here.linear_density += mpf(added.linear_density)
+        here.polar_inertia += mpf(added.polar_inertia)
+    return here
 
 
 def section(rope):

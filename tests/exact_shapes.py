@@ -9,7 +9,7 @@ import itertools
 
 import mpmath
 import numpy as np
-from exact_scene import CHANNEL, inertia, section, standing
+from exact_scene import CHANNEL, inertia, parts_at, places, rope_at, section, standing
 from exact_span import FORCE, Law, backward
 from mpmath import mpf
 
@@ -34,14 +34,15 @@ class Mode:
     def __init__(self, exact, eigenvalue):
         scene, c = exact.scene, exact.coordinates
         self.exact = exact
-        self.stations = sorted({0.0, scene.rope.length, *(p.x for p in scene.parts)})
+        self.stations = sorted({0.0, scene.rope.length, *places(scene)})
         force = {k: f for f, k in FORCE.items()}
         names = [*c, *(force[k] for k in c)]
         with mpmath.workdps(DIGITS):
             ends = self._right_ends(names, eigenvalue)
-            law = Law(scene, c, 1, 1, -eigenvalue)
+            self.middles = [(a + b) / 2 for a, b in itertools.pairwise(self.stations)]
+            laws = [Law(scene, c, 1, 1, -eigenvalue, at) for at in self.middles]
             lengths = [mpf(b) - mpf(a) for a, b in itertools.pairwise(self.stations)]
-            spans = [_carried(law, length, y) for length, y in zip(lengths, ends)]
+            spans = [_carried(*span) for span in zip(laws, lengths, ends)]
         self.along = {
             name: np.array([[float(y[k]) for y in span] for span in spans])
             for k, name in enumerate(names)
@@ -105,7 +106,8 @@ class Mode:
         """
         scene, c = self.exact.scene, self.exact.coordinates
         weight = np.outer(np.diff(self.stations), romberg())
-        strain, kinetic = _along(scene, c, self.along, weight)
+        ropes = [rope_at(scene, x) for x in self.middles]
+        strain, kinetic = _along(scene, ropes, c, self.along, weight)
         at = {k: np.append(self.along[k][:1, 0], self.along[k][:, -1]) for k in self.along}
         _add_parts(scene, c, self.stations, at, strain, kinetic)
         return strain, kinetic
@@ -140,28 +142,30 @@ def romberg():
     return rows[0]
 
 
-def _along(scene, c, y, weight):
-    """Integrals of twice the energies."""
-    S = np.array([[float(s) for s in row] for row in section(scene.rope)])
+def _along(scene, ropes, c, y, weight):
+    """Integrals of twice the energies, over spans of these ropes."""
+    S = np.array([[[float(s) for s in row] for row in section(rope)] for rope in ropes])
     force = {CHANNEL[k]: y[f] for f, k in FORCE.items() if k in c and k != "z"}
     strain = dict.fromkeys(STRAINS, 0.0)
     for (i, f), (j, g) in itertools.product(force.items(), repeat=2):
         name = ("stretch", "twist", "bending")[i] if i == j else "lay"
-        strain[name] += (weight * S[i, j] * f * g).sum()
+        strain[name] += (weight * S[:, i, j, None] * f * g).sum()
     T = scene.tension
     if "beta" in c:
         strain["tension"] = (weight * T * y["beta"] ** 2).sum()
     elif "z" in c:
         strain["tension"] = (weight * y["F_z"] ** 2).sum() / T
-    own = inertia(scene.rope)
-    return strain, {k: float(own[k]) * (weight * y[k] ** 2).sum() for k in c}
+    own = [inertia(rope) for rope in ropes]
+    return strain, {
+        k: (weight * np.array([[float(one[k])] for one in own]) * y[k] ** 2).sum() for k in c
+    }
 
 
 def _add_parts(scene, c, stations, y, strain, kinetic):
     """Add springs, hinges (by the moment that opens them) and masses."""
     ends = {0: scene.ends[0], len(stations) - 1: scene.ends[1]}
     for i, x in enumerate(stations):
-        here = standing(c, [p for p in scene.parts if p.x == x], ends.get(i))
+        here = standing(c, parts_at(scene, x), ends.get(i))
         for k in c:
             strain["spring"] += float(here.stiffness[k]) * y[k][i] ** 2
             kinetic[k] += float(here.mass[k]) * y[k][i] ** 2

@@ -11,6 +11,8 @@ section bends by beta' = S_bb M + ..., what moves needs F_z' = -lambda mu z, and
 slice, T beta - F_z - M' = lambda j beta, include the tension's. Without bending T z' = F_z instead:
 S'_zz = 1/T and no Phi. Damping puts its factors on S, T, springs and -lambda.
 
+S', mu, p and j may differ from span to span.
+
 At a node f grows by N u, N of springs and inertia, then beta by the compliance of a hinge times M.
 A held coordinate, or a free hinge, asks for zero and lets the conjugate be anything.
 """
@@ -20,7 +22,7 @@ import itertools
 
 import mpmath
 from exact_motions import Motions
-from exact_scene import CHANNEL, factors, inertia, section, standing
+from exact_scene import CHANNEL, factors, inertia, parts_at, places, rope_at, section, standing
 from mpmath import mpf
 
 import ropedyn as rd
@@ -46,10 +48,10 @@ def coupled(scene, coordinate):
 
 
 class Law:
-    """y' = E y of a scene at one frequency, and its solutions over pieces."""
+    """y' = E y of a scene at one frequency, at a place, and its solutions over pieces."""
 
-    def __init__(self, scene, coordinates, of_section, tension, of_inertia):
-        rope, c = scene.rope, coordinates
+    def __init__(self, scene, coordinates, of_section, tension, of_inertia, at=0.0):
+        rope, c = rope_at(scene, at), coordinates
         w = len(c)
         S = [[s / of_section for s in row] for row in section(rope)]
         T = mpf(scene.tension) * tension
@@ -150,18 +152,22 @@ class Walk:
     def __init__(self, continuum, strength, points):
         scene, c = continuum.scene, continuum.coordinates
         of_section, tension, self.spring, self.inertia = strength
-        self.law = Law(scene, c, of_section, tension, self.inertia)
         self.coordinates, self.points = c, {(name, mpf(x)) for name, x in points}
         self.x = sorted(
-            {mpf(0), mpf(scene.rope.length), *(mpf(p.x) for p in scene.parts)}.union(
+            {mpf(0), mpf(scene.rope.length), *map(mpf, places(scene))}.union(
                 x for _, x in self.points
             )
         )
+        # spans of the same rope share one law, and with it their pieces
+        laws = {}
+        self.laws = []
+        for a, b in itertools.pairwise(self.x):
+            rope = str(vars(rope_at(scene, (a + b) / 2)))
+            if rope not in laws:
+                laws[rope] = Law(scene, c, of_section, tension, self.inertia, (a + b) / 2)
+            self.laws.append(laws[rope])
         ends = {0: scene.ends[0], len(self.x) - 1: scene.ends[1]}
-        self.here = [
-            standing(c, [p for p in scene.parts if mpf(p.x) == x], ends.get(i))
-            for i, x in enumerate(self.x)
-        ]
+        self.here = [standing(c, parts_at(scene, x), ends.get(i)) for i, x in enumerate(self.x)]
 
     def response(self, drive, responses):
         """Values at points where a unit force acts at the drive."""
@@ -198,13 +204,13 @@ class Walk:
 
     def rightward(self, stop):
         """Motions admitted by all on the left of a node."""
-        motions = Motions(self.law.units)
+        motions = Motions(self.laws[0].units)
         for i in range(stop):
             self._watch(motions, i, left=True)
             self.pass_node(motions, i)
             self._watch(motions, i, left=False)
             self._pass_hinge(motions, i)
-            transition, count = self.law.across(self.x[i + 1] - self.x[i])
+            transition, count = self.laws[i].across(self.x[i + 1] - self.x[i])
             for _ in range(count):
                 motions.cross(transition)
         self._watch(motions, stop, left=True)
@@ -212,11 +218,11 @@ class Walk:
 
     def leftward(self, stop):
         """Motions admitted by all on the right of a node, and of a hinge there."""
-        motions = Motions(self.law.units)
+        motions = Motions(self.laws[0].units)
         for i in range(len(self.x) - 1, stop, -1):
             self.pass_node(motions, i, -1)
             self._watch(motions, i, left=True)
-            transition, count = self.law.across(self.x[i] - self.x[i - 1])
+            transition, count = self.laws[i - 1].across(self.x[i] - self.x[i - 1])
             for _ in range(count):
                 motions.cross(backward(transition))
             self._pass_hinge(motions, i - 1, -1)

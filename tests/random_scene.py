@@ -4,6 +4,7 @@ import dataclasses
 import math
 
 import numpy as np
+from exact_scene import places
 
 import ropedyn as rd
 
@@ -17,6 +18,8 @@ WIDTHS = {
 
 MOST_ELEMENTS = 200
 LENGTH, DENSITY = 1.0, 0.1
+STRETCHES = (0.0, 0.125, 0.3, 0.5, 0.517, 0.75, 0.9, LENGTH)
+"""Where stretches begin and end [m]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,7 +41,7 @@ def random_line(seed):
     n = int(math.exp(random.uniform(0, math.log(MOST_ELEMENTS + 1))))
     kinds = ["rigid", "tensed"] + ["difference"] * (scene.tension == 0)
     model = scene.compile(
-        elements=max(n, len({p.x for p in scene.parts}) + 1), element=str(random.choice(kinds))
+        elements=max(n, len(set(places(scene))) + 1), element=str(random.choice(kinds))
     )
     nodes = random.integers(0, len(model.x), 2).tolist()
     drive = (str(random.choice(WIDTHS[width])), nodes[0])
@@ -59,9 +62,9 @@ def random_spans(seed):
     scene = random_scene(random, width)
     # 0 Hz is for statics: half of these scenes cannot stand still
     f = frequency(random, scene) or 1e-3
-    places = [*random.uniform(0.0, LENGTH, 4).tolist(), 0.0, LENGTH, *(p.x for p in scene.parts)]
+    where = [*random.uniform(0.0, LENGTH, 4).tolist(), 0.0, LENGTH, *places(scene)]
     drive, other = (
-        (str(random.choice(WIDTHS[width])), float(random.choice(places))) for _ in range(2)
+        (str(random.choice(WIDTHS[width])), float(random.choice(where))) for _ in range(2)
     )
     return scene, f, drive, drive if random.random() < 0.5 else other
 
@@ -78,6 +81,13 @@ def random_scene(random, width):
         damping=damping(random),
         parts=parts,
     )
+
+
+def stretched_scene(random, width):
+    """A random scene whose rope changes over one to three stretches, which may overlap."""
+    scene = random_scene(random, width)
+    added = [stretch(random, WIDTHS[width]) for _ in range(int(random.integers(1, 4)))]
+    return scene.replace(parts=(*scene.parts, *added))
 
 
 def taut_scene(random, width, most=1e6):
@@ -147,6 +157,26 @@ def part(random, coordinates):
         sign = float(random.choice([-1, 1], p=[0.2, 0.8]))
         return rd.Spring(x, sign * log_uniform(random, 1e-6, 1e9), coordinate=coordinate)
     return rd.Support(x, coordinate=coordinate)
+
+
+def stretch(random, coordinates):
+    """An added mass, or a change of all that the rope has by up to a factor of 100."""
+    start, stop = sorted(random.choice(STRETCHES, 2, replace=False).tolist())
+    if random.random() < 0.4:
+        polar = log_uniform(random, 1e-7, 1e-3)
+        return rd.AddedMass(start, stop, log_uniform(random, 1e-3, 1e2), polar_inertia=polar)
+    acts_on = {"beta": "bending", "alpha": "torsion", "z": "density"}
+    # softer than half the lay coupling might not leave a section
+    least = 0.9 if "x" in coordinates else 1e-2
+    return rd.LocalChange(
+        start,
+        stop,
+        **{
+            name: log_uniform(random, least if name == "torsion" else 1e-2, 1e2)
+            for c, name in acts_on.items()
+            if c in coordinates
+        },
+    )
 
 
 def damping(random):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import EPS
 from exact_roots import continuum
+from exact_scene import places
 from exact_shapes import Mode
 from test_continuous_modes import SCENES, SPANS
 
@@ -26,7 +27,7 @@ ENERGY = 4 * SHAPE
 def drawn(scene, number, points=64):
     modes = scene.compile().modes(number, points=points)
     # as many equal intervals on every span, ends included
-    stations = sorted({0.0, scene.rope.length, *(p.x for p in scene.parts)})
+    stations = sorted({0.0, scene.rope.length, *places(scene)})
     spans = [np.linspace(a, b, points + 1) for a, b in itertools.pairwise(stations)]
     x = np.concatenate([spans[0], *(span[1:] for span in spans[1:])])
     np.testing.assert_allclose(modes.x, x, rtol=2 * EPS)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from conftest import BENDING, LENGTH, MASS, beam
 from exact_counts import ExactChain
+from exact_scene import places
 from exact_waves import pinned_tensed_chain
 from mpmath import mpf
 from random_scene import log_uniform, random_scene
@@ -38,7 +39,7 @@ def random_model(seed):
     """Any ends, masses to 1e6, springs of both signs, supports, compression; few elements."""
     random = np.random.default_rng(seed)
     scene = random_scene(random, int(random.choice([1, 2, 3, 4], p=[0.2, 0.5, 0.2, 0.1])))
-    stations = len({part.x for part in scene.parts}) + 1
+    stations = len(set(places(scene))) + 1
     return random, scene.compile(
         elements=max(int(random.choice(ELEMENTS)), stations),
         element=str(random.choice(["rigid", "tensed"])),

@@ -7,6 +7,7 @@ import pickle
 import numpy as np
 import pytest
 from conftest import EPS
+from exact_scene import places
 from random_scene import WIDTHS, random_line, taut_scene
 
 import ropedyn as rd
@@ -287,7 +288,7 @@ def random_chain(seed):
     scene = taut_scene(random, int(random.choice(list(WIDTHS), p=[0.15, 0.5, 0.2, 0.15])))
     n = int(math.exp(random.uniform(0, math.log(201))))
     kinds = KINDS if scene.tension == 0 else KINDS[1:]
-    least = len({part.x for part in scene.parts}) + 1
+    least = len(set(places(scene))) + 1
     return scene.compile(elements=max(n, least), element=str(random.choice(kinds)))
 
 

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 from exact_counts import ExactChain, eigenvalue_bound, is_bounded
+from exact_scene import places
 from random_scene import random_scene
 
 import ropedyn as rd
@@ -40,7 +41,7 @@ def random_model(seed):
     """Springs of both signs, masses to 1e6 kg, compression, any ends and supports."""
     random = np.random.default_rng(seed)
     scene = random_scene(random, int(random.choice([1, 2, 3, 4], p=[0.2, 0.5, 0.2, 0.1])))
-    stations = len({part.x for part in scene.parts}) + 1
+    stations = len(set(places(scene))) + 1
     n = max(int(random.choice(ELEMENTS)), stations)
     return scene.compile(elements=n, element=str(random.choice(["rigid", "tensed"])))
 

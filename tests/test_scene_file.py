@@ -11,7 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import ropedyn as rd
+from ropedyn import part
 
+PARTS = [kind.__name__ for kind in part.KINDS]
 LENGTH = 1.5
 DOCUMENT = {
     "tension": 300.0,
@@ -83,6 +85,8 @@ parts = st.one_of(
     st.builds(rd.Spring, places, other_than_zero, coordinate=coordinates),
     st.builds(rd.Dashpot, places, positive, coordinate=coordinates, exponent=positive),
     st.builds(rd.Support, places, coordinate=coordinates),
+    st.builds(rd.AddedMass, st.just(0.0), st.just(LENGTH), st.floats(0.0, 1e50)),
+    st.builds(rd.LocalChange, st.just(0.0), st.just(LENGTH), torsion=st.just(2.0)),
 )
 dampings = st.one_of(
     st.builds(rd.StiffnessDamping, at_least_zero),
@@ -141,6 +145,8 @@ def test_every_effect_survives_the_file(effect, tmp_path):
             rd.Dashpot(0.7, 2.0),
             rd.Support(0.4),
             rd.Hinge(0.6),
+            rd.AddedMass(0.1, 0.7, 0.02, polar_inertia=1e-6),
+            rd.LocalChange(0.5, 0.9, bending=0.5, torsion=0.7, density=0.9),
         ],
     )
     path = tmp_path / "rope.toml"
@@ -217,7 +223,7 @@ REFUSED = {
     ),
     "missing kind of part": (
         changed("parts", 2, "kind", drop=True),
-        "key parts[2].kind is missing: one of PointMass, Spring, Dashpot, Support, Hinge",
+        f"key parts[2].kind is missing: one of {', '.join(PARTS)}",
     ),
     "missing mass": (changed("parts", 0, "mass", drop=True), "key parts[0].mass is missing"),
     "missing x": (changed("parts", 2, "x", drop=True), "key parts[2].x is missing"),
@@ -257,7 +263,7 @@ REFUSED = {
     "parts of numbers": (changed("parts", value=[1, 2]), "parts[0] must be a table, got 1"),
     "unknown part": (
         changed("parts", 1, "kind", value="Damper"),
-        'parts[1].kind must be one of "PointMass", "Spring", "Dashpot", "Support", "Hinge", got',
+        "parts[1].kind must be one of " + ", ".join(f'"{name}"' for name in PARTS) + ", got",
     ),
     "kind of a number": (changed("parts", 1, "kind", value=1), "parts[1].kind must be one of"),
     "mass of text": (changed("parts", 0, "mass", value="heavy"), "parts[0].mass must be"),

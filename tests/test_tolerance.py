@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+from exact_scene import places
 from random_scene import WIDTHS, log_uniform, taut_scene
 
 import ropedyn as rd
@@ -267,7 +268,7 @@ def take(seeds):
         sample.tried.append(len(model.choice.tried))
         half = model.choice.elements // 2
         if not meets(scene, model, tolerance, below) or (
-            half > len({part.x for part in scene.parts})
+            half > len(set(places(scene)))
             and meets(scene, scene.compile(elements=half, element=element), tolerance, below)
         ):
             sample.missed.append(seed)

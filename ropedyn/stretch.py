@@ -1,0 +1,229 @@
+"""Parts that change the rope over a stretch: what each does to the section between two places."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Collection, Sequence
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check, mesh
+from .errors import SceneError
+from .rope import Rope
+
+
+class Change(NamedTuple):
+    """What a part does to the rope: it is multiplied by factors, then something is added."""
+
+    bending: float = 1.0
+    torsion: float = 1.0
+    density: float = 1.0
+    linear_density: float = 0.0
+    """[kg/m]."""
+    polar_inertia: float = 0.0
+    """[kg m]."""
+
+
+FACTORS = slice(0, 3)
+"""The factors of a change; the rest of it is added."""
+
+
+@dataclass(frozen=True)
+class AddedMass:
+    """Mass that moves with the rope over a stretch: grease, ice, marks.
+
+    Masses that overlap add up. The density of a `LocalChange` at the same place is a factor on the
+    rope alone, not on what was added.
+
+    Parameters
+    ----------
+    start, stop : float
+        Where it begins and ends [m].
+    linear_density : float
+        Mass per length [kg/m]; 0 is allowed.
+    polar_inertia : float
+        About the rope's axis, per length [kg m].
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, the stretch does not end beyond its start, or a mass or inertia
+        is negative; in a scene, if the stretch is off the rope or shorter than 1e-9 of it.
+
+    Examples
+    --------
+    Ice of the rope's own mass all along lowers its frequencies by the square root of 2:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.0, 0.1)
+    >>> ice = rd.AddedMass(0.0, 1.0, 0.1)
+    >>> for parts in [], [ice]:
+    ...     print(rd.Scene(rope, tension=80.0, parts=parts).compile().modes(1).frequency.round(3))
+    [14.142]
+    [10.]
+    """
+
+    kind: ClassVar[str] = "added mass"
+    acts_on: ClassVar[dict[str, str]] = {}
+    """Arguments that have no meaning without a coordinate: inertia is ignored there."""
+
+    start: float
+    stop: float
+    linear_density: float
+    _: KW_ONLY
+    polar_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        _set_stretch(self)
+        for name, unit in (("linear_density", "kg/m"), ("polar_inertia", "kg m")):
+            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
+            object.__setattr__(self, name, value)
+
+    def change(self) -> Change:
+        """Return what is added."""
+        return Change(linear_density=self.linear_density, polar_inertia=self.polar_inertia)
+
+    def on(self, coordinates: Collection[str]) -> AddedMass:
+        """Return itself, on whatever coordinates."""
+        return self
+
+
+@dataclass(frozen=True)
+class LocalChange:
+    """Factors on the rope over a stretch: damage, wear, a splice.
+
+    Factors that overlap multiply. Axial stiffness and lay are those of the rope. Where a stretch
+    with other stiffness or density begins, tensed elements keep their fourth order, or second
+    order if the rope has rotary inertia; continuous spans are exact.
+
+    Parameters
+    ----------
+    start, stop : float
+        Where it begins and ends [m].
+    bending, torsion : float
+        On the rope's bending and torsional stiffness; 1 leaves it as it is.
+    density : float
+        On its linear density, and on its rotary and polar inertia: there is so much more or less
+        of the same material. What an `AddedMass` adds stays as it is.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, the stretch does not end beyond its start, or a factor is not
+        positive; in a scene, if the stretch is off the rope or shorter than 1e-9 of it, if a
+        factor other than 1 stands on a stiffness that the rope does not have, or if the changed
+        section is not positive definite (the lay coupling stays).
+
+    Examples
+    --------
+    A worn half of a cantilever bends twice as much:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(2.0, 0.1, bending_stiffness=1.0)
+    >>> worn = rd.LocalChange(1.0, 2.0, bending=0.5)
+    >>> scene = rd.Scene(rope, ends=("clamped", "free"), parts=[worn])
+    >>> tip = scene.compile(elements=2).static({("beta", 2.0): 1.0}).displacement[-1, 1]
+    >>> print(tip.round(12))
+    3.0
+    """
+
+    kind: ClassVar[str] = "local change"
+    acts_on: ClassVar[dict[str, str]] = {"bending": "beta", "torsion": "alpha"}
+    """Arguments that have no meaning without a coordinate, unless they are 1."""
+
+    start: float
+    stop: float
+    _: KW_ONLY
+    bending: float = 1.0
+    torsion: float = 1.0
+    density: float = 1.0
+
+    def __post_init__(self) -> None:
+        _set_stretch(self)
+        for name in ("bending", "torsion", "density"):
+            value = check.number(getattr(self, name), name, sign="positive")
+            object.__setattr__(self, name, value)
+
+    def change(self) -> Change:
+        """Return the factors."""
+        return Change(bending=self.bending, torsion=self.torsion, density=self.density)
+
+    def on(self, coordinates: Collection[str]) -> LocalChange | None:
+        """Return what is left of it on these coordinates, None where that changes nothing."""
+        left = dataclasses.replace(
+            self,
+            bending=self.bending if "beta" in coordinates else 1.0,
+            torsion=self.torsion if "alpha" in coordinates else 1.0,
+        )
+        return None if left != self and left.change() == Change() else left
+
+
+def _set_stretch(part: AddedMass | LocalChange) -> None:
+    for name in ("start", "stop"):
+        object.__setattr__(part, name, check.number(getattr(part, name), name, "m"))
+    if not part.start < part.stop:
+        raise SceneError(f"stop must lie beyond start, {part.start!r} m, got {part.stop!r}")
+
+
+Stretch = AddedMass | LocalChange
+KINDS = (AddedMass, LocalChange)
+"""Every kind of part that changes the rope over a stretch."""
+
+
+def ropes(
+    rope: Rope, stretches: Sequence[Stretch], stations: NDArray[np.float64]
+) -> tuple[list[Rope], NDArray[np.intp]]:
+    """Return the different ropes between stations, and which of them each span has.
+
+    Parameters
+    ----------
+    rope : Rope
+        What the stretches change.
+    stretches : sequence of AddedMass, LocalChange
+        That begin and end at stations.
+    stations : ndarray, shape (spans + 1,)
+        [m].
+
+    Raises
+    ------
+    SceneError
+        If a changed rope is none.
+    """
+    change = np.tile(np.array(Change()), (len(stations) - 1, 1))
+    starts = mesh.nearest(stations, (stretch.start for stretch in stretches))
+    stops = mesh.nearest(stations, (stretch.stop for stretch in stretches))
+    with np.errstate(over="ignore", under="ignore"):
+        for stretch, start, stop in zip(stretches, starts, stops):
+            amount = np.array(stretch.change())
+            change[start:stop, FACTORS] *= amount[FACTORS]
+            change[start:stop, FACTORS.stop :] += amount[FACTORS.stop :]
+    distinct, first, which = np.unique(change, axis=0, return_index=True, return_inverse=True)
+    found = []
+    for row, span in zip(distinct.tolist(), first):
+        try:
+            found.append(_changed(rope, Change(*row)))
+        except SceneError as error:
+            raise SceneError(
+                f"parts must leave a rope between {stations[span]:g} m and "
+                f"{stations[span + 1]:g} m: {error}"
+            ) from error
+    return found, which.reshape(-1)
+
+
+def _changed(rope: Rope, change: Change) -> Rope:
+    """Return the rope with the change."""
+    B, C = rope.bending_stiffness, rope.torsional_stiffness
+    return rope.replace(
+        bending_stiffness=None if B is None else B * change.bending,
+        torsional_stiffness=None if C is None else C * change.torsion,
+        linear_density=rope.linear_density * change.density + change.linear_density,
+        rotary_inertia=(rope.rotary_inertia or 0.0) * change.density,
+        polar_inertia=(rope.polar_inertia or 0.0) * change.density + change.polar_inertia,
+    )
