@@ -249,11 +249,15 @@ def _lumps(elements: Elements, inside: NDArray[np.int32]) -> NDArray[np.float64]
 
     Half of each element's inertia is at each of its nodes.
     """
-    own = elements.length[:, None] * elements.inertia
+    with np.errstate(over="ignore"):  # the core refuses what is no number
+        own = elements.length[:, None] * elements.inertia
     halves = own[elements.which] / 2
     none = np.zeros((1, own.shape[1]))
     stations = np.concatenate([none, halves]) + np.concatenate([halves, none])
-    return np.concatenate([stations, own[inside]])[:, :, None] * np.eye(own.shape[1])
+    diagonal = np.concatenate([stations, own[inside]])
+    mass = np.zeros((*diagonal.shape, own.shape[1]))
+    np.einsum("nkk->nk", mass)[:] = diagonal
+    return mass
 
 
 def _terms(

@@ -302,7 +302,7 @@ def _scale(model: Model, component: tuple[str, ...]) -> float:
         wave = float(np.square(np.pi / rope.length))
     inertia = chain.mass[chain.term_of].sum(axis=0).diagonal() / rope.length
     share = np.bincount(chain.element, np.diff(chain.first), len(chain.length)) * chain.length
-    soft = np.average(chain.flexibility, axis=0, weights=share).diagonal()
+    soft = np.tensordot(share / share.sum(), chain.flexibility, 1).diagonal()
     with np.errstate(divide="ignore", over="ignore"):
         own = np.divide(1.0, soft)
     stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}

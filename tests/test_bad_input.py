@@ -235,6 +235,51 @@ for part in ("Spring", "Dashpot", "Support"):
         {"absent": "x"},
     )
 
+STRETCHES = {
+    "AddedMass": lambda **v: rd.AddedMass(**{"start": 0.2, "stop": 0.6, "linear_density": 1.0} | v),
+    "LocalChange": lambda **v: rd.LocalChange(**{"start": 0.2, "stop": 0.6} | v),
+}
+for part, build in STRETCHES.items():
+    for name in ("start", "stop"):
+        row(part, name, lambda v, b=build, n=name: b(**{n: v}), NOT_A_NUMBER, NOT_FINITE)
+    row(
+        part,
+        "stop",
+        lambda v, build=build: build(stop=v),
+        {},
+        {"at_start": 0.2, "before": 0.1, "far_before": -1e300},
+    )
+    row(
+        f"Scene with {part}",
+        "parts[0].start",
+        lambda v, build=build: scene(parts=[build(start=v, stop=1.1e300)]),
+        {},
+        {"left": -0.01, "right": 1.01, "far": 1e300, "minus_far": -1e300},
+    )
+    row(
+        f"Scene with {part}",
+        "parts[0].stop",
+        lambda v, build=build: scene(parts=[build(stop=v)]),
+        {},
+        {"right": 1.01, "far": 1e300, "too_near": 0.2 + 1e-10},
+    )
+for name in ("linear_density", "polar_inertia"):
+    row(
+        "AddedMass",
+        name,
+        lambda v, name=name: STRETCHES["AddedMass"](**{name: v}),
+        NOT_A_NUMBER,
+        NOT_FINITE | NEGATIVE,
+    )
+for name in ("bending", "torsion", "density"):
+    row(
+        "LocalChange",
+        name,
+        lambda v, name=name: STRETCHES["LocalChange"](**{name: v}),
+        NOT_A_NUMBER,
+        NOT_FINITE | NEGATIVE | ZERO,
+    )
+
 row(
     "StiffnessDamping",
     "gamma",
@@ -710,6 +755,11 @@ def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
         (lambda: rd.PointMass(0.5), "mass"),
         (lambda: rd.Spring(0.5, 1.0, "z"), "positional"),
         (rd.Support, "x"),
+        (lambda: rd.AddedMass(0.1, 0.2), "linear_density"),
+        (lambda: rd.AddedMass(0.1, 0.2, 1.0, 1e-6), "positional"),
+        (lambda: rd.LocalChange(0.1), "stop"),
+        (lambda: rd.LocalChange(0.1, 0.2, 0.5), "positional"),
+        (lambda: rd.LocalChange(0.1, 0.2, axial=0.5), "axial"),
         (rd.StiffnessDamping, "gamma"),
         (lambda: rd.RayleighDamping(1.0), "stiffness"),
         (rd.Scene, "rope"),
