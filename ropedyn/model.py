@@ -389,6 +389,14 @@ class Model:
         SolveError
             If the stiffness is singular: a rigid motion is free or the compression is critical.
 
+        Notes
+        -----
+        Motion is about the tensed state of the scene. How far a laid rope stretches and turns when
+        the tension is put on is the answer to that force on an end that can move, without tension
+        and with ``ends=("clamped", End(x="free", alpha="free"))``:
+        ``static({("x", length): tension})``. An end held from turning has the torque that holds it
+        in `Deflection.force`.
+
         Examples
         --------
         >>> import ropedyn as rd

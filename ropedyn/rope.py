@@ -30,10 +30,14 @@ class Rope:
         EA [N]: gives stretch, the coordinate x.
     lay_coupling : float, optional
         D [N m]: (axial force, torque) = [[EA, D], [D, C]] (axial strain, twist rate), the linear
-        coupling of an axisymmetric laid rope. Needs axial and torsional stiffness.
+        coupling of an axisymmetric laid rope. Needs axial and torsional stiffness. An end that is
+        free to turn twists by -D F/(EA C - D^2) per length under an axial force F; one that is
+        held takes the torque D F/EA.
     lay_slope : float, optional
         H [1]: the section axes of bending and twist are tilted by the slope H, which couples
-        bending and twist as in the 2015 study. Needs bending and torsional stiffness.
+        bending and twist as in the 2015 study. Needs bending and torsional stiffness. A force F
+        across the tip of a cantilever of length l twists it by
+        H/(1 + H^2) (1/C - 1/B) F l^2/2.
     rotary_inertia, polar_inertia : float, optional
         Inertia of bending rotation and of twist per length [kg m]; 0 is none.
 
@@ -51,6 +55,18 @@ class Rope:
     >>> rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54)
     >>> rope.replace(length=2.0).length
     2.0
+
+    What a force of 1 kN does to a laid rope of 10 m, whose end turns or is kept from it: stretch
+    [m] and turn [rad].
+
+    >>> laid = rd.Rope(
+    ...     10.0, 0.5, axial_stiffness=1e6, torsional_stiffness=20.0, lay_coupling=2000.0
+    ... )
+    >>> for end in rd.End(x="free", alpha="free"), rd.End(x="free"):
+    ...     static = rd.Scene(laid, ends=("clamped", end)).compile().static({("x", 10.0): 1000.0})
+    ...     print(static.displacement[-1].round(6), static.force[-1].round(6))
+    [ 0.0125 -1.25  ] [1000.    0.]
+    [0.01 0.  ] [1000.    2.]
     """
 
     length: float
