@@ -17,9 +17,9 @@ from .compile import MOST_ELEMENTS
 from .errors import SceneError
 from .progress import Progress, reporter
 from .scene import Scene
-from .stopwatch import in_turns
-from .table import Table
-from .trial import CUTS, Trial, Truth, trial, ways
+from .stopwatch import timed
+from .table import Table, numbers
+from .trial import CUTS, Trial, Truth, trial, ways, words
 from .unit import power
 
 if TYPE_CHECKING:
@@ -136,9 +136,7 @@ class AccuracyCost(Answer):
     def way(self, row: int) -> str:
         """Say in words how a row answers, such as ``tensed, 64, sweep``."""
         check.count(row, "row", least=0, most=len(self.element) - 1)
-        if self.element[row] == "continuous":
-            return "continuous"
-        return f"{self.element[row]}, {self.elements[row]}, {self.solver[row]}"
+        return words(self.element[row], self.elements[row], self.solver[row])
 
     def table(self) -> Table:
         """Return one row for each way, the cheapest ones marked."""
@@ -150,13 +148,13 @@ class AccuracyCost(Answer):
             "element": self.element,
             "elements": self.elements,
             "solver": self.solver,
-            "compile [s]": _given(self.compile_seconds),
-            "question [s]": _given(self.seconds),
-            "lower quartile [s]": _given(self.lower_quartile),
-            "upper quartile [s]": _given(self.upper_quartile),
-            "true error": _given(self.error),
-            "estimated error": _given(self.estimated_error),
-            "digits lost to rounding": _given(self.digits_lost.round(1)),
+            "compile [s]": numbers(self.compile_seconds),
+            "question [s]": numbers(self.seconds),
+            "lower quartile [s]": numbers(self.lower_quartile),
+            "upper quartile [s]": numbers(self.upper_quartile),
+            "true error": numbers(self.error),
+            "estimated error": numbers(self.estimated_error),
+            "digits lost to rounding": numbers(self.digits_lost.round(1)),
             "cheapest for": tuple(", ".join(mark) or None for mark in marks),
         }
         if self.refusal.any():
@@ -256,28 +254,19 @@ def _timed(
     question: Question, tried: Sequence[Trial], repeat: int, report: Callable[[float], Any]
 ) -> AccuracyCost:
     """Time what has been tried."""
-    times = iter(in_turns([call for one in tried for call in one.calls], repeat, report))
-    compiled, asked = zip(*((next(times), next(times)) if one.calls else _NEVER for one in tried))
-    lower, median, upper = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T
+    times = timed([one.calls for one in tried], repeat, report)
     return AccuracyCost(
         question=str(question),
         reference=f"continuous spans, of these against cuts into {_listed(CUTS)} parts",
         element=np.array([one.element for one in tried]),
         elements=np.array([one.elements for one in tried]),
         solver=np.array([one.solver for one in tried]),
-        seconds=median,
-        lower_quartile=lower,
-        upper_quartile=upper,
-        compile_seconds=np.array([np.median(each) for each in compiled]),
+        **times._asdict(),
         error=np.array([one.error for one in tried]),
         estimated_error=np.array([one.estimated_error for one in tried]),
         digits_lost=np.array([one.digits_lost for one in tried]),
         refusal=np.array([one.refusal for one in tried]),
     )
-
-
-_NEVER = (np.array([np.nan]), np.array([np.nan]))
-"""Times of what has no answer."""
 
 
 def _words(given: Any, name: str, words: Sequence[str]) -> tuple[str, ...]:
@@ -303,8 +292,3 @@ def _counts(given: Any) -> tuple[int, ...]:
 
 def _listed(numbers: Sequence[int]) -> str:
     return ", ".join(map(str, numbers[:-1])) + f" and {numbers[-1]}"
-
-
-def _given(numbers: Real) -> tuple[float | None, ...]:
-    """Return numbers for a table, None for NaN."""
-    return tuple(None if np.isnan(value) else value for value in numbers.tolist())

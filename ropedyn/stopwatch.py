@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
 
 LONG, FEW = 0.05, 3
 """Calls longer than this [s] are not warmed up again, and made so many times at most."""
@@ -17,7 +19,7 @@ def in_turns(
     calls: Sequence[Callable[[], Any]],
     repeat: int,
     report: Callable[[float], Any] = lambda fraction: None,
-) -> list[NDArray[np.float64]]:
+) -> list[Real]:
     """Return how long each call took, each time it was made [s].
 
     In turns, so that what disturbs the machine for a while disturbs all of them alike; of the
@@ -41,6 +43,43 @@ def in_turns(
                 times[k].append(_seconds(call) if first <= LONG else first)
             report((turn * len(calls) + k + 1) / (repeat * len(calls)))
     return [np.array(each) for each in times]
+
+
+class Times(NamedTuple):
+    """Processor times of ways to an answer, each shape (ways,) [s]; NaN where there is none."""
+
+    compile_seconds: Real
+    """Median of what compiles."""
+    lower_quartile: Real
+    """Of what asks."""
+    seconds: Real
+    """Median of the same."""
+    upper_quartile: Real
+    """Of the same."""
+
+
+def timed(
+    ways: Sequence[Sequence[Callable[[], Any]]],
+    repeat: int,
+    report: Callable[[float], Any] = lambda fraction: None,
+) -> Times:
+    """Time ways to an answer in turns.
+
+    Parameters
+    ----------
+    ways : sequence of sequences of callables
+        What compiles and what asks, nothing where there is no answer.
+    repeat, report
+        As in `in_turns`.
+    """
+    times = iter(in_turns([call for calls in ways for call in calls], repeat, report))
+    compiled, asked = zip(*((next(times), next(times)) if calls else _NEVER for calls in ways))
+    lower, median, upper = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T
+    return Times(np.array([np.median(each) for each in compiled]), lower, median, upper)
+
+
+_NEVER = (np.array([np.nan]), np.array([np.nan]))
+"""Times of what has no answer."""
 
 
 def _seconds(call: Callable[[], Any]) -> float:

@@ -103,6 +103,11 @@ class Table:
         return pandas().DataFrame(list(self.rows), columns=list(self.columns))
 
 
+def numbers(values: np.ndarray[Any, Any]) -> tuple[float | None, ...]:
+    """Return numbers for a column, None for NaN."""
+    return tuple(None if np.isnan(value) else value for value in values.tolist())
+
+
 def _text(value: Any) -> str:
     if value is None:
         return "-"

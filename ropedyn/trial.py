@@ -63,17 +63,15 @@ class Truth:
     def of(scene: Scene, question: Question) -> Truth:
         """Ask continuous spans, whole and cut."""
         model = scene.compile()
-        answer = _answer(question, model)
+        answer = answered(question, model)
         values = question.values(answer)
-        if values.size == 0:
-            raise SceneError(f"question must have an answer, got {question}: there are none")
         known = question.rounding(answer) < 1
         if not known.any():
             raise SolveError(f"continuous spans have no correct digit of the {question}")
         same, spans = question.like(answer), len(model.x) - 1
         error = 0.0
         for parts in CUTS:
-            cut = _answer(same, scene.compile(elements=parts * spans, element="continuous"))
+            cut = ask_once(same, scene.compile(elements=parts * spans, element="continuous"))
             error = max(error, largest(relative(same.values(cut), values), known))
         return Truth(scene, question, same, values, known, error, spans)
 
@@ -119,6 +117,11 @@ Way = tuple[str, int, str]
 """Element, how many, solver."""
 
 
+def words(element: str, elements: int, solver: str) -> str:
+    """Say a way in words; continuous spans are only swept."""
+    return element if element == "continuous" else f"{element}, {elements}, {solver}"
+
+
 def ways(
     truth: Truth, kinds: Sequence[str], counts: Sequence[int] | None, solvers: Sequence[str]
 ) -> list[Way]:
@@ -150,7 +153,7 @@ def trial(truth: Truth, way: Way) -> Trial:
 def continuous(truth: Truth) -> Trial:
     """Try the continuous spans themselves."""
     model = truth.scene.compile()
-    rounding = largest(truth.same.rounding(_answer(truth.same, model)), truth.known)
+    rounding = largest(truth.same.rounding(ask_once(truth.same, model)), truth.known)
     return Trial(
         "continuous",
         truth.spans,
@@ -158,7 +161,7 @@ def continuous(truth: Truth) -> Trial:
         error=max(truth.error, EPSILON / 2),
         estimated_error=rounding,
         digits_lost=_digits(rounding),
-        calls=(truth.scene.compile, partial(_answer, truth.question, model)),
+        calls=(truth.scene.compile, partial(ask_once, truth.question, model)),
     )
 
 
@@ -167,8 +170,8 @@ def chain(truth: Truth, kind: str, n: int, solver: str) -> Trial:
     compiled = partial(truth.scene.compile, elements=n, element=kind)
     try:
         model = compiled()
-        answer = _answer(truth.same, model, solver)
-        asked = partial(_answer, truth.question, model, solver)
+        answer = ask_once(truth.same, model, solver)
+        asked = partial(ask_once, truth.question, model, solver)
         if truth.same is not truth.question:
             asked()
     except RopedynError as refusal:
@@ -196,16 +199,25 @@ def _sensible(truth: Truth, kind: str, solver: str) -> Iterator[int]:
         yield 2**power
 
 
-def _answer(question: Question, model: Model, solver: str = "sweep") -> Any:
+def ask_once(question: Question, model: Model, solver: str = "sweep") -> Any:
+    """Ask a model as it is timed: in one thread."""
     return question.of(model, solver=solver, threads=1)
 
 
 def _rounding(truth: Truth, model: Model, values: NDArray[Any], bound: Real) -> Real:
     """Return how far values are from those of the sweep along the same chain, if it has any."""
     try:
-        return relative(values, truth.same.values(_answer(truth.same, model)))
+        return relative(values, truth.same.values(ask_once(truth.same, model)))
     except SolveError:
         return bound
+
+
+def answered(question: Question, model: Model, solver: str = "sweep") -> Any:
+    """Ask a model, and refuse a question whose answer is empty."""
+    answer = ask_once(question, model, solver)
+    if question.values(answer).size == 0:
+        raise SceneError(f"question must have an answer, got {question}: there are none")
+    return answer
 
 
 def _digits(rounding: float) -> float:
