@@ -11,6 +11,7 @@ from .choice import Choice
 from .compare import Comparison, compare
 from .damping import RayleighDamping, StiffnessDamping
 from .deflection import Deflection
+from .effect import EffectCost, effect_cost
 from .end import End
 from .errors import RopedynError, SceneError, SolveError
 from .frf import FRF
@@ -36,6 +37,7 @@ __all__ = [
     "Cost",
     "Dashpot",
     "Deflection",
+    "EffectCost",
     "End",
     "Hinge",
     "LocalChange",
@@ -57,6 +59,7 @@ __all__ = [
     "accuracy_cost",
     "ask",
     "compare",
+    "effect_cost",
     "load",
     "study2015",
 ]

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import check, eigen, harmonic
 from .answer import freeze
+from .change import OF_FRF, OF_MODES, Change, change_of_frf, change_of_modes
 from .errors import SceneError
 from .frf import FRF
 from .model import Model
@@ -60,6 +61,11 @@ class ModesQuestion:
         return f"{self.number} modes" if self.below is None else f"modes below {self.below:g} Hz"
 
     @property
+    def measures(self) -> tuple[str, ...]:
+        """What is measured of a change of the answer, with units."""
+        return OF_MODES
+
+    @property
     def solvers(self) -> tuple[str, ...]:
         """What can answer it."""
         return tuple(eigen.SOLVERS)
@@ -87,6 +93,10 @@ class ModesQuestion:
     def _relative(self, answer: Modes, error: Real) -> Real:
         size = np.abs(self.values(answer))
         return np.divide(error, size, out=np.zeros_like(size), where=size > 0)
+
+    def change(self, answer: Modes, model: Model, *, solver: str = "sweep") -> Change:
+        """Compare an answer with that of a model from which something was left out."""
+        return change_of_modes(answer, model, solver)
 
     def work(self, model: Model) -> float:
         """Return the seconds, by their order, that the assembled solver takes: dense, n^3."""
@@ -131,6 +141,11 @@ class FRFQuestion:
         return f"{self.quantity} of {lines}, driven in {driven}"
 
     @property
+    def measures(self) -> tuple[str, ...]:
+        """What is measured of a change of the answer, with units."""
+        return OF_FRF
+
+    @property
     def solvers(self) -> tuple[str, ...]:
         """What can answer it."""
         return tuple(harmonic.SOLVERS)
@@ -161,6 +176,10 @@ class FRFQuestion:
     def rounding(self, answer: FRF) -> Real:
         """Return the estimated relative error that rounding causes."""
         return answer.rounding_error
+
+    def change(self, answer: FRF, model: Model, *, solver: str = "sweep") -> Change:
+        """Compare an answer with that of a model from which something was left out."""
+        return change_of_frf(answer, self.of(model, solver=solver, threads=1))
 
     def work(self, model: Model) -> float:
         """Return the seconds, by their order, that the assembled solver takes: n a line."""

@@ -19,6 +19,7 @@ from .atomic import replacing
 from .chain import KINDS
 from .check import shown
 from .compare import compare
+from .effect import effect_cost
 from .errors import RopedynError, SceneError, SolveError
 from .model import Model
 from .peaks import Peaks
@@ -75,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     _scene_command(commands, "frf", _frf, "frequency response")
     _scene_command(commands, "compare", _compare, "calculated against measured peaks")
     _accuracy_command(commands)
+    _effects_command(commands)
     return parser
 
 
@@ -83,10 +85,7 @@ def _scene_command(
 ) -> None:
     parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    parser.add_argument(
-        "--elements", type=int, help="over the rope; without it spans are continuous"
-    )
-    parser.add_argument("--element", choices=KINDS, help="kind (tensed where --elements is given)")
+    _compile_options(parser)
     if name in ("modes", "compare"):
         parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
     if name == "frf":
@@ -108,12 +107,37 @@ def _accuracy_command(commands: Any) -> None:
     parser.add_argument("--elements", help="of chains, comma list (powers of two from 8 to 4096)")
     parser.add_argument("--element", default="rigid,tensed,continuous", help="kinds (%(default)s)")
     parser.add_argument("--solver", default="sweep,lapack", help="comma list (%(default)s)")
+    _question_options(parser)
+    _output_options(parser)
+    parser.set_defaults(run=_accuracy)
+
+
+def _effects_command(commands: Any) -> None:
+    parser = commands.add_parser(
+        "effects",
+        help="what each effect of the scene changes and costs",
+        description="What each effect of the scene changes and costs, for modes (10 of them unless "
+        "--modes or --below is given) or, with --frequency and --drive, a frequency response.",
+    )
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    _compile_options(parser)
+    _question_options(parser)
+    _output_options(parser)
+    parser.set_defaults(run=_effects)
+
+
+def _compile_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--elements", type=int, help="over the rope; without it spans are continuous"
+    )
+    parser.add_argument("--element", choices=KINDS, help="kind (tensed where --elements is given)")
+
+
+def _question_options(parser: argparse.ArgumentParser) -> None:
     asked = parser.add_mutually_exclusive_group()
     asked.add_argument("--modes", type=int, help="how many")
     asked.add_argument("--below", type=float, help="instead: modes below this [Hz]")
     _frf_options(asked, required=False, beside=parser)
-    _output_options(parser)
-    parser.set_defaults(run=_accuracy)
 
 
 def _frf_options(parser: Any, *, required: bool, beside: Any = None) -> None:
@@ -155,6 +179,12 @@ def _accuracy(options: argparse.Namespace) -> None:
     element, solver = options.element.split(","), options.solver.split(",")
     cost = accuracy_cost(scene, _asked(options), elements=elements, element=element, solver=solver)
     _show(options, cost)
+
+
+def _effects(options: argparse.Namespace) -> None:
+    scene = Scene.load(options.scene)
+    how = {"elements": options.elements, "element": options.element}
+    _show(options, effect_cost(scene, _asked(options), **how))
 
 
 def _asked(options: argparse.Namespace) -> ask.Question:

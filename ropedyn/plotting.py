@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .accuracy import AccuracyCost
     from .compare import Comparison
     from .deflection import Deflection
+    from .effect import EffectCost
     from .frf import FRF
     from .modes import Modes
 
@@ -166,3 +167,74 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
     ax.grid(True, color="0.92")
     ax.legend(handles=handles, fontsize="small")
     return ax
+
+
+CHANGE, TIME = "C0", "C1"
+"""Of what an effect changes, and of its share of time."""
+
+
+def plot_effects(cost: EffectCost, ax: Axes | None) -> Axes:
+    """Plot a row for each effect: the largest change as a bar, the share of time as a point.
+
+    The largest change is on top; effects without which there is no answer are at the bottom.
+    """
+    rows, least, most = _effect_rows(cost)
+    ax = ax or new_figure(1, height=2.0 + 0.3 * len(rows))[1][0]
+    y = np.arange(len(rows))
+    ax.set(xscale="log", xlim=(least, most), yticks=y, ylim=(len(rows) - 0.5, -0.7))
+    notes = (_effect_note(cost, row) for row in rows.tolist())
+    ax.set_yticklabels([f"{cost.effect[row]}{note}" for row, note in zip(rows, notes)])
+    name, _, unit = next(iter(cost.change)).partition(" ")
+    of = "level" if unit == "[dB]" else "frequency"
+    ax.set(xlabel=f"{name} change of {of} without the effect {unit}")
+    ax.set_title(f"what effects change and cost: {cost.question}", fontsize="medium")
+    ax.grid(True, axis="x", color="0.92")
+    ax.set_axisbelow(True)
+    for k, row in zip(y.tolist(), rows.tolist()):
+        change = cost.largest[row]
+        if cost.beyond_error[row] and change > 0:
+            ax.barh(k, min(change, most) - least, left=least, height=0.5, color=CHANGE, alpha=0.5)
+    _plot_shares(cost, rows, ax)
+    return ax
+
+
+def _effect_rows(cost: EffectCost) -> tuple[NDArray[np.intp], float, float]:
+    """Return effects, those that change most first, and limits of the changes to show."""
+    weight = np.where(np.isnan(cost.largest), np.inf, cost.largest) * cost.beyond_error
+    weight[cost.refusal != ""] = -1.0
+    shown = cost.largest[cost.beyond_error & np.isfinite(cost.largest) & (cost.largest > 0)]
+    least, most = (shown.min(), shown.max()) if shown.size else (0.1, 1.0)
+    least, most = 10 ** np.floor(np.log10(least) - 0.5), 10 ** np.ceil(np.log10(most) + 0.2)
+    return np.argsort(-weight, kind="stable"), float(least), float(most)
+
+
+def _effect_note(cost: EffectCost, row: int) -> str:
+    """Say what a bar cannot, on a line of its own."""
+    if not cost.beyond_error[row]:
+        return f"\n{cost.verdict(row)}"
+    lost = int(cost.only_with[row])
+    what = "mode" if "rms [Hz]" in cost.change else "response"
+    return f"\n{lost} {what}{'s' * (lost > 1)} only with it" if lost else ""
+
+
+def _plot_shares(cost: EffectCost, rows: NDArray[np.intp], ax: Axes) -> None:
+    """Plot shares of time with their quartiles on an axis above, filled where they are told."""
+    above = ax.twiny()
+    least, most = cost.share_quartiles
+    for k, row in enumerate(rows.tolist()):
+        if cost.refusal[row]:
+            continue
+        above.errorbar(
+            100 * cost.share[row],
+            k,
+            xerr=100 * np.array([[cost.share[row] - least[row]], [most[row] - cost.share[row]]]),
+            color=TIME,
+            marker="o",
+            markerfacecolor="white" if cost.costs[row] == "the same" else TIME,
+            capsize=3,
+        )
+    above.axvline(0.0, color=TIME, linewidth=0.8, linestyle=":", zorder=0)
+    above.set_xlabel(
+        "share of the time from the scene to the answer [%], hollow: not told apart", color=TIME
+    )
+    above.tick_params(axis="x", colors=TIME)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ask import Question
+from .change import relative
 from .errors import RopedynError, SceneError, SolveError
 from .model import Model
 from .scene import Scene
@@ -100,12 +101,6 @@ class Trial:
     digits_lost: float = np.nan
     refusal: str = ""
     calls: tuple[Callable[[], Any], ...] = ()
-
-
-def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
-    """Return relative errors: 0 where both are 0, 1 where only the right value is."""
-    size = np.where(right == 0, np.abs(found), np.abs(right))
-    return np.divide(np.abs(found - right), size, out=np.zeros(size.shape), where=size > 0)
 
 
 def largest(errors: Real, known: NDArray[np.bool_]) -> float:

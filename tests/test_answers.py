@@ -59,6 +59,10 @@ ANSWERS = {
     "peaks with order": rd.Peaks([20.0, 50.0], std=[0.1, 0.2], order=[3, 1]),
     "resonances": MODEL.frf(GRID, drive=("z", 0.31)).peaks()[0],
     "accuracy": rd.accuracy_cost(SCENE, rd.ask.modes(3), elements=[2, 16], repeat=2),
+    "effects": rd.effect_cost(SCENE, rd.ask.modes(3), repeat=1),
+    "effects and refusals": rd.effect_cost(
+        SCENE, rd.ask.frf(GRID[:3], drive=("z", 0.31)), elements=8, repeat=1
+    ),
     "no resonances": MODEL.frf([1.0, 2.0], drive=("z", 0.31)).peaks()[0],
 }
 PAIR = {name: ANSWERS[name] for name in ("modes", "frf", "deflection", "comparison", "peaks")}
@@ -326,7 +330,7 @@ def test_xarray_holds_every_array(name):
     assert isinstance(dataset, xr.Dataset)
     for key, array in arrays(ANSWERS[name]).items():
         variable = dataset[key.rstrip(".")]
-        assert variable.values.tolist() == array.tolist()
+        np.testing.assert_array_equal(variable.values, array)
         assert "units" in variable.attrs
 
 
@@ -350,6 +354,8 @@ def test_xarray_holds_every_array(name):
         ("resonances", "damping_ratio", ("peak",), ""),
         ("accuracy", "seconds", ("row",), "s"),
         ("accuracy", "element", ("row",), ""),
+        ("effects", "seconds_without", ("row",), "s"),
+        ("effects", "change.largest [Hz]", ("row",), ""),
     ],
 )
 def test_xarray_names_axes_and_units(name, variable, axes, unit):

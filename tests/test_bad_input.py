@@ -635,6 +635,60 @@ row(
     {"beyond": len(ACCURACY.element), "negative": -1, "huge": HUGE},
 )
 
+
+def effect_cost(question=FIRST, **how):
+    return rd.effect_cost(scene(), question, **{"repeat": 1} | how)
+
+
+EFFECTS = effect_cost()
+row(
+    "effect_cost",
+    "scene",
+    lambda v: rd.effect_cost(v, rd.ask.modes(1)),
+    {"none": None, "model": MODEL, "rope": rope(), "class": rd.Scene, "text": "rope.toml"},
+)
+row(
+    "effect_cost",
+    "question",
+    effect_cost,
+    {"none": None, "number": 10, "text": "modes", "answer": FRF, "function": rd.ask.modes},
+)
+row(
+    "effect_cost",
+    "elements",
+    lambda v: effect_cost(elements=v),
+    without(NOT_A_COUNT, "none"),
+    BAD_COUNT,
+)
+row(
+    "effect_cost",
+    "element",
+    lambda v: effect_cost(element=v),
+    without(NOT_A_WORD, "none"),
+    {"unknown": "cubic", "empty": ""},
+)
+row(
+    "effect_cost",
+    "solver",
+    lambda v: effect_cost(solver=v),
+    NOT_A_WORD,
+    {"unknown": "magic", "of_responses_only": "band", "of_chains_only": "lapack"},
+)
+row("effect_cost", "repeat", lambda v: effect_cost(repeat=v), NOT_A_COUNT, BAD_COUNT)
+row(
+    "effect_cost",
+    "progress",
+    lambda v: effect_cost(progress=v),
+    {"number": 3, "text": "yes", "nan": NAN, "list": [print]},
+)
+row(
+    "EffectCost.verdict",
+    "row",
+    EFFECTS.verdict,
+    {"none": None, "text": "0", "float": 0.0, "list": [0]},
+    {"beyond": len(EFFECTS.effect), "negative": -1, "huge": HUGE},
+)
+
 row("Peaks", "frequency", rd.Peaks, NOT_AN_ARRAY, BAD_ARRAY | {"zero": [0.0]})
 row(
     "Peaks",

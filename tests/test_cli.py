@@ -73,18 +73,18 @@ def test_compare_pairs_the_peaks(scene_file, capsys):
 ACCURACY = ["--elements", "16,32"]
 
 
-@pytest.mark.parametrize(
-    ("options", "question"),
-    [
-        ([], rd.ask.modes(10)),
-        (["--modes", "3"], rd.ask.modes(3)),
-        (["--below", "100"], rd.ask.modes(below=100.0)),
-        (
-            ["--frequency", "10:90:5", "--drive", "z@0.3", "--response", "beta@0.6"],
-            rd.ask.frf(np.linspace(10, 90, 5), drive=("z", 0.3), response=("beta", 0.6)),
-        ),
-    ],
-)
+QUESTIONS = [
+    ([], rd.ask.modes(10)),
+    (["--modes", "3"], rd.ask.modes(3)),
+    (["--below", "100"], rd.ask.modes(below=100.0)),
+    (
+        ["--frequency", "10:90:5", "--drive", "z@0.3", "--response", "beta@0.6"],
+        rd.ask.frf(np.linspace(10, 90, 5), drive=("z", 0.3), response=("beta", 0.6)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("options", "question"), QUESTIONS)
 def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, question):
     assert main(["accuracy", str(scene_file), *ACCURACY, *options, "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -115,10 +115,33 @@ def test_accuracy_prints_refused_rows_and_marks(scene_file, capsys):
     assert [row[0] for row in rows if "1e-12" in row[-2]] == ["continuous"]
 
 
+@pytest.mark.parametrize(("options", "question"), QUESTIONS)
+@pytest.mark.parametrize("how", [{}, {"elements": 16}, {"elements": 16, "element": "rigid"}])
+def test_effects_prints_what_each_changes(scene_file, capsys, options, question, how):
+    compiled = [text for name, value in how.items() for text in (f"--{name}", str(value))]
+    assert main(["effects", str(scene_file), *compiled, *options, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    table = rd.effect_cost(rd.Scene.load(scene_file), question, repeat=1, **how).table()
+    assert printed["title"] == table.title
+    for column in ("left out", "changes the answer", "unknowns", *question.measures):
+        assert [row[column] for row in printed["rows"]] == list(table.column(column))
+
+
+def test_effects_prints_refused_rows(scene_file, capsys):
+    options = ["--frequency", "20", "--drive", "beta@0.3", "--csv"]
+    assert main(["effects", str(scene_file), *options]) == 0
+    head, *rows = csv.reader(capsys.readouterr().out.splitlines())
+    refused = {row[0]: row[-1] for row in rows}
+    assert head[-1] == "refused"
+    assert list(refused) == ["nothing", *rd.Scene.load(scene_file).effects]
+    assert [name for name, reason in refused.items() if reason] == ["bending"]
+
+
 @pytest.mark.parametrize(
     "command",
     [
         ["modes", "--modes", "3"],
+        ["effects", "--modes", "3"],
         ["accuracy", "--modes", "3", *ACCURACY],
         ["frf", "--frequency", "1:100:50", "--drive", "z@0.5"],
         ["compare", "--peaks", "20,41"],
@@ -157,6 +180,12 @@ def test_plot_writes_a_figure(scene_file, tmp_path, capsys, command):
         (["accuracy", "{}", "--drive", "z@0.5"], 2, "--frequency must be given"),
         (["accuracy", "{}", "--response", "z@0.5"], 2, "--frequency must be given"),
         (["accuracy", "{}", "--frequency", "5", "--drive", "q@0.5"], 2, "drive[0]"),
+        (["effects", "nowhere.toml"], 2, "nowhere.toml"),
+        (["effects", "{}", "--elements", "0"], 2, "elements must be"),
+        (["effects", "{}", "--element", "rigid"], 2, "elements must be given"),
+        (["effects", "{}", "--elements", "2"], 1, "number must be at most"),
+        (["effects", "{}", "--below", "0.5"], 2, "question must have an answer"),
+        (["effects", "{}", "--frequency", "5"], 2, "--drive must be given"),
     ],
 )
 def test_bad_input_ends_with_a_message_and_a_status(scene_file, capsys, arguments, status, words):

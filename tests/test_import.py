@@ -13,6 +13,7 @@ WORK = {
     "modes": f"rd.Scene({ROPE}).compile(elements=4).modes(2)",
     "frf": f"rd.Scene({ROPE}).compile(elements=4).frf([1.0], drive=('z', 0.5)).table()",
     "accuracy": f"rd.accuracy_cost(rd.Scene({ROPE}), rd.ask.modes(1), elements=4).table()",
+    "effects": f"rd.effect_cost(rd.Scene({ROPE}), rd.ask.modes(1)).table()",
     "static": f"rd.Scene({ROPE}).compile(elements=4).static({{('z', 0.5): 1.0}})",
     "peaks": "str(rd.Peaks([1.0, 2.0]))",
 }

@@ -33,12 +33,17 @@ def answers(model):
             "time from the scene to the answer [s]",
             "largest relative error [1]",
         ),
+        "effects": (
+            rd.effect_cost(model.scene, rd.ask.modes(2), repeat=1),
+            "largest change of frequency without the effect [Hz]",
+            "",
+        ),
         "resonances": (frf.peaks()[0], "frequency [Hz]", "amplitude of z at 0.500 m [m/N]"),
     }
 
 
 @pytest.mark.parametrize(
-    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy"]
+    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy", "effects"]
 )
 def test_plot_returns_labelled_axes(model, name):
     answer, xlabel, ylabel = answers(model)[name]
@@ -48,12 +53,12 @@ def test_plot_returns_labelled_axes(model, name):
 
 
 @pytest.mark.parametrize(
-    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy"]
+    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy", "effects"]
 )
 def test_plot_draws_into_given_axes(model, name):
     ax = Figure().subplots()
     assert answers(model)[name][0].plot(ax) is ax
-    assert ax.lines or ax.collections
+    assert ax.lines or ax.collections or ax.patches
 
 
 def test_curves_of_a_plot_are_the_values(model):
