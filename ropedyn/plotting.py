@@ -200,7 +200,8 @@ def plot_effects(cost: EffectCost, ax: Axes | None) -> Axes:
 
 def _effect_rows(cost: EffectCost) -> tuple[NDArray[np.intp], float, float]:
     """Return effects, those that change most first, and limits of the changes to show."""
-    weight = np.where(np.isnan(cost.largest), np.inf, cost.largest) * cost.beyond_error
+    weight = np.where(np.isnan(cost.largest), np.inf, cost.largest)
+    weight = np.where(cost.beyond_error, weight, 0.0)
     weight[cost.refusal != ""] = -1.0
     shown = cost.largest[cost.beyond_error & np.isfinite(cost.largest) & (cost.largest > 0)]
     least, most = (shown.min(), shown.max()) if shown.size else (0.1, 1.0)

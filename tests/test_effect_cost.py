@@ -413,6 +413,16 @@ def test_the_figure_has_the_largest_change_on_top():
     assert shares == [25.0, 0.0, -25.0, 50.0]
 
 
+def test_a_level_without_end_has_a_bar_to_the_border():
+    answer = made(4.0, 2.0, 4.0)
+    for beyond, bars in (([True, False], 1), ([False, False], 0)):
+        changes = {"largest [dB]": np.array([np.inf, np.inf])}
+        one = dataclasses.replace(answer, change=changes, beyond_error=np.array(beyond))
+        ax = one.plot()
+        assert len(ax.patches) == bars
+        assert all(bar.get_x() + bar.get_width() == ax.get_xlim()[1] for bar in ax.patches)
+
+
 def test_the_figure_of_refusals_alone_has_their_names():
     ax = made(4.0, math.nan).plot()
     assert [text.get_text() for text in ax.get_yticklabels()] == ["effect 0\nno answer without it"]
