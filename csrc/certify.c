@@ -237,7 +237,7 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
     for (size_t r = 0; r < walk->legs; r++) {
         const size_t count = walk->leg[r].count;
         const double still = rd_walk_radians(walk, walk->leg + r, 0);
-        const bool whole = count < 4 && still == 0 && !endless;
+        const bool whole = count < 4 && !walk->chain->inertia;
         const int halvings = rd_span_halvings(still, count);
         size_t levels = (endless ? finer : 0) + (size_t)halvings;
         levels = levels < RD_HALVINGS_MOST ? levels : RD_HALVINGS_MOST;

@@ -288,6 +288,19 @@ def test_count_is_that_of_the_modes_below(name):
             assert model.count(below=high * (1 + 1e-9)) >= k + 2
 
 
+@pytest.mark.parametrize("supports", [0, 1, 2, 5])
+def test_a_disc_on_a_shaft_without_inertia(supports):
+    # two stretches in parallel, C/a + C/b; beyond the first support the shaft is still
+    held = [0.3 + 0.17 * k for k in range(supports)]
+    parts = [rd.Support(x, coordinate="alpha") for x in held]
+    parts.append(rd.PointMass(0.1, 0.02, polar_inertia=2e-6))
+    modes = rd.Scene(rd.Rope(1.2, 0.09, torsional_stiffness=0.6), parts=parts).compile().modes(1)
+    a, b = 0.1, min([1.2, *held]) - 0.1
+    exact = math.sqrt(0.6 * (1 / a + 1 / b) / 2e-6) / (2 * math.pi)
+    np.testing.assert_allclose(modes.frequency, [exact], rtol=RELATIVE, atol=0)
+    assert modes.certified
+
+
 def test_modes_below_a_limit_are_the_lowest():
     model = SCENES["mass and springs"].compile()
     f = model.modes(6).frequency

@@ -107,8 +107,10 @@ def test_partners_are_found_where_other_modes_have_come_between():
     assert found == pytest.approx(right, rel=64 * EPS)
 
 
-def test_a_twist_without_inertia_has_no_modes():
-    scene = rd.Scene(LAID, tension=300.0, parts=[rd.PointMass(0.5, 0.1)])
+@pytest.mark.parametrize("lay", [None, 0.02])
+def test_a_twist_without_inertia_has_no_modes(lay):
+    rope = LAID.replace(lay_slope=lay)
+    scene = rd.Scene(rope, tension=300.0, parts=[rd.PointMass(0.5, 0.1)])
     disc = scene.replace(parts=[rd.PointMass(0.5, 0.1, polar_inertia=1e-7)])
     twists = np.count_nonzero(scene.compile().modes(16).family == "torsional")
     for one, kept in ((scene, 0), (disc, 1)):
