@@ -218,17 +218,21 @@ def _decibel(relative_error: Real) -> Real:
 
 
 def _peak_shift(whole: FRF, left: FRF) -> float:
-    """Return how far the nearest peak is from the largest one of the whole [Hz].
+    """Return how far the largest peak moves [Hz], of several responses the furthest.
 
-    Of several responses the furthest; NaN where none has a peak in both.
+    NaN where there is none, or where the nearest peak of what is left has another number: then it
+    is not clear which one the peak has become.
     """
     shifts = []
     drives = len(whole.drive) if whole.value.ndim == 3 else 1
     for drive in range(drives):
         for one, other in zip(whole.peaks(drive), left.peaks(drive)):
-            if len(one.frequency) > 0 and len(other.frequency) > 0:
-                away = other.frequency - one.frequency[one.amplitude.argmax()]
-                shifts.append(float(away[np.abs(away).argmin()]))
+            if len(one.frequency) == 0 or len(other.frequency) == 0:
+                continue
+            largest = one.amplitude.argmax()
+            away = other.frequency - one.frequency[largest]
+            if np.abs(away).argmin() == largest:
+                shifts.append(float(away[largest]))
     return max(shifts, key=abs, default=np.nan)
 
 

@@ -48,8 +48,8 @@ class EffectCost(Answer):
         frequency. Each mode is compared with that of the same order among those of the same
         motion: transverse, torsional or axial. Of a frequency response ``"largest [dB]"`` and
         ``"median [dB]"``, of the level |20 log10(without/with)| of all lines, and
-        ``"peak shift [Hz]"``, from the largest peak with the effect to the nearest one without. NaN
-        where there is nothing to compare.
+        ``"peak shift [Hz]"``, from the largest peak to the nearest one without the effect, where
+        that has the same number. NaN where there is nothing to compare.
     error : ndarray, shape (rows,)
         Error bars of both answers together, of mesh and rounding, where the change is largest
         [Hz, dB].
@@ -212,10 +212,11 @@ def effect_cost(
 
     Examples
     --------
-    A mass in the middle of a string: its first frequency is half of it, x tan(x) = 0.6434 at pi/4.
+    A mass m in the middle of a string halves its first frequency: cot(x) = x m/(mu L) at pi/4.
 
+    >>> import math
     >>> import ropedyn as rd
-    >>> mass = rd.PointMass(0.5, 0.1 / (0.25 * 3.141592653589793))
+    >>> mass = rd.PointMass(0.5, 0.1 * 4 / math.pi)
     >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[mass])
     >>> cost = rd.effect_cost(scene, rd.ask.modes(1), repeat=1)
     >>> cost.effect.tolist()

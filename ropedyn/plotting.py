@@ -26,6 +26,9 @@ COLOR = {"difference": "C3", "rigid": "C0", "tensed": "C1", "continuous": "C2"}
 LINE = {"sweep": "-", "lapack": "--", "band": ":"}
 """Of each kind of element, and of each solver."""
 
+CHANGE, TIME = "C0", "C1"
+"""Of what an effect changes, and of its share of time."""
+
 
 def new_axes(ax: Axes | None) -> Axes:
     """Return the axes, or those of a new figure that no window shows."""
@@ -169,17 +172,14 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes | None) -> Axes:
     return ax
 
 
-CHANGE, TIME = "C0", "C1"
-"""Of what an effect changes, and of its share of time."""
-
-
 def plot_effects(cost: EffectCost, ax: Axes | None) -> Axes:
     """Plot a row for each effect: the largest change as a bar, the share of time as a point.
 
     The largest change is on top; effects without which there is no answer are at the bottom.
     """
     rows, least, most = _effect_rows(cost)
-    ax = ax or new_figure(1, height=2.0 + 0.3 * len(rows))[1][0]
+    if ax is None:
+        ax = new_figure(1, height=2.0 + 0.3 * len(rows))[1][0]
     y = np.arange(len(rows))
     ax.set(xscale="log", xlim=(least, most), yticks=y, ylim=(len(rows) - 0.5, -0.7))
     notes = (_effect_note(cost, row) for row in rows.tolist())
@@ -221,19 +221,18 @@ def _effect_note(cost: EffectCost, row: int) -> str:
 def _plot_shares(cost: EffectCost, rows: NDArray[np.intp], ax: Axes) -> None:
     """Plot shares of time with their quartiles on an axis above, filled where they are told."""
     above = ax.twiny()
-    least, most = cost.share_quartiles
+    share, least, most = (100 * each for each in (cost.share, *cost.share_quartiles))
     for k, row in enumerate(rows.tolist()):
-        if cost.refusal[row]:
-            continue
-        above.errorbar(
-            100 * cost.share[row],
-            k,
-            xerr=100 * np.array([[cost.share[row] - least[row]], [most[row] - cost.share[row]]]),
-            color=TIME,
-            marker="o",
-            markerfacecolor="white" if cost.costs[row] == "the same" else TIME,
-            capsize=3,
-        )
+        if cost.refusal[row] == "":
+            above.errorbar(
+                share[row],
+                k,
+                xerr=[[share[row] - least[row]], [most[row] - share[row]]],
+                color=TIME,
+                marker="o",
+                markerfacecolor="white" if cost.costs[row] == "the same" else TIME,
+                capsize=3,
+            )
     above.axvline(0.0, color=TIME, linewidth=0.8, linestyle=":", zorder=0)
     above.set_xlabel(
         "share of the time from the scene to the answer [%], hollow: not told apart", color=TIME
