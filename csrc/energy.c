@@ -150,13 +150,24 @@ static void add_stretch(const struct rd_chain *chain, size_t k, const struct sto
     }
 }
 
-double rd_energy_springs(const struct rd_chain *chain, const double *shape)
+/* sum of what the nodes' own matrices, one for each term, give */
+static double at_nodes(const struct rd_chain *chain, const double *matrix, const double *shape)
 {
     const size_t w = chain->width;
-    double energy = 0;
+    double sum = 0;
     for (size_t i = 0; i < chain->nodes; i++)
-        energy += quadratic(w, chain->stiffness + (size_t)chain->term_of[i] * w * w, shape + i * w);
-    return energy;
+        sum += quadratic(w, matrix + (size_t)chain->term_of[i] * w * w, shape + i * w);
+    return sum;
+}
+
+double rd_energy_springs(const struct rd_chain *chain, const double *shape)
+{
+    return at_nodes(chain, chain->stiffness, shape);
+}
+
+double rd_energy_dashpots(const struct rd_chain *chain, const double *shape)
+{
+    return chain->damping ? at_nodes(chain, chain->damping, shape) : 0;
 }
 
 enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain)

@@ -23,6 +23,9 @@ enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shap
 /* twice the energy [J] of the springs at the nodes */
 double rd_energy_springs(const struct rd_chain *chain, const double *shape);
 
+/* shape^T C shape [N s m] of the dashpots at the nodes */
+double rd_energy_dashpots(const struct rd_chain *chain, const double *shape);
+
 /* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape. What couples two is the
    first one's: the end correction of lumped masses, M_z,beta, is inertia of z. */
 void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double *kinetic);

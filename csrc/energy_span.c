@@ -9,14 +9,14 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-enum { W = RD_WIDTH_MAX, STORES = RD_STRAINS + RD_WIDTH_MAX, GROUPS = 2 };
+enum { W = RD_WIDTH_MAX, STORES = RD_STRAINS + 2 * RD_WIDTH_MAX, GROUPS = 2 };
 
 /* size of an imaginary step: its square is nothing beside 1, so derivatives are exact */
 static const double STEP = 0x1p-200;
 
 /* What may store energy: an entry of the section, the tension, or the inertia of a coordinate; the
    mixed form P = f^T F u_a + (f^T G f - u_a^T Q u_a)/2 of an element is stationary, so that twice
-   the energy is 2 S dP/dS, -2 T dP/dT, and of inertia p 2 p dP/d(lambda p). */
+   the energy is 2 S dP/dS, -2 T dP/dT, and of inertia p 2 p dP/d(lambda p); of drag likewise. */
 struct store {
     double *energy; /* where it is added */
     double factor;
@@ -70,9 +70,17 @@ static bool step_tension(const struct rope *rope, int lane, struct rate_matrix *
     return T != 0;
 }
 
+/* an imaginary step in what is p per length of a coordinate, in lane n */
+static bool step_load(double p, size_t i, size_t n, struct rate_matrix *rate)
+{
+    if (p != 0)
+        rate[n / RD_LANES].q[i].im[n % RD_LANES] -= STEP * p;
+    return p != 0;
+}
+
 /* the energies of an element, a lane each */
 static void prepare(const struct rd_chain *chain, size_t e, double lambda, double *strain,
-                    double *kinetic, struct rope *rope)
+                    double *kinetic, double *dragged, struct rope *rope)
 {
     const size_t w = chain->width;
     struct rate_matrix rate[GROUPS];
@@ -89,11 +97,10 @@ static void prepare(const struct rd_chain *chain, size_t e, double lambda, doubl
             rope->store[n++] = (struct store){strain + s, s == RD_STRAIN_TENSION ? -2 : 2};
     }
     for (size_t i = 0; i < w; i++) {
-        const double p = chain->inertia[e * w + i];
-        if (p == 0)
-            continue;
-        rate[n / RD_LANES].q[i].im[n % RD_LANES] -= STEP * p;
-        rope->store[n++] = (struct store){kinetic + i, 2};
+        if (step_load(chain->inertia[e * w + i], i, n, rate))
+            rope->store[n++] = (struct store){kinetic + i, 2};
+        if (chain->drag && step_load(chain->drag[e * w + i], i, n, rate))
+            rope->store[n++] = (struct store){dragged, 2};
     }
     rope->stores = n;
     for (size_t g = 0; g * RD_LANES < n; g++)
@@ -187,16 +194,17 @@ static void add_stretch(const struct rope *rope, size_t k, const double *shape, 
 }
 
 enum rd_status rd_energy_span(const struct rd_chain *chain, double lambda, const double *shape,
-                              double *strain, double *kinetic)
+                              double *strain, double *kinetic, double *dragged)
 {
     struct rope rope;
     size_t made = chain->distinct;
     memset(strain, 0, RD_STRAINS * sizeof *strain);
     rd_energy_kinetic(chain, shape, kinetic);
+    *dragged = rd_energy_dashpots(chain, shape);
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         if ((size_t)chain->element[k] != made) {
             made = (size_t)chain->element[k];
-            prepare(chain, made, lambda, strain, kinetic, &rope);
+            prepare(chain, made, lambda, strain, kinetic, dragged, &rope);
             const enum rd_status status = set_element(&rope);
             if (status != RD_OK)
                 return status;

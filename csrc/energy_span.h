@@ -4,10 +4,10 @@
 
 #include "energy.h"
 
-/* As rd_energy_strain and rd_energy_kinetic, of a shape (nodes, width) at its eigenvalue lambda: the
-   integrals along the spans are exact. Elements must be shorter than their first resonance as a
+/* As rd_energy_strain, rd_energy_kinetic and rd_energy_dashpots, with the drag of the spans, of a
+   shape (nodes, width) at its eigenvalue lambda: the integrals along the spans are exact. Elements must be shorter than their first resonance as a
    cantilever. RD_NOT_POSITIVE_DEFINITE where one is not. */
 enum rd_status rd_energy_span(const struct rd_chain *chain, double lambda, const double *shape,
-                              double *strain, double *kinetic);
+                              double *strain, double *kinetic, double *dragged);
 
 #endif

@@ -7,7 +7,8 @@ PyObject *py_energy(PyObject *module, PyObject *arguments)
 {
     struct py_chain parsed = {0};
     PyArrayObject *shapes = NULL, *lambdas = NULL;
-    PyObject *chain, *object, *eigenvalues, *strain = NULL, *kinetic = NULL, *result = NULL;
+    PyObject *chain, *object, *eigenvalues, *strain = NULL, *kinetic = NULL, *dragged = NULL;
+    PyObject *result = NULL;
     if (!PyArg_ParseTuple(arguments, "OOO", &chain, &object, &eigenvalues))
         return NULL;
     if (py_chain_parse(chain, &parsed) < 0)
@@ -24,28 +25,32 @@ PyObject *py_energy(PyObject *module, PyObject *arguments)
         goto done;
     strain = py_new(NPY_DOUBLE, 2, (npy_intp[]){count, RD_STRAINS});
     kinetic = py_new(NPY_DOUBLE, 2, (npy_intp[]){count, (npy_intp)w});
-    if (strain == NULL || kinetic == NULL)
+    dragged = py_new(NPY_DOUBLE, 1, (npy_intp[]){count});
+    if (strain == NULL || kinetic == NULL || dragged == NULL)
         goto done;
     const double *u = PyArray_DATA(shapes), *lambda = PyArray_DATA(lambdas);
     double *stored = PyArray_DATA((PyArrayObject *)strain);
     double *moving = PyArray_DATA((PyArrayObject *)kinetic);
+    double *lost = PyArray_DATA((PyArrayObject *)dragged);
     enum rd_status status = RD_OK;
     Py_BEGIN_ALLOW_THREADS
     for (size_t k = 0; k < (size_t)count && status == RD_OK; k++) {
         if (parsed.chain.inertia) {
             status = rd_energy_span(&parsed.chain, lambda[k], u + k * entries,
-                                    stored + k * RD_STRAINS, moving + k * w);
+                                    stored + k * RD_STRAINS, moving + k * w, lost + k);
             continue;
         }
         status = rd_energy_strain(&parsed.chain, u + k * entries, stored + k * RD_STRAINS);
         rd_energy_kinetic(&parsed.chain, u + k * entries, moving + k * w);
+        lost[k] = rd_energy_dashpots(&parsed.chain, u + k * entries);
     }
     Py_END_ALLOW_THREADS
     if (status == RD_OK)
-        result = PyTuple_Pack(2, strain, kinetic);
+        result = PyTuple_Pack(3, strain, kinetic, dragged);
     else
         py_raise(module, status);
 done:
+    Py_XDECREF(dragged);
     Py_XDECREF(kinetic);
     Py_XDECREF(strain);
     Py_XDECREF(lambdas);

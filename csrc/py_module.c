@@ -30,7 +30,7 @@ static PyMethodDef methods[] = {
     {"mixed_deflection", py_mixed_deflection, METH_VARARGS,
      "mixed_deflection(chain, force) -> displacement, force on the right ends of elements"},
     {"triple", py_triple, METH_VARARGS, "triple(chain, element, factor) -> F, G, Q"},
-    {"energy", py_energy, METH_VARARGS, "energy(chain, shape, eigenvalue) -> strain, kinetic"},
+    {"energy", py_energy, METH_VARARGS, "energy(chain, shape, eigenvalue) -> strain, kinetic, dragged"},
     {NULL, NULL, 0, NULL},
 };
 

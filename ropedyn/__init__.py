@@ -9,7 +9,7 @@ from .accuracy import AccuracyCost, accuracy_cost
 from .answer import Answer, Cost, load
 from .choice import Choice
 from .compare import Comparison, compare
-from .damping import RayleighDamping, StiffnessDamping
+from .damping import LossFactor, ModalDamping, RayleighDamping, StiffnessDamping, ViscousDamping
 from .deflection import Deflection
 from .effect import EffectCost, effect_cost
 from .end import End
@@ -41,6 +41,8 @@ __all__ = [
     "End",
     "Hinge",
     "LocalChange",
+    "LossFactor",
+    "ModalDamping",
     "Model",
     "Modes",
     "Peaks",
@@ -56,6 +58,7 @@ __all__ = [
     "StiffnessDamping",
     "Support",
     "Table",
+    "ViscousDamping",
     "accuracy_cost",
     "ask",
     "compare",

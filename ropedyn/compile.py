@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core, check, mesh
 from .chain import CONTINUOUS, KINDS, TENSED, Chain, components
+from .damping import drag
 from .end import end_of
 from .errors import SceneError
 from .model import MOST_POINTS, Model
@@ -204,7 +205,6 @@ def _chain(
 ) -> Chain:
     """Return the chain with so many equal elements between stations."""
     length, flexibility, inertia, which = elements
-    width = len(scene.coordinates)
     # a station is a stretch of its own, and so are the nodes of a span if there are any
     nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
     nodes[1::2] = counts - 1
@@ -217,13 +217,15 @@ def _chain(
     element = np.repeat(which, 2)[present[:-1]]
     term = term[present]
     del nodes, present
-    if kind == CONTINUOUS:
-        mass = np.zeros((len(stations) + len(inside), width, width))
-    else:
-        mass = _lumps(elements, inside)
+    is_lumped = kind != CONTINUOUS
+    along = np.tile(_drag(scene), (len(length), 1))
+    mass, damping = (
+        _lumps(elements, each if is_lumped else np.zeros_like(each), inside)
+        for each in (inertia, along)
+    )
     if kind == TENSED and "beta" in scene.coordinates:
         _correct_ends(scene, elements, mass[: len(stations)])
-    stiffness, damping, held, hinge = _terms(scene, stations, mass)
+    stiffness, held, hinge = _terms(scene, stations, mass, damping)
     return Chain(
         kind=kind,
         coordinate=np.array(
@@ -239,41 +241,46 @@ def _chain(
         held=held,
         term=term,
         hinge=hinge,
-        inertia=inertia if kind == CONTINUOUS else None,
-        damping=damping,
+        inertia=None if is_lumped else inertia,
+        damping=damping if damping.any() else None,
+        drag=along if along.any() and not is_lumped else None,
     )
 
 
-def _lumps(elements: Elements, inside: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return the mass at stations, then that at nodes inside spans, between two equal elements.
+def _lumps(
+    elements: Elements, along: NDArray[np.float64], inside: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Return what is `along` each distinct element, per length, as lumps on nodes.
 
-    Half of each element's inertia is at each of its nodes.
+    Those at stations, then those at nodes inside spans, between two equal elements: half of an
+    element's is at each of its nodes.
     """
     with np.errstate(over="ignore"):  # the core refuses what is no number
-        own = elements.length[:, None] * elements.inertia
+        own = elements.length[:, None] * along
     halves = own[elements.which] / 2
     none = np.zeros((1, own.shape[1]))
     stations = np.concatenate([none, halves]) + np.concatenate([halves, none])
     diagonal = np.concatenate([stations, own[inside]])
-    mass = np.zeros((*diagonal.shape, own.shape[1]))
-    np.einsum("nkk->nk", mass)[:] = diagonal
-    return mass
+    lumps = np.zeros((*diagonal.shape, own.shape[1]))
+    np.einsum("nkk->nk", lumps)[:] = diagonal
+    return lumps
 
 
 def _terms(
-    scene: Scene, stations: NDArray[np.float64], mass: NDArray[np.float64]
-) -> tuple[
-    NDArray[np.float64], NDArray[np.float64] | None, NDArray[np.uint8], NDArray[np.float64] | None
-]:
-    """Add the masses of parts to those of the distinct node terms, stations first.
+    scene: Scene,
+    stations: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None]:
+    """Add masses and dashpots of parts to those of the distinct node terms, stations first.
 
     Returns
     -------
-    stiffness, damping, held, hinge
-        Of the same node terms; None where nothing is damped or hinged.
+    stiffness, held, hinge
+        Of the same node terms; None where nothing is hinged.
     """
     width = len(scene.coordinates)
-    stiffness, damping = np.zeros(mass.shape), np.zeros(mass.shape)
+    stiffness = np.zeros(mass.shape)
     held = np.zeros((len(mass), width), dtype=np.uint8)
     hinge = None
     number = {c: k for k, c in enumerate(scene.coordinates)}
@@ -289,7 +296,7 @@ def _terms(
         for coordinate, compliance in term.hinge.items():
             hinge = np.zeros((len(mass), width)) if hinge is None else hinge
             hinge[station, number[coordinate]] += compliance
-    return stiffness, damping if damping.any() else None, held, hinge
+    return stiffness, held, hinge
 
 
 def _correct_ends(scene: Scene, elements: Elements, mass: NDArray[np.float64]) -> None:
@@ -322,6 +329,12 @@ def _inertia(coordinates: Sequence[str], rope: Rope) -> NDArray[np.float64]:
         "beta": rope.rotary_inertia or 0.0,
     }
     return np.array([inertia[c] for c in coordinates])
+
+
+def _drag(scene: Scene) -> NDArray[np.float64]:
+    """Return the damping per length of each coordinate [N s/m^2]."""
+    along = drag(scene.dampings)
+    return np.array([along if c in ("x", "z") else 0.0 for c in scene.coordinates])
 
 
 def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:

@@ -376,14 +376,15 @@ def _vectors(
     model: Model, found: Sequence[Found], eigenvalue: Real, order: NDArray[np.intp]
 ) -> Vectors:
     shape = _spread(model, found)[order]
-    strain, kinetic = _core.energy(model.chain.undamped, shape, eigenvalue)
+    strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
     own = kinetic.argmax(axis=1)
     size = _largest(shape, own)
     shape /= size[:, None, None]
     strain, kinetic = strain / size[:, None] ** 2, kinetic / size[:, None] ** 2
+    dragged /= size**2
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     return Vectors(
-        damping_ratio=_damping_ratio(model, omega, strain, kinetic),
+        damping_ratio=_damping_ratio(model, omega, strain, kinetic, dragged),
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=kinetic.sum(axis=1),
         shape=shape,
@@ -428,20 +429,28 @@ def _damping_ratio(
     omega: NDArray[np.float64],
     strain: NDArray[np.float64],
     kinetic: NDArray[np.float64],
+    dragged: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega."""
+    """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega.
+
+    And the ratio that a mode has by itself.
+    """
     part = np.stack(
         [
             strain[:, : STRAINS.index("tension")].sum(axis=1),
             strain[:, STRAINS.index("tension")],
             strain[:, STRAINS.index("spring")],
             kinetic.sum(axis=1),
+            dragged,
         ],
         axis=1,
     )
-    factors = damping.factors(model.scene.dampings, omega)[..., : damping.DASHPOT]
-    lost = (factors.imag * part).sum(axis=1)
-    return np.divide(lost, 2 * omega**2 * part[:, 3], out=np.zeros_like(omega), where=omega > 0)
+    dampings = model.scene.dampings
+    lost = (damping.factors(dampings, omega).imag * part).sum(axis=1)
+    twice = 2 * omega**2 * part[:, damping.INERTIA]
+    ratio = damping.ratios(dampings, len(omega))
+    np.add(ratio, np.divide(lost, twice, where=omega > 0, out=np.zeros_like(lost)), out=ratio)
+    return np.where(omega > 0, ratio, 0.0)
 
 
 def _fractions(

@@ -13,7 +13,7 @@ from . import _core
 from .answer import freeze
 from .chain import Chain
 from .choice import Choice
-from .damping import separable
+from .damping import having, separable
 from .errors import SceneError
 from .port import Point
 from .scene import Scene
@@ -182,10 +182,15 @@ class Model:
         Raises
         ------
         SceneError
-            If there is none: tensed elements with tension and stiffness damping.
+            If there is none: tensed elements with tension and stiffness damping, a loss factor,
+            modal damping.
         """
         self._refuse_matrices()
         self._refuse_nonlinear()
+        for one in having(self.scene.dampings, "loss", "ratio"):
+            raise SceneError(
+                f"damping must be in proportion to velocity to have a matrix, got {one}"
+            )
         if not self.separable:
             raise SceneError(
                 "damping must scale sections and tension alike for tensed elements with tension "

@@ -58,8 +58,8 @@ class Scene:
         [N]; negative is compression, which needs bending stiffness.
     ends : pair of {"clamped", "pinned", "free"} or End
         Left and right end.
-    damping : StiffnessDamping, RayleighDamping or tuple of them, optional
-        A tuple is their sum.
+    damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, optional
+        A tuple of them is their sum.
     parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
 

@@ -6,6 +6,8 @@ import mpmath
 import numpy as np
 from exact_scene import (
     CHANNEL,
+    drag,
+    dragged,
     factors,
     inertia,
     is_stretch,
@@ -141,8 +143,8 @@ class Exact:
 
     model: rd.Model
     coordinates: tuple[str, ...]
-    nudge: tuple[mpf, ...] = (mpf(1),) * 4
-    """Times section, tension, springs, inertia: what the condition of an answer asks."""
+    nudge: tuple[mpf, ...] = (mpf(1),) * 5
+    """Times section, tension, springs, inertia, dashpots: what the condition of an answer asks."""
 
     def __post_init__(self):
         scene, model = self.model.scene, self.model
@@ -157,13 +159,18 @@ class Exact:
             (node[stations.index(mpf(p.x))], p) for p in scene.parts if not is_stretch(p)
         ]
 
+    @property
+    def scene(self):
+        """What was compiled."""
+        return self.model.scene
+
     def factors(self, omega):
-        """On sections, tension, springs, inertia; real where nothing is damped."""
+        """On sections, tension, springs, inertia, dashpots."""
         return [p * q for p, q in zip(factors(self.model.scene, omega), self.nudge)]
 
     def triple(self, e, omega):
         scene, length = self.model.scene, self.lengths[e]
-        c, (g, of_tension, _, _) = self.coordinates, self.factors(omega)
+        c, (g, of_tension, *_) = self.coordinates, self.factors(omega)
         S = [[s / g for s in row] for row in section(self.ropes[e])]
         T = mpf(scene.tension) * of_tension if "z" in c else mpf(0)
         if c == ("z",):
@@ -187,7 +194,7 @@ class Exact:
     def term(self, node, omega):
         """Node term -omega^2 M + springs and the held coordinates."""
         scene, c = self.model.scene, self.coordinates
-        _, _, spring, of_inertia = self.factors(omega)
+        _, _, spring, of_inertia, dashpot = self.factors(omega)
         # (length, inertia per length) of the elements on both sides
         left, right = (
             (self.lengths[e], inertia(self.ropes[e]))
@@ -195,12 +202,14 @@ class Exact:
             else (mpf(0), dict.fromkeys(c, mpf(0)))
             for e in (node - 1, node)
         )
+        against = drag(scene)
         end = scene.ends[node > 0] if node in (0, self.count) else None
         here = standing(c, [part for at, part in self.part_at if at == node], end)
         N = [[mpf(0)] * len(c) for _ in c]
         for k, name in enumerate(c):
-            mass = sum(length * own[name] for length, own in (left, right)) / 2 + here.mass[name]
-            N[k][k] = of_inertia * mass + spring * here.stiffness[name]
+            here.mass[name] += sum(length * own[name] for length, own in (left, right)) / 2
+            here.damping[name] += against[name] * (left[0] + right[0]) / 2
+            N[k][k] = here.resistance(name, spring, of_inertia, dashpot)
         if self.model.element == "tensed" and "beta" in c:
             z, beta = c.index("z"), c.index("beta")
             N[z][beta] = N[beta][z] = (
@@ -292,16 +301,16 @@ def relative(value, exact):
 
 
 def condition(exact, omega, drive, response):
-    """1 + the sum of |d ln h/d ln p| over p: section, tension, springs, inertia (or omega^2).
+    """1 + the sum of |d ln h/d ln p| over p: section, tension, springs, inertia, dashpots.
 
-    What a relative change of 1 in each of the four parts of the dynamic stiffness does to the
+    What a relative change of 1 in each of the parts of the dynamic stiffness does to the
     answer h, to first order, by differences of 1e-20.
     """
     step = mpf(10) ** -20
     (h,) = exact.receptance(omega, drive, [response])
     total = mpf(1)
-    for part in range(4):
-        nudge = tuple(1 + step * (k == part) for k in range(4))
+    for part in range(4 + dragged(exact.scene)):
+        nudge = tuple(1 + step * (k == part) for k in range(5))
         (near,) = dataclasses.replace(exact, nudge=nudge).receptance(omega, drive, [response])
         total += abs(near / h - 1) / step
     return float(total)

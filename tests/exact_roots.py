@@ -69,7 +69,7 @@ def sensitivity(exact, value):
         slope = (exact.determinant(value * (1 + step)) - here) / value
         total = abs(value)
         for part in range(3):
-            nudge = tuple(1 + step * (k == part) for k in range(4))
+            nudge = tuple(1 + step * (k == part) for k in range(5))
             near = dataclasses.replace(exact, nudge=nudge).determinant(value)
             total += abs((near - here) / slope)
         return total

@@ -76,20 +76,39 @@ def inertia(rope):
     return {"x": mu, "z": mu, "alpha": polar, "beta": rotary}
 
 
+def drag(scene):
+    """Damping per length of each coordinate [N s/m^2]."""
+    along = sum(mpf(d.coefficient) for d in scene.dampings if isinstance(d, rd.ViscousDamping))
+    return {"x": along, "z": along, "alpha": mpf(0), "beta": mpf(0)}
+
+
+def dragged(scene):
+    """Whether anything is in proportion to velocity at nodes or along the rope."""
+    ends = [end for end in scene.ends if isinstance(end, rd.End)]
+    parts = [part for part in scene.parts if isinstance(part, rd.Dashpot)]
+    return bool(parts or any(end.dashpot for end in ends) or drag(scene)["z"])
+
+
 def factors(scene, omega):
-    """On sections, tension, springs, inertia at omega [rad/s]; real where nothing is damped."""
+    """On sections, tension, springs, inertia, dashpots at omega [rad/s].
+
+    All but the last are real where nothing is damped.
+    """
     section = tension = spring = mpf(1)
     inertia = -(omega**2)
     for damping in scene.dampings:
         if isinstance(damping, rd.StiffnessDamping):
             section = section + 1j * omega * mpf(damping.gamma)
             spring = spring + 1j * omega * mpf(damping.gamma)
-        else:
+        elif isinstance(damping, rd.LossFactor):
+            section = section + 1j * mpf(damping.eta)
+            spring = spring + 1j * mpf(damping.eta)
+        elif hasattr(damping, "stiffness"):
             section = section + 1j * omega * mpf(damping.stiffness)
             tension = tension + 1j * omega * mpf(damping.stiffness)
             spring = spring + 1j * omega * mpf(damping.stiffness)
             inertia = inertia + 1j * omega * mpf(damping.mass)
-    return section, tension, spring, inertia
+    return section, tension, spring, inertia, 1j * omega
 
 
 @dataclasses.dataclass
@@ -98,16 +117,21 @@ class Standing:
 
     mass: dict[str, mpf]
     stiffness: dict[str, mpf]
+    damping: dict[str, mpf]
     held: set[str]
     hinge: mpf | None
     """Compliance of the hinge on the right [rad/(N m)], infinite where free, or None."""
 
+    def resistance(self, name, spring, inertia, dashpot):
+        """Force against motion of a coordinate, with the factors on what it has."""
+        force = inertia * self.mass[name] + spring * self.stiffness[name]
+        return force + dashpot * self.damping[name] if self.damping[name] else force
+
 
 def standing(coordinates, parts, end=None):
     """Sum up the parts at one place, and the end of the rope if it is there."""
-    found = Standing(
-        dict.fromkeys(coordinates, mpf(0)), dict.fromkeys(coordinates, mpf(0)), set(), None
-    )
+    none = dict.fromkeys(coordinates, mpf(0))
+    found = Standing(dict(none), dict(none), dict(none), set(), None)
     for part in parts:
         if isinstance(part, rd.PointMass):
             added = {"x": part.mass, "z": part.mass, "alpha": part.polar_inertia}
@@ -120,12 +144,19 @@ def standing(coordinates, parts, end=None):
                 found.hinge = soft + (found.hinge or 0)
         elif part.coordinate in coordinates and isinstance(part, rd.Spring):
             found.stiffness[part.coordinate] += mpf(part.stiffness)
+        elif part.coordinate in coordinates and isinstance(part, rd.Dashpot):
+            found.damping[part.coordinate] += mpf(part.damping)
         elif part.coordinate in coordinates:
             found.held.add(part.coordinate)
     if isinstance(end, rd.End):
         found.held |= {k for k in coordinates if end.holds(k)}
-        for k in set(end.spring) & set(coordinates):
-            found.stiffness[k] += mpf(end.spring[k])
+        for sum_, given in (
+            (found.stiffness, end.spring),
+            (found.damping, end.dashpot),
+            (found.mass, end.mass),
+        ):
+            for k in set(given) & set(coordinates):
+                sum_[k] += mpf(given[k])
     elif end is not None:
         holds = {"clamped": set(coordinates), "pinned": set(coordinates) - {"beta"}, "free": set()}
         found.held |= holds[end]

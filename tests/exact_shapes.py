@@ -40,7 +40,7 @@ class Mode:
         with mpmath.workdps(DIGITS):
             ends = self._right_ends(names, eigenvalue)
             self.middles = [(a + b) / 2 for a, b in itertools.pairwise(self.stations)]
-            laws = [Law(scene, c, 1, 1, -eigenvalue, at) for at in self.middles]
+            laws = [Law(scene, c, 1, 1, -eigenvalue, at=at) for at in self.middles]
             lengths = [mpf(b) - mpf(a) for a, b in itertools.pairwise(self.stations)]
             spans = [_carried(*span) for span in zip(laws, lengths, ends)]
         self.along = {

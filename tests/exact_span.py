@@ -9,7 +9,8 @@ With u the motion of a section, and f the force of the rope on its right on the 
 over (x, z, alpha, beta); S' is the section's flexibility, zero in z. Row by row: z' = beta, the
 section bends by beta' = S_bb M + ..., what moves needs F_z' = -lambda mu z, and the moments on a
 slice, T beta - F_z - M' = lambda j beta, include the tension's. Without bending T z' = F_z instead:
-S'_zz = 1/T and no Phi. Damping puts its factors on S, T, springs and -lambda.
+S'_zz = 1/T and no Phi. Damping puts its factors on S, T, springs and -lambda, and drag
+joins -lambda mu.
 
 S', mu, p and j may differ from span to span.
 
@@ -22,7 +23,17 @@ import itertools
 
 import mpmath
 from exact_motions import Motions
-from exact_scene import CHANNEL, factors, inertia, parts_at, places, rope_at, section, standing
+from exact_scene import (
+    CHANNEL,
+    drag,
+    factors,
+    inertia,
+    parts_at,
+    places,
+    rope_at,
+    section,
+    standing,
+)
 from mpmath import mpf
 
 import ropedyn as rd
@@ -50,12 +61,14 @@ def coupled(scene, coordinate):
 class Law:
     """y' = E y of a scene at one frequency, at a place, and its solutions over pieces."""
 
-    def __init__(self, scene, coordinates, of_section, tension, of_inertia, at=0.0):
+    def __init__(self, scene, coordinates, of_section, tension, of_inertia, dashpot=0, at=0.0):
         rope, c = rope_at(scene, at), coordinates
         w = len(c)
         S = [[s / of_section for s in row] for row in section(rope)]
         T = mpf(scene.tension) * tension
         q = {k: m * of_inertia for k, m in inertia(rope).items()}
+        for k, along in drag(scene).items():
+            q[k] = q[k] + along * dashpot if along else q[k]
         self.E = mpmath.zeros(2 * w)
         for i, a in enumerate(c):
             self.E[w + i, i] = q[a]
@@ -125,8 +138,8 @@ class Continuum:
 
     scene: rd.Scene
     coordinates: tuple[str, ...]
-    nudge: tuple[mpf, ...] = (mpf(1),) * 4
-    """Times section, tension, springs, inertia: what the condition of an answer asks."""
+    nudge: tuple[mpf, ...] = (mpf(1),) * 5
+    """Times section, tension, springs, inertia, dashpots: what the condition of an answer asks."""
 
     def receptance(self, omega, drive, responses):
         """Motion, or internal force, at points (name, x) per unit force at (coordinate, x)."""
@@ -137,7 +150,7 @@ class Continuum:
     def determinant(self, eigenvalue):
         """An entire function of omega^2 [rad^2/s^2], zero at the undamped natural frequencies."""
         with mpmath.extradps(GUARD):
-            strength = [p * q for p, q in zip((1, 1, 1, -eigenvalue), self.nudge)]
+            strength = [p * q for p, q in zip((1, 1, 1, -eigenvalue, 0), self.nudge)]
             walk, w = Walk(self, strength, []), len(self.coordinates)
             last = len(walk.x) - 1
             motions = walk.rightward(last)
@@ -151,7 +164,8 @@ class Walk:
 
     def __init__(self, continuum, strength, points):
         scene, c = continuum.scene, continuum.coordinates
-        of_section, tension, self.spring, self.inertia = strength
+        of_section, tension, self.spring, *others = strength
+        self.of_node = (self.spring, *others)
         self.coordinates, self.points = c, {(name, mpf(x)) for name, x in points}
         self.x = sorted(
             {mpf(0), mpf(scene.rope.length), *map(mpf, places(scene))}.union(
@@ -164,7 +178,7 @@ class Walk:
         for a, b in itertools.pairwise(self.x):
             rope = str(vars(rope_at(scene, (a + b) / 2)))
             if rope not in laws:
-                laws[rope] = Law(scene, c, of_section, tension, self.inertia, (a + b) / 2)
+                laws[rope] = Law(scene, c, of_section, tension, *others, at=(a + b) / 2)
             self.laws.append(laws[rope])
         ends = {0: scene.ends[0], len(self.x) - 1: scene.ends[1]}
         self.here = [standing(c, parts_at(scene, x), ends.get(i)) for i, x in enumerate(self.x)]
@@ -250,8 +264,7 @@ class Walk:
             motions.add(beta, sign * compliance / self.spring, moment)
 
     def _resistance(self, i, name):
-        here = self.here[i]
-        return self.inertia * here.mass[name] + self.spring * here.stiffness[name]
+        return self.here[i].resistance(name, *self.of_node)
 
     def _watch(self, motions, i, *, left):
         """Remember what is asked for: u, and f left of a node, of the first one right of it."""

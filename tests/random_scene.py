@@ -205,3 +205,38 @@ def frequency(random, scene):
 
 def log_uniform(random, low, high):
     return math.exp(random.uniform(math.log(low), math.log(high)))
+
+
+def damped(random, scene):
+    """The same scene with dashpots, also at its ends, masses there, and any linear damping."""
+    c = scene.coordinates
+    places = [0.0, LENGTH, 0.25 * LENGTH, *random.uniform(0.01, 0.99, 2).tolist()]
+    dashpots = [
+        rd.Dashpot(
+            float(random.choice(places)),
+            log_uniform(random, 1e-6, 1e6),
+            coordinate=str(random.choice(c)),
+        )
+        for _ in range(int(random.integers(0, 3)))
+    ]
+    every = [
+        rd.ViscousDamping(log_uniform(random, 1e-4, 1e4)),
+        rd.LossFactor(log_uniform(random, 1e-6, 1.0)),
+        *scene.dampings,
+    ]
+    return scene.replace(
+        ends=tuple(_weighted(random, end, c) for end in scene.ends),
+        damping=[one for one in every if random.random() < 0.6],
+        parts=[*scene.parts, *dashpots],
+    )
+
+
+def _weighted(random, end, coordinates):
+    """An end with dashpots and masses where it has springs."""
+    if isinstance(end, str):
+        return end
+    free = [c for c in coordinates if not end.holds(c)]
+    dashpot, mass = (
+        {c: log_uniform(random, 1e-6, 1e6) for c in free if random.random() < 0.5} for _ in range(2)
+    )
+    return dataclasses.replace(end, dashpot=dashpot, mass=mass)

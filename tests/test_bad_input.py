@@ -302,6 +302,24 @@ row(
     NOT_FINITE | NEGATIVE,
 )
 
+row("LossFactor", "eta", rd.LossFactor, NOT_A_NUMBER, NOT_FINITE | NEGATIVE)
+row("ViscousDamping", "coefficient", rd.ViscousDamping, NOT_A_NUMBER, NOT_FINITE | NEGATIVE)
+row(
+    "ModalDamping",
+    "ratio",
+    rd.ModalDamping,
+    without(NOT_A_NUMBER, "list", "array", "empty")
+    | {"rows": [[0.1]], "ragged": [0.1, [0.2]], "array": np.array(0.1)},
+    NOT_FINITE | NEGATIVE | {"empty": []},
+)
+row(
+    "ModalDamping",
+    "ratio[1]",
+    lambda v: rd.ModalDamping([0.01, v]),
+    without(NOT_A_NUMBER, "list", "array", "empty"),
+    NOT_FINITE | NEGATIVE,
+)
+
 row("Scene", "rope", lambda v: scene(rope=v), NOT_A_NUMBER | {"class": rd.Rope})
 row("Scene", "tension", lambda v: scene(tension=v), NOT_A_NUMBER, NOT_FINITE)
 row(

@@ -539,8 +539,8 @@ def test_frf_answers_as_many_as_it_was_asked(frequencies, drives, responses):
 
 
 def test_no_shapes_have_no_energies():
-    strain, kinetic = _core.energy(CHAIN, SHAPES[:0], np.ones(0))
-    assert (len(strain), len(kinetic)) == (0, 0)
+    strain, kinetic, dragged = _core.energy(CHAIN, SHAPES[:0], np.ones(0))
+    assert (len(strain), len(kinetic), len(dragged)) == (0, 0, 0)
 
 
 def other_order(array):

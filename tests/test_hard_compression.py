@@ -29,7 +29,7 @@ def critical_load(element, n):
     node = ("z", n // 4)
 
     def resistance(times):
-        exact.nudge = (mpf(1), times, mpf(1), mpf(1))
+        exact.nudge = (mpf(1), times, mpf(1), mpf(1), mpf(1))
         return 1 / exact.receptance(omega_of(0.0), node, [node])[0]
 
     with mpmath.workdps(60):

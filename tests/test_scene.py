@@ -24,6 +24,9 @@ ORDER = (
     "support",
     "stiffness damping",
     "rayleigh damping",
+    "loss factor",
+    "viscous damping",
+    "modal damping",
 )
 ROPE = {
     "length": 1.2,
@@ -45,7 +48,17 @@ STANDING = {
     "dashpot": {"x": 2.0, "z": 0.4, "alpha": 1e-3, "beta": 2e-3},
     "mass": {"x": 0.2, "z": 0.3, "alpha": 1e-6, "beta": 2e-6},
 }
-STIFFNESS, RAYLEIGH = rd.StiffnessDamping(1e-4), rd.RayleighDamping(0.3, 2e-5)
+DAMPINGS = {
+    damping.kind: damping
+    for damping in (
+        rd.StiffnessDamping(1e-4),
+        rd.RayleighDamping(0.3, 2e-5),
+        rd.LossFactor(0.02),
+        rd.ViscousDamping(0.4),
+        rd.ModalDamping((0.01, 0.02, 0.03, 0.04)),
+    )
+}
+STIFFNESS, RAYLEIGH = DAMPINGS["stiffness damping"], DAMPINGS["rayleigh damping"]
 
 
 def end(gone=(), **changes):
@@ -63,7 +76,7 @@ def full():
         rd.Rope(**ROPE),
         tension=250.0,
         ends=(end(), "pinned"),
-        damping=(STIFFNESS, RAYLEIGH),
+        damping=tuple(DAMPINGS.values()),
         parts=[MASS, *SPRINGS.values(), *DASHPOTS.values(), *SUPPORTS.values()],
     )
 
@@ -73,7 +86,7 @@ def never(*properties, gone=(), **changes):
     given = {
         "tension": 250.0,
         "ends": (end(gone), "pinned"),
-        "damping": (STIFFNESS, RAYLEIGH),
+        "damping": tuple(DAMPINGS.values()),
         "parts": [
             MASS,
             *(s for c, s in SPRINGS.items() if c not in gone),
@@ -107,8 +120,10 @@ NEVER_GIVEN = {
         parts=[MASS, *SPRINGS.values(), *SUPPORTS.values()], ends=(end(dashpot={}), "pinned")
     ),
     "support": never(parts=[MASS, *SPRINGS.values(), *DASHPOTS.values()]),
-    "stiffness damping": never(damping=(RAYLEIGH,)),
-    "rayleigh damping": never(damping=(STIFFNESS,)),
+    **{
+        gone: never(damping=tuple(d for kind, d in DAMPINGS.items() if kind != gone))
+        for gone in DAMPINGS
+    },
 }
 
 
@@ -210,8 +225,7 @@ THINGS = {
     "spring": SPRINGS["z"],
     "dashpot": DASHPOTS["z"],
     "support": SUPPORTS["z"],
-    "stiffness damping": STIFFNESS,
-    "rayleigh damping": RAYLEIGH,
+    **DAMPINGS,
     "scene": full(),
 }
 
@@ -333,13 +347,13 @@ def test_absent_inertia_has_no_entry_in_the_mass_matrix(effect):
     assert not model.chain.mass[:, :, at].any()
 
 
-@pytest.mark.parametrize("effect", ["stiffness damping", "rayleigh damping"])
+@pytest.mark.parametrize("effect", ["stiffness damping", "rayleigh damping", "viscous damping"])
 def test_absent_damping_has_no_entry_in_the_damping_matrix(effect):
-    other = {"stiffness damping": "rayleigh damping", "rayleigh damping": "stiffness damping"}
-    one = full().without("dashpot", effect)
-    assert one.compile(elements=9, element="rigid").damping().nnz > 0
-    none = one.without(other[effect])
-    assert none.compile(elements=9, element="rigid").damping().nnz == 0
+    bare = full().without("dashpot", *DAMPINGS)
+    assert bare.compile(elements=9, element="rigid").damping().nnz == 0
+    damped = bare.replace(damping=DAMPINGS[effect])
+    assert damped.compile(elements=9, element="rigid").damping().nnz > 0
+    assert damped.without(effect) == bare
 
 
 def test_without_lay_bending_and_twist_are_not_coupled():

@@ -91,6 +91,9 @@ parts = st.one_of(
 dampings = st.one_of(
     st.builds(rd.StiffnessDamping, at_least_zero),
     st.builds(rd.RayleighDamping, at_least_zero, at_least_zero),
+    st.builds(rd.LossFactor, at_least_zero),
+    st.builds(rd.ViscousDamping, at_least_zero),
+    st.builds(rd.ModalDamping, at_least_zero | st.lists(at_least_zero, min_size=1, max_size=4)),
 )
 
 
@@ -138,7 +141,13 @@ def test_every_effect_survives_the_file(effect, tmp_path):
     whole = rd.Scene(
         rope,
         tension=1.0,
-        damping=(rd.StiffnessDamping(1e-4), rd.RayleighDamping(0.1, 1e-5)),
+        damping=(
+            rd.StiffnessDamping(1e-4),
+            rd.RayleighDamping(0.1, 1e-5),
+            rd.LossFactor(0.02),
+            rd.ViscousDamping(0.4),
+            rd.ModalDamping([0.01, 0.02]),
+        ),
         parts=[
             rd.PointMass(0.2, 0.1),
             rd.Spring(0.3, 5.0),
@@ -252,8 +261,8 @@ REFUSED = {
     "spring at unknown": (changed("ends", 1, "spring", value={"y": 1.0}), "ends[1].key of spring"),
     "damping of a number": (changed("damping", value=0.1), "damping[0] must be a table, got 0.1"),
     "unknown damping": (
-        changed("damping", 0, "kind", value="ModalDamping"),
-        'damping[0].kind must be one of "StiffnessDamping", "RayleighDamping", got',
+        changed("damping", 0, "kind", value="NoDamping"),
+        'damping[0].kind must be one of "StiffnessDamping", "RayleighDamping", "LossFactor",',
     ),
     "negative gamma": (changed("damping", 0, "gamma", value=-1.0), "damping[0].gamma must be"),
     "parts of a table": (

@@ -54,10 +54,11 @@ static void wave_of_one_coordinate_has_its_integrals(const char *names, enum rd_
     for (int k = 0; k < 6; k++) {
         const double p = 0.5 + 1.7 * k, phase = 0.4 * k;
         const struct integrals in = integrate(p, phase);
-        double shape[13], stored[RD_STRAINS], kinetic[W];
+        double shape[13], stored[RD_STRAINS], kinetic[W], dragged;
         for (int i = 0; i < 13; i++)
             shape[i] = cos(p * i * recipe.length + phase);
-        CHECK_INT(rd_energy_span(&rope.chain, stiffness * p * p / inertia, shape, stored, kinetic),
+        CHECK_INT(rd_energy_span(&rope.chain, stiffness * p * p / inertia, shape, stored, kinetic,
+                                 &dragged),
                   RD_OK);
         for (int s = 0; s < RD_STRAINS; s++)
             CHECK_ABS(stored[s], s == (int)strain ? stiffness * p * p * in.sine : 0,
@@ -87,7 +88,7 @@ static void wave_of_a_tensed_beam_has_its_integrals(double tension, double compl
         const double p = 0.5 + 1.7 * k, phase = 0.4 * k;
         const double lambda = p * p * (B * p * p + tension) / (MU + J * p * p);
         const struct integrals in = integrate(p, phase);
-        double shape[13 * W] = {0}, stored[RD_STRAINS], kinetic[W], hinges = 0;
+        double shape[13 * W] = {0}, stored[RD_STRAINS], kinetic[W], dragged, hinges = 0;
         for (size_t i = 0; i < 13; i++) {
             const double at = p * (double)i * recipe.length + phase;
             const double moment = -B * p * p * cos(at);
@@ -97,7 +98,7 @@ static void wave_of_a_tensed_beam_has_its_integrals(double tension, double compl
             hinges += hinged ? compliance * moment * moment : 0;
         }
         const double end = shape[12 * w];
-        CHECK_INT(rd_energy_span(&rope.chain, lambda, shape, stored, kinetic), RD_OK);
+        CHECK_INT(rd_energy_span(&rope.chain, lambda, shape, stored, kinetic, &dragged), RD_OK);
         const double size =
             (fabs(lambda) * (MU + J * p * p) + fabs(tension) * p * p) * LENGTH + hinges + spring;
         const double expected[RD_STRAINS] = {
@@ -120,7 +121,7 @@ static void free_hinge_stores_nothing(void)
 {
     const struct recipe recipe = recipe_of("zb", 12, 300);
     struct rope rope = rope_make(&recipe);
-    double hinge[4 * 2] = {0}, shape[13 * 2], stored[RD_STRAINS], kinetic[W];
+    double hinge[4 * 2] = {0}, shape[13 * 2], stored[RD_STRAINS], kinetic[W], dragged;
     hinge[LEFT_END * 2 + 1] = INFINITY;
     rope.chain.hinge = hinge;
     const double p = 2 * 3.14159265358979323846 / LENGTH;
@@ -129,7 +130,7 @@ static void free_hinge_stores_nothing(void)
         shape[2 * i] = sin(p * i * recipe.length);
         shape[2 * i + 1] = i == 0 ? 0 : p * cos(p * i * recipe.length);
     }
-    CHECK_INT(rd_energy_span(&rope.chain, lambda, shape, stored, kinetic), RD_OK);
+    CHECK_INT(rd_energy_span(&rope.chain, lambda, shape, stored, kinetic, &dragged), RD_OK);
     const double half = LENGTH / 2, allowed = 4 * rounding(p);
     CHECK_EXACT(stored[RD_STRAIN_SPRING], 0);
     CHECK_REL(stored[RD_STRAIN_BENDING], B * p * p * p * p * half, allowed, "as above");
@@ -155,11 +156,12 @@ static void laid_wave_shares_its_strain(void)
         const double f[] = {k * (S[4] * v[0] - S[1] * v[1]) / det,
                             k * (S[0] * v[1] - S[1] * v[0]) / det};
         const struct integrals in = integrate(k, 0);
-        double shape[13 * 2], stored[RD_STRAINS], kinetic[W];
+        double shape[13 * 2], stored[RD_STRAINS], kinetic[W], dragged;
         for (int i = 0; i < 13; i++)
             for (int j = 0; j < 2; j++)
                 shape[2 * i + j] = v[j] * cos(k * i * recipe.length);
-        CHECK_INT(rd_energy_span(&rope.chain, k * k / theta, shape, stored, kinetic), RD_OK);
+        CHECK_INT(rd_energy_span(&rope.chain, k * k / theta, shape, stored, kinetic, &dragged),
+                  RD_OK);
         const double whole = fabs(f[0] * f[0] * S[0]) + fabs(f[1] * f[1] * S[4]);
         const double allowed = 8 * rounding(k) * whole * LENGTH * S[0] * S[4] / det;
         CHECK_ABS(stored[RD_STRAIN_STRETCH], S[0] * f[0] * f[0] * in.sine, allowed, "as above");
@@ -178,8 +180,8 @@ static void element_beyond_its_resonance_is_refused(void)
     const struct recipe recipe = recipe_of("z", 1, 300);
     struct rope rope = rope_make(&recipe);
     const double k = 2 / LENGTH, shape[2] = {0, 1};
-    double stored[RD_STRAINS], kinetic[W];
-    CHECK_INT(rd_energy_span(&rope.chain, 300 * k * k / MU, shape, stored, kinetic),
+    double stored[RD_STRAINS], kinetic[W], dragged;
+    CHECK_INT(rd_energy_span(&rope.chain, 300 * k * k / MU, shape, stored, kinetic, &dragged),
               RD_NOT_POSITIVE_DEFINITE);
     rope_free(&rope);
 }
