@@ -39,7 +39,7 @@ QUESTIONS = (rd.ask.modes(10), rd.ask.frf(np.linspace(1.0, 700.0, 400), drive=("
 
 
 def main() -> None:
-    costs = [rd.effect_cost(SCENE, question, repeat=25) for question in QUESTIONS]
+    costs = [rd.effect_cost(SCENE, question, repeat=101) for question in QUESTIONS]
     report.write("effects.md", page(costs))
     draw(costs)
 
