@@ -53,9 +53,24 @@ RD_INLINE void node(struct wave *wave, const lanes V[W][W])
             add_pair(wave, i, j, V[i][j]);
 }
 
-RD_INLINE void step_transfer(struct wave *wave, const struct step *step)
+/* Nothing follows x of a rope that hangs, so that F is a shear, which turns by less than pi, and after it what leaves x alone */
+RD_INLINE void hanging_transfer(struct wave *wave, const struct step *step)
 {
-    if (step->tilts && W > 2)
+    lanes shear[W][W], rest[W][W];
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            shear[i][j] = i == 0 ? step->D[i][j] : l_fill(0);
+            rest[i][j] = i == 0 ? l_fill(0) : step->D[i][j];
+        }
+    transfer(wave, shear);
+    transfer_in_parts(wave, rest);
+}
+
+RD_INLINE void step_transfer(struct wave *wave, const struct step *step, _Bool hangs)
+{
+    if (step->tilts && W > 2 && hangs)
+        hanging_transfer(wave, step);
+    else if (step->tilts && W > 2)
         transfer_in_parts(wave, step->D);
     else if (step->tilts)
         transfer(wave, step->D);
@@ -140,7 +155,7 @@ RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const st
             if (W > 2 && walk->strut[leg->element] && (size_t)leg->element < walk->chain->distinct)
                 strut_transfer(wave, walk->chain, leg->element, &step, z, inverse);
             else
-                step_transfer(wave, &step);
+                step_transfer(wave, &step, walk->chain->sag != NULL);
             step_comply(wave, &step);
         }
     }

@@ -1,6 +1,7 @@
 /* Elements: massless pieces of rope between two nodes. */
 #include "element.h"
 
+#include "area.h"
 #include "cantilever.h"
 #include "dense.h"
 
@@ -23,6 +24,7 @@ struct rd_element rd_chain_element(const struct rd_chain *chain, size_t i)
         .coordinate = chain->coordinate,
         .length = chain->length[i],
         .tension = chain->tension[i],
+        .sag = chain->sag ? chain->sag[i] : 0,
         .flexibility = chain->flexibility + i * RD_CHANNELS * RD_CHANNELS,
     };
 }
@@ -102,24 +104,56 @@ static void add_square(size_t n, double _Complex k, const double *v, double _Com
             K[i * n + j] += k * v[i] * v[j];
 }
 
-/* row (2 width) <- factor (u_b - u_a) of coordinate i */
+/* row (2 width) += factor (u_b - u_a) of coordinate i */
 static void add_change(size_t w, size_t i, double factor, double *row)
 {
     row[i] -= factor;
     row[w + i] += factor;
 }
 
+/* Rope that hangs is longer by w/T times the area a under z, and h along it loads it by (w/T) h: with
+   both ends held (area.h)
+
+       row of x -= (w/T) a (u_a, u_b),  k^-1 of x += (w/T)^2 a(1) section
+
+   of the rods' stiffness k section, k (rods, rods), x being the first of them. */
+static void hang(const struct rd_element *element, double _Complex section, double _Complex tension,
+                 size_t rods, double _Complex *row, double _Complex *k)
+{
+    const size_t w = element->width, beta = rd_element_find(element, RD_BETA);
+    const double l = element->length, sag = element->sag;
+    double _Complex yield = sag * sag * l * l * l * section / (12 * element->tension * tension);
+    row[RD_Z] -= sag * l / 2;
+    row[w + RD_Z] -= sag * l / 2;
+    if (beta < w) {
+        const double soft = element->flexibility[RD_BENDING * (RD_CHANNELS + 1)] * l * l;
+        const struct rd_area_held a = rd_area_held_at(
+            element->kind == RD_TENSED ? element->tension * soft * tension / section : 0);
+        row[beta] -= sag * l * l * a.lean;
+        row[w + beta] += sag * l * l * a.lean;
+        yield = sag * sag * soft * l * l * l * a.load;
+    }
+    const double _Complex share = yield / (1 + yield * k[0]);
+    double _Complex pull[2];
+    memcpy(pull, k, rods * sizeof *pull);
+    for (size_t i = 0; i < rods; i++)
+        for (size_t j = 0; j < rods; j++)
+            k[i * rods + j] -= pull[i] * pull[j] * share;
+}
+
 /* The channels that are constant along the element, torque and axial force: with
    S^ = S_cc - S_cb S_bc/S_bb,  r = S_cb/S_bb and  e = (u_b - u_a)_c - r (beta_b - beta_a):
 
        K += e^T S^^-1 e section/l */
-static bool add_rods(const struct rd_element *element, double _Complex section, double _Complex *K)
+static bool add_rods(const struct rd_element *element, double _Complex section,
+                     double _Complex tension, double _Complex *K)
 {
     const size_t w = element->width;
     const double *S = element->flexibility;
     const double Sbb = S[RD_BENDING * (RD_CHANNELS + 1)];
     const bool bends = rd_element_find(element, RD_BETA) < w;
     double change[2][N] = {{0}}, inverse[4];
+    double _Complex motion[2][N], k[4];
     size_t at[2], rods = 0;
     for (size_t i = 0; i < w; i++)
         if (rd_channel_of(element->coordinate[i]) != RD_BENDING)
@@ -137,12 +171,18 @@ static bool add_rods(const struct rd_element *element, double _Complex section, 
     }
     if (!rd_dense_invert(rods, inverse))
         return false;
+    for (size_t i = 0; i < rods * rods; i++)
+        k[i] = inverse[i] / element->length;
+    for (size_t i = 0; i < rods; i++)
+        for (size_t p = 0; p < 2 * w; p++)
+            motion[i][p] = change[i][p];
+    if (element->sag != 0)
+        hang(element, section, tension, rods, motion[0], k);
     for (size_t i = 0; i < rods; i++)
         for (size_t j = 0; j < rods; j++)
             for (size_t p = 0; p < 2 * w; p++)
                 for (size_t q = 0; q < 2 * w; q++)
-                    K[p * 2 * w + q] += section / element->length * inverse[i * rods + j] *
-                                        change[i][p] * change[j][q];
+                    K[p * 2 * w + q] += section * k[i * rods + j] * (motion[i][p] * motion[j][q]);
     return true;
 }
 
@@ -237,7 +277,7 @@ static enum rd_status closed_matrix(const struct rd_element *element, double _Co
 {
     const size_t w = element->width;
     memset(K, 0, 4 * w * w * sizeof *K);
-    if (!add_rods(element, section, K))
+    if (!add_rods(element, section, tension, K))
         return RD_NOT_POSITIVE_DEFINITE;
     if (rd_element_find(element, RD_BETA) < w && !add_bending(element, section, tension, K))
         return RD_NOT_POSITIVE_DEFINITE;
@@ -277,12 +317,13 @@ enum rd_status rd_element_jump(const struct rd_element *element, double *jump)
     return status;
 }
 
-/* sections and tension are one in a tensed element that bends, and where a hinge opens in z */
+/* sections and tension are one in a tensed element that bends, where a hinge opens in z, and in a
+   string that hangs */
 static bool is_inseparable(const struct rd_element *element)
 {
     const size_t z = rd_element_find(element, RD_Z);
     const bool opens = element->hinge && z < element->width && element->hinge[z] != 0;
-    return opens ||
+    return opens || (element->sag != 0 && is_string(element)) ||
            (element->kind == RD_TENSED && rd_element_find(element, RD_BETA) < element->width);
 }
 

@@ -15,6 +15,7 @@ struct rd_element {
     const int32_t *coordinate; /* (width) */
     double length;             /* [m] */
     double tension;            /* [N] */
+    double sag;                /* w/T [1/m] of rope that hangs, else 0; x and z come first */
     const double *flexibility; /* (3, 3) S */
     const double *hinge; /* (width) compliance between the left node and the element, or NULL */
 };

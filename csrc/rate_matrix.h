@@ -8,13 +8,19 @@
 /* y = (u, f), f the force of the right part on the left, has y' = E y,
 
        E = | Phi  S'    |   Phi_z,beta = 1,  q = -lambda inertia + s drag, + T for beta,
-           | q   -Phi^T |   S' the section flexibility, 1/T for z without bending */
+           | q   -Phi^T |   S' the section flexibility, 1/T for z without bending
+
+   A rope that hangs is curved by w/T, w its weight per length: what moves across it by z stretches by
+   -(w/T) z, and the tension h that this adds pulls it back by (w/T) h (Irvine and Caughey 1974):
+   Phi_x,z = w/T. Then x is along the curve and z away from its centre. */
 struct rate_matrix {
     cv S[RD_WIDTH_MAX][RD_WIDTH_MAX];          /* S' */
     _Bool elastic[RD_WIDTH_MAX][RD_WIDTH_MAX]; /* where it is not zero */
     cv q[RD_WIDTH_MAX];
     lanes lever; /* Phi_z,beta */
     int z;       /* index of z where it bends, beta being the last; else -1 */
+    lanes sag;   /* Phi_x,z */
+    _Bool hangs; /* it is there; x and z are the first two coordinates */
 };
 
 /* The rate matrix of distinct element e with S/section, T tension, and inertia and

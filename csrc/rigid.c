@@ -60,13 +60,15 @@ static void resist_node(const struct rd_walk *walk, int32_t term, const double T
 }
 
 /* What an element without end forces makes of a motion: D_z,beta = l, and its tension resists any
-   beta. D, Q (width, width) */
+   beta; D_x,z = l w/T of sag, where beta never moves alone. D, Q (width, width) */
 static void levers(const struct rd_chain *chain, int32_t element, double *D, double *Q)
 {
     const size_t w = chain->width, beta = w - 1;
     memset(D, 0, w * w * sizeof *D);
     memset(Q, 0, w * w * sizeof *Q);
     const bool hinge = (size_t)element >= chain->distinct;
+    if (chain->sag && !hinge)
+        D[1] = chain->length[element] * chain->sag[element];
     if (hinge || chain->coordinate[beta] != RD_BETA || chain->kind == RD_DIFFERENCE)
         return;
     const size_t z = rd_coordinate_find(w, chain->coordinate, RD_Z);

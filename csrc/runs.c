@@ -21,12 +21,14 @@ static int parts(const struct rd_chain *chain, int32_t term)
 
 static void average(const struct rd_chain *chain, struct rd_runs *runs)
 {
-    double length = 0.0, tension = 0.0, flexibility[RD_CHANNELS] = {0}, rope[RD_WIDTH_MAX] = {0};
+    double length = 0.0, tension = 0.0, sag = 0.0, flexibility[RD_CHANNELS] = {0},
+           rope[RD_WIDTH_MAX] = {0};
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         const size_t e = (size_t)chain->element[k];
         const double l = (double)rd_stretch_nodes(chain, k) * chain->length[e];
         length += l;
         tension += l * chain->tension[e];
+        sag += chain->sag ? l * chain->sag[e] : 0.0;
         for (size_t c = 0; c < RD_CHANNELS; c++)
             flexibility[c] += l * chain->flexibility[9 * e + 4 * c];
         for (size_t i = 0; chain->inertia && i < chain->width; i++)
@@ -34,6 +36,7 @@ static void average(const struct rd_chain *chain, struct rd_runs *runs)
     }
     runs->length = length;
     runs->tension = tension / length;
+    runs->sag = sag / length;
     for (size_t c = 0; c < RD_CHANNELS; c++)
         runs->flexibility[c] = flexibility[c] / length;
     for (size_t i = 0; i < chain->width; i++)

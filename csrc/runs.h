@@ -23,6 +23,7 @@ struct rd_runs {
     const struct rd_run *run;        /* (count) */
     double length;                   /* [m] of the chain */
     double tension;                  /* [N] mean over the length */
+    double sag;                      /* [1/m] likewise */
     double flexibility[RD_CHANNELS]; /* mean S_cc over the length */
     double mass[RD_WIDTH_MAX];       /* per length: the rope's own, or where elements have none the
                                         geometric mean of nodes that have any */

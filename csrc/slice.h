@@ -25,6 +25,10 @@ RD_INLINE void slice_differentiate(const struct rate_matrix *s, double h, cv *u,
         du[s->z] = c_add(du[s->z], c_scale_lanes(u[W - 1], s->lever));
         df[W - 1] = c_sub(df[W - 1], c_scale_lanes(f[s->z], s->lever));
     }
+    if (W > 1 && s->hangs) {
+        du[0] = c_add(du[0], c_scale_lanes(u[W > 1], s->sag));
+        df[W > 1] = c_sub(df[W > 1], c_scale_lanes(f[0], s->sag));
+    }
     for (int i = 0; i < W; i++) {
         u[i] = c_scale(du[i], h);
         f[i] = c_scale(df[i], h);
@@ -109,10 +113,15 @@ RD_INLINE void slice_bend(const struct rate_matrix *s, double l, int terms, cv D
     Q[B][B] = c_mul(stiff, b.Qbb);
 }
 
+/* powers of l from an entry of E that sag adds to the last one that it leads to: h bends the rope by
+   its fifth integral, z needs three */
+enum { SLICE_HANGING = 2 };
+
 /* D = F - I, G, Q of a piece of length l, any couplings */
 RD_INLINE void slice_sum(const struct rate_matrix *s, double l, int terms, cv D[W][W], cv G[W][W],
                          cv Q[W][W])
 {
+    terms += s->hangs ? SLICE_HANGING : 0;
     cv change[W][W], A[W][W], B[W][W], C[W][W], inverse[W][W], u[W], f[W];
     for (int c = 0; c < W; c++) {
         slice_column(s, l, terms, c, 1, u, f);

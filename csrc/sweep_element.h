@@ -28,10 +28,37 @@ RD_INLINE void K_(flexibility)(const struct rd_chain *chain, size_t e, const str
         }
 }
 
+#if RD_WIDTH > 1
+/* adds w/T times the area under z to x, see triple.h; x and z are the first two coordinates */
+static void K_(hang)(const struct rd_chain *chain, size_t e, const struct sweep_block *b, cv *D,
+                     cv *G)
+{
+    const double *S = chain->flexibility + 9 * e;
+    const double l = chain->length[e], T = chain->tension[e], sag = chain->sag[e];
+    const double Sbb = S[3 * RD_BENDING + RD_BENDING], soft = sag * Sbb * l * l * l;
+    const lanes across = b->z[1] / b->z[0];
+    D[1] = (cv){sag * l * across, (lanes){0}};
+    if (!b->bends) {
+        G[1] = c_scale_lanes(b->slack, across * (0.5 * sag * l * l / T));
+        G[0] = c_add(G[0], c_scale_lanes(b->slack, across * across * (sag * sag * l * l * l / T / 3)));
+        return;
+    }
+    const struct sweep_area a = rd_sweep_area(chain->kind, c_scale(b->series.phi, T * Sbb * l * l));
+    KEEP for (int j = 0; j < W; j++) {
+        const int c = b->channel[j];
+        const double r = c == RD_BENDING ? 1.0 : S[3 * c + RD_BENDING] / Sbb;
+        const cv g = b->arm[j] ? c_scale(a.P[1], soft * l) : c_scale(a.P[0], soft * r);
+        G[at(0, j)] = c_add(G[at(0, j)], c_mul(b->flex[at(0, j)], j == 0 ? c_add(g, g) : g));
+    }
+    G[0] = c_add(G[0], c_mul(b->flex[0], c_scale(a.P[2], soft * sag * l * l)));
+    D[W - 1] = c_add(D[W - 1], c_scale_lanes(a.lean, sag * l * l * b->ratio[0]));
+}
+#endif
+
 /* The triple of one element, scaled: D = F - I, G, Q.
        D_z,beta = l tau,  D_c,beta = -rho_c theta P_1,  Q_beta,beta = T l tau */
-RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct sweep_block *b,
-                           cv *triple)
+RD_INLINE void K_(straight)(const struct rd_chain *chain, size_t e, const struct sweep_block *b,
+                            cv *triple)
 {
     cv *D = triple, *G = triple + FULL, *Q = G + SYM;
     const double l = chain->length[e], T = chain->tension[e];
@@ -72,8 +99,18 @@ RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct 
     Q[SYM - 1] = c_scale(c_mul(b->pull, p.tau), T * l);
 }
 
+RD_INLINE void K_(element)(const struct rd_chain *chain, size_t e, const struct sweep_block *b,
+                           cv *triple)
+{
+    K_(straight)(chain, e, b, triple);
+#if RD_WIDTH > 1
+    if (chain->sag)
+        K_(hang)(chain, e, b, triple, triple + FULL);
+#endif
+}
+
 /* K = (G - i I)^-1,  A = K G,  B = K F,  W = -i I + Q + F^T B
-   plain: a single element, whose D has its last column only */
+   plain: a single straight element, whose D has its last column only */
 RD_INLINE void K_(coefficients)(const cv *triple, cv *coef, const int plain)
 {
     const cv *D = triple, *G = triple + FULL, *Q = G + SYM;
@@ -171,5 +208,8 @@ static RD_CLONES void K_(make_single)(const struct rd_chain *chain, const struct
     }
     cv triple[FULL + 2 * SYM];
     K_(element)(chain, e, b, triple);
-    K_(coefficients)(triple, coef, 1);
+    if (chain->sag)
+        K_(make_coefficients)(triple, coef);
+    else
+        K_(coefficients)(triple, coef, 1);
 }

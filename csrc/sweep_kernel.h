@@ -7,6 +7,7 @@
 #include "rate_matrix.h"
 #include "shape.h"
 #include "strut.h"
+#include "sweep_area.h"
 
 enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
 

@@ -50,7 +50,7 @@ static bool has_minors(const struct rd_chain *chain, const struct sweep_kernel *
     for (size_t e = 0; e < chain->distinct; e++)
         if (sweep_is_strut(chain, e))
             return false;
-    return kernel->walk_plain &&
+    return kernel->walk_plain && !chain->sag &&
            (chain->width == 2 || chain->coordinate[chain->width - 1] == RD_BETA);
 }
 

@@ -2,13 +2,16 @@
    Included by sweep_width.h, once per width. */
 #include "slice.h"
 
-/* q_i = (inertia p_i + dashpot drag_i) z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j) */
+/* q_i = (inertia p_i + dashpot drag_i) z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j);
+   Phi_ij z_j/z_i */
 RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *b, size_t e,
                         struct rate_matrix *rate)
 {
     const double *S = chain->flexibility + 9 * e, *p = chain->inertia + e * W;
     rate->z = -1;
     rate->lever = l_fill(1.0);
+    rate->hangs = chain->sag != NULL;
+    rate->sag = rate->hangs ? chain->sag[e] * (b->z[W > 1] / b->z[0]) : l_fill(0.0);
     KEEP for (int i = 0; i < W; i++) {
         rate->q[i] = c_scale(c_scale_lanes(b->inertia, b->z[i] * b->z[i]), p[i]);
         if (chain->drag)

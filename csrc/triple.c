@@ -1,6 +1,7 @@
 /* The triple (F, G, Q) of an element, at any complex stiffness and tension. */
 #include "triple.h"
 
+#include "area.h"
 #include "cantilever.h"
 
 #include <assert.h>
@@ -73,6 +74,36 @@ static void bend(const struct rd_element *element, double _Complex section, doub
     Q[beta * w + beta] = element->tension * tension * l * shape.tau;
 }
 
+/* adds w/T times the area under z to x, see triple.h */
+static void hang(const struct rd_element *element, double _Complex section, double _Complex tension,
+                 double _Complex *D, double _Complex *G)
+{
+    enum { X, Z };
+    const size_t w = element->width;
+    const double l = element->length, sag = element->sag;
+    const double *S = element->flexibility;
+    const double Sbb = S[RD_BENDING * RD_CHANNELS + RD_BENDING];
+    D[Z] = sag * l;
+    if (rd_element_find(element, RD_BETA) == w) {
+        const double _Complex slack = l / (element->tension * tension);
+        G[Z] = G[w] = sag * l * slack / 2;
+        G[X] += sag * sag * l * l * slack / 3;
+        return;
+    }
+    const struct rd_area area =
+        rd_area_at(element->kind, element->tension * Sbb * l * l * tension / section);
+    const double _Complex soft = sag * Sbb * l * l * l / section;
+    for (size_t j = 0; j < w; j++) {
+        const int d = rd_channel_of(element->coordinate[j]);
+        const double r = d == RD_BENDING ? 1 : S[d * RD_CHANNELS + RD_BENDING] / Sbb;
+        const double _Complex g = j == Z ? l * soft * area.P[1] : r * soft * area.P[0];
+        G[j] += g;
+        G[j * w] += g;
+    }
+    G[X] += sag * l * l * soft * area.P[2];
+    D[w - 1] += sag * l * l * area.lean;
+}
+
 /* D = F - I, G, Q */
 static enum rd_status fill(const struct rd_element *element, double _Complex section,
                            double _Complex tension, double _Complex *D, double _Complex *G,
@@ -83,9 +114,13 @@ static enum rd_status fill(const struct rd_element *element, double _Complex sec
         D[i] = G[i] = Q[i] = 0;
     if (rd_element_find(element, RD_BETA) == w) {
         rods(element, section, tension, G);
+        if (element->sag != 0)
+            hang(element, section, tension, D, G);
         return RD_OK;
     }
     bend(element, section, tension, D, G, Q);
+    if (element->sag != 0)
+        hang(element, section, tension, D, G);
     for (size_t i = 0; i < w * w; i++)
         if (!isfinite(creal(G[i])) || !isfinite(cimag(G[i])))
             return RD_CRITICAL_ELEMENT;

@@ -21,6 +21,10 @@
    difference:              tau = 0, P0 = 1, P1 = 1/2, P2 = 1/3, theta = 0
 
    A string, z without beta, has F = 1, G = l/T, Q = 0 and must have tension > 0.
+
+   Rope that hangs is longer by w/T times the area a under z, and h along x loads it by (w/T) h on
+   each unit of length: with a of area.h, w/T times its motion is added to F_x and its flexibilities to
+   G_x, (w/T)^2 times its own to G_xx. Of a string a = l z + l^2 F_z/2T + l^3/3T per load.
    RD_CRITICAL_ELEMENT where the compression is the critical load of this cantilever. */
 enum rd_status rd_triple(const struct rd_element *element, double _Complex section,
                          double _Complex tension, double _Complex *F, double _Complex *G,

@@ -15,6 +15,7 @@ from .effect import EffectCost, effect_cost
 from .end import End
 from .errors import RopedynError, SceneError, SolveError
 from .frf import FRF
+from .gravity import Gravity
 from .model import Model
 from .modes import Modes
 from .part import Dashpot, Hinge, PointMass, Spring, Support
@@ -39,6 +40,7 @@ __all__ = [
     "Deflection",
     "EffectCost",
     "End",
+    "Gravity",
     "Hinge",
     "LocalChange",
     "LossFactor",

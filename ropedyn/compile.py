@@ -79,7 +79,7 @@ def divided(
     local, rope = ropes(scene.rope, stretches(scene.parts), stations)
     if element == "continuous":
         _check_layers(scene, local)
-    elements = _distinct(scene.coordinates, local, rope, np.diff(stations), counts)
+    elements = _distinct(scene, local, rope, np.diff(stations), counts)
     chain = _chain(scene, kind, stations, counts, elements)
     groups = components(chain, scene.coordinates)
     for array in chain:
@@ -164,10 +164,12 @@ class Elements(NamedTuple):
     """(distinct, width) per length [kg/m, kg m]."""
     which: NDArray[np.int32]
     """(spans,) which of them each span has."""
+    sag: NDArray[np.float64] | None
+    """(distinct,) weight per length over tension [1/m], None without gravity."""
 
 
 def _distinct(
-    coordinates: Sequence[str],
+    scene: Scene,
     local: Sequence[Rope],
     rope: NDArray[np.intp],
     spans: NDArray[np.float64],
@@ -187,12 +189,19 @@ def _distinct(
     which = np.argsort(np.argsort(first))[pair]
     first = np.sort(first)
     flexibility = np.stack([section(one) for one in local])
-    inertia = np.stack([_inertia(coordinates, one) for one in local])
+    inertia = np.stack([_inertia(scene, one) for one in local])
+    sag = None
+    if scene.gravity is not None:
+        # a rope that hangs is longer than its chord along x
+        flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.tension)
+        curvature = [scene.gravity.curvature(one, scene.tension) for one in local]
+        sag = np.array(curvature)[rope[first]]
     return Elements(
         length=length[first],
         flexibility=flexibility[rope[first]],
         inertia=inertia[rope[first]],
         which=which.astype(np.int32),
+        sag=sag,
     )
 
 
@@ -204,7 +213,7 @@ def _chain(
     elements: Elements,
 ) -> Chain:
     """Return the chain with so many equal elements between stations."""
-    length, flexibility, inertia, which = elements
+    length, flexibility, inertia, which, _ = elements
     # a station is a stretch of its own, and so are the nodes of a span if there are any
     nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
     nodes[1::2] = counts - 1
@@ -244,6 +253,7 @@ def _chain(
         inertia=None if is_lumped else inertia,
         damping=damping if damping.any() else None,
         drag=along if along.any() and not is_lumped else None,
+        sag=elements.sag,
     )
 
 
@@ -320,21 +330,22 @@ def _correct_ends(scene: Scene, elements: Elements, mass: NDArray[np.float64]) -
     mass[:, beta, z] += correction
 
 
-def _inertia(coordinates: Sequence[str], rope: Rope) -> NDArray[np.float64]:
-    """Return the inertia per length of each coordinate [kg/m, kg m]."""
+def _inertia(scene: Scene, rope: Rope) -> NDArray[np.float64]:
+    """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
     inertia = {
-        "x": rope.linear_density,
+        "x": rope.linear_density if scene.gravity is None else 0.0,
         "z": rope.linear_density,
         "alpha": rope.polar_inertia or 0.0,
         "beta": rope.rotary_inertia or 0.0,
     }
-    return np.array([inertia[c] for c in coordinates])
+    return np.array([inertia[c] for c in scene.coordinates])
 
 
 def _drag(scene: Scene) -> NDArray[np.float64]:
     """Return the damping per length of each coordinate [N s/m^2]."""
     along = drag(scene.dampings)
-    return np.array([along if c in ("x", "z") else 0.0 for c in scene.coordinates])
+    dragged = ("x", "z") if scene.gravity is None else ("z",)
+    return np.array([along if c in dragged else 0.0 for c in scene.coordinates])
 
 
 def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:

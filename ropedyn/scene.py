@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY, dataclass
@@ -16,6 +17,7 @@ from . import stretch as _stretch
 from .damping import Damping
 from .end import End
 from .errors import SceneError
+from .gravity import Gravity
 from .part import Part
 from .rope import Rope
 from .stretch import Stretch
@@ -33,6 +35,7 @@ EFFECTS = (
     "polar inertia",
     *(kind.kind for kind in _part.KINDS),
     *(kind.kind for kind in _damping.KINDS),
+    Gravity.kind,
 )
 """Every effect a scene can have."""
 
@@ -45,10 +48,13 @@ _PROPERTIES = {
     "polar inertia": ("polar_inertia",),
 }
 
+_WEIGHTLESS = {"tension", "stretch", Gravity.kind}
+"""Without one of them there is no sag."""
+
 
 @dataclass(frozen=True)
 class Scene:
-    """A rope with its tension, ends, damping and parts.
+    """A rope with its tension, ends, damping, parts and weight.
 
     Parameters
     ----------
@@ -62,6 +68,9 @@ class Scene:
         A tuple of them is their sum.
     parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
+    gravity : Gravity, optional
+        Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
+        holds the rope along x; the rope has no inertia along x then.
 
     Raises
     ------
@@ -87,6 +96,7 @@ class Scene:
     ends: tuple[str | End, str | End] = ("clamped", "clamped")
     damping: Damping | tuple[Damping, ...] | None = None
     parts: tuple[Part | Stretch, ...] = ()
+    gravity: Gravity | None = None
 
     def __post_init__(self) -> None:
         check.instance(self.rope, "rope", Rope, "a Rope")
@@ -94,12 +104,15 @@ class Scene:
         object.__setattr__(self, "ends", _checked_ends(self.ends))
         object.__setattr__(self, "damping", _checked_damping(self.damping))
         object.__setattr__(self, "parts", _checked_parts(self.parts))
+        if self.gravity is not None:
+            check.instance(self.gravity, "gravity", Gravity, "a Gravity or None")
         self._check_coordinates()
         self._check_places()
         # a rope that is changed must be one
         changing = _part.stretches(self.parts)
         ends = mesh.stations(self.rope.length, _part.places(changing))
         _stretch.ropes(self.rope, changing, ends)
+        self._check_gravity()
 
     def _check_coordinates(self) -> None:
         bends = self.rope.bending_stiffness is not None
@@ -164,6 +177,27 @@ class Scene:
                 'there say End(beta="free", spring={"beta": stiffness})'
             )
 
+    def _check_gravity(self) -> None:
+        if self.gravity is None:
+            return
+        if self.rope.axial_stiffness is None:
+            raise SceneError("gravity needs axial_stiffness of the rope [N], got None")
+        if not self.tension > 0:
+            raise SceneError(f"tension must be > 0 where there is gravity, got {self.tension:g}")
+        lengthening = self.gravity.lengthening(self.rope, self.tension)
+        if not math.isfinite(lengthening):
+            raise SceneError(
+                "gravity must be small enough for 1 + (w L/H)^2/8 to be a number, got "
+                f"g = {self.gravity.g!r} m/s^2 with the tension {self.tension!r} N"
+            )
+        terms = [_end.end_of(end).term() for end in self.ends]
+        terms += [part.term() for part in _part.standing(self.parts)]
+        if not any("x" in (*term.held, *term.stiffness) for term in terms):
+            raise SceneError(
+                "ends must hold x where there is gravity, or a Support or Spring: the rope has no "
+                f"inertia along x, got ends {check.shown(self.ends)}"
+            )
+
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Coordinates of a node: z with bending or tension, beta with bending, and so on."""
@@ -198,6 +232,7 @@ class Scene:
             "lay": bool(rope.lay_coupling or rope.lay_slope),
             "rotary inertia": bool(rope.rotary_inertia and rope.bending_stiffness),
             "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
+            Gravity.kind: self.gravity is not None,
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
 
@@ -244,6 +279,7 @@ class Scene:
         return bare.replace(
             ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
             damping=kept,
+            gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
             parts=tuple(
                 left
                 for part in self.parts

@@ -12,6 +12,7 @@ from . import check, damping, part
 from .atomic import write_bytes
 from .end import End, PerCoordinate
 from .errors import SceneError
+from .gravity import Gravity
 from .rope import Rope
 from .scene import Scene
 
@@ -40,6 +41,8 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
         "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
         "rope": _plain(scene.rope),
     }
+    if scene.gravity is not None:
+        document["gravity"] = _plain(scene.gravity)
     if scene.dampings:
         document["damping"] = [_named(one) for one in scene.dampings]
     if scene.parts:
@@ -70,6 +73,8 @@ def _scene(document: Mapping[str, Any]) -> Scene:
         raise SceneError("key rope is missing: a scene needs a table [rope]")
     arguments = dict(document)
     arguments["rope"] = _built(Rope, document["rope"], "rope")
+    if "gravity" in document:
+        arguments["gravity"] = _built(Gravity, document["gravity"], "gravity")
     if "ends" in document:
         arguments["ends"] = _ends(document["ends"])
     if "damping" in document:

@@ -1,6 +1,7 @@
 """The exact discrete system of a model, eliminated in 60 digits: the reference of the sweep."""
 
 import dataclasses
+import itertools
 
 import mpmath
 import numpy as np
@@ -9,11 +10,12 @@ from exact_scene import (
     drag,
     dragged,
     factors,
-    inertia,
+    inertia_of,
     is_stretch,
     places,
     rope_at,
-    section,
+    sag,
+    section_of,
     standing,
 )
 from mpmath import mpf
@@ -64,27 +66,40 @@ def inverse(A):
     return [row[len(A) :] for row in rows]
 
 
-def transfer(coordinates, length):
-    """How a rigid body's end moves with the other."""
+def transfer(coordinates, length, curvature=0):
+    """How a rigid body's end moves with the other; of one that hangs, x by the area under z too."""
     F = identity(len(coordinates))
     if "beta" in coordinates:
         F[coordinates.index("z")][coordinates.index("beta")] = length
+    if curvature:
+        x = F[coordinates.index("x")]
+        x[coordinates.index("z")] = curvature * length
+        if "beta" in coordinates:
+            x[coordinates.index("beta")] = curvature * length**2 / 2
     return F
 
 
-def cantilever(coordinates, S, length):
-    """G = integral P^T S P ds of the tip."""
-    power = [c == "z" for c in coordinates]
-    return [
-        [
-            S[CHANNEL[a]][CHANNEL[b]] * length ** (1 + p + q) / (1 + p + q)
-            for b, q in zip(coordinates, power)
-        ]
-        for a, p in zip(coordinates, power)
-    ]
+def cantilever(coordinates, S, length, curvature=0):
+    """G = integral P^T S P ds of the tip.
+
+    The end force of a coordinate causes c s^p in a channel of the section at the distance s from
+    the tip; of rope that hangs that along x is a load along it, and moment c s^2/2, as well.
+    """
+    terms = {k: [(CHANNEL[k], int(k == "z"), mpf(1))] for k in coordinates}
+    if curvature:
+        terms["x"].append((CHANNEL["beta"], 2, curvature / 2))
+
+    def entry(a, b):
+        products = itertools.product(terms[a], terms[b])
+        return sum(
+            f * g * S[c][d] * length ** (1 + p + q) / (1 + p + q)
+            for (c, p, f), (d, q, g) in products
+        )
+
+    return [[entry(a, b) for b in coordinates] for a in coordinates]
 
 
-def tensed(coordinates, S, length, tension):
+def tensed(coordinates, S, length, tension, curvature=0):
     """(F, G, Q) of the static tensed cantilever: closed in bending, else from the exponential."""
     w = len(coordinates)
     if coordinates == ("z", "beta") and tension != 0:
@@ -103,14 +118,15 @@ def tensed(coordinates, S, length, tension):
         zero = [[mpf(0)] * w for _ in range(w)]
         return transfer(coordinates, length), cantilever(coordinates, S, length), zero
     # from pieces shorter than 1/kappa: the exponential of a long one is all growth
-    halvings = max(0, int(mpmath.ceil(mpmath.log(abs(tension * S[2][2]) * length**2, 4))))
-    piece = exponential(coordinates, S, length / 2**halvings, tension)
+    radians = max(mpf(1), abs(tension * S[2][2]) * length**2)
+    halvings = int(mpmath.ceil(mpmath.log(radians, 4)))
+    piece = exponential(coordinates, S, length / 2**halvings, tension, curvature)
     for _ in range(halvings):
         piece = joined(piece, piece)
     return piece
 
 
-def exponential(coordinates, S, length, tension):
+def exponential(coordinates, S, length, tension, curvature=0):
     """(F, G, Q) from exp(l E), E of the state (u, f) with the static section and tension."""
     w = len(coordinates)
     E = mpmath.zeros(2 * w)
@@ -118,8 +134,15 @@ def exponential(coordinates, S, length, tension):
         for j, b in enumerate(coordinates):
             if "z" not in (a, b):
                 E[i, w + j] = S[CHANNEL[a]][CHANNEL[b]]
-    z, beta = coordinates.index("z"), coordinates.index("beta")
-    E[z, beta], E[w + beta, w + z], E[w + beta, beta] = 1, -1, tension
+    z = coordinates.index("z")
+    if "beta" in coordinates:
+        beta = coordinates.index("beta")
+        E[z, beta], E[w + beta, w + z], E[w + beta, beta] = 1, -1, tension
+    else:
+        E[z, w + z] = 1 / tension
+    if curvature:
+        x = coordinates.index("x")
+        E[x, z], E[w + z, w + x] = curvature, -curvature
     e = mpmath.expm(E * length)
     e12, e21, e22 = (
         [[e[i + r, j + c] for j in range(w)] for i in range(w)] for r, c in ((0, w), (w, 0), (w, w))
@@ -171,16 +194,17 @@ class Exact:
     def triple(self, e, omega):
         scene, length = self.model.scene, self.lengths[e]
         c, (g, of_tension, *_) = self.coordinates, self.factors(omega)
-        S = [[s / g for s in row] for row in section(self.ropes[e])]
+        S = [[s / g for s in row] for row in section_of(scene, self.ropes[e])]
         T = mpf(scene.tension) * of_tension if "z" in c else mpf(0)
+        curvature = sag(scene, self.ropes[e])[0]
         if c == ("z",):
             return [[mpf(1)]], [[length / T]], [[mpf(0)]]
-        if self.model.element == "tensed":
-            return tensed(c, S, length, T)
+        if self.model.element == "tensed" or (curvature and "beta" not in c):
+            return tensed(c, S, length, T, curvature)
         if self.model.element == "difference":
             zero = [[mpf(0)] * len(c) for _ in c]
             return identity(len(c)), cantilever(c, S, length), zero
-        F, G = transfer(c, length), cantilever(c, S, length)
+        F, G = transfer(c, length, curvature), cantilever(c, S, length, curvature)
         if T == 0:
             return F, G, [[mpf(0)] * len(c) for _ in c]
         # the string in parallel
@@ -197,7 +221,7 @@ class Exact:
         _, _, spring, of_inertia, dashpot = self.factors(omega)
         # (length, inertia per length) of the elements on both sides
         left, right = (
-            (self.lengths[e], inertia(self.ropes[e]))
+            (self.lengths[e], inertia_of(scene, self.ropes[e]))
             if 0 <= e < self.count
             else (mpf(0), dict.fromkeys(c, mpf(0)))
             for e in (node - 1, node)

@@ -89,6 +89,29 @@ def dragged(scene):
     return bool(parts or any(end.dashpot for end in ends) or drag(scene)["z"])
 
 
+def sag(scene, rope):
+    """Weight per length over tension [1/m] and L_e/L = 1 + (w L/T)^2/8; 0 and 1 without gravity."""
+    gravity, chord = scene.gravity, mpf(scene.rope.length)
+    if gravity is None:
+        return mpf(0), mpf(1)
+    over_tension = mpf(gravity.g) * mpmath.cos(mpf(gravity.inclination)) / mpf(scene.tension)
+    slope = over_tension * mpf(scene.rope.linear_density) * chord
+    return over_tension * mpf(rope.linear_density), 1 + slope**2 / 8
+
+
+def section_of(scene, rope):
+    """Flexibility of the section; where the rope hangs it is longer than its chord along x."""
+    S = section(rope)
+    S[0][0] *= sag(scene, rope)[1]
+    return S
+
+
+def inertia_of(scene, rope):
+    """Inertia per length; none along x where the rope hangs."""
+    own = inertia(rope)
+    return own if scene.gravity is None else own | {"x": mpf(0)}
+
+
 def factors(scene, omega):
     """On sections, tension, springs, inertia, dashpots at omega [rad/s].
 

@@ -9,7 +9,7 @@ import itertools
 
 import mpmath
 import numpy as np
-from exact_scene import CHANNEL, inertia, parts_at, places, rope_at, section, standing
+from exact_scene import CHANNEL, inertia_of, parts_at, places, rope_at, section_of, standing
 from exact_span import FORCE, Law, backward
 from mpmath import mpf
 
@@ -144,7 +144,7 @@ def romberg():
 
 def _along(scene, ropes, c, y, weight):
     """Integrals of twice the energies, over spans of these ropes."""
-    S = np.array([[[float(s) for s in row] for row in section(rope)] for rope in ropes])
+    S = np.array([[[float(s) for s in row] for row in section_of(scene, rope)] for rope in ropes])
     force = {CHANNEL[k]: y[f] for f, k in FORCE.items() if k in c and k != "z"}
     strain = dict.fromkeys(STRAINS, 0.0)
     for (i, f), (j, g) in itertools.product(force.items(), repeat=2):
@@ -155,7 +155,7 @@ def _along(scene, ropes, c, y, weight):
         strain["tension"] = (weight * T * y["beta"] ** 2).sum()
     elif "z" in c:
         strain["tension"] = (weight * y["F_z"] ** 2).sum() / T
-    own = [inertia(rope) for rope in ropes]
+    own = [inertia_of(scene, rope) for rope in ropes]
     return strain, {
         k: (weight * np.array([[float(one[k])] for one in own]) * y[k] ** 2).sum() for k in c
     }

@@ -9,8 +9,8 @@ With u the motion of a section, and f the force of the rope on its right on the 
 over (x, z, alpha, beta); S' is the section's flexibility, zero in z. Row by row: z' = beta, the
 section bends by beta' = S_bb M + ..., what moves needs F_z' = -lambda mu z, and the moments on a
 slice, T beta - F_z - M' = lambda j beta, include the tension's. Without bending T z' = F_z instead:
-S'_zz = 1/T and no Phi. Damping puts its factors on S, T, springs and -lambda, and drag
-joins -lambda mu.
+S'_zz = 1/T and no Phi_z,beta. Gravity adds Phi_x,z = w/T, w the weight per length, and takes the
+inertia along x. Damping puts its factors on S, T, springs and -lambda, and drag joins -lambda mu.
 
 S', mu, p and j may differ from span to span.
 
@@ -27,11 +27,12 @@ from exact_scene import (
     CHANNEL,
     drag,
     factors,
-    inertia,
+    inertia_of,
     parts_at,
     places,
     rope_at,
-    section,
+    sag,
+    section_of,
     standing,
 )
 from mpmath import mpf
@@ -54,6 +55,9 @@ def coupled(scene, coordinate):
         groups = (
             [{"x", "z", "alpha", "beta"}] if rope.lay_coupling else [{"x"}, {"z", "alpha", "beta"}]
         )
+    if scene.gravity is not None:
+        hangs = [g for g in groups if g & {"x", "z"}]
+        groups = [set().union(*hangs), *(g for g in groups if g not in hangs)]
     group = next(g for g in groups if coordinate in g)
     return tuple(c for c in scene.coordinates if c in group)
 
@@ -64,9 +68,9 @@ class Law:
     def __init__(self, scene, coordinates, of_section, tension, of_inertia, dashpot=0, at=0.0):
         rope, c = rope_at(scene, at), coordinates
         w = len(c)
-        S = [[s / of_section for s in row] for row in section(rope)]
+        S = [[s / of_section for s in row] for row in section_of(scene, rope)]
         T = mpf(scene.tension) * tension
-        q = {k: m * of_inertia for k, m in inertia(rope).items()}
+        q = {k: m * of_inertia for k, m in inertia_of(scene, rope).items()}
         for k, along in drag(scene).items():
             q[k] = q[k] + along * dashpot if along else q[k]
         self.E = mpmath.zeros(2 * w)
@@ -82,6 +86,10 @@ class Law:
         elif "z" in c:
             z = c.index("z")
             self.E[z, w + z] = 1 / T
+        if "x" in c and "z" in c:
+            x, z = c.index("x"), c.index("z")
+            self.E[x, z] = sag(scene, rope)[0]
+            self.E[w + z, w + x] = -self.E[x, z]
         self._measure(scene, c, S, T, q)
         self._pieces = {}
 

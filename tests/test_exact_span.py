@@ -36,6 +36,7 @@ def decimal_beam(ends, tension, *dampings):
     return SimpleNamespace(
         rope=rope,
         tension=tension,
+        gravity=None,
         ends=(ends, ends),
         parts=(),
         dampings=dampings,

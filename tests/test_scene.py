@@ -27,6 +27,7 @@ ORDER = (
     "loss factor",
     "viscous damping",
     "modal damping",
+    "sag",
 )
 ROPE = {
     "length": 1.2,
@@ -59,6 +60,7 @@ DAMPINGS = {
     )
 }
 STIFFNESS, RAYLEIGH = DAMPINGS["stiffness damping"], DAMPINGS["rayleigh damping"]
+GRAVITY = rd.Gravity(9.81, inclination=0.1)
 
 
 def end(gone=(), **changes):
@@ -78,6 +80,7 @@ def full():
         ends=(end(), "pinned"),
         damping=tuple(DAMPINGS.values()),
         parts=[MASS, *SPRINGS.values(), *DASHPOTS.values(), *SUPPORTS.values()],
+        gravity=GRAVITY,
     )
 
 
@@ -93,6 +96,7 @@ def never(*properties, gone=(), **changes):
             *(d for c, d in DASHPOTS.items() if c not in gone),
             *(s for c, s in SUPPORTS.items() if c not in gone),
         ],
+        "gravity": GRAVITY,
     }
     rope = rd.Rope(**{name: v for name, v in ROPE.items() if name not in properties})
     return rd.Scene(rope, **given | changes)
@@ -100,12 +104,12 @@ def never(*properties, gone=(), **changes):
 
 # the scene written down again without the effect, by hand
 NEVER_GIVEN = {
-    "tension": never(tension=0.0),
+    "tension": never(tension=0.0, gravity=None),
     "bending": never("bending_stiffness", "lay_slope", "rotary_inertia", gone=["beta"]),
     "twist": never(
         "torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia", gone=["alpha"]
     ),
-    "stretch": never("axial_stiffness", "lay_coupling", gone=["x"]),
+    "stretch": never("axial_stiffness", "lay_coupling", gone=["x"], gravity=None),
     "lay": never("lay_coupling", "lay_slope"),
     "rotary inertia": never("rotary_inertia"),
     "polar inertia": never("polar_inertia"),
@@ -124,6 +128,7 @@ NEVER_GIVEN = {
         gone: never(damping=tuple(d for kind, d in DAMPINGS.items() if kind != gone))
         for gone in DAMPINGS
     },
+    "sag": never(gravity=None),
 }
 
 
@@ -168,6 +173,8 @@ def test_without_removes_the_effect_and_what_cannot_be_without_it(effect):
     dragged = {
         "bending": {"bending", "rotary inertia"},  # the lay coupling of stretch and twist stays
         "twist": {"twist", "lay", "polar inertia"},
+        "tension": {"tension", "sag"},
+        "stretch": {"stretch", "sag"},
     }.get(effect, {effect})
     assert full().without(effect).effects == tuple(e for e in ORDER if e not in dragged)
 
@@ -226,6 +233,7 @@ THINGS = {
     "dashpot": DASHPOTS["z"],
     "support": SUPPORTS["z"],
     **DAMPINGS,
+    "gravity": GRAVITY,
     "scene": full(),
 }
 
@@ -357,7 +365,7 @@ def test_absent_damping_has_no_entry_in_the_damping_matrix(effect):
 
 
 def test_without_lay_bending_and_twist_are_not_coupled():
-    laid, straight = full(), full().without("lay")
+    laid, straight = full(), full().without("lay", "sag")
     assert laid.compile(elements=9, element="rigid").components == (("x", "z", "alpha", "beta"),)
     assert straight.compile(elements=9, element="rigid").components == (
         ("x",),

@@ -157,6 +157,7 @@ def test_every_effect_survives_the_file(effect, tmp_path):
             rd.AddedMass(0.1, 0.7, 0.02, polar_inertia=1e-6),
             rd.LocalChange(0.5, 0.9, bending=0.5, torsion=0.7, density=0.9),
         ],
+        gravity=rd.Gravity(1.62, inclination=-0.2),
     )
     path = tmp_path / "rope.toml"
     whole.without(effect).save(path)
@@ -207,7 +208,7 @@ def test_paths_may_be_text_or_path(path, kind, tmp_path):
 
 # (what is wrong, the document, what the message says)
 REFUSED = {
-    "unknown key": (changed("gravity", value=9.81), "unknown key 'gravity' in the file"),
+    "unknown key": (changed("wind", value=9.81), "unknown key 'wind' in the file"),
     "unknown key of the rope": (
         changed("rope", "diameter", value=4e-3),
         "unknown key 'diameter' in rope: expected one of axial_stiffness, bending_stiffness",

@@ -348,16 +348,22 @@ static void two_elements_are_one_of_both_lengths(const char *coordinates)
     }
 }
 
-/* at lambda = 0 it is the static element with tension, whatever the factors */
-static void element_at_rest_is_the_tensed_one(const char *coordinates, double tension)
+/* at lambda = 0 it is the static element with tension, whatever the factors, straight or hanging */
+static void element_at_rest_is_the_tensed_one(const char *coordinates, double tension, double sag)
 {
     struct span span;
     struct rd_transfer t;
     double complex F[W * W], G[W * W], Q[W * W];
     span_make(&span, coordinates, &laid, 0.1, tension, everywhere);
+    span.chain.sag = sag != 0 ? &sag : NULL;
     transfer_at(&span, (struct factors){damped.section, damped.tension, 0}, &t);
-    const struct rd_element element = {
-        RD_TENSED, span.chain.width, span.coordinate, 0.1, tension, span.flexibility, NULL};
+    const struct rd_element element = {.kind = RD_TENSED,
+                                       .width = span.chain.width,
+                                       .coordinate = span.coordinate,
+                                       .length = 0.1,
+                                       .tension = tension,
+                                       .sag = sag,
+                                       .flexibility = span.flexibility};
     CHECK_INT(rd_triple(&element, damped.section, damped.tension, F, G, Q), RD_OK);
     const size_t w = span.chain.width;
     const double radians = 0.1 * sqrt(tension * span.flexibility[8]);
@@ -441,9 +447,15 @@ int main(void)
     for (int n = 0; n < NAMES; n++) {
         element_is_the_same_from_both_ends(names[n]);
         two_elements_are_one_of_both_lengths(names[n]);
-        element_at_rest_is_the_tensed_one(names[n], 300);
-        element_at_rest_is_the_tensed_one(names[n], 3e5);
+        element_at_rest_is_the_tensed_one(names[n], 300, 0);
+        element_at_rest_is_the_tensed_one(names[n], 3e5, 0);
     }
+    static const char *const hanging[] = {"xz", "xzb", "xzab"};
+    for (int n = 0; n < 3; n++)
+        for (int k = 0; k < 3; k++) {
+            element_at_rest_is_the_tensed_one(hanging[n], 300, pow(10, -3 * k));
+            element_at_rest_is_the_tensed_one(hanging[n], 3e5, -pow(10, -3 * k));
+        }
     bending_is_the_same_alone_and_beside_twist();
     lanes_do_not_see_each_other();
     return check_report("test_transfer");
