@@ -56,7 +56,8 @@ static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
         return 0;
     for (size_t i = 1; i < count; i++) {
         const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, waves[i]);
-        if (own.level != first.level || own.halvings != first.halvings)
+        if (own.level != first.level || own.halvings != first.halvings ||
+            own.radians != first.radians)
             return i;
     }
     return count;

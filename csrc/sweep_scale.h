@@ -35,7 +35,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
 struct sweep_pieces {
     int halvings;
     size_t count, level; /* first pieces in all; 2^level <= count */
-    double radians;      /* of a continuous first piece */
+    double radians;      /* of a continuous first piece, at most */
 };
 
 /* the largest wavenumber of a run, and of a continuous one that with evanescent waves [1/m] */

@@ -146,3 +146,14 @@ def test_eight_threads_on_one_model_have_the_bits_of_one(model):
         return "the same"
 
     assert in_threads(8, work) == 8 * ["the same"]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_frequency_of_continuous_spans_alone_gives_its_bits_in_a_grid(name):
+    # short pieces of a series for 0 Hz have no digits at 0.6 Hz
+    model = SCENES[name].compile()
+    frequency, points = FREQUENCY[:60:3], [("z", 0.5), ("z", 1.2)]
+    grid = model.frf(frequency, drive=points)
+    for k, f in enumerate(frequency):
+        alone = model.frf(f, drive=points)
+        assert alone.value.tobytes() == np.ascontiguousarray(grid.value[..., k : k + 1]).tobytes()
