@@ -60,7 +60,8 @@ class FRF(Answer):
         rounding error of that, over the value. 0 for continuous spans, because they have none;
         infinite where they have no answer, as on an undamped resonance of theirs, and where only
         the value is 0. Refined, chains of difference elements lead elsewhere; theirs is the
-        distance to the same continuous spans.
+        distance to the same continuous spans. With `ModalDamping`, also the bound of what the modes
+        give that were left out.
     cost : Cost
         What it cost.
     """

@@ -19,6 +19,7 @@ from .chain import Chain
 from .errors import SceneError, SolveError
 from .frf import FRF, Mesh
 from .mesh_error import mesh_of_frf
+from .modal_sum import modal_sum, refuse_other_damping
 from .model import EXACT, MOST_STEPS, Model
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reaction import first_left_end
@@ -46,6 +47,8 @@ class Question:
         Coordinates.
     frequency : ndarray, shape (f,)
         [Hz].
+    factor : ndarray of complex, shape (5, f)
+        On sections, tension, springs, inertia and dashpots.
     drives, responses : list of points
         On these coordinates.
     workers : int
@@ -55,15 +58,10 @@ class Question:
     model: Model
     component: tuple[str, ...]
     frequency: Real
+    factor: Complex
     drives: list[Point]
     responses: list[Point]
     workers: int
-
-    @cached_property
-    def factor(self) -> Complex:
-        """Factors on sections, tension, springs, inertia and dashpots, shape (5, f)."""
-        omega = 2 * np.pi * self.frequency
-        return np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
 
     @property
     def is_damped(self) -> NDArray[np.bool_]:
@@ -141,7 +139,12 @@ def solve_frf(
     responses = drives if response is None else _points(model, response, "response")[0]
     value = np.zeros((len(drives), len(responses), len(f)), dtype=np.complex128)
     error = np.zeros(value.shape)
+    truncation = np.zeros(value.shape)
     unknowns, solved = 0, 0
+    factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
+    is_modal = bool(damping.having(model.scene.dampings, "ratio"))
+    if is_modal:
+        refuse_other_damping(model.scene)
     start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if point[0] in component]
@@ -149,22 +152,25 @@ def solve_frf(
         if not d or not r:
             continue
         block = np.ix_(d, r)
-        question = Question(
-            model, component, f, [drives[k] for k in d], [responses[k] for k in r], workers
-        )
-        value[block], error[block] = solve(question)
+        pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
+        question = Question(model, component, f, factor, pushed, watched, workers)
+        if is_modal:
+            value[block], error[block], truncation[block], lines = modal_sum(question, solve)
+        else:
+            value[block], error[block] = solve(question)
+            lines = len(f)
         unknowns += free
-        solved += len(f)
+        solved += lines
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
     if QUANTITIES[quantity] > 0:
         value *= (2j * np.pi * f) ** QUANTITIES[quantity]
     if not several:
-        value, error = value[0], error[0]
+        value, error, truncation = value[0], error[0], truncation[0]
     mesh: Mesh | Callable[[], Mesh]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
     if model.element == "continuous":
-        mesh = Mesh(np.zeros_like(error))
+        mesh = Mesh(truncation)
     return FRF(
         drive=drives,
         response=responses,

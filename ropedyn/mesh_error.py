@@ -144,7 +144,8 @@ def _response(
     """
     try:
         answer = model.frf(frequency, drive=drives, response=responses, quantity=quantity)
-        return answer.value, answer.rounding_error
+        # a sum over modes has an error beside rounding, continuous spans or not
+        return answer.value, answer.rounding_error + answer.mesh_error
     except SolveError:
         shape = (len(drives), len(responses), len(frequency))
         if len(frequency) == 1:

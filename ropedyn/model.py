@@ -336,7 +336,8 @@ class Model:
         TypeError
             If an argument is of the wrong type.
         SceneError
-            If a value has no meaning, such as a position off the rope.
+            If a value has no meaning, such as a position off the rope, or modal damping stands
+            beside another or lacks a ratio.
         SolveError
             If a frequency lies on an undamped resonance; the message names it.
 
@@ -344,6 +345,15 @@ class Model:
         -----
         Between two nodes the displacement is the element's own static shape; a force acts through
         the same shape, and points in the driven element also move by its local flexibility.
+
+        With `ModalDamping` the response is the exact static one and a sum over the modes below
+        eight times the highest frequency, 64 at least:
+
+            h = h_static + sum r_k (1/(w_k^2 - w^2 + 2 i zeta_k w_k w) - 1/w_k^2),
+
+        where the rope can move as a rigid body about an imaginary frequency instead of 0. A bound
+        of what the modes give that are left out is part of `FRF.mesh_error`; no other damping may
+        act beside it, and internal forces are refused.
 
         Examples
         --------
