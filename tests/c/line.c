@@ -23,6 +23,15 @@ void line_make(struct line *line, enum rd_kind kind, size_t width, size_t elemen
         line->held[LEFT * width + i] = line->held[RIGHT * width + i] = i == 0 || hold_beta;
 }
 
+/* the numbers, if any is not 0 */
+static const double *present(const double *x, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (x[i] != 0)
+            return x;
+    return NULL;
+}
+
 void line_find(struct line *line)
 {
     struct rd_chain *chain = &line->chain;
@@ -33,6 +42,8 @@ void line_find(struct line *line)
     chain->inertia = chain->kind == RD_CONTINUOUS ? line->inertia : NULL;
     chain->mass = line->mass;
     chain->stiffness = line->stiffness;
+    chain->damping = present(line->damping, 5 * 4);
+    chain->drag = present(line->drag, 2);
     chain->held = line->held;
     chain->first = line->first;
     chain->element = line->element;
@@ -53,15 +64,20 @@ enum rd_status line_frf_less(const struct line *line, int32_t drive, int32_t res
                              const double *omega, size_t count, double complex *value,
                              double *error, size_t less, size_t *failed)
 {
-    double one[2 * LINE_POINTS], inertia[2 * LINE_POINTS] = {0};
+    double one[2 * LINE_POINTS], inertia[2 * LINE_POINTS] = {0}, dashpot[2 * LINE_POINTS] = {0};
     for (size_t i = 0; i < count; i++) {
         one[2 * i] = 1.0;
         one[2 * i + 1] = 0.0;
         inertia[2 * i] = -omega[i] * omega[i];
+        dashpot[2 * i + 1] = omega[i];
     }
     const double row[4] = {1.0};
-    const struct rd_factors factors = {
-        .count = count, .section = one, .tension = one, .spring = one, .inertia = inertia};
+    const struct rd_factors factors = {.count = count,
+                                       .section = one,
+                                       .tension = one,
+                                       .spring = one,
+                                       .inertia = inertia,
+                                       .dashpot = dashpot};
     const struct rd_ports drives = {1, &drive, row, NULL};
     const struct rd_ports responses = {1, &response, row, NULL};
     struct rd_workspace space = {0};

@@ -17,7 +17,8 @@ struct line {
     int32_t term_of[LINE_NODES]; /* the stretches follow from it */
     double length[1], tension[1], flexibility[9];
     double inertia[2]; /* of continuous elements */
-    double mass[5 * 4], stiffness[5 * 4], hinge[5 * 2];
+    double drag[2];    /* of continuous elements */
+    double mass[5 * 4], stiffness[5 * 4], damping[5 * 4], hinge[5 * 2];
     uint8_t held[5 * 2];
 };
 
@@ -32,7 +33,8 @@ void line_make(struct line *line, enum rd_kind kind, size_t width, size_t elemen
 /* finds the runs; call it after the last change */
 void line_find(struct line *line);
 
-/* z at `response` per force in z at `drive`, undamped at omega (count) */
+/* z at `response` per force in z at `drive` at omega (count); nothing but dashpots and drag is
+   damped */
 enum rd_status line_frf(const struct line *line, int32_t drive, int32_t response,
                         const double *omega, size_t count, double complex *value, double *error);
 

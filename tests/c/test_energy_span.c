@@ -51,6 +51,9 @@ static void wave_of_one_coordinate_has_its_integrals(const char *names, enum rd_
 {
     const struct recipe recipe = recipe_of(names, 12, 300);
     struct rope rope = rope_make(&recipe);
+    const double drag = 0.7, dashpot[] = {[LEFT_END] = 2, [INNER] = 0, [RIGHT_END] = 3, [MORE] = 0};
+    rope.chain.drag = &drag;
+    rope.chain.damping = dashpot;
     for (int k = 0; k < 6; k++) {
         const double p = 0.5 + 1.7 * k, phase = 0.4 * k;
         const struct integrals in = integrate(p, phase);
@@ -64,6 +67,9 @@ static void wave_of_one_coordinate_has_its_integrals(const char *names, enum rd_
             CHECK_ABS(stored[s], s == (int)strain ? stiffness * p * p * in.sine : 0,
                       rounding(p) * stiffness * p * p * LENGTH, "forces by differences");
         CHECK_ABS(kinetic[0], inertia * in.cosine, rounding(p) * inertia * LENGTH,
+                  "forces by differences");
+        const double ends = 2 * shape[0] * shape[0] + 3 * shape[12] * shape[12];
+        CHECK_ABS(dragged, drag * in.cosine + ends, rounding(p) * (drag * LENGTH + 5),
                   "forces by differences");
     }
     rope_free(&rope);

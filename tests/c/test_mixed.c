@@ -5,6 +5,7 @@
 #include "check.h"
 #include "line.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 typedef double _Complex complex_t;
@@ -32,7 +33,7 @@ static enum rd_status solve(const struct line *line, int32_t drive, int32_t resp
               RD_NO_MEMORY);
     struct rd_workspace workspace = exact_workspace(measure.used);
     CHECK_INT(rd_mixed_frf_prepare(&line->chain, &drives, &responses, &frf, &workspace), RD_OK);
-    const complex_t factor[RD_PARTS] = {1, 1, 1, -omega * omega};
+    const complex_t factor[RD_PARTS] = {1, 1, 1, -omega * omega, CMPLX(0, omega)};
     const enum rd_status status = rd_mixed_frf_solve(&frf, factor, 1, value, error);
     free(workspace.base);
     return status;
@@ -56,6 +57,32 @@ static void string_of_masses_follows_its_closed_form(size_t n)
         CHECK_INT(solve(&line, (int32_t)j, (int32_t)i, omega[k], &h, &error), RD_OK);
         CHECK_REL(creal(h), exact, 1e-13 * (double)n, "the closed form's own arguments");
         CHECK_EXACT(cimag(h), 0);
+    }
+}
+
+/* 1/h = T sin(theta)/l (cot p theta + cot q theta) + i omega c at a dashpot c, and with c l at every
+   mass 4 T sin^2(theta/2) = l^2 (m omega^2/l - i omega c), theta complex */
+static void dashpots_follow_their_closed_form(double c, bool every)
+{
+    enum { N = 30, AT = 9 };
+    const double omega[] = {0.3, 1.7, 2.9, 4.4}, l = 1.0 / N;
+    struct line line;
+    line_make(&line, RD_RIGID, 1, N, 3.0, 0.0, 4.0, 0);
+    line.mass[FIRST] = line.mass[INNER];
+    line.damping[every ? INNER : FIRST] = every ? c * l : c;
+    line.term_of[AT] = every ? INNER : FIRST;
+    line_find(&line);
+    for (size_t k = 0; k < 4; k++) {
+        complex_t h;
+        double error;
+        const complex_t lost = CMPLX(0, omega[k] * c);
+        const complex_t q = 4.0 * omega[k] * omega[k] - (every ? lost : 0);
+        const complex_t theta = 2.0 * casin(0.5 * l * csqrt(q / 3.0));
+        const complex_t rest = 1 / ctan(AT * theta) + 1 / ctan((N - AT) * theta);
+        const complex_t exact = 1 / (3.0 * csin(theta) / l * rest + (every ? 0 : lost));
+        CHECK_INT(solve(&line, AT, AT, omega[k], &h, &error), RD_OK);
+        CHECK_ABS(cabs(h - exact), 0, 1e-12 * cabs(exact), "the closed form's own arguments");
+        CHECK(cabs(h - exact) <= error + 1e-13 * cabs(exact));
     }
 }
 
@@ -168,6 +195,10 @@ int main(void)
 {
     for (size_t n = 3; n < 300; n *= 3)
         string_of_masses_follows_its_closed_form(n);
+    for (double c = 1e-6; c < 1e10; c *= 1e3)
+        dashpots_follow_their_closed_form(c, false);
+    for (double c = 1e-6; c < 1e2; c *= 1e2)
+        dashpots_follow_their_closed_form(c, true);
     for (size_t n = 2; n < 500; n *= 4) {
         beams_bend_as_in_the_textbook(RD_RIGID, n);
         beams_bend_as_in_the_textbook(RD_TENSED, n);

@@ -103,7 +103,7 @@ static void test_hinge_is_damped_as_a_spring(void)
     line.term_of[10] = FIRST;
     line_find(&line);
     const struct rd_factors factors = {
-        .count = 1, .section = g, .tension = g, .spring = g, .inertia = none};
+        .count = 1, .section = g, .tension = g, .spring = g, .inertia = none, .dashpot = none};
     double complex h[3];
     for (size_t k = 0; k < 3; k++) {
         const struct rd_ports port = {1, node + k, row, NULL}, middle = {1, node + 1, row, NULL};
@@ -180,6 +180,53 @@ static void test_continuous_string(size_t n)
     }
 }
 
+/* a dashpot c beside the middle of n masses m, or all of a string: 1/h = pull (cot p theta + cot q
+   theta) + i omega c, pull = T sin(theta)/l with 2 sin(theta/2) = omega sqrt(m l/T), or T k */
+static void test_dashpot_on_a_string(enum rd_kind kind, double c)
+{
+    enum { N = 30, AT = 9 };
+    const double omega[] = {0.3, 1.7, 2.9, 4.4}, l = 1.0 / N;
+    double complex h[4];
+    double error[4];
+    struct line line;
+    line_make(&line, kind, 1, N, 3.0, 0.0, 4.0, 0);
+    line.mass[FIRST] = line.mass[INNER];
+    line.damping[FIRST] = c;
+    line.term_of[AT] = FIRST;
+    line_find(&line);
+    CHECK_INT(line_frf(&line, AT, AT, omega, 4, h, error), RD_OK);
+    for (size_t i = 0; i < 4; i++) {
+        const double k = omega[i] * sqrt(4.0 / 3.0);
+        const double theta = kind == RD_CONTINUOUS ? k * l : 2.0 * asin(0.5 * k * l);
+        const double pull = kind == RD_CONTINUOUS ? 3.0 * k : 3.0 * sin(theta) / l;
+        const double rest = pull * (1 / tan(AT * theta) + 1 / tan((N - AT) * theta));
+        const double complex exact = 1.0 / CMPLX(rest, omega[i] * c);
+        CHECK_ABS(cabs(h[i] - exact), 0, 1e-12 * cabs(exact), "the closed form's own arguments");
+        CHECK(cabs(h[i] - exact) <= error[i] + 1e-13 * cabs(exact));
+    }
+}
+
+/* sin(k a) sin(k (1 - a))/(T k sin k), T k^2 = mu omega^2 - i omega c */
+static void test_drag_along_a_string(double c)
+{
+    const double omega[] = {0.3, 5.0, 40.0, 300.0}, a = 0.3;
+    double complex h[4];
+    double error[4];
+    struct line line;
+    line_make(&line, RD_CONTINUOUS, 1, 10, 3.0, 0.0, 4.0, 0);
+    line.drag[0] = c;
+    line_find(&line);
+    CHECK_INT(line_frf(&line, 3, 3, omega, 4, h, error), RD_OK);
+    for (size_t i = 0; i < 4; i++) {
+        const double complex k = csqrt(CMPLX(4.0 * omega[i] * omega[i], -omega[i] * c) / 3.0);
+        const double complex exact = csin(k * a) * csin(k * (1 - a)) / (3 * k * csin(k));
+        const double slope = cabs(k) * (1 + cabs(1 / ctan(k)) + cabs(1 / ctan(k * a)));
+        CHECK_ABS(cabs(h[i] - exact), 0, 64 * EPS * (1 + slope) * cabs(exact),
+                  "the closed form's own arguments");
+        CHECK(cabs(h[i] - exact) <= error[i] + 4 * EPS * slope * cabs(exact));
+    }
+}
+
 /* static: the middle of a clamped tensed beam, as of tensed elements */
 static void test_continuous_beam_at_rest(void)
 {
@@ -211,6 +258,12 @@ int main(void)
 {
     for (size_t n = 3; n < 500; n *= 3)
         test_continuous_string(n);
+    for (double c = 1e-6; c < 1e10; c *= 1e3) {
+        test_dashpot_on_a_string(RD_RIGID, c);
+        test_dashpot_on_a_string(RD_CONTINUOUS, c);
+    }
+    for (double c = 1e-6; c < 1e3; c *= 1e2)
+        test_drag_along_a_string(c);
     test_continuous_beam_at_rest();
     test_continuous_string_of_too_many_waves();
     (void)PI;
