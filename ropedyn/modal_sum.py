@@ -76,8 +76,8 @@ def refuse_other_damping(scene: Scene) -> None:
         others.append("dashpot")
     if others:
         raise SceneError(
-            "damping must not be modal damping beside another that is not 0 in a frequency "
-            f"response, whose modes that would couple, got {', '.join(others)}"
+            "damping must be modal alone in a frequency response, where other damping couples the "
+            f"modes, got {', '.join(others)}"
         )
 
 
@@ -123,8 +123,8 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     poles = _poles(question)
     static, residue, probed = _taken_apart(question, solver, poles)
     own = _left_out(question, solver, poles)
-    d, r = (own[[points.index(p) for p in chosen]] for points, chosen in _places(question))
-    size = np.sqrt(np.multiply.outer(d, r))
+    d, r = ([own[point] for point in some] for some in (question.drives, question.responses))
+    size = np.sqrt(np.multiply.outer(d, r))  # the sum over modes is bounded as an inner product
     omega = 2 * np.pi * question.frequency
     shape = (len(question.drives), len(question.responses), len(omega))
     value, error = np.empty(shape, dtype=np.complex128), np.empty(shape)
@@ -252,9 +252,10 @@ def _taken_apart(question: Question, solver: Solver, poles: Poles) -> tuple[Know
     return static, Known(residue, spread), probed
 
 
-def _left_out(question: Question, solver: Solver, poles: Poles) -> Real:
+def _left_out(question: Question, solver: Solver, poles: Poles) -> dict[Point, float]:
     """Bound H(-s) of the modes that are left out at each of all points, driven there."""
-    points, own = _points(question), []
+    points = list(dict.fromkeys([*question.drives, *question.responses]))
+    own: list[float] = []
     for k in range(0, len(points), TOGETHER):
         some = points[k : k + TOGETHER]
         asked = dataclasses.replace(question, drives=some, responses=some)
@@ -262,8 +263,8 @@ def _left_out(question: Question, solver: Solver, poles: Poles) -> Real:
         softness = 1 / (poles.eigenvalue + poles.shift)
         rest = static.value - residue.value @ softness
         rest = np.maximum(rest, 0.0) + static.error + residue.error @ np.abs(softness)
-        own.append(rest.diagonal())
-    return np.concatenate(own)
+        own.extend(rest.diagonal().tolist())
+    return dict(zip(points, own))
 
 
 def _missing(poles: Poles, static: Known, residue: Known, probed: Known) -> Real:
@@ -275,16 +276,6 @@ def _missing(poles: Poles, static: Known, residue: Known, probed: Known) -> Real
     g = (s - p) / ((poles.eigenvalue + s) * (poles.eigenvalue + p))
     rest = np.abs(probed.value - static.value - residue.value @ g)
     return np.maximum(rest - probed.error - static.error - residue.error @ np.abs(g), 0.0)
-
-
-def _points(question: Question) -> list[Point]:
-    return list(dict.fromkeys([*question.drives, *question.responses]))
-
-
-def _places(question: Question) -> Iterator[tuple[list[Point], list[Point]]]:
-    """Give all points beside the drives, and beside the responses."""
-    for chosen in (question.drives, question.responses):
-        yield _points(question), chosen
 
 
 def _slices(count: int, modes: int) -> Iterator[slice]:
