@@ -25,12 +25,15 @@ static PyMethodDef methods[] = {
     {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
     {"sweep", py_sweep, METH_VARARGS,
      "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},
+    {"characteristic", py_characteristic, METH_VARARGS,
+     "characteristic(chain, factor, bound) -> value, magnitude, steps"},
     {"mixed", py_mixed, METH_VARARGS,
      "mixed(chain, factor, drives, responses) -> value, error, frequencies solved"},
     {"mixed_deflection", py_mixed_deflection, METH_VARARGS,
      "mixed_deflection(chain, force) -> displacement, force on the right ends of elements"},
     {"triple", py_triple, METH_VARARGS, "triple(chain, element, factor) -> F, G, Q"},
-    {"energy", py_energy, METH_VARARGS, "energy(chain, shape, eigenvalue) -> strain, kinetic, dragged"},
+    {"energy", py_energy, METH_VARARGS,
+     "energy(chain, shape, eigenvalue) -> strain, kinetic, dragged"},
     {NULL, NULL, 0, NULL},
 };
 

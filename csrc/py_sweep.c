@@ -1,22 +1,8 @@
 /* Frequency response by the sweep, and what it costs. */
+#include "py_factors.h"
 #include "py_response.h"
 
 #include "sweep.h"
-
-/* the factors (RD_PARTS, count) as views of an array's rows */
-static struct rd_factors factors_of(PyArrayObject *factor)
-{
-    const size_t count = (size_t)PyArray_DIM(factor, 1);
-    const double *row = PyArray_DATA(factor);
-    return (struct rd_factors){
-        .count = count,
-        .section = row,
-        .tension = row + 2 * count,
-        .spring = row + 4 * count,
-        .inertia = row + 6 * count,
-        .dashpot = row + 8 * count,
-    };
-}
 
 PyObject *py_steps(PyObject *module, PyObject *arguments)
 {
@@ -31,7 +17,7 @@ PyObject *py_steps(PyObject *module, PyObject *arguments)
     factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
     if (factor == NULL)
         goto done;
-    const struct rd_factors factors = factors_of(factor);
+    const struct rd_factors factors = py_factors_of(factor);
     size_t most = 0;
     for (size_t i = 0; i < factors.count; i++) {
         const struct sweep_extent extent = rd_sweep_extent(&factors, i);
@@ -51,7 +37,7 @@ static npy_intp solve(PyObject *module, const struct py_response *response)
     const struct rd_chain *chain = &response->parsed.chain;
     const struct rd_ports *drives = &response->drives.ports;
     const struct rd_ports *responses = &response->responses.ports;
-    const struct rd_factors factors = factors_of(response->factor);
+    const struct rd_factors factors = py_factors_of(response->factor);
     double *value = PyArray_DATA((PyArrayObject *)response->value);
     double *error = PyArray_DATA((PyArrayObject *)response->error);
     struct rd_workspace workspace = {0};

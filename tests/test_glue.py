@@ -50,6 +50,9 @@ ENTRIES = {
     "certify": lambda chain: _core.certify(chain, 3, np.inf, True),
     "sweep": lambda chain: _core.sweep(chain, FACTOR.T.copy(), PORT, PORT),
     "steps": lambda chain: _core.steps(chain, FACTOR.T.copy()),
+    "characteristic": lambda chain: _core.characteristic(
+        chain, FACTOR.T.copy(), np.abs(FACTOR.T[:, 1:]).astype(complex)
+    ),
     "mixed": lambda chain: _core.mixed(chain, FACTOR.T.copy(), PORT, PORT),
     "mixed_deflection": lambda chain: _core.mixed_deflection(chain, FORCE),
     "triple": lambda chain: _core.triple(chain, 0, FACTOR.T.copy()),
@@ -61,6 +64,7 @@ SPANS = {
     "certify": ENTRIES["certify"],
     "sweep": ENTRIES["sweep"],
     "steps": ENTRIES["steps"],
+    "characteristic": ENTRIES["characteristic"],
     "triple": ENTRIES["triple"],
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
