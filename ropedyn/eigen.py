@@ -78,11 +78,7 @@ def solve_modes(
     check_points(model, points)
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
-    if (number is None) == (below is None):
-        raise SceneError(f"give either number or below, got number={number!r} and below={below!r}")
-    if number is not None:
-        check.count(number, "number", most=np.iinfo(np.int32).max)
-    limit = math.inf if below is None else eigenvalue_of(below)
+    limit = check_asked(number, below)
     if below is not None:
         _refuse_short_waves(model, limit)
     start = time.perf_counter()
@@ -102,8 +98,8 @@ def solve_modes(
     x = model.x
     if model.element == "continuous":
         mesh = Mesh(mesh_error=np.zeros_like(frequency), limit=frequency)
-        points = points or _points_for(model, eigenvalue)
-        x = _between(model.x, points)
+        points = points or points_for(model, eigenvalue)
+        x = within(model.x, points)
         later = partial(_later_within, model, number, limit, eigenvalue, points)
     return Modes(
         coordinates=model.coordinates,
@@ -117,6 +113,15 @@ def solve_modes(
         source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
         mesh_source=mesh,
     )
+
+
+def check_asked(number: int | None, below: float | None) -> float:
+    """Check that one of both is given; return the limit of eigenvalues [rad^2/s^2]."""
+    if (number is None) == (below is None):
+        raise SceneError(f"give either number or below, got number={number!r} and below={below!r}")
+    if number is not None:
+        check.count(number, "number", most=np.iinfo(np.int32).max)
+    return math.inf if below is None else eigenvalue_of(below)
 
 
 def spectrum(
@@ -228,7 +233,7 @@ def _sweep(
     found = []
     for first, last in chain.spans:
         try:
-            found.append(_span(chain.between(first, last), number, limit, shaped=shaped))
+            found.append(lowest(chain.between(first, last), number, limit, shaped=shaped))
         except SolveError as refusal:
             raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
     if len(found) == 1:
@@ -246,7 +251,20 @@ def _sweep(
     return Found(eigenvalue, error, shape, certified, Work.of(part.work for part in found))
 
 
-def _span(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
+def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
+    """Find the lowest modes of a chain whose nodes can move but at its ends, or all below a limit.
+
+    Parameters
+    ----------
+    chain : Chain
+        One component, between nodes that nothing moves.
+    number : int or None
+        How many, or as many as there are.
+    limit : float
+        Instead of a number [rad^2/s^2].
+    shaped : bool
+        Whether shapes are wanted.
+    """
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
     eigenvalue, error, certified, shape, found, sweeps, redone = _in_threads(
@@ -329,7 +347,7 @@ def _later(model: Model, solver: str, number: int | None, limit: float) -> Vecto
     return _vectors(model, found, eigenvalue, order)
 
 
-def _between(x: Real, points: int) -> Real:
+def within(x: Real, points: int) -> Real:
     """Return the ends of so many equal parts between each two nodes."""
     parts = np.multiply.outer(np.diff(x) / points, np.arange(points))
     return np.append((x[:-1, None] + parts).ravel(), x[-1])
@@ -345,7 +363,7 @@ def _most_pieces(model: Model, eigenvalue: Real) -> int:
     return max((_steps(part, highest) for part in parts), default=1)
 
 
-def _points_for(model: Model, eigenvalue: Real) -> int:
+def points_for(model: Model, eigenvalue: Real) -> int:
     """Return how many parts of each element show the highest mode."""
     pieces = _most_pieces(model, eigenvalue)
     return min(max(32, 8 * pieces), MOST_POINTS)
@@ -360,10 +378,10 @@ def _later_within(
     so there may be more elements than points. A mode that the points show nothing of is as large as
     its largest component elsewhere is 1.
     """
-    more = -(-_points_for(model, eigenvalue) // points)
+    more = -(-points_for(model, eigenvalue) // points)
     vectors = _later(finer(model, points * more), "sweep", number, limit)
     own = np.array([FAMILY[c] for c in model.coordinates])
-    size = _largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))
+    size = largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))
     size = np.where(np.abs(size) < UNSEEN, 1.0, size)
     return replace(
         vectors,
@@ -378,7 +396,7 @@ def _vectors(
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
     own = kinetic.argmax(axis=1)
-    size = _largest(shape, own)
+    size = largest(shape, own)
     shape /= size[:, None, None]
     strain, kinetic = strain / size[:, None] ** 2, kinetic / size[:, None] ** 2
     dragged /= size**2
@@ -388,7 +406,7 @@ def _vectors(
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=kinetic.sum(axis=1),
         shape=shape,
-        energy=_fractions(model, eigenvalue, strain, kinetic),
+        energy=fractions(model, eigenvalue, strain, kinetic),
     )
 
 
@@ -403,7 +421,7 @@ def _spread(model: Model, found: Sequence[Found]) -> Real:
     return np.concatenate(shapes)
 
 
-def _largest(shape: Real, own: NDArray[np.intp]) -> Real:
+def largest(shape: NDArray[Any], own: NDArray[np.intp]) -> NDArray[Any]:
     """Return the value of the largest component of the family's own coordinate, with its sign."""
     rows = np.arange(len(shape))
     moved = shape[rows, :, own]
@@ -453,7 +471,7 @@ def _damping_ratio(
     return np.where(omega > 0, ratio, 0.0)
 
 
-def _fractions(
+def fractions(
     model: Model,
     eigenvalue: NDArray[np.float64],
     strain: NDArray[np.float64],

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, check
 from .answer import freeze
 from .chain import Chain
 from .choice import Choice
@@ -22,6 +22,7 @@ from .stretch import KINDS as STRETCHES
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
+    from .damped_modes import DampedModes
     from .deflection import Deflection
     from .frf import FRF
     from .modes import Modes
@@ -200,6 +201,7 @@ class Model:
 
         return damping(self.chain, self.scene.dampings)
 
+    @overload
     def modes(
         self,
         number: int | None = None,
@@ -207,8 +209,30 @@ class Model:
         below: float | None = None,
         solver: str = "sweep",
         points: int | None = None,
-    ) -> Modes:
-        """Find natural frequencies and shapes of the undamped model.
+        damped: Literal[False] = False,
+    ) -> Modes: ...
+
+    @overload
+    def modes(
+        self,
+        number: int | None = None,
+        *,
+        below: float | None = None,
+        solver: str = "sweep",
+        points: int | None = None,
+        damped: Literal[True],
+    ) -> DampedModes: ...
+
+    def modes(
+        self,
+        number: int | None = None,
+        *,
+        below: float | None = None,
+        solver: str = "sweep",
+        points: int | None = None,
+        damped: bool = False,
+    ) -> Modes | DampedModes:
+        """Find natural frequencies and shapes, of the undamped model or complex ones.
 
         Parameters
         ----------
@@ -252,6 +276,11 @@ class Model:
         [15.81 31.61]
         """
         self._refuse_nonlinear()
+        check.instance(damped, "damped", bool, "True or False")
+        if damped:
+            from .damped import solve_damped
+
+            return solve_damped(self, number, below=below, solver=solver, points=points)
         from .eigen import solve_modes
 
         return solve_modes(self, number, below=below, solver=solver, points=points)

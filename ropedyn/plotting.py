@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from .accuracy import AccuracyCost
     from .compare import Comparison
+    from .damped_modes import DampedModes
     from .deflection import Deflection
     from .effect import EffectCost
     from .frf import FRF
@@ -48,15 +49,17 @@ def new_figure(rows: int, *, height: float = 4.5) -> tuple[Figure, list[Axes]]:
     return figure, list(axes[:, 0])
 
 
-def plot_modes(modes: Modes, ax: Axes | None, coordinate: str | None) -> Axes:
-    """Plot shapes of one coordinate along the rope."""
+def plot_modes(modes: Modes | DampedModes, ax: Axes | None, coordinate: str | None) -> Axes:
+    """Plot shapes of one coordinate along the rope, of complex ones the real part."""
     if coordinate is None:
         coordinate = "z" if "z" in modes.coordinates else modes.coordinates[0]
     check.one_of(coordinate, "coordinate", modes.coordinates)
     at = modes.coordinates.index(coordinate)
     ax = new_axes(ax)
     for k, f in enumerate(modes.frequency):
-        ax.plot(modes.x, modes.shape[k, :, at], label=f"{k + 1}: {f:.4g} Hz, {modes.family[k]}")
+        ax.plot(
+            modes.x, modes.shape[k, :, at].real, label=f"{k + 1}: {f:.4g} Hz, {modes.family[k]}"
+        )
     ax.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
     ax.set(xlabel="position along the rope [m]", ylabel=f"{NAME[coordinate]} [{UNIT[coordinate]}]")
     ax.set_title("mode shapes, largest component of the mode's own coordinate 1")

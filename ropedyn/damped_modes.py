@@ -1,0 +1,199 @@
+"""Complex modes: rates of damped motion and shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .answer import Answer, Cost, axes, freeze, nested
+from .table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False)
+class DampedVectors:
+    """What follows from the shapes of damped modes; see `DampedModes`."""
+
+    family: NDArray[np.str_] = field(metadata=axes("mode"))
+    modal_mass: NDArray[np.complex128] = field(metadata=axes("mode", unit="kg or kg m^2"))
+    shape: NDArray[np.complex128] = field(
+        metadata=axes("mode", "node", "coordinate", unit="m or rad")
+    )
+    energy: dict[str, NDArray[np.float64]] = field(metadata=axes("mode", keyed=True))
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
+
+
+@dataclass(frozen=True, eq=False)
+class DampedMesh:
+    """What continuous spans say about the damped modes of a chain; see `DampedModes`."""
+
+    mesh_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
+
+
+@dataclass(frozen=True, eq=False)
+class DampedModes(Answer):
+    """Rates s of free motion Re(shape e^(s t)) of a damped model, those of the least |s| first.
+
+    Of each conjugate pair the one with Im s > 0 is given; overdamped motion, with real s, has two
+    rates, which are modes each. Rigid-body motion, s = 0, is one mode even where it drifts on
+    undamped.
+
+    What follows from the shapes (`shape`, `energy`, `family`, `modal_mass`) is computed when it is
+    first asked for, and so is `mesh_error`.
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        Of every node.
+    x : ndarray, shape (nodes,)
+        Where shapes are given [m], as in `Modes`.
+    eigenvalue : ndarray of complex, shape (k,)
+        s [rad/s].
+    frequency : ndarray, shape (k,)
+        Of the damped oscillation, Im s/2 pi [Hz]; 0 of overdamped motion.
+    natural_frequency : ndarray, shape (k,)
+        |s|/2 pi [Hz], that of the undamped mode where damping is proportional.
+    damping_ratio : ndarray, shape (k,)
+        -Re s/|s|; 1 of overdamped motion, 0 where s is 0, negative where motion grows.
+    decay_rate : ndarray, shape (k,)
+        -Re s [1/s].
+    rounding_error : ndarray, shape (k,)
+        Estimated absolute error of s/2 pi that rounding causes [Hz].
+    mesh_error : ndarray, shape (k,)
+        Absolute error of s/2 pi that the elements cause [Hz]: the distance to the damped mode of
+        the continuous spans it is matched with, and the rounding error of that. 0 for continuous
+        spans, infinite where they have no answer.
+    searched : float
+        No mode with |s|/2 pi below this is missing [Hz].
+    certified : bool
+        True: circles around the modes surround as many roots of the characteristic function as the
+        circle around all of them does, by the argument principle; where damping is proportional,
+        the undamped modes are certified by count.
+    family : ndarray of str, shape (k,)
+        "transverse", "bending rotation", "torsional" or "axial": the coordinate with the most
+        kinetic energy.
+    modal_mass : ndarray of complex, shape (k,)
+        shape^T D'(s) shape/2 s with the dynamic stiffness D [kg, kg m^2], no part conjugate: the
+        response has the poles shape shape^T/(2 s modal_mass)/(i omega - s). shape^T M shape where
+        s is 0.
+    shape : ndarray of complex, shape (k, nodes, coordinates)
+        The largest component of the family's own coordinate at `x` is 1 [m, rad].
+    energy : dict of ndarray, shape (k,)
+        Fractions, as in `Modes`, averaged over a period.
+    cost : Cost
+        What the rates cost.
+    """
+
+    coordinates: tuple[str, ...]
+    certified: bool
+    searched: float
+    x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
+    eigenvalue: NDArray[np.complex128] = field(metadata=axes("mode", unit="rad/s"))
+    rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    cost: Cost
+    source: DampedVectors | Callable[[], DampedVectors] = field(
+        repr=False, metadata=nested(DampedVectors, "vectors")
+    )
+    mesh_source: DampedMesh | Callable[[], DampedMesh] = field(
+        repr=False, metadata=nested(DampedMesh, "mesh")
+    )
+
+    @property
+    def frequency(self) -> NDArray[np.float64]:
+        """Frequency of the damped oscillation [Hz], shape (k,)."""
+        return self.eigenvalue.imag / (2 * np.pi)
+
+    @property
+    def natural_frequency(self) -> NDArray[np.float64]:
+        """Modulus of s/2 pi [Hz], shape (k,)."""
+        return np.abs(self.eigenvalue) / (2 * np.pi)
+
+    @property
+    def damping_ratio(self) -> NDArray[np.float64]:
+        """Damping ratio of each mode, shape (k,)."""
+        size = np.abs(self.eigenvalue)
+        return np.divide(self.decay_rate, size, out=np.zeros_like(size), where=size > 0)
+
+    @property
+    def decay_rate(self) -> NDArray[np.float64]:
+        """Decay rate of each mode [1/s], shape (k,)."""
+        return 0.0 - self.eigenvalue.real
+
+    @cached_property
+    def vectors(self) -> DampedVectors:
+        """What follows from the shapes."""
+        return self.source if isinstance(self.source, DampedVectors) else self.source()
+
+    @cached_property
+    def mesh(self) -> DampedMesh:
+        """What the continuous spans of the same scene say."""
+        return self.mesh_source if isinstance(self.mesh_source, DampedMesh) else self.mesh_source()
+
+    @property
+    def mesh_error(self) -> NDArray[np.float64]:
+        """Error of each s/2 pi that the elements cause [Hz], shape (k,)."""
+        return self.mesh.mesh_error
+
+    @property
+    def family(self) -> NDArray[np.str_]:
+        """Family of each mode, shape (k,)."""
+        return self.vectors.family
+
+    @property
+    def modal_mass(self) -> NDArray[np.complex128]:
+        """Modal mass, shape (k,)."""
+        return self.vectors.modal_mass
+
+    @property
+    def shape(self) -> NDArray[np.complex128]:
+        """Shapes, shape (k, nodes, coordinates)."""
+        return self.vectors.shape
+
+    @property
+    def energy(self) -> dict[str, NDArray[np.float64]]:
+        """Fractions of strain and of kinetic energy, each shape (k,)."""
+        return self.vectors.energy
+
+    def table(self) -> Table:
+        """Return one row for each mode."""
+        columns: dict[str, Any] = {
+            "mode": np.arange(1, len(self.eigenvalue) + 1),
+            "frequency [Hz]": self.frequency,
+            "natural frequency [Hz]": self.natural_frequency,
+            "damping ratio": self.damping_ratio,
+            "decay rate [1/s]": self.decay_rate,
+            "mesh error [Hz]": self.mesh_error,
+            "rounding error [Hz]": self.rounding_error,
+            "family": self.family,
+        }
+        kinds = {"kinetic": self.coordinates}
+        kinds["strain"] = tuple(k for k in self.energy if k not in self.coordinates)
+        for kind, names in kinds.items():
+            columns |= {f"{kind} {name} [%]": 100 * self.energy[name] for name in names}
+        return Table.of("damped modes", columns)
+
+    def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
+        """Plot the real parts of the shapes of one coordinate, the first one by default."""
+        from .plotting import plot_modes
+
+        return plot_modes(self, ax, coordinate)
