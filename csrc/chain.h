@@ -52,7 +52,8 @@ struct rd_chain {
     const double *damping;     /* (terms, width, width) or NULL  [N s/m, N s, N m s] */
     const double *drag;        /* (distinct, width) or NULL      of continuous elements, per length
                                                           [N s/m^2, N s] */
-    const double *sag;         /* (distinct) or NULL      weight per length over tension [1/m] */
+    const double *sag;         /* (distinct) or NULL      weight per length over tension, which is
+                                                          > 0, of x and z [1/m] */
     const int32_t *attached_kind; /* (attached)           enum rd_attached_kind */
     const int32_t *attached_term; /* (attached)           node term that carries it */
     const double *attached_row;   /* (attached, 2, width) displacement and rotation of its foot */

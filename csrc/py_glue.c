@@ -151,9 +151,9 @@ static int check_values(const struct rd_chain *chain)
             PyErr_Format(PyExc_ValueError, "length[%zd] must be > 0", (Py_ssize_t)k);
             return -1;
         }
-        if (string && !(chain->tension[k] > 0)) {
-            PyErr_Format(PyExc_ValueError, "tension[%zd] must be > 0 without bending",
-                         (Py_ssize_t)k);
+        if ((string || chain->sag) && !(chain->tension[k] > 0)) {
+            PyErr_Format(PyExc_ValueError, "tension[%zd] must be > 0 %s", (Py_ssize_t)k,
+                         string ? "without bending" : "with sag");
             return -1;
         }
     }
@@ -207,6 +207,11 @@ static int check_indices(const struct py_chain *parsed)
     }
     if (check_range(parsed->array[COORDINATE], RD_WIDTH_MAX, "coordinate") < 0)
         return -1;
+    if (chain->sag != NULL &&
+        (chain->width < 2 || chain->coordinate[0] != RD_X || chain->coordinate[1] != RD_Z)) {
+        PyErr_SetString(PyExc_ValueError, "sag needs the coordinates x and z");
+        return -1;
+    }
     if (check_range(parsed->array[ELEMENT], chain->distinct, "element") < 0)
         return -1;
     if (check_range(parsed->array[TERM], chain->terms, "term") < 0)

@@ -58,6 +58,7 @@ static void characteristic(const struct rd_chain *chain, const struct rd_runs *r
         }
         z[i] = sqrt(fmax(endless, rd_body_receptance(&runs->body, chain, i, lambda, spring, T)));
     }
+    /* x of a rope that hangs follows z */
     if (chain->sag)
         z[0] = hypot(z[0], runs->sag * L * z[1]);
 }

@@ -142,6 +142,7 @@ static void add_leg(struct rd_walk *walk, const struct rd_leg *leg, bool bends, 
     }
     walk->length += n * chain->length[e];
     walk->tension += n * chain->length[e] * chain->tension[e];
+    walk->sag += chain->sag ? n * chain->length[e] * chain->sag[e] : 0;
     if (bends)
         walk->bend += n * chain->length[e] * chain->flexibility[e * 9 + 8];
 }
@@ -164,6 +165,7 @@ static void add_legs(struct rd_walk *walk)
                            : with_mass[i] > 0 ? with_mass[i] * exp(walk->carried[i] / with_mass[i])
                                               : 0;
     walk->tension /= walk->length;
+    walk->sag /= walk->length;
     if (walk->bend > 0)
         walk->flexibility[z] = 1 / (3 / (walk->bend * walk->length * walk->length) +
                                     fabs(walk->tension) / walk->length);
@@ -186,6 +188,7 @@ static bool is_finite(const struct rd_chain *chain)
     return (!chain->inertia || are_finite(chain->distinct * chain->width, chain->inertia)) &&
            are_finite(chain->distinct, chain->length) &&
            are_finite(chain->distinct, chain->tension) &&
+           (!chain->sag || are_finite(chain->distinct, chain->sag)) &&
            are_finite(chain->distinct * 9, chain->flexibility) && are_finite(terms, chain->mass) &&
            are_finite(terms, chain->stiffness);
 }
@@ -249,6 +252,9 @@ void rd_walk_scale(const struct rd_walk *walk, double lambda, double *z)
             rd_body_receptance(&walk->body, chain, i, fabs(lambda), 1, walk->tension);
         z[i] = fmax(z[i], sqrt(rigid));
     }
+    /* x of a rope that hangs follows z */
+    if (chain->sag)
+        z[0] = hypot(z[0], walk->sag * walk->length * z[iz]);
 }
 
 /* G^-1 + P at the right end, Q + F^T G^-1 F at the left */

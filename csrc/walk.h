@@ -32,6 +32,7 @@ struct rd_walk {
     double length;  /* [m] */
     double bend;    /* [rad/N m] sum of l S_bb, 0 without z and beta together */
     double tension; /* [N] mean */
+    double sag;     /* [1/m] mean of w/T */
     double
         carried[RD_WIDTH_MAX]; /* the rope's own mass, of continuous elements; else nodes times the
                                      geometric mean of |M_ii| that are not 0 */

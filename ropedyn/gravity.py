@@ -33,8 +33,9 @@ class Gravity:
 
     alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
 
-    It holds for a sag w L^2/8H up to an eighth of L. Along an inclined rope the weight's own change
-    of tension is left out, and the weight of what stands on the rope is too.
+    It holds for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it between.
+    Along an inclined rope the weight's own change of tension is left out, and so is the weight of
+    what stands on the rope; a `PointMass` keeps its inertia along x.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ class Gravity:
     >>> round(scene.gravity.sag_parameter(rope, 10e3), 2)
     76.62
     >>> scene.compile().modes(2).frequency.round(4)
-    array([0.7071, 0.7745])
+    array([0.7071, 0.8676])
     >>> scene.without("sag").compile().modes(2).frequency.round(4)
     array([0.3536, 0.7071])
     """

@@ -268,7 +268,8 @@ class Scene:
         TypeError
             If a name is not a string.
         SceneError
-            If there is no such effect, or nothing is left that could vibrate.
+            If there is no such effect, or nothing is left that could vibrate, or that holds a rope
+            with weight along x.
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)

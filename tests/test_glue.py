@@ -212,6 +212,21 @@ MALFORMED["hinge negative"] = (
     ValueError,
     r"hinge\[2, 1\] must be >= 0",
 )
+SAG = np.full(len(CHAIN.length), 0.1)
+LAID = rd.Scene(ROPE.replace(axial_stiffness=1e3), tension=100.0).compile(elements=8).chain
+MALFORMED |= {
+    "sag without x": (CHAIN._replace(sag=SAG), ValueError, "sag needs the coordinates x and z"),
+    "sag too long": (
+        CHAIN._replace(sag=np.append(SAG, 0.1)),
+        ValueError,
+        f"sag must have {len(SAG)} entries along axis 0",
+    ),
+    "sag under compression": (
+        LAID._replace(sag=np.full(1, 0.1), tension=np.full(1, -1.0)),
+        ValueError,
+        r"tension\[0\] must be > 0 with sag",
+    ),
+}
 MALFORMED["hinge of nan"] = (put("hinge", math.nan, at=0), ValueError, r"hinge\[0, 0\]")
 # arrays whose length another one decides
 for field in ("tension", "flexibility", "stiffness", "held", "hinge"):

@@ -161,6 +161,20 @@ def test_without_a_hold_along_the_rope_sag_stiffens_nothing():
     )
 
 
+def test_rope_that_nothing_lifts_moves_across_itself_and_along():
+    # z = 1 all along moves the sliding end by w L/T, and nothing resists it
+    rising = rd.End(z="free", beta="free")
+    scene = beam(30.0, 50.0, ends=(rising, "free"))
+    modes = scene.compile().modes(3)
+    assert modes.frequency[0] == 0
+    x, z, _ = modes.shape[0, -1]
+    slope = DENSITY * scene.gravity.g * LENGTH / TENSION
+    assert x / z == pytest.approx(slope, rel=1e-12)
+    straight = scene.without("sag").compile().modes(10)
+    across = straight.frequency[straight.family == "transverse"][:3]
+    np.testing.assert_allclose(modes.frequency, across, rtol=1e-13)
+
+
 # with bending ------------------------------------------------------------------------------------
 
 
@@ -317,6 +331,27 @@ def test_hanging_rope_responds_as_the_exact_one(seed, claim):
     error, covered = error_over_condition(model, f, drive, response, enough=1e-14)
     assert covered <= 1
     claim(error)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_forces_inside_a_hanging_rope_are_the_exact_ones(seed):
+    random = np.random.default_rng(300 + seed)
+    scene, f = some_scene(random)
+    # beside an end that slides the tension does not change: 0, which has no digits
+    scene = scene.replace(ends=("clamped", "pinned"))
+    force = ("F_x", "F_z")[seed % 2], random.uniform(0.1, 0.9)
+    # as for motion
+    assert span_error(scene, f, ("z", random.uniform(0.1, 0.9)), force) <= 1e-12
+
+
+@pytest.mark.parametrize("parameter", [1e4, 1e9])
+@pytest.mark.parametrize("stiff", [None, 1e5])
+def test_rounding_of_modes_grows_neither_with_the_chain_nor_with_sag(parameter, stiff):
+    scene = hanging(parameter) if stiff is None else beam(parameter, stiff)
+    modes = scene.compile(elements=4096).modes(6)
+    assert modes.certified
+    # that of a straight chain of as many elements, 1e-13, and room for sums over them
+    assert (modes.rounding_error <= 1e-12 * modes.frequency).all()
 
 
 @pytest.mark.parametrize("seed", range(12))
