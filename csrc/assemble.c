@@ -1,6 +1,7 @@
 /* Assembled matrices of a chain: block tridiagonal, in parts that damping scales apart. */
 #include "assemble.h"
 
+#include "attached.h"
 #include "element.h"
 
 #include <assert.h>
@@ -54,12 +55,30 @@ static enum rd_status add_elements(const struct rd_chain *chain, const double _C
     return RD_OK;
 }
 
+/* what nodes carry, real and imaginary part like that of the elements */
+static void add_attached(const struct rd_chain *chain, const double _Complex *factor,
+                         struct rd_assembly *assembly)
+{
+    const size_t block = chain->width * chain->width;
+    for (size_t k = 0; k < chain->stretches; k++) {
+        double _Complex D[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
+        const size_t node = (size_t)chain->first[k];
+        rd_attached_add(chain, (size_t)chain->term[k], factor[RD_MASS], factor[RD_DASHPOTS], D);
+        for (size_t i = 0; i < block; i++) {
+            assembly->elastic.diagonal[node * block + i] += creal(D[i]);
+            assembly->string.diagonal[node * block + i] += cimag(D[i]);
+        }
+    }
+}
+
 enum rd_status rd_assemble_elements(const struct rd_chain *chain, const double _Complex *factor,
                                     struct rd_assembly *assembly)
 {
     const size_t bytes = chain->nodes * chain->width * chain->width * sizeof(double);
     memset(assembly->elastic.diagonal, 0, bytes);
     memset(assembly->string.diagonal, 0, bytes);
+    if (factor != NULL && chain->attached > 0)
+        add_attached(chain, factor, assembly);
     return add_elements(chain, factor, assembly);
 }
 

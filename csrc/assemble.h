@@ -29,8 +29,9 @@ struct rd_assembly {
 /* Fills every array of the assembly, all of them the caller's. */
 enum rd_status rd_assemble(const struct rd_chain *chain, struct rd_assembly *assembly);
 
-/* Fills the elements again, at complex factors (RD_PARTS) of which the first three count: the real
-   part into `elastic`, the imaginary one into `string`. With factor NULL as rd_assemble does. */
+/* Fills the elements again, and what nodes carry (attached.h), at complex factors (RD_PARTS): the real
+   part into `elastic`, the imaginary one into `string`. With factor NULL as rd_assemble does, and
+   nothing that nodes carry: it is not linear. */
 enum rd_status rd_assemble_elements(const struct rd_chain *chain, const double _Complex *factor,
                                     struct rd_assembly *assembly);
 

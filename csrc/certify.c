@@ -169,7 +169,8 @@ static void set_rigid(struct rd_work *work, double apart, double below)
         modes->lambda[i] = modes->error[i] = 0;
         modes->certified[i] = 1;
         if (modes->shape)
-            rd_rigid_shape(work->refine->walk, &work->rigid, j, rd_work_shape(work, i));
+            rd_rigid_shape(work->refine->walk, &work->rigid, j, rd_work_shape(work, i),
+                           rd_work_motion(work, i));
     }
 }
 

@@ -25,6 +25,7 @@ struct rd_certified {
                           by what counts can tell apart */
     double *shape;     /* (wanted, nodes, width) or NULL; elastic modes of largest scaled value 1,
                           rigid motions M-orthonormal; clusters are M-orthogonal */
+    double *motion;    /* (wanted, attached) y of attached.h [m], with shape */
 };
 
 /* RD_NO_MEMORY: refine holds too few steps or pieces; RD_UNSTABLE_MASSLESS: no K - lambda M is

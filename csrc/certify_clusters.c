@@ -33,6 +33,7 @@ static bool ritz_lanes(struct rd_refine *refine, const double *lambda, double ne
     const size_t w = refine->walk->chain->width;
     rd_ritz_combine(n, chosen, (refine->steps + 1) * w, refine->u);
     rd_ritz_combine(n, chosen, refine->steps * w, refine->f);
+    rd_ritz_combine(n, chosen, refine->walk->chain->attached, refine->y);
     return true;
 }
 

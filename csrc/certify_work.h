@@ -22,6 +22,11 @@ static inline double *rd_work_shape(const struct rd_work *work, size_t i)
     return work->modes->shape + i * chain->nodes * chain->width;
 }
 
+static inline double *rd_work_motion(const struct rd_work *work, size_t i)
+{
+    return work->modes->motion + i * work->refine->walk->chain->attached;
+}
+
 /* takes value, bound and shape of mode i from a lane */
 static inline void rd_work_keep(const struct rd_work *work, size_t i,
                                 const struct rd_quotient *quotient, const double *lambda,
@@ -30,7 +35,8 @@ static inline void rd_work_keep(const struct rd_work *work, size_t i,
     work->modes->lambda[i] = quotient->lambda[lane];
     work->modes->error[i] = quotient->error[lane];
     if (work->modes->shape)
-        rd_refine_shape(work->refine, lambda, (int)lane, rd_work_shape(work, i));
+        rd_refine_shape(work->refine, lambda, (int)lane, rd_work_shape(work, i),
+                        rd_work_motion(work, i));
 }
 
 /* Refines the modes that are alone in their bracket and not certified yet, a lane each. */

@@ -17,7 +17,7 @@ enum rd_kind { RD_DIFFERENCE, RD_RIGID, RD_TENSED, RD_CONTINUOUS };
 enum { RD_WIDTH_MAX = 4, RD_CHANNELS = 3 };
 
 /* structures that nodes carry, condensed to their foot: see attached.h */
-enum rd_attached_kind { RD_ATTACHED_KINDS };
+enum rd_attached_kind { RD_RESONATOR, RD_WIRE, RD_ATTACHED_KINDS };
 
 enum { RD_ATTACHED_VALUES = 4 }; /* numbers of one */
 
@@ -55,9 +55,11 @@ struct rd_chain {
     const double *sag;         /* (distinct) or NULL      weight per length over tension, which is
                                                           > 0, of x and z [1/m] */
     const int32_t *attached_kind; /* (attached)           enum rd_attached_kind */
-    const int32_t *attached_term; /* (attached)           node term that carries it */
-    const double *attached_row;   /* (attached, 2, width) displacement and rotation of its foot */
-    const double *attached_value; /* (attached, RD_ATTACHED_VALUES) its numbers */
+    const int32_t
+        *attached_term;         /* (attached)           node term that carries it, increasing; of a
+                                                          single node */
+    const double *attached_row; /* (attached, 2, width) displacement and rotation of its foot */
+    const double *attached_value; /* (attached, RD_ATTACHED_VALUES) its numbers, its damping last */
     const int32_t *element_of; /* (nodes - 1)             element node by node: right of node i */
     const int32_t *term_of; /* (nodes)                 term node by node; a sweep reads neither */
 };
@@ -74,6 +76,26 @@ static inline size_t rd_stretch_nodes(const struct rd_chain *chain, size_t k)
     return (size_t)(k + 1 < chain->stretches ? chain->first[k + 1] - chain->first[k] : 1);
 }
 
+/* The first structure of a node term, or of a later one; they go on while attached_term is the same. */
+static inline size_t rd_attached_first(const struct rd_chain *chain, size_t term)
+{
+    size_t low = 0, high = chain->attached;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if ((size_t)chain->attached_term[middle] < term)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* whether structure k exists and belongs to a node term */
+static inline int rd_attached_is_of(const struct rd_chain *chain, size_t k, int32_t term)
+{
+    return k < chain->attached && chain->attached_term[k] == term;
+}
+
 /* whether nothing stands at a node with this term */
 static inline int rd_term_is_bare(const struct rd_chain *chain, int32_t term)
 {
@@ -84,8 +106,7 @@ static inline int rd_term_is_bare(const struct rd_chain *chain, int32_t term)
                (chain->damping && chain->damping[t * w * w + i] != 0);
     for (size_t i = 0; i < w; i++)
         any |= chain->held[t * w + i] || (chain->hinge && chain->hinge[t * w + i] != 0);
-    for (size_t k = 0; k < chain->attached; k++)
-        any |= chain->attached_term[k] == term;
+    any |= rd_attached_is_of(chain, rd_attached_first(chain, t), term);
     return !any;
 }
 

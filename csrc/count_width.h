@@ -128,10 +128,33 @@ RD_INLINE void walk_node(struct wave *wave, const struct rd_walk *walk, int32_t 
     node(wave, V);
 }
 
+/* The structures that a node carries: their poles, and how many eigenvalues they have with their
+   feet held (Wittrick, Williams 1971), of which the infinite springs at the poles have taken one
+   each. */
+RD_INLINE void walk_feet(struct wave *wave, const struct rd_walk *walk, int32_t term, lanes lambda,
+                         const lanes *z, lanes *held)
+{
+    const struct rd_chain *chain = walk->chain;
+    if (chain->attached == 0 || term == RD_NO_TERM)
+        return;
+    for (size_t k = rd_attached_first(chain, (size_t)term); rd_attached_is_of(chain, k, term);
+         k++) {
+        struct foot foot;
+        int own = -1;
+        foot_load(chain, k, lambda, &foot);
+        foot_scale(&foot, z);
+        for (int i = 0; i < W; i++)
+            if (!every(foot.v[i] == 0.0))
+                own = own == -1 ? i : -2;
+        add_pole(wave, foot.v, own, foot.w, foot.e);
+        *held += foot.held;
+    }
+}
+
 /* A leg of equal elements, by pieces of 2^k of them, the largest first; false where they are too
-   many. */
+   many. own: eigenvalues of structures with their feet held, added. */
 RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
-                         lanes lambda, const lanes *z, const lanes *inverse)
+                         lanes lambda, const lanes *z, const lanes *inverse, lanes *own)
 {
     struct piece level[LEVELS];
     struct step step;
@@ -152,6 +175,8 @@ RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const st
             const _Bool start = left == all;
             walk_node(wave, walk, start ? leg->first : leg->term, start ? first : inner, &step,
                       start && leg == walk->leg);
+            if (start)
+                walk_feet(wave, walk, leg->first, lambda, z, own);
             if (W > 2 && walk->strut[leg->element] && (size_t)leg->element < walk->chain->distinct)
                 strut_transfer(wave, walk->chain, leg->element, &step, z, inverse);
             else
@@ -188,7 +213,7 @@ RD_INLINE void start(struct wave *wave, const struct rd_walk *walk)
 
 static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lambdas, double *counts)
 {
-    lanes lambda, z[W], inverse[W], N[W][W];
+    lanes lambda, z[W], inverse[W], N[W][W], own = l_fill(0);
     for (int k = 0; k < RD_LANES; k++) {
         double scale[RD_WIDTH_MAX];
         lambda[k] = lambdas[k];
@@ -201,7 +226,7 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
     struct wave wave;
     start(&wave, walk);
     for (size_t r = 0; r < walk->legs; r++)
-        if (!leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse)) {
+        if (!leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse, &own)) {
             for (int k = 0; k < RD_LANES; k++)
                 counts[k] = NAN;
             return;
@@ -212,12 +237,13 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
         if (rd_walk_held(walk, walk->last)[i])
             hold(&wave, i);
     node(&wave, N);
+    walk_feet(&wave, walk, walk->last, lambda, z, &own);
     for (int i = 0; i < W; i++)
         release(&wave, i);
     for (int k = 0; k < RD_LANES; k++) {
         const double pi = 3.14159265358979323846;
         const double angle = atan2(wave.e.im[k] + 0, wave.e.re[k]) / pi;
-        counts[k] = round(-angle - 2 * wave.turns[k]);
+        counts[k] = round(-angle - 2 * wave.turns[k]) + own[k];
     }
 }
 

@@ -1,6 +1,8 @@
 /* How many modes a chain has. */
 #include "inertia.h"
 
+#include "attached.h"
+
 #include "lapack.h"
 
 #include <float.h>
@@ -71,12 +73,15 @@ bool rd_inertia_is_endless(const struct rd_chain *chain)
 
 size_t rd_inertia_positive(const struct rd_chain *chain)
 {
-    if (rd_inertia_is_endless(chain))
+    if (rd_inertia_is_endless(chain) || isinf(rd_attached_highest(chain)))
         return SIZE_MAX;
     size_t count = 0;
     for (size_t k = 0; k < chain->stretches; k++) {
         const size_t each = positive_of_term(chain, (size_t)chain->term[k]);
         count += rd_stretch_nodes(chain, k) * each;
+        for (size_t j = rd_attached_first(chain, (size_t)chain->term[k]);
+             rd_attached_is_of(chain, j, chain->term[k]); j++)
+            count++;
     }
     return count;
 }

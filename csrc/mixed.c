@@ -1,6 +1,7 @@
 /* The mixed form of a chain: forces of elements beside displacements of nodes, as one band. */
 #include "mixed.h"
 
+#include "attached.h"
 #include "element.h"
 #include "lapack.h"
 #include "triple.h"
@@ -93,12 +94,15 @@ static void add_node(struct rd_mixed *mixed, size_t node, const double _Complex 
     const struct rd_chain *chain = mixed->chain;
     const size_t w = chain->width, term = (size_t)chain->term_of[node] * w * w;
     const size_t p = mixed->block[node];
+    double _Complex D[W * W] = {0};
+    rd_attached_add(chain, (size_t)chain->term_of[node], factor[RD_MASS], factor[RD_DASHPOTS], D);
     for (size_t a = 0; a < w; a++)
         for (size_t b = 0; b < w; b++) {
             const double _Complex N =
                 factor[RD_SPRINGS] * chain->stiffness[term + a * w + b] +
                 factor[RD_MASS] * chain->mass[term + a * w + b] +
-                (chain->damping ? factor[RD_DASHPOTS] * chain->damping[term + a * w + b] : 0);
+                (chain->damping ? factor[RD_DASHPOTS] * chain->damping[term + a * w + b] : 0) +
+                D[a * w + b];
             add(mixed, p, a, p, b, N * mixed->z[a] * mixed->z[b]);
         }
 }

@@ -17,6 +17,7 @@
 
 #define W RD_WAVE_WIDTH
 
+#include "foot.h"
 #include "slice.h"
 
 #define PIVOT_LIMIT 0.4
@@ -76,7 +77,8 @@ RD_INLINE void piece_load(const struct rd_walk *walk, int32_t element, struct pi
         }
 }
 
-/* N = stiffness - lambda mass of a node term, and what the element before left to the node */
+/* N = stiffness - lambda mass of a node term, what is regular of the structures that it carries, and
+   what the element before left to the node */
 RD_INLINE void term_load(const struct rd_walk *walk, int32_t term, int32_t before, lanes lambda,
                          lanes N[W][W])
 {
@@ -85,6 +87,7 @@ RD_INLINE void term_load(const struct rd_walk *walk, int32_t term, int32_t befor
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++)
             N[i][j] = stiffness[i * W + j] - lambda * mass[i * W + j];
+    foot_rest(walk->chain, term, lambda, N, NULL);
     if (before < 0 || !walk->strut[before])
         return;
     const double *P = walk->triple + ((size_t)before * 4 + 3) * W * W;

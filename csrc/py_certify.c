@@ -59,7 +59,7 @@ done:
     return result;
 }
 
-enum { LAMBDA, ERROR, CERTIFIED, BRACKET, SHAPE, ARRAYS };
+enum { LAMBDA, ERROR, CERTIFIED, BRACKET, SHAPE, MOTION, ARRAYS };
 
 /* once with so much room; RD_NO_MEMORY where it is too little or, with an exception, there is none */
 static enum rd_status solve_in(const struct rd_walk *walk, size_t steps, size_t pieces,
@@ -120,10 +120,12 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
         const npy_intp lines[] = {wanted};
         const npy_intp brackets[] = {4, wanted};
         const npy_intp shapes[] = {shaped ? wanted : 0, nodes, width};
-        const int dimensions = k == SHAPE ? 3 : k == BRACKET ? 2 : 1;
+        const npy_intp motions[] = {shaped ? wanted : 0, (npy_intp)parsed.chain.attached};
+        const int dimensions = k == SHAPE ? 3 : k == BRACKET || k == MOTION ? 2 : 1;
         array[k] = py_new(NPY_DOUBLE, dimensions,
                           k == SHAPE     ? shapes
                           : k == BRACKET ? brackets
+                          : k == MOTION  ? motions
                                          : lines);
         if (array[k] == NULL)
             goto done;
@@ -139,11 +141,12 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
         .certified = data[CERTIFIED],
         .bracket = data[BRACKET],
         .shape = shaped ? data[SHAPE] : NULL,
+        .motion = data[MOTION],
     };
     if (solve(module, &walk, &modes) < 0)
         goto done;
-    result = Py_BuildValue("OOOOnnn", array[LAMBDA], array[ERROR], array[CERTIFIED], array[SHAPE],
-                           (Py_ssize_t)modes.found,
+    result = Py_BuildValue("OOOOOnnn", array[LAMBDA], array[ERROR], array[CERTIFIED], array[SHAPE],
+                           array[MOTION], (Py_ssize_t)modes.found,
                            (Py_ssize_t)(modes.counts + 2 * RD_LANES * modes.iterations),
                            (Py_ssize_t)modes.redone);
 done:

@@ -1,6 +1,8 @@
 /* What every entry point of the extension shares. */
 #include "py_glue.h"
 
+#include "attached.h"
+
 #include <stdint.h>
 
 static const char *text_of(enum rd_status status)
@@ -251,9 +253,23 @@ static int check_attached(const struct py_chain *parsed)
         }
     if (chain->attached == 0)
         return 0;
-    return check_range(parsed->array[ATTACHED_KIND], RD_ATTACHED_KINDS, "attached_kind") < 0
-               ? -1
-               : check_range(parsed->array[ATTACHED_TERM], chain->terms, "attached_term");
+    if (check_range(parsed->array[ATTACHED_KIND], RD_ATTACHED_KINDS, "attached_kind") < 0 ||
+        check_range(parsed->array[ATTACHED_TERM], chain->terms, "attached_term") < 0)
+        return -1;
+    for (size_t k = 1; k < chain->attached; k++)
+        if (chain->attached_term[k] < chain->attached_term[k - 1]) {
+            PyErr_SetString(PyExc_ValueError, "attached_term must not decrease");
+            return -1;
+        }
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const size_t of = rd_attached_first(chain, (size_t)chain->term[k]);
+        if (rd_attached_is_of(chain, of, chain->term[k]) && rd_stretch_nodes(chain, k) > 1) {
+            PyErr_Format(PyExc_ValueError, "attached_term[%zd] must be the term of a single node",
+                         (Py_ssize_t)of);
+            return -1;
+        }
+    }
+    return 0;
 }
 
 static const void *data_of(const struct py_chain *parsed, enum field field)

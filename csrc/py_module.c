@@ -20,8 +20,8 @@ static PyMethodDef methods[] = {
      "frf(chain, factor, drives, responses) -> value, rounding, frequencies solved"},
     {"count", py_count, METH_VARARGS, "count(chain, lambda) -> counts"},
     {"certify", py_certify, METH_VARARGS,
-     "certify(chain, wanted, upper, shaped) -> lambda, error, certified, shape, found, sweeps, "
-     "redone"},
+     "certify(chain, wanted, upper, shaped) -> lambda, error, certified, shape, motion, found, "
+     "sweeps, redone"},
     {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
     {"sweep", py_sweep, METH_VARARGS,
      "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},
@@ -34,6 +34,9 @@ static PyMethodDef methods[] = {
     {"triple", py_triple, METH_VARARGS, "triple(chain, element, factor) -> F, G, Q"},
     {"energy", py_energy, METH_VARARGS,
      "energy(chain, shape, eigenvalue) -> strain, kinetic, dragged"},
+    {"carried", py_carried, METH_VARARGS,
+     "carried(chain, shape, motion, eigenvalue) -> (k, 3) strain, kinetic, lost"},
+    {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (width, f)"},
     {NULL, NULL, 0, NULL},
 };
 

@@ -23,6 +23,8 @@ void rd_refine_take(const struct rd_walk *walk, size_t steps, size_t pieces,
     refine->receptance = take_lanes(workspace, steps * w * (w + 3));
     refine->u = take_lanes(workspace, (steps + 1) * w);
     refine->f = take_lanes(workspace, steps * w);
+    refine->y = take_lanes(workspace, walk->chain->attached);
+    refine->next = take_lanes(workspace, walk->chain->attached);
 }
 
 enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda)
@@ -54,9 +56,11 @@ void rd_refine_gram(struct rd_refine *refine, const double *lambda, double *A, d
     of[refine->walk->chain->width - 1](refine, lambda, A, M);
 }
 
-void rd_refine_shape(struct rd_refine *refine, const double *lambda, int lane, double *u)
+void rd_refine_shape(struct rd_refine *refine, const double *lambda, int lane, double *u, double *y)
 {
     void (*const of[])(struct rd_refine *, const double *, int,
                        double *) = {rd_shape_1, rd_shape_2, rd_shape_3, rd_shape_4};
     of[refine->walk->chain->width - 1](refine, lambda, lane, u);
+    for (size_t k = 0; k < refine->walk->chain->attached; k++)
+        y[k] = refine->y[k][lane];
 }

@@ -28,6 +28,8 @@ struct rd_refine {
     lanes *receptance;      /* (capacity, width (width + 3))  U and g left of each node: re, im */
     lanes *u;               /* (capacity + 1, width) scaled */
     lanes *f;               /* (capacity, width)     scaled, on the right end of each step */
+    lanes *y;               /* (attached) unknown of each structure [m] */
+    lanes *next;            /* (attached) while an iteration makes it */
     double z[RD_WIDTH_MAX]; /* scales of the coordinates */
 };
 
@@ -60,8 +62,10 @@ void rd_refine_quotient(struct rd_refine *refine, const double *lambda,
 /* A, M (RD_LANES, RD_LANES): x_i^T A x_j, x_i^T M x_j */
 void rd_refine_gram(struct rd_refine *refine, const double *lambda, double *A, double *M);
 
-/* u (nodes, width) of one lane at all nodes of the chain, of largest scaled value 1 */
-void rd_refine_shape(struct rd_refine *refine, const double *lambda, int lane, double *u);
+/* u (nodes, width) of one lane at all nodes of the chain and y (attached) of its structures, of largest
+   scaled value 1 */
+void rd_refine_shape(struct rd_refine *refine, const double *lambda, int lane, double *u,
+                     double *y);
 
 #define RD_REFINE_WIDTH(w)                                                                         \
     enum rd_status rd_plan_##w(struct rd_refine *, const double *);                                \

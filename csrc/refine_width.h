@@ -4,7 +4,13 @@
    node, d between the ends of the piece, u_b = F u_a + G f_b + d. With K = (G + i I)^-1, B = K F,
    Wt = i I + Q + N + F^T B, E = (Wt U - i I)^-1, h = p - B^T d - Wt g:
        s_a = E (B^T s_b + h)
-       U <- K G + i B U E B^T,  g <- i B (U E h + g) + i K d */
+       U <- K G + i B U E B^T,  g <- i B (U E h + g) + i K d
+
+   Structures (attached.h) have an unknown y each and, where e y = v^T u + load, the node feels
+   -w v y: with h = v^T U v, x = U v,
+
+       U <- U + x x^T i w/(e - i w h),  g <- g + x i w (load + v^T g)/(e - i w h)
+       y = (load + v^T (U s + g))/(e - i w h) with the old U, g and the new s;  s_old = s + i w v y */
 #include "piece.h"
 #include "refine.h"
 #include "wave.h"
@@ -21,13 +27,17 @@ RD_INLINE void rate_node(const struct rd_refine *r, int32_t term, int32_t before
                          struct rate *rate)
 {
     const double *mass = rd_walk_mass(r->walk, term);
-    lanes N[W][W];
+    lanes N[W][W], rest[W][W], dN[W][W];
     term_load(r->walk, term, before, lambda, N);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++)
+            dN[i][j] = rest[i][j] = l_fill(0);
+    foot_rest(r->walk->chain, term, lambda, rest, dN);
     for (int i = 0; i < W; i++)
         for (int j = 0; j < W; j++) {
             const double zz = r->z[i] * r->z[j];
             rate->V[i][j] = N[i][j] * zz;
-            rate->dV[i][j] = l_fill(-mass[i * W + j] * zz);
+            rate->dV[i][j] = (dN[i][j] - mass[i * W + j]) * zz;
         }
 }
 
@@ -357,6 +367,112 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
     }
 }
 
+/* --- structures --------------------------------------------------------------------------------- */
+
+/* the first structure of a node, or of a later one */
+RD_INLINE size_t foot_first(const struct rd_refine *r, int32_t term)
+{
+    const struct rd_chain *chain = r->walk->chain;
+    return chain->attached == 0 || term == RD_NO_TERM ? chain->attached
+                                                      : rd_attached_first(chain, (size_t)term);
+}
+
+RD_INLINE void foot_make(const struct rd_refine *r, size_t k, lanes lambda, struct foot *foot)
+{
+    lanes z[W];
+    for (int i = 0; i < W; i++)
+        z[i] = l_fill(r->z[i]);
+    foot_load(r->walk->chain, k, lambda, foot);
+    foot_scale(foot, z);
+}
+
+/* Its load in the next iteration over w: what remains of -A' x where e y = v^T u. */
+RD_INLINE lanes foot_pull(const struct rd_refine *r, size_t k, const struct foot *foot,
+                          const lanes *u, unsigned begin)
+{
+    enum { FAR = 1 << 30 }; /* loads beyond those of nodes */
+    lanes load = l_fill(0);
+    if (begin != RD_ALL_LANES)
+        load = foot_dot(foot->dv, u) - foot->de * r->y[k];
+    return begin ? l_select(lanes_of(begin), fixed_load(FAR + k, 0), load) : load;
+}
+
+/* x = U v and 1/(e - i w v^T x) */
+RD_INLINE cv foot_reach(const struct left *left, const struct foot *foot, cv *x)
+{
+    cv h = c_make(l_fill(0), l_fill(0));
+    for (int i = 0; i < W; i++) {
+        x[i] = c_make(l_fill(0), l_fill(0));
+        for (int j = 0; j < W; j++)
+            x[i] = c_add(x[i], c_scale_lanes(left->U[i][j], foot->v[j]));
+        h = c_add(h, c_scale_lanes(x[i], foot->v[i]));
+    }
+    const cv d = c_make(foot->e + foot->w * h.im, -foot->w * h.re);
+    const lanes size = 1 / c_size(d);
+    return c_scale_lanes(c_invert(c_scale_lanes(d, size)), size);
+}
+
+RD_INLINE cv foot_along(const struct foot *foot, const cv *g)
+{
+    cv sum = c_scale_lanes(g[0], foot->v[0]);
+    for (int i = 1; i < W; i++)
+        sum = c_add(sum, c_scale_lanes(g[i], foot->v[i]));
+    return sum;
+}
+
+RD_INLINE void foot_take(struct left *left, const struct foot *foot, lanes load)
+{
+    cv x[W];
+    const cv d = c_turn(foot_reach(left, foot, x), foot->w);
+    cv t = foot_along(foot, left->g);
+    t.re += load;
+    t = c_mul(t, d);
+    for (int i = 0; i < W; i++) {
+        const cv xd = c_mul(x[i], d);
+        left->g[i] = c_add(left->g[i], c_mul(x[i], t));
+        for (int j = 0; j <= i; j++)
+            left->U[i][j] = left->U[j][i] = c_add(left->U[i][j], c_mul(xd, x[j]));
+    }
+}
+
+/* the structures of a node into the left part, u the motion that loads them; those before `end` */
+RD_INLINE void feet_take(const struct rd_refine *r, int32_t term, size_t end, lanes lambda,
+                         const lanes *u, unsigned begin, struct left *left)
+{
+    for (size_t k = foot_first(r, term); k < end && rd_attached_is_of(r->walk->chain, k, term);
+         k++) {
+        struct foot foot;
+        foot_make(r, k, lambda, &foot);
+        foot_take(left, &foot, foot_pull(r, k, &foot, u, begin));
+    }
+}
+
+/* y of each, last first, and s before them; left is the part before, u the motion that loaded them */
+RD_INLINE void feet_leave(struct rd_refine *r, int32_t term, lanes lambda, const lanes *u,
+                          unsigned begin, const struct left *left, cv *s)
+{
+    const size_t first = foot_first(r, term);
+    size_t end = first;
+    while (rd_attached_is_of(r->walk->chain, end, term))
+        end++;
+    for (size_t k = end; k-- > first;) {
+        struct left before = *left;
+        struct foot foot;
+        cv x[W];
+        feet_take(r, term, k, lambda, u, begin, &before);
+        foot_make(r, k, lambda, &foot);
+        const cv inverse = foot_reach(&before, &foot, x);
+        cv y = foot_along(&foot, before.g);
+        y.re += foot_pull(r, k, &foot, u, begin);
+        for (int i = 0; i < W; i++)
+            y = c_add(y, c_mul(x[i], s[i]));
+        y = c_mul(y, inverse);
+        for (int i = 0; i < W; i++)
+            s[i] = c_add(s[i], c_turn(y, foot.w * foot.v[i]));
+        r->next[k] = y.re;
+    }
+}
+
 /* rates and kernel of the step m, made anew where they are not those of the last one */
 struct made {
     const struct rd_step *step;
@@ -397,6 +513,7 @@ RD_INLINE void sweep_right(struct rd_refine *r, lanes lambda, unsigned begin, st
         load(r, m, &made.rate, begin, p, d);
         left_store(left, r->receptance + m * LEFT);
         hold_all(r, m, left);
+        feet_take(r, r->step[m].term, SIZE_MAX, lambda, r->u + m * W, begin, left);
         left_advance(left, &made.rate, &made.kernel, p, d);
     }
 }
@@ -418,7 +535,10 @@ RD_INLINE void turn_round(struct rd_refine *r, lanes lambda, unsigned begin,
         if (begin)
             p[i] = l_select(lanes_of(begin), fixed_load(n, i), p[i]);
     }
-    end_solve(left, &rate, held_at(r, last), p, s);
+    struct left inner = *left;
+    feet_take(r, last, SIZE_MAX, lambda, r->u + n * W, begin, &inner);
+    end_solve(&inner, &rate, held_at(r, last), p, s);
+    feet_leave(r, last, lambda, r->u + n * W, begin, left, s);
     state(left, s, r->u + n * W, f);
 }
 
@@ -453,11 +573,17 @@ RD_INLINE void sweep_left(struct rd_refine *r, lanes lambda, unsigned begin, cv 
         left_load(r->receptance + m * LEFT, &left);
         struct left inner = left;
         hold_all(r, m, &inner);
+        feet_take(r, r->step[m].term, SIZE_MAX, lambda, r->u + m * W, begin, &inner);
         solve(&made.kernel, &inner, p, d, EBt, Eh);
         for (int i = 0; i < W; i++) {
             sa[i] = Eh[i];
             for (int j = 0; j < W; j++)
                 sa[i] = c_add(sa[i], c_mul(EBt[i][j], s[j]));
+        }
+        if (rd_attached_is_of(r->walk->chain, foot_first(r, r->step[m].term), r->step[m].term)) {
+            inner = left;
+            hold_all(r, m, &inner);
+            feet_leave(r, r->step[m].term, lambda, r->u + m * W, begin, &inner, sa);
         }
         if (m > 0)
             release_all(&left, held_at(r, r->step[m].term), sa);
@@ -469,7 +595,8 @@ RD_INLINE void sweep_left(struct rd_refine *r, lanes lambda, unsigned begin, cv 
 /* held coordinates exactly 0, the largest of u 1 */
 RD_INLINE void normalise_lanes(struct rd_refine *r)
 {
-    const size_t n = r->steps;
+    const struct rd_chain *chain = r->walk->chain;
+    const size_t n = r->steps, lateral = rd_coordinate_find(W, chain->coordinate, RD_Z) % W;
     for (size_t m = 0; m <= n; m++) {
         const uint8_t *held = held_at(r, m < n ? r->step[m].term : r->walk->last);
         for (int i = 0; i < W; i++)
@@ -479,7 +606,14 @@ RD_INLINE void normalise_lanes(struct rd_refine *r)
     lanes most = l_fill(1e-300);
     for (size_t i = 0; i < (n + 1) * W; i++)
         most = l_select(l_abs(r->u[i]) > most, l_abs(r->u[i]), most);
+    const size_t attached = chain->attached;
+    for (size_t k = 0; k < attached; k++) {
+        const lanes size = l_abs(r->next[k]) / r->z[lateral];
+        most = l_select(size > most, size, most);
+    }
     most = 1 / most;
+    for (size_t k = 0; k < attached; k++)
+        r->y[k] = r->next[k] * most;
     for (size_t i = 0; i < (n + 1) * W; i++)
         r->u[i] *= most;
     for (size_t i = 0; i < n * W; i++)
@@ -492,11 +626,28 @@ static RD_CLONES void iterate_lanes(struct rd_refine *r, const double *lambdas, 
     struct left left;
     cv s[W];
     lanes f[W];
+    memset(r->next, 0, r->walk->chain->attached * sizeof *r->next);
     pieces_change(r, lambda);
     sweep_right(r, lambda, begin, &left);
     turn_round(r, lambda, begin, &left, s, f);
     sweep_left(r, lambda, begin, s, f);
     normalise_lanes(r);
+}
+
+/* Residual of structure k at x, and M x = -A' x; what it adds to those of its node. With y fixed, A'
+   would know lambda = 0 as an eigenvalue too, where w = 0: fixed is sqrt(w) y, which makes of
+
+       w e y^2 - 2 w y v^T u  by lambda:  w e' y^2 - w' y v^T u - 2 w y v'^T u */
+RD_INLINE lanes foot_residual(const struct rd_refine *r, size_t k, const struct foot *foot,
+                              const lanes *u, lanes *node, lanes *mass_node, lanes *mass)
+{
+    const lanes y = r->y[k], along = foot_dot(foot->v, u), change = foot_dot(foot->dv, u);
+    for (int i = 0; i < W; i++) {
+        node[i] -= foot->w * foot->v[i] * y;
+        mass_node[i] += (0.5 * foot->dw * foot->v[i] + foot->w * foot->dv[i]) * y;
+    }
+    *mass = 0.5 * foot->dw * along + foot->w * (change - foot->de * y);
+    return foot->w * (foot->e * y - along);
 }
 
 /* residuals of a step at x: node a (W) and piece (W), and M x of both */
@@ -523,6 +674,12 @@ RD_INLINE void residual(const struct rd_refine *r, size_t m, const struct rate *
     }
 }
 
+/* node term at the first node of step m, or at the last node */
+RD_INLINE int32_t term_at(const struct rd_refine *r, size_t m)
+{
+    return m < r->steps ? r->step[m].term : r->walk->last;
+}
+
 RD_INLINE void rate_at(const struct rd_refine *r, size_t m, lanes lambda, struct rate *rate)
 {
     if (m < r->steps)
@@ -545,6 +702,18 @@ static RD_CLONES void quotient_lanes(struct rd_refine *r, const double *lambdas,
         const int32_t level = m < r->steps ? r->step[m].level : 0;
         rate_at(r, m, lambda, &rate);
         residual(r, m, &rate, node, piece, mn, mp);
+        const int32_t term = term_at(r, m);
+        for (size_t k = foot_first(r, term); rd_attached_is_of(r->walk->chain, k, term); k++) {
+            struct foot foot;
+            lanes mass;
+            foot_make(r, k, lambda, &foot);
+            xAx += r->y[k] * foot_residual(r, k, &foot, u, node, mn, &mass);
+            xMx += r->y[k] * mass;
+            const lanes work = l_abs(foot.w * foot.e * r->y[k] * r->y[k]) +
+                               2 * l_abs(foot.w * r->y[k] * foot_dot(foot.v, u));
+            noise += work * work;
+            energy += work;
+        }
         for (int i = 0; i < W; i++) {
             lanes size = l_fill(0), work = l_fill(0);
             xAx += u[i] * node[i];
@@ -582,6 +751,14 @@ void WIDTH(quotient)(struct rd_refine *r, const double *lambdas, struct rd_quoti
     quotient_lanes(r, lambdas, quotient);
 }
 
+/* A_kj += x_k y_j */
+RD_INLINE void gram_add(lanes x, lanes y, double *A)
+{
+    for (int k = 0; k < RD_LANES; k++)
+        for (int j = 0; j < RD_LANES; j++)
+            A[k * RD_LANES + j] += x[k] * y[j];
+}
+
 void WIDTH(gram)(struct rd_refine *r, const double *lambdas, double *A, double *M)
 {
     const lanes lambda = lanes_load(lambdas);
@@ -592,6 +769,15 @@ void WIDTH(gram)(struct rd_refine *r, const double *lambdas, double *A, double *
         lanes node[W], piece[W], mn[W], mp[W];
         rate_at(r, m, lambda, &rate);
         residual(r, m, &rate, node, piece, mn, mp);
+        const int32_t term = term_at(r, m);
+        for (size_t k = foot_first(r, term); rd_attached_is_of(r->walk->chain, k, term); k++) {
+            struct foot foot;
+            lanes mass;
+            foot_make(r, k, lambda, &foot);
+            const lanes rest = foot_residual(r, k, &foot, r->u + m * W, node, mn, &mass);
+            gram_add(r->y[k], rest, A);
+            gram_add(r->y[k], mass, M);
+        }
         for (int i = 0; i < W; i++)
             for (int k = 0; k < RD_LANES; k++)
                 for (int j = 0; j < RD_LANES; j++) {

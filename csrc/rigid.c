@@ -1,6 +1,8 @@
 /* Motions of the whole chain that nothing resists. */
 #include "rigid.h"
 
+#include "attached.h"
+
 #include "lapack.h"
 
 #include <math.h>
@@ -180,6 +182,17 @@ static bool rope_of(const struct rd_walk *walk, const struct rd_leg *leg, double
     return true;
 }
 
+/* a node alone, with the structures that it carries */
+static void add_node(const struct rd_walk *walk, int32_t term, const double T[W][W], double A[W][W])
+{
+    const size_t w = walk->chain->width;
+    double M[W * W];
+    memcpy(M, rd_walk_mass(walk, term), w * w * sizeof *M);
+    if (term != RD_NO_TERM)
+        rd_attached_inertia(walk->chain, (size_t)term, M);
+    add_inertia(w, M, T, T, 1, A);
+}
+
 /* T^T M T over all nodes and continuous elements, in which T is linear; in a run T + k D T, with sums of k and k^2 for k = 1 .. n - 1 */
 static void inertia(const struct rd_walk *walk, double A[W][W])
 {
@@ -194,7 +207,7 @@ static void inertia(const struct rd_walk *walk, double A[W][W])
         const double n = (double)leg->count;
         const double *M = rd_walk_mass(walk, leg->term);
         tilt(w, D, T, DT);
-        add_inertia(w, rd_walk_mass(walk, leg->first), T, T, 1, A);
+        add_node(walk, leg->first, T, A);
         add_inertia(w, M, T, T, n - 1, A);
         add_inertia(w, M, T, DT, n * (n - 1), A);
         add_inertia(w, M, DT, DT, (n - 1) * n * (2 * n - 1) / 6, A);
@@ -205,7 +218,7 @@ static void inertia(const struct rd_walk *walk, double A[W][W])
         }
         advance(w, D, leg->count, T);
     }
-    add_inertia(w, rd_walk_mass(walk, walk->last), T, T, 1, A);
+    add_node(walk, walk->last, T, A);
 }
 
 /* motion <- motion L^-T with motion^T A motion = L L^T */
@@ -246,11 +259,31 @@ enum rd_status rd_rigid_fill(const struct rd_walk *walk, struct rd_rigid *rigid)
     return orthonormalise(w, A, rigid) ? RD_OK : RD_UNSTABLE_MASSLESS;
 }
 
-void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, size_t k, double *u)
+/* y = v^T u of the structures of a node, at rest */
+static void carry_along(const struct rd_chain *chain, int32_t term, const double *u, double *y)
+{
+    if (term == RD_NO_TERM)
+        return;
+    for (size_t k = rd_attached_first(chain, (size_t)term); rd_attached_is_of(chain, k, term);
+         k++) {
+        struct rd_foot foot;
+        double _Complex v[W];
+        rd_attached_fill(chain, k, 0, 0, &foot);
+        rd_attached_row(chain, k, foot.lever, v);
+        y[k] = 0;
+        for (size_t i = 0; i < chain->width; i++)
+            y[k] += creal(v[i]) * u[i];
+    }
+}
+
+void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, size_t k, double *u,
+                    double *y)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width;
     double T[W][W], DT[W][W], D[W * W], Q[W * W];
+    if (chain->attached > 0)
+        memset(y, 0, chain->attached * sizeof *y);
     begin(walk, T);
     for (size_t r = 0; r <= walk->legs; r++) {
         const struct rd_leg last = {.node = chain->nodes - 1, .count = 1, .first = walk->last};
@@ -265,6 +298,8 @@ void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, si
                     sum += (T[i][j] + (double)n * DT[i][j]) * rigid->motion[j][k];
                 u[(leg->node + n) * w + i] = held[i] ? 0 : sum;
             }
+            if (n == 0)
+                carry_along(chain, leg->first, u + leg->node * w, y);
         }
         advance(w, D, leg->count, T);
     }

@@ -13,7 +13,8 @@ struct rd_rigid {
    give no force anywhere. RD_UNSTABLE_MASSLESS where one of them moves no mass. */
 enum rd_status rd_rigid_fill(const struct rd_walk *walk, struct rd_rigid *rigid);
 
-/* u (nodes, width) of motion k */
-void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, size_t k, double *u);
+/* u (nodes, width) of motion k, and y (attached, of attached.h) of the structures that nodes carry */
+void rd_rigid_shape(const struct rd_walk *walk, const struct rd_rigid *rigid, size_t k, double *u,
+                    double *y);
 
 #endif

@@ -1,6 +1,7 @@
 /* Frequency response by one sweep from each end, in scattering form. */
 #include "sweep.h"
 
+#include "sweep_foot.h"
 #include "sweep_order.h"
 #include "sweep_plan.h"
 
@@ -27,6 +28,7 @@ static enum rd_status begin_block(struct sweep *s, const struct rd_factors *fact
     if (s->used == 0)
         return RD_SHORT_WAVES;
     rd_sweep_scale(s->chain, &s->runs, factors, s->index, s->extent, &s->block, s->way);
+    rd_sweep_feet(s->chain, &s->block, s->foot);
     s->planar = is_planar(s, 0);
     for (size_t lane = 1; lane < s->used; lane++)
         if (is_planar(s, lane) != s->planar)

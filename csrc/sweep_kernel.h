@@ -2,7 +2,7 @@
 #ifndef RD_SWEEP_KERNEL_H
 #define RD_SWEEP_KERNEL_H
 
-#include "chain.h"
+#include "attached.h"
 #include "lanes.h"
 #include "rate_matrix.h"
 #include "shape.h"
@@ -13,10 +13,11 @@ enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
 
 /* what a node term needs besides adding masses */
 enum rd_trait {
-    RD_COUPLED = 1, /* a coordinate is held, two are coupled or one is damped */
-    RD_SPRUNG = 2,  /* it has stiffness */
-    RD_HINGED = 4,  /* a hinge on its right */
-    RD_SKEW = 8,    /* its mass couples z and beta, far from an eccentric one */
+    RD_COUPLED = 1,  /* a coordinate is held, two are coupled or one is damped */
+    RD_SPRUNG = 2,   /* it has stiffness */
+    RD_HINGED = 4,   /* a hinge on its right */
+    RD_SKEW = 8,     /* its mass couples z and beta, far from an eccentric one */
+    RD_CARRIES = 16, /* structures, see attached.h; with RD_COUPLED */
 };
 
 enum { RD_PAIRS_MAX = RD_WIDTH_MAX * (RD_WIDTH_MAX + 1) / 2 };
@@ -46,13 +47,22 @@ struct sweep_way {
     cv dashpot[RD_PAIRS_MAX]; /* filled where the chain has damping */
 };
 
+/* rd_foot (attached.h) of RD_LANES frequencies, seen by the motion of its node */
+struct sweep_foot {
+    cv weight, gap, rest[2];
+    cv lever[RD_WIDTH_MAX];
+    int rests[2];            /* rest is not zero in every lane */
+    int moves[RD_WIDTH_MAX]; /* nor is lever */
+};
+
 struct sweep_walk {
     const struct rd_chain *chain;
     const struct sweep_block *block;
     const struct sweep_way *way;
-    const uint8_t *trait;   /* (terms) enum rd_trait */
-    const cv *coefficients; /* of each distinct element, or NULL: made on the way */
-    const cv *plain;        /* (distinct, RD_PLAIN) the same for a walk without rows */
+    const uint8_t *trait;          /* (terms) enum rd_trait */
+    const cv *coefficients;        /* of each distinct element, or NULL: made on the way */
+    const cv *plain;               /* (distinct, RD_PLAIN) the same for a walk without rows */
+    const struct sweep_foot *foot; /* (attached) */
 };
 
 /* A rigid element under so much compression is a string beside an element without it: below

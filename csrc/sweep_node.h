@@ -193,6 +193,79 @@ static RD_CLONES void K_(absorb_whole)(const struct sweep_walk *s, const double 
     }
 }
 
+/* A structure's -(w/e) v v^T as K_(absorb_one) takes c v v^T, without the quotient: where e = 0 it
+   holds v^T u, and the row of a coordinate of its own is U_own e/(e + i w v^T U v), to the last digit
+   however small e is. */
+static RD_CLONES void K_(absorb_foot)(const struct sweep_walk *s, const struct sweep_foot *foot,
+                                      struct sweep_state *state)
+{
+    cv v[W], Uv[W], h = c_zero();
+    lanes most = {0};
+    int own = -1;
+    KEEP for (int i = 0; i < W; i++) {
+        v[i] = c_scale_lanes(foot->lever[i], s->block->z[i] * s->way->sign[i]);
+        if (foot->moves[i])
+            own = own == -1 ? i : -2;
+        most += c_size(v[i]);
+    }
+    KEEP for (int i = 0; i < W; i++) {
+        Uv[i] = c_zero();
+        KEEP for (int j = 0; j < W; j++)
+            Uv[i] = c_add(Uv[i], c_mul(state->U[at(i, j)], v[j]));
+        h = c_add(h, c_mul(Uv[i], v[i]));
+    }
+    const cv iw = c_times_i(foot->weight);
+    const cv d = c_inverse(c_add(foot->gap, c_mul(iw, h)));
+    const cv left = c_mul(foot->gap, d), t = c_neg(c_mul(iw, d));
+    most *= sweep_most(state->U, SYM);
+    KEEP for (size_t r = 0; r < state->rows; r++) {
+        cv *row = state->E + r * W;
+        const cv kept = own < 0 ? c_zero() : c_mul(row[own], left);
+        cv Ev = c_zero();
+        KEEP for (int i = 0; i < W; i++)
+            Ev = c_add(Ev, c_mul(row[i], v[i]));
+        Ev = c_mul(Ev, t);
+        if (r % 2 == 0)
+            sweep_disturb(c_size(Ev) * most, W, row + W);
+        KEEP for (int i = 0; i < W; i++)
+            row[i] = c_add(row[i], c_mul(Ev, Uv[i]));
+        if (own >= 0)
+            row[own] = kept;
+    }
+    cv kept[W];
+    KEEP for (int j = 0; own >= 0 && j < W; j++)
+        kept[j] = c_mul(state->U[at(own, j)], left);
+    KEEP for (int i = 0; i < W; i++) {
+        const cv tU = c_mul(t, Uv[i]);
+        KEEP for (int j = i; j < W; j++)
+            state->U[at(i, j)] = c_add(state->U[at(i, j)], c_mul(tU, Uv[j]));
+    }
+    KEEP for (int j = 0; own >= 0 && j < W; j++) {
+        state->U[at(own, j)] = kept[j];
+        state->A[at(own, j)] *= c_size(j == own ? c_mul(left, left) : left);
+    }
+}
+
+/* the structures that node term t carries: what is regular of them, then their poles */
+static void K_(absorb_feet)(const struct sweep_walk *s, size_t t, struct sweep_state *state)
+{
+    const struct rd_chain *chain = s->chain;
+    for (size_t k = rd_attached_first(chain, t); rd_attached_is_of(chain, k, (int32_t)t); k++) {
+        const struct sweep_foot *foot = s->foot + k;
+        KEEP for (size_t part = 0; part < 2; part++) {
+            const double *row = chain->attached_row + (2 * k + part) * W;
+            lanes v[W];
+            if (!foot->rests[part])
+                continue;
+            KEEP for (int i = 0; i < W; i++)
+                v[i] = s->block->z[i] * (s->way->sign[i] * row[i]);
+            K_(absorb_one)(v, K_(only)(row), foot->rest[part], state->U, state->A, state->E,
+                           state->rows);
+        }
+        K_(absorb_foot)(s, foot, state);
+    }
+}
+
 /* The rank-one parts d row row^T of m, which is destroyed: how many, at most W pivots and as many
    splits, and whether they have both signs. */
 static int K_(split)(double *m, double *d, double (*row)[RD_WIDTH_MAX], int *indefinite)
@@ -245,6 +318,8 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
                            state->E, state->rows);
         }
     }
+    if (s->trait[t] & RD_CARRIES)
+        K_(absorb_feet)(s, t, state);
     state->absorbed = 1;
 }
 

@@ -1,4 +1,5 @@
 /* Left and right parts and where they meet. */
+#include "sweep_foot.h"
 #include "sweep_plan.h"
 
 #include <float.h>
@@ -31,6 +32,7 @@ static lanes weight(const struct sweep *s, const struct tap *tap)
         lanes N = spring * fabs(s->chain->stiffness[at]) + inertia * fabs(s->chain->mass[at]);
         if (s->chain->damping)
             N += c_size(s->block.dashpot) * fabs(s->chain->damping[at]);
+        N += rd_sweep_foot_size(s->chain, s->foot, tap->term, i);
         const lanes own = 1.0 + N * s->block.z[i] * s->block.z[i];
         most = l_select(own > most, own, most);
     }

@@ -91,6 +91,8 @@ static uint8_t trait_of(const struct rd_chain *chain, size_t t)
                         : RD_COUPLED;
         }
     }
+    if (rd_attached_is_of(chain, rd_attached_first(chain, t), (int32_t)t))
+        trait |= RD_COUPLED | RD_CARRIES;
     return (uint8_t)trait;
 }
 
@@ -122,6 +124,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
     cv *plain = NULL;
     if (chain->distinct <= DISTINCT_MOST && !chain->inertia && kernels[w - 1]->walk_plain)
         plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *plain);
+    struct sweep_foot *foot = take_lanes(workspace, chain->attached, sizeof *foot);
     uint8_t *trait = rd_take(workspace, chain->terms, sizeof *trait);
     size_t *order = rd_take(workspace, factors->count, sizeof *order);
     if (!rd_workspace_fits(workspace))
@@ -148,6 +151,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
         .value = value,
         .error = error,
         .weight = heavy,
+        .foot = foot,
         .trait = trait,
         .order = order,
         .failed = factors->count,
@@ -157,6 +161,7 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
     for (size_t t = 0; t < chain->terms; t++)
         trait[t] = trait_of(chain, t);
     for (size_t b = 0; b < 2; b++)
-        s->walk[b] = (struct sweep_walk){chain, &s->block, &s->way[b], trait, coefficients, plain};
+        s->walk[b] =
+            (struct sweep_walk){chain, &s->block, &s->way[b], trait, coefficients, plain, foot};
     return s;
 }

@@ -27,22 +27,23 @@ struct sweep {
     double shear;   /* largest (S_cb/S_bb)^2 of a width of 3 */
     int planar;     /* this block's does */
     struct taps carry, meet;
-    size_t *rank;           /* (carried) */
-    size_t records;         /* different nodes where parts meet */
-    cv *record;             /* (records, 2 sym + 2 carried width) left parts there */
-    cv *rows;               /* (carried, 2, width) each with its companion */
-    cv *table;              /* (levels, coefs) of the pieces of one run */
-    cv *triple;             /* (2, coefs) */
-    cv *coefficients;       /* (distinct, coefs) or NULL */
-    cv *plain;              /* (distinct, RD_PLAIN) or NULL */
-    cv *value;              /* (carried) */
-    lanes *error;           /* (carried) */
-    lanes *weight;          /* (carried) of rounding, 1 where no node is heavy */
-    uint8_t *trait;         /* (terms) enum rd_trait */
-    size_t *order;          /* (frequencies) */
-    size_t index[RD_LANES]; /* frequencies of the block */
-    size_t used;            /* lanes of it that are not repeated */
-    size_t failed;          /* the first frequency without a response, or their count */
+    size_t *rank;            /* (carried) */
+    size_t records;          /* different nodes where parts meet */
+    cv *record;              /* (records, 2 sym + 2 carried width) left parts there */
+    cv *rows;                /* (carried, 2, width) each with its companion */
+    cv *table;               /* (levels, coefs) of the pieces of one run */
+    cv *triple;              /* (2, coefs) */
+    cv *coefficients;        /* (distinct, coefs) or NULL */
+    cv *plain;               /* (distinct, RD_PLAIN) or NULL */
+    cv *value;               /* (carried) */
+    lanes *error;            /* (carried) */
+    lanes *weight;           /* (carried) of rounding, 1 where no node is heavy */
+    struct sweep_foot *foot; /* (attached) */
+    uint8_t *trait;          /* (terms) enum rd_trait */
+    size_t *order;           /* (frequencies) */
+    size_t index[RD_LANES];  /* frequencies of the block */
+    size_t used;             /* lanes of it that are not repeated */
+    size_t failed;           /* the first frequency without a response, or their count */
     struct sweep_table tabled;
     struct sweep_block block;
     struct sweep_way way[2];

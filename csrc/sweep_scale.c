@@ -86,7 +86,7 @@ static void load(const struct rd_chain *chain, const struct rd_factors *f, size_
     load_one(f->tension + 2 * i, lane, &into->tension);
     load_one(f->spring + 2 * i, lane, &into->spring);
     load_one(f->inertia + 2 * i, lane, &into->inertia);
-    if (rd_chain_is_dragged(chain))
+    if (rd_chain_is_dragged(chain) || chain->attached > 0)
         load_one(f->dashpot + 2 * i, lane, &into->dashpot);
 }
 

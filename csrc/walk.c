@@ -1,6 +1,7 @@
 /* A chain prepared for walking: its triples and its runs of equal elements. */
 #include "walk.h"
 
+#include "attached.h"
 #include "dense.h"
 #include "element.h"
 #include "inertia.h"
@@ -186,6 +187,8 @@ static bool is_finite(const struct rd_chain *chain)
             return false;
     const size_t terms = chain->terms * chain->width * chain->width;
     return (!chain->inertia || are_finite(chain->distinct * chain->width, chain->inertia)) &&
+           are_finite(chain->attached * RD_ATTACHED_VALUES, chain->attached_value) &&
+           are_finite(chain->attached * 2 * chain->width, chain->attached_row) &&
            are_finite(chain->distinct, chain->length) &&
            are_finite(chain->distinct, chain->tension) &&
            (!chain->sag || are_finite(chain->distinct, chain->sag)) &&
@@ -273,12 +276,21 @@ double rd_walk_stiffness(const struct rd_walk *walk, size_t element, size_t i)
     return fmax(fabs(Gi[i * (w + 1)]) + fabs(P[i * (w + 1)]), fabs(left));
 }
 
+/* of the structures of a node term, far above their own eigenvalues */
+static double carried_stiffness(const struct rd_chain *chain, size_t t, size_t i, double lambda)
+{
+    double _Complex D[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
+    rd_attached_add(chain, t, -lambda, 0, D);
+    return cabs(D[i * (chain->width + 1)]);
+}
+
 double rd_walk_ceiling(const struct rd_walk *walk)
 {
     const struct rd_chain *chain = walk->chain;
     const size_t w = chain->width, block = w * w;
     double ceiling = 0;
-    if (rd_inertia_is_endless(chain))
+    const double above = 16 * rd_attached_highest(chain);
+    if (rd_inertia_is_endless(chain) || isinf(above))
         return INFINITY;
     for (size_t i = 0; i < w; i++) {
         double stiffness = 0, springs = 0, mass = INFINITY;
@@ -286,12 +298,13 @@ double rd_walk_ceiling(const struct rd_walk *walk)
             stiffness = fmax(stiffness, rd_walk_stiffness(walk, e, i));
         for (size_t t = 0; t < chain->terms; t++) {
             const double m = fabs(chain->mass[t * block + i * (w + 1)]);
-            springs = fmax(springs, fabs(chain->stiffness[t * block + i * (w + 1)]));
+            springs = fmax(springs, fabs(chain->stiffness[t * block + i * (w + 1)]) +
+                                        carried_stiffness(chain, t, i, above));
             mass = m > 0 ? fmin(mass, m) : mass;
         }
         ceiling = fmax(ceiling, 16 * (double)w * (stiffness + springs) / mass);
     }
-    return ceiling;
+    return fmax(ceiling, above);
 }
 
 double rd_walk_radians(const struct rd_walk *walk, const struct rd_leg *leg, double lambda)

@@ -98,6 +98,28 @@ RD_INLINE void add_pair(struct wave *wave, int j, int k, lanes q)
     change(wave, c_turn(c_invert(p), q), y);
 }
 
+/* A structure -(w/e) v v^T (attached.h), a spring q = -w/e on v^T u: p = (e - i w v^T U v)/e and
+   x = -i w/(e - i w v^T U v), which holds v^T u where e = 0. `own` is the only coordinate of v, or -1:
+   its column is U e_own/p without cancellation. */
+RD_INLINE void add_pole(struct wave *wave, const lanes *v, int own, lanes w, lanes e)
+{
+    cv y[W], h = c_make(l_fill(0), l_fill(0)), column[W];
+    for (int i = 0; i < W; i++) {
+        y[i] = c_make(l_fill(0), l_fill(0));
+        for (int j = 0; j < W; j++)
+            y[i] = c_add(y[i], c_scale_lanes(wave->U[i][j], v[j]));
+        h = c_add(h, c_scale_lanes(y[i], v[i]));
+        column[i] = own < 0 ? y[i] : wave->U[i][own];
+    }
+    const cv d = c_make(e + w * h.im, -w * not_negative(h.re));
+    const lanes size = 1 / c_size(d), up = l_select(e > 0.0, size, -size);
+    turn(wave, c_scale_lanes(d, up), w * up <= 0.0);
+    const cv inverse = c_scale_lanes(c_invert(c_scale_lanes(d, size)), size);
+    change(wave, c_turn(inverse, -w), y);
+    for (int i = 0; own >= 0 && i < W; i++)
+        wave->U[i][own] = wave->U[own][i] = c_mul(column[i], c_scale_lanes(inverse, e));
+}
+
 /* Coordinate j held from here on: the spring q -> infinity, p = i U_jj */
 RD_INLINE void hold(struct wave *wave, int j)
 {

@@ -19,7 +19,7 @@ from .frf import FRF
 from .gravity import Gravity
 from .model import Model
 from .modes import Modes
-from .part import Dashpot, Hinge, PointMass, Spring, Support
+from .part import BrokenWire, Dashpot, Hinge, PointMass, Resonator, Spring, Support
 from .peaks import Peaks
 from .resonance import Resonances
 from .rope import Rope
@@ -34,6 +34,7 @@ __all__ = [
     "AccuracyCost",
     "AddedMass",
     "Answer",
+    "BrokenWire",
     "Choice",
     "Comparison",
     "Cost",
@@ -53,6 +54,7 @@ __all__ = [
     "PointMass",
     "RayleighDamping",
     "Resonances",
+    "Resonator",
     "Rope",
     "RopedynError",
     "Scene",

@@ -264,10 +264,11 @@ def frf(
 
 def _points(value: Any, name: str, *, forces: bool) -> Any:
     """Return a point, or several, of a rope that is not known yet."""
+    wires = check.MOST_WIRES if forces else None
     if isinstance(value, (tuple, list)) and len(value) > 0 and not isinstance(value[0], str):
         every = check.COORDINATES
         return tuple(
-            check.point(one, f"{name}[{k}]", every, None, forces=forces)
+            check.point(one, f"{name}[{k}]", every, None, forces=forces, wires=wires)
             for k, one in enumerate(value)
         )
-    return check.point(value, name, check.COORDINATES, None, forces=forces)
+    return check.point(value, name, check.COORDINATES, None, forces=forces, wires=wires)

@@ -16,6 +16,9 @@ KINDS = ("difference", "rigid", "tensed", "continuous")
 
 TENSED, CONTINUOUS = KINDS.index("tensed"), KINDS.index("continuous")
 
+ATTACHED = ("resonator", "broken wire")
+"""Kinds of structure that a node carries, in the core's order."""
+
 CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 """Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
 
@@ -68,7 +71,7 @@ class Chain(NamedTuple):
     attached_row: NDArray[np.float64] | None = None
     """(attached, 2, width) displacement and rotation of its foot per motion of the node."""
     attached_value: NDArray[np.float64] | None = None
-    """(attached, 4) its numbers."""
+    """(attached, 4) its numbers, its damping last."""
 
     @property
     def nodes(self) -> int:
@@ -93,8 +96,11 @@ class Chain(NamedTuple):
 
     @property
     def finite(self) -> int | None:
-        """How many modes there can be at most, None where elements have inertia of their own."""
-        return self.free if self.inertia is None or not self.inertia.any() else None
+        """How many modes there can be at most, None where inertia is spread along something."""
+        if self.inertia is not None and self.inertia.any():
+            return None
+        kinds = () if self.attached_kind is None else self.attached_kind
+        return None if ATTACHED.index("broken wire") in kinds else self.free + len(kinds)
 
     @property
     def undamped(self) -> Chain:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
-from .unit import OF_FORCE
+from .unit import OF_FORCE, WIRE
 
 COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
@@ -21,6 +21,9 @@ COORDINATES = ("x", "z", "alpha", "beta")
 
 NEAR = 1e-9
 """Positions closer than this part of the length are one node."""
+
+MOST_WIRES = 1_000_000
+"""Where a scene is not known yet."""
 
 HIGHEST = 1e150
 """Of frequencies [Hz], so that squares do not overflow."""
@@ -157,16 +160,29 @@ def frequencies(value: Any) -> NDArray[np.float64]:
 
 
 def point(
-    value: Any, name: str, present: Sequence[str], length: float | None, *, forces: bool = False
+    value: Any,
+    name: str,
+    present: Sequence[str],
+    length: float | None,
+    *,
+    forces: bool = False,
+    wires: int | None = None,
 ) -> tuple[str, float]:
-    """Return a coordinate and a position, such as ("z", 0.5), on the rope where that is known."""
+    """Return a coordinate and a position, such as ("z", 0.5), on the rope where that is known.
+
+    Internal forces and, out of so many, the tips of wires are allowed where that is said.
+    """
     what = 'a coordinate and a position [m] such as ("z", 0.5)'
     if not isinstance(value, (tuple, list)):
         raise TypeError(_expected(name, what, "", value))
     if len(value) != 2:
         raise SceneError(_expected(name, what, "", value))
     names = (*COORDINATES, *OF_FORCE) if forces else COORDINATES
-    coordinate = one_of(value[0], f"{name}[0]", names)
+    coordinate = one_of(value[0], f"{name}[0]", names if wires is None else (*names, WIRE))
+    if coordinate == WIRE and wires is not None:
+        if wires == 0:
+            raise SceneError(f"{name} must not ask for a wire: the scene has no BrokenWire")
+        return coordinate, count(value[1], f"{name}[1]", least=0, most=wires - 1)
     if OF_FORCE.get(coordinate, coordinate) not in present:
         raise SceneError(
             f"{name}[0] must be a coordinate the scene has ({', '.join(present)}), "

@@ -25,6 +25,7 @@ from .model import Model
 from .peaks import Peaks
 from .port import Point
 from .scene import Scene
+from .unit import WIRE
 
 STUDY_FOLDER = Path("ropedyn-study")
 
@@ -265,7 +266,7 @@ def _point(text: str, option: str) -> Point:
     coordinate, at, position = text.partition("@")
     try:
         if at:
-            return coordinate, float(position)
+            return coordinate, int(position) if coordinate == WIRE else float(position)
     except ValueError:
         pass
     raise SceneError(f"{option} must be coordinate@position [m] such as z@0.5, got {shown(text)}")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, mesh
-from .chain import CONTINUOUS, KINDS, TENSED, Chain, components
+from .chain import ATTACHED, CONTINUOUS, KINDS, TENSED, Chain, components
 from .damping import drag
 from .end import end_of
 from .errors import SceneError
@@ -235,7 +235,7 @@ def _chain(
     if kind == TENSED and "beta" in scene.coordinates:
         _correct_ends(scene, elements, mass[: len(stations)])
     stiffness, held, hinge = _terms(scene, stations, mass, damping)
-    return Chain(
+    chain = Chain(
         kind=kind,
         coordinate=np.array(
             [check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32
@@ -254,6 +254,32 @@ def _chain(
         damping=damping if damping.any() else None,
         drag=along if along.any() and not is_lumped else None,
         sag=elements.sag,
+    )
+    return _with_attached(scene, stations, chain)
+
+
+def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) -> Chain:
+    """Return the chain with the structures that its stations carry."""
+    carried = [(at, one) for at, term in _standing(scene, stations) for one in term.attached]
+    if not carried:
+        return chain
+    carried.sort(key=lambda pair: pair[0])  # stable: those of a station in the order of the parts
+    row = np.zeros((len(carried), 2, len(scene.coordinates)))
+    for k, (station, one) in enumerate(carried):
+        for line, moves in enumerate((one.displacement, one.rotation)):
+            for coordinate, value in moves.items():
+                if coordinate in scene.coordinates:
+                    row[k, line, scene.coordinates.index(coordinate)] = value
+        if not (row[k].any(axis=0) & (chain.held[station] == 0)).any():
+            raise SceneError(
+                f"a {one.kind} must stand where its foot can move, got one at "
+                f"{float(stations[station])!r} m, where that is held"
+            )
+    return chain._replace(
+        attached_kind=np.array([ATTACHED.index(one.kind) for _, one in carried], dtype=np.int32),
+        attached_term=np.array([station for station, _ in carried], dtype=np.int32),
+        attached_row=row,
+        attached_value=np.array([one.value for _, one in carried]),
     )
 
 

@@ -209,7 +209,7 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=mass / size**2,
         shape=shape[:, ::more] / size[:, None, None],
-        energy=fractions(model, np.abs(value), strain, kinetic),
+        energy=fractions(model, np.abs(value), strain, kinetic, np.zeros((len(value), 3))),
     )
 
 

@@ -8,14 +8,14 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, check, damping
 from .answer import Cost, Work
-from .chain import CHANNELS, Chain
+from .chain import ATTACHED, CHANNELS, Chain
 from .compile import check_points, finer
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
@@ -48,6 +48,8 @@ class Found:
         [rad^2/s^2].
     shape : ndarray, shape (k, nodes, width) or None
         Over the component's coordinates, None where it was not asked for.
+    motion : ndarray, shape (k, attached) or None
+        Of the structures that the component's nodes carry, as y in csrc/attached.h [m].
     certified : bool
         Whether none is missing.
     work : Work
@@ -59,6 +61,7 @@ class Found:
     shape: Real | None
     certified: bool
     work: Work
+    motion: Real | None = None
 
 
 def solve_modes(
@@ -239,8 +242,9 @@ def _sweep(
     if len(found) == 1:
         return found[0]
     eigenvalue, error, order = _merged(found, number)
-    shape = None
+    shape = motion = None
     if shaped:
+        motion = np.concatenate([part.motion for part in found if part.motion is not None])[order]
         parts = []
         for part, (first, last) in zip(found, chain.spans):
             assert part.shape is not None
@@ -248,7 +252,8 @@ def _sweep(
             parts[-1][:, first : last + 1] = part.shape
         shape = np.concatenate(parts)[order]
     certified = all(part.certified for part in found)
-    return Found(eigenvalue, error, shape, certified, Work.of(part.work for part in found))
+    work = Work.of(part.work for part in found)
+    return Found(eigenvalue, error, shape, certified, work, motion)
 
 
 def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
@@ -267,7 +272,7 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> F
     """
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
-    eigenvalue, error, certified, shape, found, sweeps, redone = _in_threads(
+    eigenvalue, error, certified, shape, motion, found, sweeps, redone = _in_threads(
         _core.certify, max(chain.nodes, 100 * wanted), chain, wanted, _upper(limit), shaped
     )
     if not np.isfinite(eigenvalue[:found]).all() or not np.isfinite(error[:found]).all():
@@ -278,6 +283,7 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> F
         shape[:found] if shaped else None,
         bool((certified[:found] == 1).all()),
         Work(sweeps, redone=redone),
+        motion[:found] if shaped else None,
     )
 
 
@@ -293,6 +299,12 @@ def _lapack(
     model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> Found:
     chain = model.chain.undamped.only(component)
+    if chain.attached_kind is not None:
+        kinds = sorted({ATTACHED[kind] for kind in chain.attached_kind})
+        raise SceneError(
+            f'solver must be "sweep" where the scene has a {" or a ".join(kinds)}, got "lapack": '
+            "its matrix problem is linear"
+        )
     if chain.free > LARGEST_DENSE:
         raise SolveError(
             f"({', '.join(component)}) has {chain.free} unknowns: solver 'lapack' needs a dense "
@@ -395,19 +407,43 @@ def _vectors(
 ) -> Vectors:
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
+    motion = _motion(model, found)[order]
+    carried = np.zeros((len(order), 3))
+    if motion.size:
+        carried = _core.carried(model.chain, shape, motion, eigenvalue)
     own = kinetic.argmax(axis=1)
-    size = largest(shape, own)
+    size, most = largest(shape, own), np.abs(motion).max(axis=1, initial=0.0)
+    # where the rope stands still, what it carries is what moves
+    size = np.where(np.abs(size) < UNSEEN * most, most, size)
     shape /= size[:, None, None]
-    strain, kinetic = strain / size[:, None] ** 2, kinetic / size[:, None] ** 2
+    strain, kinetic, carried = (e / size[:, None] ** 2 for e in (strain, kinetic, carried))
     dragged /= size**2
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     return Vectors(
-        damping_ratio=_damping_ratio(model, omega, strain, kinetic, dragged),
+        damping_ratio=_damping_ratio(model, omega, _Energies(strain, kinetic, dragged, carried)),
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
-        modal_mass=kinetic.sum(axis=1),
+        modal_mass=kinetic.sum(axis=1) + carried[:, 1],
         shape=shape,
-        energy=fractions(model, eigenvalue, strain, kinetic),
+        energy=fractions(model, eigenvalue, strain, kinetic, carried),
     )
+
+
+def _motion(model: Model, found: Sequence[Found]) -> Real:
+    """Return the motion of all structures that nodes carry, by component; shape (k, attached)."""
+    modes = [len(part.eigenvalue) for part in found]
+    if model.chain.attached_row is None:
+        return np.zeros((sum(modes), 0))
+    motions = []
+    for part, count, component in zip(found, modes, model.components):
+        kept = [model.coordinates.index(c) for c in component]
+        row = model.chain.attached_row[:, :, kept]
+        moved = (row != 0).any(axis=2).any(axis=1)
+        motion = np.zeros((count, len(row)))
+        if moved.any():
+            assert part.motion is not None
+            motion[:, moved] = part.motion
+        motions.append(motion)
+    return np.concatenate(motions)
 
 
 def _spread(model: Model, found: Sequence[Found]) -> Real:
@@ -442,29 +478,39 @@ def error_in_hertz(eigenvalue: Real, error: Real) -> Real:
     return np.maximum(change, wide) / (2 * math.pi)
 
 
+class _Energies(NamedTuple):
+    """Twice the energies of shapes."""
+
+    strain: NDArray[np.float64]
+    """(k, strains)."""
+    kinetic: NDArray[np.float64]
+    """(k, coordinates) modal mass of the rope and its nodes."""
+    dragged: NDArray[np.float64]
+    """(k,) modal damping of drag and dashpots."""
+    carried: NDArray[np.float64]
+    """(k, 3) strain, modal mass and losses of the structures that nodes carry."""
+
+
 def _damping_ratio(
-    model: Model,
-    omega: NDArray[np.float64],
-    strain: NDArray[np.float64],
-    kinetic: NDArray[np.float64],
-    dragged: NDArray[np.float64],
+    model: Model, omega: NDArray[np.float64], energies: _Energies
 ) -> NDArray[np.float64]:
     """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega.
 
     And the ratio that a mode has by itself.
     """
+    strain, kinetic, dragged, carried = energies
     part = np.stack(
         [
             strain[:, : STRAINS.index("tension")].sum(axis=1),
             strain[:, STRAINS.index("tension")],
             strain[:, STRAINS.index("spring")],
-            kinetic.sum(axis=1),
+            kinetic.sum(axis=1) + carried[:, 1],
             dragged,
         ],
         axis=1,
     )
     dampings = model.scene.dampings
-    lost = (damping.factors(dampings, omega).imag * part).sum(axis=1)
+    lost = (damping.factors(dampings, omega).imag * part).sum(axis=1) + carried[:, 2]
     twice = 2 * omega**2 * part[:, damping.INERTIA]
     ratio = damping.ratios(dampings, len(omega))
     np.add(ratio, np.divide(lost, twice, where=omega > 0, out=np.zeros_like(lost)), out=ratio)
@@ -476,9 +522,10 @@ def fractions(
     eigenvalue: NDArray[np.float64],
     strain: NDArray[np.float64],
     kinetic: NDArray[np.float64],
+    carried: NDArray[np.float64],
 ) -> dict[str, NDArray[np.float64]]:
     """Return shares of the strain and of the kinetic energy."""
-    total = strain.sum(axis=1)
+    total, moving = strain.sum(axis=1) + carried[:, 0], kinetic.sum(axis=1) + carried[:, 1]
     moves = (eigenvalue != 0) & (total != 0)
     energy = {}
     stores = {"spring": {"spring", "hinge"}}
@@ -487,5 +534,8 @@ def fractions(
             share = np.divide(strain[:, k], total, out=np.zeros_like(total), where=moves)
             energy[name] = share
     for k, name in enumerate(model.coordinates):
-        energy[name] = kinetic[:, k] / kinetic.sum(axis=1)
+        energy[name] = kinetic[:, k] / moving
+    if model.chain.attached_row is not None:
+        energy["attached"] = np.divide(carried[:, 0], total, out=np.zeros_like(total), where=moves)
+        energy["attached mass"] = carried[:, 1] / moving
     return energy

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, check, damping
+from . import _core, check, damping, tip
 from .answer import Cost
 from .chain import Chain
 from .errors import SceneError, SolveError
@@ -21,6 +21,7 @@ from .frf import FRF, Mesh
 from .mesh_error import mesh_of_frf
 from .modal_sum import modal_sum, refuse_other_damping
 from .model import EXACT, MOST_STEPS, Model
+from .part import BrokenWire
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reaction import first_left_end
 from .unit import OF_FORCE, QUANTITIES
@@ -73,7 +74,9 @@ class Question:
             damping.TENSION: "z" in self.component and self.model.scene.tension != 0,
             damping.SPRING: bool(chain.stiffness.any()),
             damping.INERTIA: True,
-            damping.DASHPOT: chain.damping is not None or chain.drag is not None,
+            damping.DASHPOT: chain.damping is not None
+            or chain.drag is not None
+            or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
         }
         return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
 
@@ -137,7 +140,8 @@ def solve_frf(
     f = check.frequencies(frequency)
     drives, several = _points(model, drive, "drive", forces=False)
     responses = drives if response is None else _points(model, response, "response")[0]
-    value = np.zeros((len(drives), len(responses), len(f)), dtype=np.complex128)
+    asked = tip.spread(model, responses)
+    value = np.zeros((len(drives), len(asked), len(f)), dtype=np.complex128)
     error = np.zeros(value.shape)
     truncation = np.zeros(value.shape)
     unknowns, solved = 0, 0
@@ -148,11 +152,11 @@ def solve_frf(
     start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if point[0] in component]
-        r = [k for k, point in enumerate(responses) if moving(point) in component]
+        r = [k for k, point in enumerate(asked) if moving(point) in component]
         if not d or not r:
             continue
         block = np.ix_(d, r)
-        pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
+        pushed, watched = [drives[k] for k in d], [asked[k] for k in r]
         question = Question(model, component, f, factor, pushed, watched, workers)
         if is_modal:
             value[block], error[block], truncation[block], lines = modal_sum(question, solve)
@@ -161,6 +165,9 @@ def solve_frf(
             lines = len(f)
         unknowns += free
         solved += lines
+    if any(map(tip.is_tip, responses)):
+        _, truncation = tip.gather(model, responses, factor, value, truncation)
+        value, error = tip.gather(model, responses, factor, value, error)
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
     if QUANTITIES[quantity] > 0:
@@ -207,9 +214,15 @@ def _points(
     """Return one or several points, and whether a list of them was given."""
     several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
     length = model.scene.rope.length
+    wires = sum(isinstance(part, BrokenWire) for part in model.scene.parts)
     points = tuple(
         check.point(
-            one, f"{name}[{k}]" if several else name, model.coordinates, length, forces=forces
+            one,
+            f"{name}[{k}]" if several else name,
+            model.coordinates,
+            length,
+            forces=forces,
+            wires=wires if forces else None,
         )
         for k, one in enumerate(given if several else (given,))
     )

@@ -340,7 +340,8 @@ class Model:
             What is watched; the drive points where left out. Also internal forces such as
             ``("F_z", 0.3)`` or ``("M_beta", 0.0)``: what the rope right of the position puts on
             the rope left of it, just left of a load or mass that stands there; these need the
-            sweep or the band.
+            sweep or the band. And ``("wire", 0)``: the transverse motion of the tip of the first
+            `BrokenWire` among the parts.
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration per force.
         solver : {"sweep", "lapack", "band"}

@@ -99,7 +99,8 @@ class Modes(Answer):
     energy : dict of ndarray, shape (k,)
         Fractions: strain "bending", "twist", "stretch", "lay", "tension", "spring" as far as the
         scene has them, sum 1 (all 0 for rigid-body motion); kinetic "x", "z", "alpha", "beta" of
-        the coordinates there are, sum 1.
+        the coordinates there are, sum 1. The springs and the motion of resonators and broken wires
+        are "attached" and "attached mass", where the scene has any.
     cost : Cost
         What the frequencies cost.
     """
@@ -172,8 +173,9 @@ class Modes(Answer):
         }
         if (self.growth > 0).any():
             columns["growth [1/s]"] = self.growth
-        kinds = {"kinetic": self.coordinates}
-        kinds["strain"] = tuple(k for k in self.energy if k not in self.coordinates)
+        moving = (*self.coordinates, "attached mass")
+        kinds = {"kinetic": tuple(k for k in moving if k in self.energy)}
+        kinds["strain"] = tuple(k for k in self.energy if k not in moving)
         for kind, names in kinds.items():
             columns |= {f"{kind} {name} [%]": 100 * self.energy[name] for name in names}
         return Table.of("natural frequencies", columns)

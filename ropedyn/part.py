@@ -9,9 +9,27 @@ from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple, Protocol
 
+import numpy as np
+
 from . import check
 from . import stretch as _stretch
+from .errors import SceneError
 from .stretch import Stretch
+
+FIRST_ROOT = 1.8751040687119611
+"""Of 1 + cos x cosh x."""
+
+
+class Attached(NamedTuple):
+    """A structure condensed to its foot at a node; see csrc/attached.h."""
+
+    kind: str
+    """In `chain.ATTACHED`."""
+    displacement: Mapping[str, float]
+    """Of the foot per motion of the node."""
+    rotation: Mapping[str, float]
+    value: tuple[float, float, float, float]
+    """Its numbers."""
 
 
 class NodeTerm(NamedTuple):
@@ -29,6 +47,8 @@ class NodeTerm(NamedTuple):
     """To the ground, in proportion to velocity [N s/m, N m s]."""
     nonlinear: str = ""
     """What must be otherwise where time is not integrated, empty where nothing must."""
+    attached: Sequence[Attached] = ()
+    """Structures that it carries."""
 
 
 class Part(Protocol):
@@ -325,7 +345,186 @@ class Hinge:
         return NodeTerm(hinge={"beta": compliance})
 
 
-KINDS = (PointMass, Spring, Dashpot, Support, Hinge, *_stretch.KINDS)
+@dataclass(frozen=True)
+class Resonator:
+    """A mass on a spring: a tuned absorber, an attached instrument.
+
+    It moves transversely, with the rope's z as the motion of its foot. In the modes it is free of
+    damping, as the rope is. Rayleigh damping of the rope acts on its mass, other dampings of the
+    rope do not act on it.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    mass : float
+        [kg].
+    frequency : float
+        Its own, with its foot held [Hz]: the spring has mass (2 pi frequency)^2.
+    damping_ratio : float, optional
+        Of the critical damping at that frequency: a dashpot 2 damping_ratio mass (2 pi frequency)
+        beside the spring.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, the mass or the frequency is not positive or the damping is
+        negative; in a model, if z cannot move where it stands.
+
+    Examples
+    --------
+    An absorber tuned to the drive keeps its foot still:
+
+    >>> import ropedyn as rd
+    >>> absorber = rd.Resonator(0.5, 0.01, 16.0)
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[absorber]).compile()
+    >>> bool(abs(model.frf([16.0], drive=("z", 0.5)).value[0, 0]) < 1e-15)
+    True
+    """
+
+    kind: ClassVar[str] = "resonator"
+
+    x: float
+    mass: float
+    frequency: float
+    _: KW_ONLY
+    damping_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        for name, unit in (("mass", "kg"), ("frequency", "Hz")):
+            value = check.number(getattr(self, name), name, unit, sign="positive")
+            object.__setattr__(self, name, value)
+        ratio = check.number(self.damping_ratio, "damping_ratio", sign="nonnegative")
+        object.__setattr__(self, "damping_ratio", ratio)
+        numbers = [*self._values, self._values[1] / self._values[0]]
+        if not np.isfinite(numbers).all() or 0.0 in (self._values[1], numbers[-1]):
+            raise SceneError(
+                "frequency must leave the stiffness mass (2 pi frequency)^2 a number [N/m], got "
+                f"{self.mass!r} kg and {self.frequency!r} Hz"
+            )
+
+    @property
+    def _values(self) -> tuple[float, float, float, float]:
+        """Mass, stiffness and damping as the core takes them."""
+        omega = np.float64(2 * math.pi * self.frequency)
+        with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+            stiffness = self.mass * omega * omega
+            damping = 2 * self.damping_ratio * self.mass * omega
+        return self.mass, float(stiffness), 0.0, float(damping)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """The displacement of its foot."""
+        return ("z",)
+
+    def term(self) -> NodeTerm:
+        """Return the structure, which moves with z."""
+        return NodeTerm(attached=[Attached(self.kind, {"z": 1.0}, {}, self._values)])
+
+
+@dataclass(frozen=True)
+class BrokenWire:
+    """The free end of a broken wire: a small cantilever that the rope carries.
+
+    A solid round Euler-Bernoulli beam parallel to the axis, towards larger x. Its root moves
+    transversely by z + radius alpha and turns by beta, where the scene has these. In the modes it
+    is free of damping, as the rope is; dampings of the rope do not act on it, but Rayleigh damping
+    on its mass. The motion of its tip is the response ("wire", 0) of `Model.frf` for the first one
+    among the parts, and so on.
+
+    Parameters
+    ----------
+    x : float
+        Where its root is [m].
+    length, diameter : float
+        Of the wire [m].
+    radius : float
+        Of its root from the axis, sideways [m]: how far it moves with twist; may be negative.
+    youngs_modulus : float, optional
+        [N/m^2].
+    density : float, optional
+        [kg/m^3].
+    damping_ratio : float, optional
+        The modulus is E (1 + 2 i damping_ratio) in the frequency response: every mode of the wire
+        has this damping ratio at its resonance.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, a size is not positive or the damping is negative; in a model,
+        if its root cannot move where it stands.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> wire = rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3)
+    >>> print(round(wire.frequency, 2))
+    86.02
+    """
+
+    kind: ClassVar[str] = "broken wire"
+
+    x: float
+    length: float
+    diameter: float
+    _: KW_ONLY
+    radius: float
+    youngs_modulus: float = 2.06e11
+    density: float = 7850.0
+    damping_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        object.__setattr__(self, "radius", check.number(self.radius, "radius", "m"))
+        for name, unit in (
+            ("length", "m"),
+            ("diameter", "m"),
+            ("youngs_modulus", "N/m^2"),
+            ("density", "kg/m^3"),
+        ):
+            value = check.number(getattr(self, name), name, unit, sign="positive")
+            object.__setattr__(self, name, value)
+        ratio = check.number(self.damping_ratio, "damping_ratio", sign="nonnegative")
+        object.__setattr__(self, "damping_ratio", ratio)
+        with np.errstate(all="ignore"):
+            numbers = np.array([*self._values[:3], self.frequency])
+        if not np.isfinite(numbers).all() or (numbers == 0.0).any():
+            raise SceneError(
+                "length and diameter must leave mass and stiffness of the wire numbers, got "
+                f"{self.length!r} m and {self.diameter!r} m"
+            )
+
+    @property
+    def _values(self) -> tuple[float, float, float, float]:
+        """Mass, E I/length^3, length and damping as the core takes them."""
+        length, d = np.float64(self.length), np.float64(self.diameter)
+        mass = self.density * (math.pi * d * d / 4) * length
+        stiffness = self.youngs_modulus * (math.pi * d**4 / 64) / length**3
+        return float(mass), float(stiffness), self.length, self.damping_ratio
+
+    @property
+    def frequency(self) -> float:
+        """The first natural frequency with the root held [Hz]."""
+        mass, stiffness = (np.float64(v) for v in self._values[:2])
+        return float(FIRST_ROOT**2 * np.sqrt(stiffness / mass) / (2 * math.pi))
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """The displacement of its root; twist and bending where the scene has them."""
+        return ("z",)
+
+    def term(self) -> NodeTerm:
+        """Return the structure, which moves with z and alpha and turns with beta."""
+        moves = {"z": 1.0, "alpha": self.radius}
+        return NodeTerm(attached=[Attached(self.kind, moves, {"beta": 1.0}, self._values)])
+
+
+KINDS = (PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, *_stretch.KINDS)
 """Every kind of part."""
 
 

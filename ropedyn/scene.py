@@ -66,7 +66,8 @@ class Scene:
         Left and right end.
     damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, optional
         A tuple of them is their sum.
-    parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, AddedMass, LocalChange
+    parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, \
+AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
     gravity : Gravity, optional
         Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that

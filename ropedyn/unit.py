@@ -14,6 +14,8 @@ NAME = {
 FAMILY = {"x": "axial", "z": "transverse", "alpha": "torsional", "beta": "bending rotation"}
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """How often the displacement is differentiated."""
+WIRE = "wire"
+"""In a response: the tip of a broken wire, by its number among them."""
 
 
 def label(
@@ -21,13 +23,14 @@ def label(
 ) -> str:
     """Say what a response is, such as ``z at 0.500 m [m/N]``."""
     name, x = response
-    unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT[name]
+    unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT.get(name, UNIT["z"])
+    where = f"tip of {name} {x:.0f}" if name == WIRE else f"{name} at {x:.3f} m"
     unit += ("", "/s", "/s^2")[QUANTITIES[quantity]]
     if drive is None:
-        return f"{name} at {x:.3f} m [{unit}]"
+        return f"{where} [{unit}]"
     force = FORCE_UNIT[drive]
     per = f"{unit}/{force}" if " " not in force else f"{unit}/({force})"
-    return f"{name} at {x:.3f} m [{per}]"
+    return f"{where} [{per}]"
 
 
 def power(value: float) -> str:

@@ -24,7 +24,13 @@ SCENE = rd.Scene(
     ROPE.replace(rotary_inertia=1e-5, polar_inertia=1e-6),
     tension=100.0,
     ends=("clamped", "free"),
-    parts=[rd.PointMass(0.3, 0.05), rd.Spring(0.6, 100.0), rd.Hinge(0.6, stiffness=2.0)],
+    parts=[
+        rd.PointMass(0.3, 0.05),
+        rd.Spring(0.6, 100.0),
+        rd.Hinge(0.6, stiffness=2.0),
+        rd.Resonator(0.3, 0.01, 20.0, damping_ratio=0.1),
+        rd.BrokenWire(0.6, 0.05, 3e-4, radius=2e-3, damping_ratio=0.01),
+    ],
 )
 MODEL = SCENE.compile(elements=8, element="rigid")
 CHAIN = MODEL.chain  # 9 nodes, width 3
@@ -35,6 +41,7 @@ FACTOR = np.array([[1, 1, 1, -1.0 + 0j, 1j], [1, 1, 1, -400.0, 20j]])
 PORT = (np.array([2], dtype=np.int32), np.ones((1, 2, WIDTH)))
 FORCE = np.ones((NODES, WIDTH))
 SHAPES = np.ones((2, NODES, WIDTH))
+MOTIONS = np.ones((2, 2))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
 
 # every entry point that takes a chain
@@ -57,6 +64,8 @@ ENTRIES = {
     "mixed_deflection": lambda chain: _core.mixed_deflection(chain, FORCE),
     "triple": lambda chain: _core.triple(chain, 0, FACTOR.T.copy()),
     "energy": lambda chain: _core.energy(chain, SHAPES, np.array([1e4, 1e6])),
+    "carried": lambda chain: _core.carried(chain, SHAPES, MOTIONS, np.array([1e4, 1e6])),
+    "tip": lambda chain: _core.tip(chain, 1, FACTOR.T.copy()),
 }
 # those that have a meaning for continuous chains
 SPANS = {
@@ -66,6 +75,8 @@ SPANS = {
     "steps": ENTRIES["steps"],
     "characteristic": ENTRIES["characteristic"],
     "triple": ENTRIES["triple"],
+    "tip": ENTRIES["tip"],
+    "carried": lambda chain: _core.carried(chain, SHAPES[:, :4], MOTIONS, np.array([1e4, 1e6])),
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
 }
@@ -185,6 +196,7 @@ MALFORMED = {
             stiffness=np.zeros((len(CHAIN.mass), 5, 5)),
             held=np.zeros((len(CHAIN.mass), 5), np.uint8),
             hinge=None,
+            **dict.fromkeys(("attached_kind", "attached_term", "attached_row", "attached_value")),
         ),
         ValueError,
         "1 to 4 coordinates",
@@ -228,6 +240,20 @@ MALFORMED |= {
     ),
 }
 MALFORMED["hinge of nan"] = (put("hinge", math.nan, at=0), ValueError, r"hinge\[0, 0\]")
+MALFORMED |= {
+    "attached of a kind there is not": (put("attached_kind", 2), ValueError, r"attached_kind\[0\]"),
+    "attached to no term": (put("attached_term", 99, at=1), ValueError, r"attached_term\[1\] must"),
+    "attached out of order": (
+        swapped("attached_term", lambda a: a[::-1].copy()),
+        ValueError,
+        "attached_term must not decrease",
+    ),
+    "attached inside a stretch": (
+        put("attached_term", int(CHAIN.term[np.diff(CHAIN.first).argmax()]), at=1),
+        ValueError,
+        r"attached_term\[1\] must be the term of a single node",
+    ),
+}
 # arrays whose length another one decides
 for field in ("tension", "flexibility", "stiffness", "held", "hinge"):
     MALFORMED[f"{field} too short"] = (swapped(field, lambda a: a[1:]), ValueError, field)
@@ -325,6 +351,17 @@ REFUSED = {
         ValueError,
         "shape must have 9 entries along axis 1, got 8",
     ),
+    "motions of too few": (
+        lambda: _core.carried(CHAIN, SHAPES, MOTIONS[:, 1:], np.ones(2)),
+        ValueError,
+        "motion must have 2 entries along axis 1, got 1",
+    ),
+    "tip -1": (
+        lambda: _core.tip(CHAIN, -1, FACTOR.T.copy()),
+        ValueError,
+        "k must lie in 0 ... 1, got -1",
+    ),
+    "tip beyond": (lambda: _core.tip(CHAIN, 2, FACTOR.T.copy()), ValueError, "got 2"),
     "span -1": (
         lambda: _core.shape(CHAIN, -1, 0.0),
         ValueError,

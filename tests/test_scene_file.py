@@ -154,6 +154,8 @@ def test_every_effect_survives_the_file(effect, tmp_path):
             rd.Dashpot(0.7, 2.0),
             rd.Support(0.4),
             rd.Hinge(0.6),
+            rd.Resonator(0.7, 0.01, 20.0, damping_ratio=0.02),
+            rd.BrokenWire(0.8, 0.05, 3e-4, radius=2e-3),
             rd.AddedMass(0.1, 0.7, 0.02, polar_inertia=1e-6),
             rd.LocalChange(0.5, 0.9, bending=0.5, torsion=0.7, density=0.9),
         ],

@@ -85,7 +85,7 @@ static void check_motions(struct rope *rope, size_t expected)
         CHECK_INT(rigid.count, expected);
         double *u = zeros(W * n);
         for (size_t k = 0; k < rigid.count; k++) {
-            rd_rigid_shape(&walked.walk, &rigid, k, u + k * n);
+            rd_rigid_shape(&walked.walk, &rigid, k, u + k * n, NULL);
             check_unresisted(&rope->chain, u + k * n);
         }
         check_orthonormal(&rope->chain, rigid.count, u);
@@ -221,7 +221,7 @@ static void pinned_beam_turns_about_its_pin(void)
     struct rd_rigid rigid;
     double u[25 * 2];
     CHECK_INT(rd_rigid_fill(&walked.walk, &rigid), RD_OK);
-    rd_rigid_shape(&walked.walk, &rigid, 0, u);
+    rd_rigid_shape(&walked.walk, &rigid, 0, u, NULL);
     const double l = beam.length;
     const double moment = 0.005 * l * l * (23 * 24 * 47 / 6.0 + 24 * 24 / 2.0) + 24 * 1e-6;
     CHECK_REL(fabs(u[1]), 1 / sqrt(moment), 64 * EPS, "positive sums");
@@ -293,7 +293,7 @@ static void continuous_span_moves_as_a_bar(const char *names, double tension, co
             CHECK_INT(rd_rigid_fill(&walked.walk, &rigid), RD_OK);
             CHECK_INT(rigid.count, expected);
             for (size_t k = 0; k < rigid.count; k++)
-                rd_rigid_shape(&walked.walk, &rigid, k, u + k * size);
+                rd_rigid_shape(&walked.walk, &rigid, k, u + k * size, NULL);
             for (size_t a = 0; a < rigid.count; a++)
                 for (size_t b = 0; b < rigid.count; b++)
                     CHECK_ABS(carried(&rope.chain, u + a * size, u + b * size), a == b, 512 * EPS,
