@@ -33,6 +33,7 @@ static enum rd_status begin_block(struct sweep *s, const struct rd_factors *fact
     for (size_t lane = 1; lane < s->used; lane++)
         if (is_planar(s, lane) != s->planar)
             s->used = lane;
+    s->most = rd_sweep_most(s->extent, s->used);
     s->tabled.levels = 0;
     s->steps = 1.0;
     for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)

@@ -2,6 +2,7 @@
 #include "span.h"
 #include "sweep_plan.h"
 
+#include <math.h>
 #include <string.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -107,8 +108,13 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
-    const struct sweep_pieces all =
+    struct sweep_pieces all =
         rd_sweep_pieces(s->chain, run, count, rd_sweep_waves(s->chain, run, s->extent));
+    if (s->chain->inertia) {
+        /* terms for the shortest waves: more than a lane needs change none of its bits */
+        const struct sweep_waves shortest = rd_sweep_waves(s->chain, run, &s->most);
+        all.radians = ldexp(s->chain->length[run->element] * shortest.all, -all.halvings);
+    }
     if (all.level == 0 && !s->chain->inertia) {
         cross_each(s, way, node, count);
         return;

@@ -56,8 +56,7 @@ static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
         return 0;
     for (size_t i = 1; i < count; i++) {
         const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, waves[i]);
-        if (own.level != first.level || own.halvings != first.halvings ||
-            own.radians != first.radians)
+        if (own.level != first.level || own.halvings != first.halvings)
             return i;
     }
     return count;

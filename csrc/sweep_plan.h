@@ -47,7 +47,7 @@ struct sweep {
     struct sweep_table tabled;
     struct sweep_block block;
     struct sweep_way way[2];
-    struct sweep_extent extent[RD_LANES];
+    struct sweep_extent extent[RD_LANES], most;
     struct sweep_walk walk[2];
     struct sweep_state state;
     double steps; /* elements crossed + squares of equal pieces in a row */

@@ -230,13 +230,17 @@ struct sweep_waves rd_sweep_waves(const struct rd_chain *chain, const struct rd_
     return waves;
 }
 
-/* the next power of two, so that frequencies side by side have one */
-static double bound_of(double radians)
+struct sweep_extent rd_sweep_most(const struct sweep_extent *extent, size_t count)
 {
-    static const double LEAST = 0x1p-8; /* fewer save no more terms */
-    int exponent;
-    frexp(fmax(radians, LEAST), &exponent);
-    return ldexp(1.0, exponent);
+    struct sweep_extent most = extent[0];
+    for (size_t i = 1; i < count; i++) {
+        most.section = fmax(most.section, extent[i].section);
+        most.tension = fmax(most.tension, extent[i].tension);
+        most.spring = fmax(most.spring, extent[i].spring);
+        most.inertia = fmax(most.inertia, extent[i].inertia);
+        most.dashpot = fmax(most.dashpot, extent[i].dashpot);
+    }
+    return most;
 }
 
 struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,
@@ -248,7 +252,7 @@ struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct r
         const double whole = length * waves.all;
         pieces.halvings = rd_span_halvings(whole, count);
         pieces.count = count << pieces.halvings;
-        pieces.radians = bound_of(whole / (double)((size_t)1 << pieces.halvings));
+        pieces.radians = whole / (double)((size_t)1 << pieces.halvings);
         length /= (double)((size_t)1 << pieces.halvings);
     }
     while (((size_t)2 << pieces.level) <= pieces.count && 2.0 * length * waves.propagating <= 1.2) {

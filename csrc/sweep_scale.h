@@ -23,6 +23,9 @@ struct sweep_extent {
 
 struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i);
 
+/* the largest of each of `count` extents, whose waves are no longer than any of theirs */
+struct sweep_extent rd_sweep_most(const struct sweep_extent *extent, size_t count);
+
 /* Fills the block and both ways (forward, backward) for the frequencies index[0 .. RD_LANES - 1]
    of the factors, of sizes extent (RD_LANES). A lane depends on its own frequency alone. */
 void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
@@ -35,7 +38,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
 struct sweep_pieces {
     int halvings;
     size_t count, level; /* first pieces in all; 2^level <= count */
-    double radians;      /* of a continuous first piece, at most */
+    double radians;      /* of a continuous first piece */
 };
 
 /* the largest wavenumber of a run, and of a continuous one that with evanescent waves [1/m] */
