@@ -19,8 +19,10 @@ static void load(const struct rd_chain *chain, const struct sweep_block *block, 
     rd_attached_fill(chain, k, CMPLX(block->inertia.re[lane], block->inertia.im[lane]),
                      CMPLX(block->dashpot.re[lane], block->dashpot.im[lane]), &foot);
     rd_attached_row(chain, k, foot.lever, lever);
-    set(&into->weight, lane, foot.weight);
-    set(&into->gap, lane, foot.gap);
+    /* their quotient counts: squares of both are numbers */
+    const double size = fmax(cabs(foot.gap), 1);
+    set(&into->weight, lane, foot.weight / size);
+    set(&into->gap, lane, foot.gap / size);
     for (int part = 0; part < 2; part++) {
         set(into->rest + part, lane, foot.rest[part]);
         into->rests[part] |= foot.rest[part] != 0;

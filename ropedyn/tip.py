@@ -93,8 +93,9 @@ def gather(
         kept = [model.coordinates.index(c) for c, _ in tip.root]
         row = _core.tip(model.chain, tip.structure, factor)[kept]
         share = row * value[:, part]
-        # of the row itself a few roundings
-        wrong = np.abs(share) * (error[:, part] + 8 * np.finfo(float).eps)
+        # of the row itself a few roundings; what is 0 does not move the root
+        known = np.where(share == 0, 0.0, error[:, part])
+        wrong = np.abs(share) * (known + 8 * np.finfo(float).eps)
         values[:, r] = share.sum(axis=1)
         size = np.abs(values[:, r])
         ratio = np.where(share.any(axis=1), np.inf, 0.0)

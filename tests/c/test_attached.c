@@ -1,0 +1,187 @@
+/* Structures that nodes carry: Krylov's functions, feet on both sides of their poles, held counts. */
+#include "attached.h"
+
+#include "check.h"
+#include "krylov.h"
+
+#include <string.h>
+
+/* one structure on a node of z and beta, or of z, alpha and beta */
+static const int32_t first[] = {0, 1}, wire_kind[] = {RD_WIRE}, resonator_kind[] = {RD_RESONATOR},
+                     own_term[] = {0}, term[] = {0, 1};
+static const double row[] = {1, 0, 0, 1};
+
+static struct rd_chain carry(const int32_t *kind, const double *value)
+{
+    return (struct rd_chain){
+        .width = 2,
+        .stretches = 2,
+        .first = first,
+        .term = term,
+        .attached = 1,
+        .attached_kind = kind,
+        .attached_term = own_term,
+        .attached_row = row,
+        .attached_value = value,
+    };
+}
+
+/* mass, E I/l^3, length */
+static const double wire[] = {3e-5, 0.03, 0.05, 0};
+static const double resonator[] = {0.01, 150, 0, 0};
+
+/* c_j has p^n/(4n + j)!: c_0'''' = c_0 in P, so that c_0^2 - .. = 0 of cosh and cos */
+static void test_krylovs_functions_keep_cosh_and_cos(void)
+{
+    const double size[] = {1e-8, 1, 60, 63.9, 64.1, 1e3, 1e5};
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++)
+        for (int side = -1; side <= 1; side += 2) {
+            const double p = side * size[i];
+            const struct rd_krylov k = rd_krylov(p, 0);
+            /* with C = c_0 + r c_2, c = c_0 - r c_2, S = P (c_1 + r c_3), s = P (c_1 - r c_3),
+               r = P^2: C^2 - S^2 = 1 and c^2 + s^2 = 1, sum and difference */
+            const double sum =
+                creal(k.c[0] * k.c[0] + p * k.c[2] * k.c[2] - 2 * p * k.c[1] * k.c[3]);
+            const double rest = creal(2 * k.c[0] * k.c[2] - k.c[1] * k.c[1] - p * k.c[3] * k.c[3]);
+            const double large = pow(cabs(k.c[0]) + sqrt(size[i]) * cabs(k.c[2]), 2);
+            CHECK_ABS(sum, 1, 64 * EPS * (1 + large), "rounding of the squares");
+            CHECK_ABS(rest, 0, 64 * EPS * (1 + large), "rounding of the squares");
+            CHECK_ABS(creal(k.c[4] * p), creal(k.c[0]) - 1, 8 * EPS * (1 + large),
+                      "its definition");
+        }
+}
+
+static void test_krylovs_functions_do_not_jump_where_series_end(void)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        const double at = side * 64.0;
+        const struct rd_krylov a = rd_krylov(at, 0), b = rd_krylov(at * (1 + 4 * EPS), 0);
+        for (int j = 0; j < 5; j++)
+            CHECK_ABS(creal(b.c[j]), creal(a.c[j]), 64 * EPS, "a few roundings of numbers below 4");
+    }
+}
+
+static void test_a_growth_leaves_all_of_them_finite(void)
+{
+    const double size[] = {1, 65, 1e8, 1e20, 1e60};
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++)
+        for (int side = -1; side <= 1; side += 2) {
+            const double _Complex p = side * size[i];
+            const struct rd_krylov k = rd_krylov(p, rd_krylov_growth(p));
+            for (int j = 0; j < 5; j++)
+                CHECK(isfinite(creal(k.c[j])) && isfinite(cimag(k.c[j])));
+        }
+}
+
+/* D by q = lambda m/k: D_zz, D_zb, D_bb = -lambda m (c_1, l c_2, 2 l^2 c_3)/e */
+static void test_the_foot_of_a_wire_is_the_same_by_either_pivot(void)
+{
+    const struct rd_chain chain = carry(wire_kind, wire);
+    for (double q = -1e3; q < 2e3; q += 7.3) {
+        const double lambda = q * wire[1] / wire[0], l = wire[2];
+        const struct rd_krylov f = rd_krylov(-4 * q, 0);
+        const double e = (1 + creal(f.c[0])) / 2, m = lambda * wire[0] / e;
+        double _Complex D[4] = {0};
+        rd_attached_add(&chain, 0, -lambda, 0, D);
+        const double want[] = {-m * creal(f.c[1]), -m * l * creal(f.c[2]), -m * l * creal(f.c[2]),
+                               -2 * m * l * l * creal(f.c[3])};
+        const double unit[] = {1, l, l, l * l};
+        const double near = 1 + 1 / fabs(e); /* of a pole */
+        const double large = fabs(m) * (1 + pow(cabs(f.c[0]), 2) / (1 + cabs(f.c[0])));
+        for (int i = 0; i < 4; i++)
+            CHECK_ABS(creal(D[i]), want[i], 256 * EPS * near * large * unit[i],
+                      "rounding of e and of the products");
+    }
+}
+
+static void test_slow_structures_are_rigid_bodies(void)
+{
+    struct rd_chain chain = carry(wire_kind, wire);
+    const double m = wire[0], l = wire[2];
+    double M[4] = {0};
+    rd_attached_inertia(&chain, 0, M);
+    CHECK_ABS(M[0], m, 4 * EPS * m, "one product");
+    CHECK_ABS(M[1], m * l / 2, 4 * EPS * m * l, "two products");
+    CHECK_ABS(M[3], m * l * l / 3, 8 * EPS * m * l * l, "a few products");
+    chain = carry(resonator_kind, resonator);
+    memset(M, 0, sizeof M);
+    rd_attached_inertia(&chain, 0, M);
+    CHECK_EXACT(M[0], resonator[0]);
+    CHECK_EXACT(M[3], 0);
+}
+
+/* the roots x of 1 + cos x cosh x, from tables */
+static void test_counts_with_the_foot_held_change_at_the_roots(void)
+{
+    const double root[] = {1.8751040687119611, 4.6940911329741746, 7.8547574382376126,
+                           10.995540734875467, 14.137168391046471};
+    const struct rd_chain chain = carry(wire_kind, wire);
+    struct rd_foot foot;
+    for (int n = 0; n < 5; n++)
+        for (int side = -1; side <= 1; side += 2) {
+            const double q = pow(root[n] * (1 + side * 8 * EPS), 4);
+            rd_attached_fill(&chain, 0, -q * wire[1] / wire[0], 0, &foot);
+            CHECK_EXACT(foot.held, n + (side > 0));
+        }
+    for (int n = 1; n < 200;
+         n++) { /* far up they are (n - 1/2) pi, and between n pi there is one */
+        const double q = pow(n * 3.14159265358979323846, 4);
+        rd_attached_fill(&chain, 0, -q * wire[1] / wire[0], 0, &foot);
+        CHECK_EXACT(foot.held, n);
+    }
+    rd_attached_fill(&chain, 0, 1e6, 0, &foot);
+    CHECK_EXACT(foot.held, 0);
+}
+
+static void test_a_resonator_is_finite_on_its_pole(void)
+{
+    const struct rd_chain chain = carry(resonator_kind, resonator);
+    const double lambda = resonator[1] / resonator[0];
+    struct rd_foot foot;
+    rd_attached_fill(&chain, 0, -lambda, 0, &foot);
+    CHECK(foot.gap != 0);
+    CHECK_EXACT(foot.held, 0);
+    rd_attached_fill(&chain, 0, -lambda * (1 + 2 * EPS), 0, &foot);
+    CHECK_EXACT(foot.held, 1);
+    CHECK_EXACT(rd_attached_highest(&chain), lambda);
+}
+
+/* D_zz u_z^2 = strain - lambda kinetic, and -dD/dlambda is the kinetic part */
+static void test_energies_are_those_of_the_foot(void)
+{
+    const double lambda = 5e3, shape[] = {1, 0, 0, 0};
+    const int32_t *const kind[] = {resonator_kind, wire_kind};
+    const double *const value[] = {resonator, wire};
+    for (int i = 0; i < 2; i++) {
+        const struct rd_chain chain = carry(kind[i], value[i]);
+        double _Complex D[4] = {0}, after[4] = {0}, before[4] = {0};
+        double energy[RD_CARRIED];
+        struct rd_foot foot;
+        const double h = 1e-4 * lambda;
+        rd_attached_fill(&chain, 0, -lambda, 0, &foot);
+        const double y = creal(foot.lever[0] / foot.gap);
+        rd_attached_energy(&chain, lambda, shape, &y, energy);
+        rd_attached_add(&chain, 0, -lambda, 0, D);
+        rd_attached_add(&chain, 0, -lambda - h, 0, after);
+        rd_attached_add(&chain, 0, -lambda + h, 0, before);
+        const double slope = creal(after[0] - before[0]) / (2 * h);
+        CHECK_ABS(energy[RD_CARRIED_STRAIN] - lambda * energy[RD_CARRIED_KINETIC], creal(D[0]),
+                  16 * EPS * fabs(creal(D[0])), "a few products");
+        CHECK_ABS(energy[RD_CARRIED_KINETIC], -slope, 1e-6 * fabs(slope),
+                  "of the square of the step of a difference");
+        CHECK_EXACT(energy[RD_CARRIED_LOST], 0);
+    }
+}
+
+int main(void)
+{
+    test_krylovs_functions_keep_cosh_and_cos();
+    test_krylovs_functions_do_not_jump_where_series_end();
+    test_a_growth_leaves_all_of_them_finite();
+    test_the_foot_of_a_wire_is_the_same_by_either_pivot();
+    test_slow_structures_are_rigid_bodies();
+    test_counts_with_the_foot_held_change_at_the_roots();
+    test_a_resonator_is_finite_on_its_pole();
+    test_energies_are_those_of_the_foot();
+    return check_report();
+}
