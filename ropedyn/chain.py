@@ -108,6 +108,12 @@ class Chain(NamedTuple):
         return self._replace(damping=None, drag=None)
 
     @property
+    def carried(self) -> tuple[str, ...]:
+        """Kinds of the structures that nodes carry."""
+        kinds = () if self.attached_kind is None else set(self.attached_kind.tolist())
+        return tuple(ATTACHED[kind] for kind in sorted(kinds))
+
+    @property
     def at_rest(self) -> Chain:
         """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
         kind = self.kind if self.inertia is None else TENSED

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _core, check, damping
 from .answer import Cost, Work
-from .chain import ATTACHED, CHANNELS, Chain
+from .chain import CHANNELS, Chain
 from .compile import check_points, finer
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
@@ -299,11 +299,11 @@ def _lapack(
     model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> Found:
     chain = model.chain.undamped.only(component)
-    if chain.attached_kind is not None:
-        kinds = sorted({ATTACHED[kind] for kind in chain.attached_kind})
+    if chain.carried:
+        kinds = " or ".join(chain.carried)
         raise SceneError(
-            f'solver must be "sweep" where the scene has a {" or a ".join(kinds)}, got "lapack": '
-            "its matrix problem is linear"
+            f'solver must be "sweep" where parts have a {kinds}, got "lapack": its matrix problem '
+            "is linear"
         )
     if chain.free > LARGEST_DENSE:
         raise SolveError(

@@ -460,6 +460,12 @@ class Model:
                 "elements must be given for matrices: continuous spans have none, their stiffness "
                 "depends on the frequency"
             )
+        if self.chain.attached_kind is not None:
+            kinds = " or ".join(self.chain.carried)
+            raise SceneError(
+                f"parts must not have a {kinds} for matrices: their stiffness depends on the "
+                "frequency"
+            )
 
     def _refuse_nonlinear(self) -> None:
         for i, part in enumerate(self.scene.parts):
