@@ -95,6 +95,8 @@ class Characteristic:
         Where it may be asked for: |s| below [rad/s].
     sweeps : int
         How often it was.
+    steps : int
+        Pieces shorter than the waves at its reach.
     rounding : float
         Of values.
     """
@@ -103,16 +105,18 @@ class Characteristic:
     rates: Rates
     reach: float
     sweeps: int = 0
-    rounding: float = 0.0
+    steps: int = field(init=False)
+    rounding: float = field(init=False)
     bound: Complex = field(init=False)
 
     def __post_init__(self) -> None:
         self.bound = self.rates.bound(self.reach)
+        self.steps = int(_core.steps(self.chain, self.bound))
+        self.rounding = ROUNDING * float(np.finfo(float).eps * np.sqrt(self.steps))
 
     def __call__(self, s: Complex) -> tuple[Complex, Real]:
         """Return value and magnitude, each of the shape of s."""
         factor = np.ascontiguousarray(self.rates.at(s.ravel()))
-        value, magnitude, steps = _core.characteristic(self.chain, factor, self.bound)
+        value, magnitude, _ = _core.characteristic(self.chain, factor, self.bound)
         self.sweeps += s.size
-        self.rounding = ROUNDING * float(np.finfo(float).eps * np.sqrt(steps + 1))
         return value.reshape(s.shape), magnitude.reshape(s.shape)

@@ -19,8 +19,10 @@ from .characteristic import Complex, Rates, Real
 from .compile import check_points, finer
 from .damped_modes import DampedMesh, DampedModes, DampedVectors
 from .damped_roots import Damped, damped_roots
+from .damping import having
 from .eigen import check_asked, fractions, largest, lowest, points_for, within
 from .errors import SceneError, SolveError
+from .modal_rates import solve_modal
 from .model import Model
 from .residue import motions
 from .unit import FAMILY
@@ -92,6 +94,8 @@ def solve_damped(
         raise SceneError(f'solver must be "sweep" for damped modes, got {solver!r}')
     check_points(model, points)
     limit = math.sqrt(check_asked(number, below))
+    if having(model.scene.dampings, "ratio"):
+        return solve_modal(model, number, below=below, points=points)
     start = time.perf_counter()
     answer = _find(model, model.components, number, limit)
     seconds = time.perf_counter() - start

@@ -159,7 +159,7 @@ def _sorted(roots: Roots, paired: bool, still: int) -> tuple[Complex, Real, Comp
     # what rounding cannot tell from an axis is on it
     value = np.where(np.abs(value.real) <= error, 1j * value.imag, value)
     value = np.where(np.abs(value.imag) <= error, value.real + 0j, value)
-    kept = np.ones(len(value), dtype=np.bool_) if paired else value.imag > 0
+    kept = value.imag >= 0 if paired else value.imag > 0
     nearby = value[value.imag > 0].conj() if paired else value[~kept]
     # a motion that nothing resists has the rate 0 twice where nothing damps it either
     kept[np.flatnonzero(value == 0)[still:]] = False

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .chain import Chain
 from .characteristic import Complex, Rates, Real, elastic
@@ -82,30 +81,30 @@ def proportional(chain: Chain, rates: Rates) -> Proportional | None:
 
 def _dashpots_per_mass(chain: Chain) -> float | None:
     """Return the one ratio of dashpots to masses [1/s], 0 without any, None of several."""
-    free = chain.held == 0
-    square = (free[:, :, None] & free[:, None, :])[np.unique(chain.term)]
-    pairs = []
-    if chain.damping is not None:
-        used = np.unique(chain.term)
-        pairs.append((chain.damping[used][square], chain.mass[used][square]))
-    if chain.drag is not None:
-        assert chain.inertia is not None
-        used = np.unique(chain.element)
-        pairs.append((chain.drag[used].ravel(), chain.inertia[used].ravel()))
-    elif chain.inertia is not None and pairs:
-        pairs.append((np.zeros(chain.inertia.size), chain.inertia.ravel()))
-    if not pairs:
+    if chain.damping is None and chain.drag is None:
         return 0.0
-    damping, mass = (np.concatenate(part) for part in zip(*pairs))
+    free = chain.held == 0
+    kept = free[:, :, None] & free[:, None, :]
+    kept &= np.isin(np.arange(len(free)), chain.term)[:, None, None]
+    damping, mass = _or_none(chain.damping, chain.mass)[kept], chain.mass[kept]
+    if chain.inertia is not None:
+        used = np.unique(chain.element)
+        drag = _or_none(chain.drag, chain.inertia)[used].ravel()
+        damping = np.concatenate([damping, drag])
+        mass = np.concatenate([mass, chain.inertia[used].ravel()])
     return _ratio(damping, mass)
 
 
-def _ratio(damping: NDArray[np.float64], mass: NDArray[np.float64]) -> float | None:
-    if not damping.any():
-        return 0.0
+def _or_none(array: Real | None, like: Real) -> Real:
+    return np.zeros_like(like) if array is None else array
+
+
+def _ratio(damping: Real, mass: Real) -> float | None:
     if ((mass == 0) & (damping != 0)).any():
         return None
     moved = mass != 0
+    if not moved.any():
+        return 0.0
     ratio = damping[moved] / mass[moved]
     # products of the same numbers in another order
     near = np.ptp(ratio) <= 4 * np.finfo(float).eps * np.abs(ratio).max()

@@ -12,14 +12,17 @@ from .damped_roots import Damped
 from .errors import SolveError
 from .port import Ports
 
-SAMPLES = 16
+SAMPLES = 8
 """Points on the circle around a rate."""
 
-CIRCLE = 0.1
+CIRCLE = 0.02
 """Its radius in distances to the next rate: what lies outside shows as CIRCLE^SAMPLES."""
 
 ALIKE = 1e3
 """Times their errors: rates so near to each other have their residues together."""
+
+MOST_NUMBERS = 1 << 20
+"""Of the response at a time."""
 
 PLACES = 16
 """Where the rope is pushed, to find where a mode moves."""
@@ -65,16 +68,20 @@ def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:
         seen = tried[:, :, k] * offset[k]
         residue, largest = seen.mean(axis=2), np.abs(seen).max(axis=2).diagonal()
         driven.setdefault(_pivots(residue, largest, len(group)), []).append(k)
-    everywhere = _ports(chain, np.arange(chain.nodes))
     for pushed, members in driven.items():
         drives = Ports(probes.node[list(pushed)], probes.row[list(pushed)], None)
-        far = _response(chain, rates, circle[members], drives, everywhere)
         near = _response(chain, rates, circle[members], drives, drives)
-        for i, k in enumerate(members):
-            square = (near[:, :, i] * offset[k]).mean(axis=2)
-            rows = (far[:, :, i] * offset[k]).mean(axis=2)
-            phi = np.linalg.solve(_root(square), rows)
-            motion[groups[k]] = phi.reshape(len(pushed), *motion.shape[1:])[: len(groups[k])]
+        inverse = [
+            np.linalg.inv(_root((near[:, :, i] * offset[k]).mean(axis=2)))[: len(groups[k])]
+            for i, k in enumerate(members)
+        ]
+        step = max(1, MOST_NUMBERS // (len(pushed) * len(members) * SAMPLES * motion.shape[2]))
+        for first in range(0, chain.nodes, step):
+            nodes = np.arange(first, min(first + step, chain.nodes))
+            far = _response(chain, rates, circle[members], drives, _ports(chain, nodes))
+            for i, k in enumerate(members):
+                phi = inverse[i] @ (far[:, :, i] * offset[k]).mean(axis=2)
+                motion[np.ix_(groups[k], nodes)] = phi.reshape(len(phi), len(nodes), -1)
     return motion[wanted]
 
 

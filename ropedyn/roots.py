@@ -33,13 +33,16 @@ NOISE = 8.0
 CENTERED = 0.05
 """Of its radius: how far the roots may be from the middle of the circle."""
 
+INNER = 0.7
+"""Of its radius: how far any of them may be."""
+
 MOST_CIRCLES = 4
 
-APART = 1e-3
-"""Of the distance to others: roots that are nearer to each other are a cluster."""
+APART = (1e-6, 1e-4, 1e-2)
+"""Of the distance to others, in one try after another: roots that are nearer are a cluster."""
 
-TOGETHER = 1e-5
-"""Of the mean distance of roots: those that are nearer are a cluster in any case."""
+TOGETHER = 0.1
+"""Of that part of the mean distance of roots: those that are nearer are a cluster in any case."""
 
 
 REAL = 1e-6
@@ -82,20 +85,18 @@ def find_roots(function: Characteristic, within: Winding, guess: Complex) -> Roo
     spacing = 2 * within.radius / within.count
     random = np.random.default_rng(within.count)
     found = np.zeros(0, dtype=np.complex128)
+    guess = guess[np.abs(guess) < within.radius]
     for _ in range(MOST_TRIES):
         inside = found[np.abs(found) < within.radius]
         missing = within.count - len(inside)
         if missing <= 0:
             break
-        if len(guess) == 0 and missing <= MOST_MOMENTS:
-            powers = np.arange(1, missing + 1)
-            known = ((inside[:, None] / within.radius) ** powers).sum(axis=0)
-            moments = np.array([within.moment(int(k)) for k in powers]) - known
-            guess = within.radius * _from_moments(moments)
+        if len(found) > 0 and missing <= MOST_MOMENTS:
+            guess = within.radius * _from_moments(within.moments(inside, missing))
         more = random.uniform(size=missing) ** 0.5 * within.radius
         more = more * np.exp(2j * np.pi * random.uniform(size=missing))
         begin = np.concatenate([guess, more])[:missing]
-        guess = guess[missing:]
+        guess = guess[:0]
         found = np.concatenate([found, _iterate(function, begin, found, spacing)])
         if within.paired:
             found = _completed(found, REAL * spacing)
@@ -150,13 +151,26 @@ def _iterate(function: Characteristic, begin: Complex, fixed: Complex, spacing: 
 
 def _isolate(function: Characteristic, root: Complex, within: Winding, spacing: float) -> Roots:
     """Draw a circle around each root or cluster, and see that it surrounds as many."""
-    tolerance = REAL * spacing
     wanted = np.abs(root) < within.radius
     if within.paired:
-        wanted &= root.imag >= -tolerance
+        wanted &= root.imag >= -REAL * spacing
+    for apart in APART:
+        clusters = _clusters(root[wanted], root[~wanted], spacing, apart)
+        roots = _settle_all(function, clusters, within, REAL * spacing)
+        if roots.certified:
+            break
+    return roots
+
+
+def _settle_all(
+    function: Characteristic,
+    clusters: list[tuple[Complex, float]],
+    within: Winding,
+    tolerance: float,
+) -> Roots:
     values, errors = [np.zeros(0, dtype=np.complex128)], [np.zeros(0)]
     surrounded = 0
-    for member, gap in _clusters(root[wanted], root[~wanted], spacing):
+    for member, gap in clusters:
         # what lies beyond the circle is not known
         room = min(gap, within.radius - np.abs(member).max())
         settled = _settle(function, member, room)
@@ -169,7 +183,9 @@ def _isolate(function: Characteristic, root: Complex, within: Winding, spacing: 
     return Roots(np.concatenate(values), np.concatenate(errors), surrounded == within.count)
 
 
-def _clusters(inside: Complex, outside: Complex, spacing: float) -> list[tuple[Complex, float]]:
+def _clusters(
+    inside: Complex, outside: Complex, spacing: float, apart: float
+) -> list[tuple[Complex, float]]:
     """Return the members of each cluster and the distance to what is not in it."""
     everything = np.concatenate([inside, outside])
     distance = np.abs(everything[:, None] - everything[None, :])
@@ -177,12 +193,12 @@ def _clusters(inside: Complex, outside: Complex, spacing: float) -> list[tuple[C
     i, j = np.triu_indices(len(everything), 1)
     near = distance[i, j]
     for k in np.argsort(near, kind="stable"):
-        if near[k] > APART * spacing:
+        if near[k] > apart * spacing:
             break
         a, b = group[i[k]], group[j[k]]
         both = (group == a) | (group == b)
         gap = distance[np.ix_(both, ~both)].min(initial=spacing)
-        if near[k] <= max(APART * gap, TOGETHER * spacing):
+        if near[k] <= max(apart * gap, TOGETHER * apart * spacing):
             group[group == b] = a
     found = []
     for g in np.unique(group[: len(inside)]):
@@ -214,7 +230,7 @@ def _settle(function: Characteristic, member: Complex, gap: float) -> tuple[Comp
         noise = NOISE * float(np.sqrt(np.mean(np.abs(tail) ** 2)) / np.abs(scaled).min())
         noise = max(noise, function.rounding / float(np.abs(value).min()))
         error = radius * _spread(offset, noise) + 4 * np.finfo(float).eps * np.abs(member)
-        if np.abs(offset.mean()) < CENTERED and np.abs(offset).max() < 2 * APART / CIRCLE:
+        if np.abs(offset.mean()) < CENTERED and np.abs(offset).max() < INNER:
             return member, error
     return None
 

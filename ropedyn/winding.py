@@ -9,7 +9,7 @@ import numpy as np
 from .characteristic import Characteristic, Complex, Real
 
 FIRST = 16
-"""Arcs of a half circle to begin with."""
+"""Arcs of a half circle to begin with, at least."""
 
 MOST_HALVINGS = 40
 
@@ -47,19 +47,27 @@ class Winding:
     change: Complex
     paired: bool
 
-    def moment(self, power: int) -> complex:
-        """Return the sum of (root/radius)^power, to a few per cent."""
-        weight = ((self.point / self.radius) ** power).mean(axis=1)
-        total = complex((weight * self.change).sum())
-        return total.imag / np.pi if self.paired else total / (2j * np.pi)
+    def moments(self, known: Complex, number: int) -> Complex:
+        """Return sums of powers 1 .. number of root/radius over unknown roots, to some per cent.
+
+        With the factors s - s_j of the known ones taken out little is left that changes along an
+        arc: 2 pi i sum s^k is the integral of s^k over the change of the logarithm.
+        """
+        begin, end = self.point[:, :1] - known, self.point[:, 1:] - known
+        change = self.change - np.log(end / begin).sum(axis=1)
+        powers = np.arange(1, number + 1)
+        weight = ((self.point[:, :, None] / self.radius) ** powers).mean(axis=1)
+        total = change @ weight
+        return np.asarray(total.imag / np.pi + 0j if self.paired else total / (2j * np.pi))
 
 
 def winding(function: Characteristic, radius: float) -> Winding | None:
     """Count the roots with |s| < radius.
 
-    The argument of the function turns 2 pi times the number of roots on the way round. Each arc is
-    halved until its two halves turn as much as the whole does, and the logarithm changes little
-    along both: what turns once more in between would show in one of them.
+    The argument of the function turns 2 pi times the number of roots on the way round. The walk
+    begins with arcs along which waves on the rope turn by a radian or so. Each is halved until its
+    two halves turn as much as the whole does, and the logarithm changes little along both: what
+    turns once more in between would show in one of them.
 
     Parameters
     ----------
@@ -76,7 +84,9 @@ def winding(function: Characteristic, radius: float) -> Winding | None:
     """
     paired = function.rates.is_real
     whole = np.pi if paired else 2 * np.pi
-    angle = np.linspace(0.0, whole, FIRST + 1 if paired else 2 * FIRST + 1)
+    # pieces turn by 1.2 at most, and twice that between s and -s
+    arcs = max(FIRST, 2 * len(function.chain.coordinate) * function.steps)
+    angle = np.linspace(0.0, whole, 1 + (arcs if paired else 2 * arcs))
     value, magnitude = function(radius * np.exp(1j * angle))
     end = np.stack([angle[:-1], angle[1:]])
     v, m = np.stack([value[:-1], value[1:]]), np.stack([magnitude[:-1], magnitude[1:]])

@@ -223,6 +223,41 @@ def test_chains_have_the_roots_of_the_quadratic_eigenproblem(seed, element):
     assert np.allclose(modes.eigenvalue, exact[:8], rtol=1e-6, atol=0)
 
 
+@pytest.mark.parametrize("tension", [-20.0, -60.0])
+def test_compressed_beam_with_dashpot_and_hinge_moves_or_grows_as_its_matrices_say(tension):
+    parts = [rd.Dashpot(0.3 * L, 1.0), rd.Hinge(0.5, stiffness=40.0)]
+    rope = rd.Rope(L, MU, bending_stiffness=2.0, rotary_inertia=1e-5)
+    model = rd.Scene(rope, tension=tension, parts=parts).compile(elements=12, element="rigid")
+    modes, exact = model.modes(6, damped=True), quadratic(model)[:6]
+    assert np.allclose(modes.eigenvalue, exact, rtol=1e-9, atol=0)  # n^4 eps of the stiffness
+    assert modes.certified
+    assert (modes.damping_ratio == -1).any() == (tension == -60.0)
+
+
+def test_winding_counts_the_roots_of_a_string_however_many():
+    from ropedyn.characteristic import Characteristic, Rates
+    from ropedyn.winding import winding
+
+    chain = string().compile().chain
+    for waves in range(1, 140, 23):
+        radius = (waves + 0.37) * OMEGA
+        around = winding(Characteristic(chain, Rates.of(()), 1.4 * radius), radius)
+        assert around.count == 2 * waves
+        # all known but the highest pair: its sums of powers 0 and -2 (waves OMEGA/radius)^2
+        known = np.arange(1, waves) * 1j * OMEGA
+        moments = around.moments(np.concatenate([known, -known]), 2)
+        assert np.allclose(moments, [0, -2 * (waves * OMEGA / radius) ** 2], atol=0.1)
+    on = Characteristic(chain, Rates.of(()), 9 * OMEGA)
+    assert winding(on, 4 * OMEGA) is None
+
+
+def test_a_hundred_modes_between_two_dashpots_are_certified():
+    modes = string(rd.Dashpot(0.3 * L, 3 * Z), rd.Dashpot(0.71 * L, 0.4 * Z)).compile()
+    modes = modes.modes(100, damped=True)
+    assert modes.certified
+    assert (np.diff(np.abs(modes.eigenvalue)) > 0).all()
+
+
 def test_two_dashpots_at_mirrored_places_keep_symmetric_and_antisymmetric_modes_apart():
     # stiff dashpots cut the string in three, the outer two alike: pairs of nearly equal rates
     dashpots = [rd.Dashpot(x * L, 300 * Z) for x in (0.3, 0.7)]
@@ -319,6 +354,63 @@ def test_overdamped_modes_accumulate_where_damping_cancels_stiffness():
         model.modes(22, damped=True)
 
 
+@pytest.mark.parametrize("ratio", [0.02, [0.01, 0.3, 0.0], 1.0, 1.5])
+def test_modal_damping_is_a_ratio_for_each_mode(ratio):
+    scene = beam(damping=rd.ModalDamping(ratio))
+    undamped = beam().compile().modes(3)
+    modes = scene.compile().modes(3, damped=True)
+    omega = 2 * np.pi * undamped.frequency
+    zeta = np.broadcast_to(ratio, 3)
+    root = np.sqrt(zeta**2 - 1 + 0j)
+    exact = np.concatenate([omega * (-zeta + root), omega * (-zeta - root)])
+    exact = exact[(exact.imag >= 0)]
+    exact = exact[np.argsort(np.abs(exact), kind="stable")][:3]
+    # of frequencies 1e-15; 1.5 - sqrt(1.25) here cancels by 4
+    assert np.allclose(modes.eigenvalue, exact, rtol=1e-14, atol=0)
+    assert modes.certified
+    if np.max(ratio) < 1:
+        assert np.array_equal(modes.shape, undamped.shape)
+        share = 1 + zeta * omega / modes.eigenvalue
+        assert np.allclose(modes.modal_mass, undamped.modal_mass * share, rtol=8 * EPS, atol=0)
+    chain = scene.compile(elements=16).modes(3, damped=True)
+    apart = np.abs(chain.eigenvalue - modes.eigenvalue) / (2 * np.pi)
+    assert np.allclose(chain.mesh_error, apart, rtol=1e-6, atol=1e-12)
+
+
+def test_modal_damping_stands_alone_and_knows_every_mode():
+    with pytest.raises(rd.SceneError, match=r"damping must not be modal damping beside .* dashpot"):
+        beam(rd.Dashpot(0.3, 1.0), damping=rd.ModalDamping(0.1)).compile().modes(2, damped=True)
+    model = beam(damping=rd.ModalDamping([0.1, 0.2])).compile(elements=4)
+    with pytest.raises(rd.SceneError, match="one for each mode, got 2 for 3 modes"):
+        model.modes(3, damped=True)
+    with pytest.raises(rd.SolveError, match="number must be at most 3"):
+        beam(damping=rd.ModalDamping(0.1)).compile(elements=4).modes(5, damped=True)
+
+
+def test_loss_factor_with_tension_turns_each_rate():
+    # half waves k = n pi/L stay modes: mu s^2 + T k^2 + (1 + i eta) B k^4 = 0 above the real axis
+    scene = beam(damping=rd.LossFactor(0.1), ends=("pinned", "pinned"))
+    modes = scene.compile().modes(6, damped=True)
+    k = np.arange(1, 7) * np.pi / L
+    exact = 1j * np.sqrt((T * k**2 + (1 + 0.1j) * 2.0 * k**4) / MU)
+    assert modes.certified
+    # with 2 eps of L, T, MU each
+    error = 2 * np.pi * modes.rounding_error + 8 * EPS * np.abs(exact)
+    assert (np.abs(modes.eigenvalue - exact) < error).all()
+
+
+@pytest.mark.parametrize("coefficient", [3.0, 300.0])
+def test_viscous_damping_beside_a_mass_that_it_does_not_act_on(coefficient):
+    # proportional but for the mass: in a chain and, within its mesh error, in continuous spans
+    scene = string(rd.PointMass(0.4, 1.0), damping=rd.ViscousDamping(coefficient))
+    model = scene.compile(elements=24)
+    modes, exact = model.modes(7, damped=True), quadratic(model)[:7]
+    assert np.allclose(modes.eigenvalue, exact, rtol=1e-10, atol=0)  # n^2 eps, 1e2 of overdamped
+    assert modes.certified
+    # (omega l/v)^2/24, at most 0.01, and more where a rate is the difference of two
+    assert (modes.mesh_error < 0.1 * modes.natural_frequency).all()
+
+
 # --- shapes ---------------------------------------------------------------------------------------
 
 
@@ -404,6 +496,7 @@ def test_answer_is_read_saved_and_drawn(tmp_path):
     assert np.array_equal(modes.decay_rate, -modes.eigenvalue.real)
     assert np.allclose(modes.damping_ratio, -modes.eigenvalue.real / np.abs(modes.eigenvalue))
     assert modes.searched == pytest.approx(modes.natural_frequency[-1])
+    assert string().compile().modes(below=40.0, damped=True).searched == 40.0
     assert modes.cost.sweeps > 0
     assert "damping ratio" in str(modes)
     modes.save(tmp_path / "modes.nc")
