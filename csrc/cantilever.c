@@ -65,3 +65,24 @@ struct rd_cantilever rd_cantilever_at(enum rd_kind kind, double _Complex theta)
         return compressed(creal(theta));
     return in_closed_form(theta);
 }
+
+/* Small theta by an imaginary step, whose square is nothing beside 1. Beyond, with
+   1/cosh t = 1 - theta P1 and d(1/cosh t)/dtheta = -tau/(2 cosh t), d t/dtheta = 1/2t: */
+struct rd_cantilever rd_cantilever_slope(double theta)
+{
+    static const double step = 0x1p-100;
+    const struct rd_cantilever at =
+        rd_cantilever_at(RD_TENSED, fabs(theta) <= 1 ? CMPLX(theta, step) : theta);
+    if (fabs(theta) <= 1)
+        return (struct rd_cantilever){
+            .tau = cimag(at.tau) / step,
+            .P = {cimag(at.P[0]) / step, cimag(at.P[1]) / step, cimag(at.P[2]) / step},
+        };
+    const double tau = creal(at.tau), P1 = creal(at.P[1]), P2 = creal(at.P[2]);
+    const double secant = 1 - theta * P1;
+    const double slope = (secant * secant - tau) / (2 * theta);
+    return (struct rd_cantilever){
+        .tau = slope,
+        .P = {slope, (secant * tau / 2 - P1) / theta, -(slope + P2) / theta},
+    };
+}

@@ -4,6 +4,7 @@
 #include "area.h"
 #include "cantilever.h"
 #include "dense.h"
+#include "rods.h"
 
 #include <assert.h>
 #include <math.h>
@@ -141,48 +142,33 @@ static void hang(const struct rd_element *element, double _Complex section, doub
             k[i * rods + j] -= pull[i] * pull[j] * share;
 }
 
-/* The channels that are constant along the element, torque and axial force: with
-   S^ = S_cc - S_cb S_bc/S_bb,  r = S_cb/S_bb and  e = (u_b - u_a)_c - r (beta_b - beta_a):
-
-       K += e^T S^^-1 e section/l */
+/* K += e^T S^^-1 e section/l of torque and axial force, see rods.h */
 static bool add_rods(const struct rd_element *element, double _Complex section,
                      double _Complex tension, double _Complex *K)
 {
     const size_t w = element->width;
-    const double *S = element->flexibility;
-    const double Sbb = S[RD_BENDING * (RD_CHANNELS + 1)];
-    const bool bends = rd_element_find(element, RD_BETA) < w;
-    double change[2][N] = {{0}}, inverse[4];
+    struct rd_rods rods;
     double _Complex motion[2][N], k[4];
-    size_t at[2], rods = 0;
-    for (size_t i = 0; i < w; i++)
-        if (rd_channel_of(element->coordinate[i]) != RD_BENDING)
-            at[rods++] = i;
-    for (size_t i = 0; i < rods; i++) {
-        const double *row = S + rd_channel_of(element->coordinate[at[i]]) * RD_CHANNELS;
-        const double r = bends ? row[RD_BENDING] / Sbb : 0;
-        add_change(w, at[i], 1, change[i]);
-        if (bends)
-            add_change(w, w - 1, -r, change[i]);
-        for (size_t j = 0; j < rods; j++) {
-            const int d = rd_channel_of(element->coordinate[at[j]]);
-            inverse[i * rods + j] = row[d] - r * S[d * RD_CHANNELS + RD_BENDING];
-        }
-    }
-    if (!rd_dense_invert(rods, inverse))
+    if (rd_rods_of(element, &rods) != RD_OK)
         return false;
-    for (size_t i = 0; i < rods * rods; i++)
-        k[i] = inverse[i] / element->length;
-    for (size_t i = 0; i < rods; i++)
+    for (size_t i = 0; i < rods.count; i++) {
+        double change[N] = {0};
+        add_change(w, rods.at[i], 1, change);
+        if (rods.r[i] != 0)
+            add_change(w, w - 1, -rods.r[i], change);
         for (size_t p = 0; p < 2 * w; p++)
-            motion[i][p] = change[i][p];
+            motion[i][p] = change[p];
+    }
+    for (size_t i = 0; i < rods.count * rods.count; i++)
+        k[i] = rods.inverse[i] / element->length;
     if (element->sag != 0)
-        hang(element, section, tension, rods, motion[0], k);
-    for (size_t i = 0; i < rods; i++)
-        for (size_t j = 0; j < rods; j++)
+        hang(element, section, tension, rods.count, motion[0], k);
+    for (size_t i = 0; i < rods.count; i++)
+        for (size_t j = 0; j < rods.count; j++)
             for (size_t p = 0; p < 2 * w; p++)
                 for (size_t q = 0; q < 2 * w; q++)
-                    K[p * 2 * w + q] += section * k[i * rods + j] * (motion[i][p] * motion[j][q]);
+                    K[p * 2 * w + q] +=
+                        section * k[i * rods.count + j] * (motion[i][p] * motion[j][q]);
     return true;
 }
 

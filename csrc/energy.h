@@ -1,4 +1,4 @@
-/* Strain and kinetic energy of shapes, by what stores it. */
+/* Energy of shapes by what stores it, and what drags on them. */
 #ifndef RD_ENERGY_H
 #define RD_ENERGY_H
 
@@ -15,19 +15,15 @@ enum rd_strain {
     RD_STRAINS
 };
 
-/* strain (RD_STRAINS), twice the energy [J] of shape (nodes, width). The force on the right end of
-   each element follows from the shape: short elements lose digits, being differences of nearly
-   equal motions. */
-enum rd_status rd_energy_strain(const struct rd_chain *chain, const double *shape, double *strain);
+/* Twice the energies [J] of a shape (nodes, width): strain (RD_STRAINS), and kinetic (width) [kg m^2]
+   what each coordinate gives to shape^T M shape. Inertia that couples two coordinates is the first
+   one's: the end correction of lumped masses, M_z,beta, is inertia of z; and dragged [N s m], which
+   is shape^T C shape of dashpots and of drag along the spans.
 
-/* twice the energy [J] of the springs at the nodes */
-double rd_energy_springs(const struct rd_chain *chain, const double *shape);
-
-/* shape^T C shape [N s m] of the dashpots at the nodes */
-double rd_energy_dashpots(const struct rd_chain *chain, const double *shape);
-
-/* kinetic (width) [kg m^2]: what each coordinate gives to shape^T M shape. What couples two is the
-   first one's: the end correction of lumped masses, M_z,beta, is inertia of z. */
-void rd_energy_kinetic(const struct rd_chain *chain, const double *shape, double *kinetic);
+   The motion inside continuous elements is that at the eigenvalue lambda, and the integrals along
+   them are exact; they must be shorter than their first resonance as a cantilever.
+   RD_NOT_POSITIVE_DEFINITE where one is not. */
+enum rd_status rd_energy(const struct rd_chain *chain, double lambda, const double *shape,
+                         double *strain, double *kinetic, double *dragged);
 
 #endif

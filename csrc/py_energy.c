@@ -1,7 +1,7 @@
 /* Energies of shapes. */
 #include "py_glue.h"
 
-#include "energy_span.h"
+#include "energy.h"
 
 PyObject *py_energy(PyObject *module, PyObject *arguments)
 {
@@ -34,16 +34,9 @@ PyObject *py_energy(PyObject *module, PyObject *arguments)
     double *lost = PyArray_DATA((PyArrayObject *)dragged);
     enum rd_status status = RD_OK;
     Py_BEGIN_ALLOW_THREADS
-    for (size_t k = 0; k < (size_t)count && status == RD_OK; k++) {
-        if (parsed.chain.inertia) {
-            status = rd_energy_span(&parsed.chain, lambda[k], u + k * entries,
-                                    stored + k * RD_STRAINS, moving + k * w, lost + k);
-            continue;
-        }
-        status = rd_energy_strain(&parsed.chain, u + k * entries, stored + k * RD_STRAINS);
-        rd_energy_kinetic(&parsed.chain, u + k * entries, moving + k * w);
-        lost[k] = rd_energy_dashpots(&parsed.chain, u + k * entries);
-    }
+    for (size_t k = 0; k < (size_t)count && status == RD_OK; k++)
+        status = rd_energy(&parsed.chain, lambda[k], u + k * entries, stored + k * RD_STRAINS,
+                           moving + k * w, lost + k);
     Py_END_ALLOW_THREADS
     if (status == RD_OK)
         result = PyTuple_Pack(3, strain, kinetic, dragged);

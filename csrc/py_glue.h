@@ -81,6 +81,7 @@ PyObject *py_deflection(PyObject *module, PyObject *arguments);
 PyObject *py_modes(PyObject *module, PyObject *arguments);
 PyObject *py_frf(PyObject *module, PyObject *arguments);
 PyObject *py_energy(PyObject *module, PyObject *arguments);
+PyObject *py_sensitivity(PyObject *module, PyObject *arguments);
 PyObject *py_count(PyObject *module, PyObject *arguments);
 PyObject *py_certify(PyObject *module, PyObject *arguments);
 PyObject *py_steps(PyObject *module, PyObject *arguments);

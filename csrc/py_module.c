@@ -37,6 +37,8 @@ static PyMethodDef methods[] = {
     {"carried", py_carried, METH_VARARGS,
      "carried(chain, shape, motion, eigenvalue) -> (k, 3) strain, kinetic, lost"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (width, f)"},
+    {"sensitivity", py_sensitivity, METH_VARARGS,
+     "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},
     {NULL, NULL, 0, NULL},
 };
 

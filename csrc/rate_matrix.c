@@ -13,11 +13,11 @@ void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension
     const bool bends = chain->coordinate[w - 1] == RD_BETA;
     const cv soft = c_inverse(section);
     *rate = (struct rate_matrix){.z = -1, .lever = l_fill(1), .hangs = chain->sag != NULL};
-    rate->sag = l_fill(rate->hangs ? chain->sag[e] : 0);
+    rate->sag = c_real(rate->hangs ? chain->sag[e] : 0);
     for (size_t i = 0; i < w; i++) {
         const size_t c = (size_t)rd_channel_of(chain->coordinate[i]);
         const bool is_z = chain->coordinate[i] == RD_Z;
-        rate->q[i] = c_scale(inertia, chain->inertia[e * w + i]);
+        rate->q[i] = chain->inertia ? c_scale(inertia, chain->inertia[e * w + i]) : c_zero();
         if (chain->drag)
             rate->q[i] = c_add(rate->q[i], c_scale(dashpot, chain->drag[e * w + i]));
         rate->z = is_z && bends ? (int)i : rate->z;

@@ -26,8 +26,8 @@ RD_INLINE void slice_differentiate(const struct rate_matrix *s, double h, cv *u,
         df[W - 1] = c_sub(df[W - 1], c_scale_lanes(f[s->z], s->lever));
     }
     if (W > 1 && s->hangs) {
-        du[0] = c_add(du[0], c_scale_lanes(u[W > 1], s->sag));
-        df[W > 1] = c_sub(df[W > 1], c_scale_lanes(f[0], s->sag));
+        du[0] = c_add(du[0], c_mul(u[W > 1], s->sag));
+        df[W > 1] = c_sub(df[W > 1], c_mul(f[0], s->sag));
     }
     for (int i = 0; i < W; i++) {
         u[i] = c_scale(du[i], h);

@@ -11,7 +11,9 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
     rate->z = -1;
     rate->lever = l_fill(1.0);
     rate->hangs = chain->sag != NULL;
-    rate->sag = rate->hangs ? chain->sag[e] * (b->z[W > 1] / b->z[0]) : l_fill(0.0);
+    rate->sag = c_zero();
+    if (rate->hangs)
+        rate->sag.re = chain->sag[e] * (b->z[W > 1] / b->z[0]);
     KEEP for (int i = 0; i < W; i++) {
         rate->q[i] = c_scale(c_scale_lanes(b->inertia, b->z[i] * b->z[i]), p[i]);
         if (chain->drag)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,16 @@ from .stretch import ropes
 
 MOST_ELEMENTS = 10_000_000
 
+INERTIA = {
+    "x": "linear_density",
+    "z": "linear_density",
+    "alpha": "polar_inertia",
+    "beta": "rotary_inertia",
+}
+"""Property of the rope that is the inertia per length of each coordinate."""
+
 ROUNDING = 4 * np.finfo(float).eps
 """Positions are known to so much of the rope's length."""
-
 
 MOST_RADIANS = 1e10
 """Of the boundary layers of a stiff string, L sqrt(T/B), in a continuous span."""
@@ -189,7 +196,7 @@ def _distinct(
     which = np.argsort(np.argsort(first))[pair]
     first = np.sort(first)
     flexibility = np.stack([section(one) for one in local])
-    inertia = np.stack([_inertia(scene, one) for one in local])
+    inertia = np.stack([inertia_of(scene, one) for one in local])
     sag = None
     if scene.gravity is not None:
         # a rope that hangs is longer than its chord along x
@@ -228,12 +235,8 @@ def _chain(
     del nodes, present
     is_lumped = kind != CONTINUOUS
     along = np.tile(_drag(scene), (len(length), 1))
-    mass, damping = (
-        _lumps(elements, each if is_lumped else np.zeros_like(each), inside)
-        for each in (inertia, along)
-    )
-    if kind == TENSED and "beta" in scene.coordinates:
-        _correct_ends(scene, elements, mass[: len(stations)])
+    mass = _at_nodes(lumped(kind, scene.coordinates, inertia, length), which, inside)
+    damping = _at_nodes(_halves(kind, along, length), which, inside)
     stiffness, held, hinge = _terms(scene, stations, mass, damping)
     chain = Chain(
         kind=kind,
@@ -260,7 +263,7 @@ def _chain(
 
 def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) -> Chain:
     """Return the chain with the structures that its stations carry."""
-    carried = [(at, one) for at, term in _standing(scene, stations) for one in term.attached]
+    carried = [(at, one) for at, term in standing_at(scene, stations) for one in term.attached]
     if not carried:
         return chain
     carried.sort(key=lambda pair: pair[0])  # stable: those of a station in the order of the parts
@@ -283,25 +286,6 @@ def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) ->
     )
 
 
-def _lumps(
-    elements: Elements, along: NDArray[np.float64], inside: NDArray[np.int32]
-) -> NDArray[np.float64]:
-    """Return what is `along` each distinct element, per length, as lumps on nodes.
-
-    Those at stations, then those at nodes inside spans, between two equal elements: half of an
-    element's is at each of its nodes.
-    """
-    with np.errstate(over="ignore"):  # the core refuses what is no number
-        own = elements.length[:, None] * along
-    halves = own[elements.which] / 2
-    none = np.zeros((1, own.shape[1]))
-    stations = np.concatenate([none, halves]) + np.concatenate([halves, none])
-    diagonal = np.concatenate([stations, own[inside]])
-    lumps = np.zeros((*diagonal.shape, own.shape[1]))
-    np.einsum("nkk->nk", lumps)[:] = diagonal
-    return lumps
-
-
 def _terms(
     scene: Scene,
     stations: NDArray[np.float64],
@@ -320,7 +304,7 @@ def _terms(
     held = np.zeros((len(mass), width), dtype=np.uint8)
     hinge = None
     number = {c: k for k, c in enumerate(scene.coordinates)}
-    for station, term in _standing(scene, stations):
+    for station, term in standing_at(scene, stations):
         given = ((term.mass, mass), (term.stiffness, stiffness), (term.damping, damping))
         for values, into in given:
             for coordinate, value in values.items():
@@ -335,36 +319,84 @@ def _terms(
     return stiffness, held, hinge
 
 
-def _correct_ends(scene: Scene, elements: Elements, mass: NDArray[np.float64]) -> None:
-    """Add M_z,beta = -(mu_left h_left^2 - mu_right h_right^2)/12 at stations.
+def _at_nodes(
+    given: NDArray[np.float64], which: NDArray[np.int32], inside: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Return what stations get from the elements of spans beside them, then nodes inside spans.
 
-    Lumping is the trapezoidal rule; this is its first error term by Euler and Maclaurin, zero
-    inside a uniform span. With it the frequencies of tensed chains converge with the fourth power
-    of the element's length.
+    Parameters
+    ----------
+    given : ndarray, shape (distinct, 2, width, width)
+        By each distinct element to its left and to its right node.
+    which : ndarray of int, shape (spans,)
+        Distinct element of each span.
+    inside : ndarray of int
+        Distinct elements that have equal ones beside them.
     """
-    z, beta = scene.coordinates.index("z"), scene.coordinates.index("beta")
-    lengths, density = elements.length[elements.which], elements.inertia[elements.which, z]
+    none = np.zeros((1, *given.shape[2:]))
+    to_left, to_right = np.moveaxis(given[which], 1, 0)
+    stations = np.concatenate([none, to_right]) + np.concatenate([to_left, none])
+    return np.concatenate([stations, given[inside].sum(axis=1)])
+
+
+def _halves(kind: int, along: NDArray[Any], length: NDArray[Any]) -> NDArray[Any]:
+    """Return what is `along` elements, per length, half on either node: see `lumped`."""
+    count, width = along.shape
+    given = np.zeros((count, 2, width, width), dtype=np.result_type(along, length))
+    if kind != CONTINUOUS:
+        with np.errstate(over="ignore"):  # the core refuses what is no number
+            np.einsum("eskk->esk", given)[:] = (along * length[:, None] / 2)[:, None]
+    return given
+
+
+def lumped(
+    kind: int, coordinates: Sequence[str], inertia: NDArray[Any], length: NDArray[Any]
+) -> NDArray[Any]:
+    """Return the inertia that elements give to their left and to their right node.
+
+    Half of it each, and of tensed elements +-mu l^2/12 at z and beta: lumping is the trapezoidal
+    rule, this is its first error term by Euler and Maclaurin, zero inside a uniform span. With it
+    the frequencies of tensed chains converge with the fourth power of the element's length.
+
+    Parameters
+    ----------
+    kind : int
+        Of the elements.
+    coordinates : sequence of str
+        Of the nodes.
+    inertia : ndarray, shape (elements, width)
+        Per length [kg/m, kg m].
+    length : ndarray, shape (elements,)
+        [m].
+
+    Returns
+    -------
+    ndarray, shape (elements, 2, width, width)
+        Complex where an argument is, and analytic. None of continuous elements, which keep theirs.
+    """
+    given = _halves(kind, inertia, length)
+    if kind != TENSED or "beta" not in coordinates:
+        return given
+    z, beta = coordinates.index("z"), coordinates.index("beta")
+    density = inertia[:, z]
     with np.errstate(over="ignore", invalid="ignore"):
-        moment = np.concatenate([[0.0], density * lengths**2, [0.0]])
-        correction = -(moment[:-1] - moment[1:]) / 12
+        correction = density * length**2 / 12
     if not np.isfinite(correction).all():
         raise SceneError(
             f"elements must be short enough for linear_density length^2 to be a number [kg m], got "
-            f"{float(density.max())!r} kg/m and {float(lengths.max())!r} m"
+            f"{float(density.max())!r} kg/m and {float(length.max())!r} m"
         )
-    mass[:, z, beta] += correction
-    mass[:, beta, z] += correction
+    given[:, 0, z, beta] = given[:, 0, beta, z] = correction
+    given[:, 1, z, beta] = given[:, 1, beta, z] = -correction
+    return given
 
 
-def _inertia(scene: Scene, rope: Rope) -> NDArray[np.float64]:
+def inertia_of(scene: Scene, rope: Rope) -> NDArray[np.float64]:
     """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
-    inertia = {
-        "x": rope.linear_density if scene.gravity is None else 0.0,
-        "z": rope.linear_density,
-        "alpha": rope.polar_inertia or 0.0,
-        "beta": rope.rotary_inertia or 0.0,
-    }
-    return np.array([inertia[c] for c in scene.coordinates])
+    still = () if scene.gravity is None else ("x",)
+    return np.array(
+        [0.0 if c in still else getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
+    )
 
 
 def _drag(scene: Scene) -> NDArray[np.float64]:
@@ -374,7 +406,7 @@ def _drag(scene: Scene) -> NDArray[np.float64]:
     return np.array([along if c in dragged else 0.0 for c in scene.coordinates])
 
 
-def _standing(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
+def standing_at(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
     """Return what stands at which station."""
     for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
         yield station, end.term()

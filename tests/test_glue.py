@@ -66,6 +66,7 @@ ENTRIES = {
     "energy": lambda chain: _core.energy(chain, SHAPES, np.array([1e4, 1e6])),
     "carried": lambda chain: _core.carried(chain, SHAPES, MOTIONS, np.array([1e4, 1e6])),
     "tip": lambda chain: _core.tip(chain, 1, FACTOR.T.copy()),
+    "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, np.array([1e4, 1e6])),
 }
 # those that have a meaning for continuous chains
 SPANS = {
@@ -79,6 +80,7 @@ SPANS = {
     "carried": lambda chain: _core.carried(chain, SHAPES[:, :4], MOTIONS, np.array([1e4, 1e6])),
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
+    "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
 }
 OTHERS = {
     "section": lambda _: _core.section(1.0, 1.0, 1.0, 0.1, 0.1),
