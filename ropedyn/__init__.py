@@ -9,6 +9,7 @@ from .accuracy import AccuracyCost, accuracy_cost
 from .answer import Answer, Cost, load
 from .choice import Choice
 from .compare import Comparison, compare
+from .damage import Damage
 from .damped_modes import DampedModes
 from .damping import LossFactor, ModalDamping, RayleighDamping, StiffnessDamping, ViscousDamping
 from .deflection import Deflection
@@ -38,6 +39,7 @@ __all__ = [
     "Choice",
     "Comparison",
     "Cost",
+    "Damage",
     "DampedModes",
     "Dashpot",
     "Deflection",

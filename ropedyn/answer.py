@@ -93,6 +93,10 @@ def nested(kind: type[Any], through: str) -> dict[str, Any]:
     return {"nested": kind, "through": through}
 
 
+TRANSIENT = {"transient": True}
+"""Metadata of a field that no file keeps: it has a default."""
+
+
 class Answer:
     """Base of the answers: frozen dataclasses whose array fields are declared with `axes`."""
 
@@ -246,6 +250,8 @@ def load(path: str | os.PathLike[str]) -> Answer:
 def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
     """Yield the fields of an answer with their values, those of its nested parts among them."""
     for item in fields(thing):
+        if "transient" in item.metadata:
+            continue
         if "nested" in item.metadata:
             yield from leaves(getattr(thing, item.metadata["through"]))
         else:
@@ -257,6 +263,8 @@ def _rebuilt(kind: type[Any], dataset: Any) -> Any:
 
     arguments: dict[str, Any] = {}
     for item in fields(kind):
+        if "transient" in item.metadata:
+            continue
         if "nested" in item.metadata:
             arguments[item.name] = _rebuilt(item.metadata["nested"], dataset)
         elif "axes" not in item.metadata:

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from . import _core, check, damping
 from .answer import Cost, Work
 from .chain import CHANNELS, Chain
-from .compile import check_points, finer
+from .compile import check_points, divided, finer, stations_of
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
 from .model import MOST_POINTS, MOST_STEPS, Model
 from .modes import Mesh, Modes, Vectors
+from .sensitivity import Shapes, clusters_of
 from .unit import FAMILY
 
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
@@ -115,6 +116,7 @@ def solve_modes(
         cost=_cost(model, solver, seconds, found),
         source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
         mesh_source=mesh,
+        solve_shapes=partial(_shapes, model, solver, eigenvalue),
     )
 
 
@@ -371,8 +373,12 @@ def _most_pieces(model: Model, eigenvalue: Real) -> int:
     chain = model.chain.undamped
     _, stretch = np.unique(chain.element, return_index=True)
     elements = [chain.between(node, node + 1) for node in chain.first[stretch].tolist()]
-    parts = [element.only(c) for element in elements for c in model.components]
-    return max((_steps(part, highest) for part in parts), default=1)
+    return max(_pieces(model, element, highest) for element in elements)
+
+
+def _pieces(model: Model, element: Chain, eigenvalue: float) -> int:
+    """Return how many pieces shorter than its waves an element has."""
+    return max((_steps(element.only(c), eigenvalue) for c in model.components), default=1)
 
 
 def points_for(model: Model, eigenvalue: Real) -> int:
@@ -400,6 +406,60 @@ def _later_within(
         shape=vectors.shape[:, ::more] / size[:, None, None],
         modal_mass=vectors.modal_mass / size**2,
     )
+
+
+def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, NDArray[np.intp]]:
+    """Cut continuous spans into elements below their own resonance.
+
+    Two for each piece of the highest eigenvalue: more would be differences of ever closer nodes.
+
+    Returns
+    -------
+    Model
+        The same spans.
+    ndarray of int, shape (parts + 1,)
+        The nodes between parts: `points` of them in each element of the model, or its elements.
+    """
+    stations = stations_of(model.scene)
+    at = np.searchsorted(model.x, stations)
+    chain = model.chain.undamped
+    elements = [chain.between(first, first + 1) for first in at[:-1].tolist()]
+    least = 2 * np.array([_pieces(model, element, highest) for element in elements])
+    parts = least if points is None else np.full(len(least), points)
+    each = -(-least // parts)
+    counts = np.diff(at) * parts * each
+    if counts.sum() > MOST_POINTS:
+        raise SolveError(
+            f"modes need {counts.sum()} points along the rope to be looked at, at most "
+            f"{MOST_POINTS} are: the highest ones have too short waves"
+        )
+    edges = np.cumsum([0, *np.repeat(each, np.diff(at) * parts)])
+    return divided(model.scene, model.element, stations, counts), edges
+
+
+def _shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = None) -> Shapes:
+    """Solve once more, with the shapes that sensitivities need.
+
+    Modes that coincide with the last one belong to them.
+    """
+    check_points(model, points)
+    edges = np.arange(len(model.x))
+    if model.element == "continuous":
+        model, edges = _cut(model, float(eigenvalue.max(initial=0.0)), points)
+    number = len(eigenvalue)
+    more = number
+    while True:
+        more += 1
+        found = [SOLVERS[solver](model, c, more, math.inf, shaped=True) for c in model.components]
+        value, error, order = _merged(found, more)
+        clusters = clusters_of(value, error)
+        kept = [cluster for cluster in clusters if cluster[0] < number]
+        last = kept[-1][-1] if kept else -1
+        if last < more - 1 or len(value) < more:
+            break
+        more *= 2
+    order = order[: last + 1]
+    return Shapes(model, value[: last + 1], _spread(model, found)[order], tuple(kept), edges)
 
 
 def _vectors(

@@ -10,11 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .answer import Answer, Cost, axes, freeze, nested
+from . import check
+from .answer import TRANSIENT, Answer, Cost, axes, freeze, nested
+from .errors import SceneError
 from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from .damage import Damage
+    from .sensitivity import Sensitivity, Shapes
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +120,7 @@ class Modes(Answer):
     cost: Cost
     source: Vectors | Callable[[], Vectors] = field(repr=False, metadata=nested(Vectors, "vectors"))
     mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
+    solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @cached_property
     def vectors(self) -> Vectors:
@@ -160,6 +166,110 @@ class Modes(Answer):
     def energy(self) -> dict[str, NDArray[np.float64]]:
         """Fractions of strain and of kinetic energy, each shape (k,)."""
         return self.vectors.energy
+
+    @cached_property
+    def sensitivity(self) -> Sensitivity:
+        """What derivatives are computed from."""
+        from .sensitivity import Sensitivity
+
+        return Sensitivity(self._solved_again())
+
+    def _solved_again(self, points: int | None = None) -> Shapes:
+        if self.solve_shapes is None:
+            raise SceneError(
+                "modes from a file have no model to ask for derivatives: compile the scene again"
+            )
+        return self.solve_shapes(points)
+
+    def derivative(self, path: str, *, of: str = "frequency") -> NDArray[np.float64]:
+        """Find the exact derivative of each mode with respect to a number of the scene.
+
+        By first-order perturbation theory, from the shapes: no difference of two frequencies. It is
+        the derivative of the model that was asked, with the number of elements of each span fixed.
+
+        Parameters
+        ----------
+        path : str
+            ``"tension"``, a property of the rope as ``"bending_stiffness"`` or ``"length"``, of a
+            part as ``"parts[0].mass"``, ``"parts[0].x"``, ``"parts[1].bending"`` or
+            ``"parts[1].start"``, or of an end as ``"ends[0].spring.beta"``. When the length grows
+            parts keep their places, except those at the right end, which stay there. Dashpots
+            have derivatives of 0: frequencies are undamped ones.
+        of : {"frequency", "eigenvalue", "growth"}
+            `frequency` [Hz] has the derivative 0 where motion grows, `growth` [1/s] where it does
+            not; `eigenvalue` [rad^2/s^2] has one everywhere.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            In units of the quantity per unit of the number. Modes whose eigenvalues rounding cannot
+            tell apart have no shapes of their own: theirs are the derivatives, in increasing order,
+            of the eigenvalues that part when the number grows. Modes close to each other lose as
+            many digits as their distance has less than their eigenvalue.
+
+        Raises
+        ------
+        TypeError
+            If an argument is not a string.
+        SceneError
+            If the path is not that of a number that acts in the scene, or that of a part which does
+            not stand alone, or if the modes were read from a file.
+        SolveError
+            If an eigenvalue is 0 and the number changes it: its root has no derivative there.
+
+        Examples
+        --------
+        A string has f = sqrt(T/mu)/2 L, so that df/dT = f/2 T:
+
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(1)
+        >>> modes.frequency, modes.derivative("tension")
+        (array([25.]), array([0.0125]))
+        >>> modes.derivative("length")
+        array([-12.5])
+        """
+        check.one_of(of, "of", ("frequency", "eigenvalue", "growth"))
+        return getattr(self.sensitivity, of)(path)[: len(self.frequency)]
+
+    def damage(self, *, points: int | None = None) -> Damage:
+        """Find which mode feels a loss of stiffness or mass where.
+
+        Parameters
+        ----------
+        points : int, optional
+            Of continuous spans: equal parts of each span or element that the rope is looked at in,
+            some for each half wave where left out. Of a chain the parts are its elements.
+
+        Returns
+        -------
+        Damage
+
+        Raises
+        ------
+        TypeError
+            If the number is not a whole one.
+        SceneError
+            If it is given for a chain or out of range, or if the modes were read from a file.
+        SolveError
+            If modes that rounding cannot tell apart are coupled by damage: which of them feels it
+            depends on the damage itself.
+
+        Examples
+        --------
+        A pinned beam's curvature is largest where its deflection is, and zero at nodes:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=2.0)
+        >>> modes = rd.Scene(rope, ends=("pinned", "pinned")).compile().modes(2)
+        >>> damage = modes.damage(points=100)
+        >>> damage.change["bending_stiffness"][:, 49].round(3)
+        array([-1.   , -0.001])
+        >>> damage.frequency_change(0.2, 0.3, bending_stiffness=0.1).round(4)
+        array([-0.005 , -0.0097])
+        """
+        from .damage import damage_of
+
+        return damage_of(self, self._solved_again(points))
 
     def table(self) -> Table:
         """Return one row for each mode."""

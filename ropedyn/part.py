@@ -51,6 +51,16 @@ class NodeTerm(NamedTuple):
     """Structures that it carries."""
 
 
+class NodeRate(NamedTuple):
+    """How fast what stands at a node changes with one number of it, per coordinate."""
+
+    mass: Mapping[str, float] = MappingProxyType({})
+    stiffness: Mapping[str, float] = MappingProxyType({})
+    hinge: Mapping[str, float] = MappingProxyType({})
+    """Of the stiffness across a hinge."""
+    damping: Mapping[str, float] = MappingProxyType({})
+
+
 class Part(Protocol):
     """What the compiler asks of a part that stands at one place."""
 
@@ -67,6 +77,9 @@ class Part(Protocol):
 
     def term(self) -> NodeTerm:
         """Return what it adds to its node."""
+
+    def rates(self) -> Mapping[str, NodeRate]:
+        """Return how fast that changes with each number of it, positions apart."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +142,14 @@ class PointMass:
         }
         return NodeTerm(mass=mass)
 
+    def rates(self) -> dict[str, NodeRate]:
+        """Each of its numbers is an inertia."""
+        return {
+            "mass": NodeRate(mass={"x": 1.0, "z": 1.0}),
+            "rotary_inertia": NodeRate(mass={"beta": 1.0}),
+            "polar_inertia": NodeRate(mass={"alpha": 1.0}),
+        }
+
 
 @dataclass(frozen=True)
 class Spring:
@@ -179,6 +200,10 @@ class Spring:
     def term(self) -> NodeTerm:
         """Stiffness on the diagonal."""
         return NodeTerm(stiffness={self.coordinate: self.stiffness})
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return that of its stiffness."""
+        return {"stiffness": NodeRate(stiffness={self.coordinate: 1.0})}
 
 
 @dataclass(frozen=True)
@@ -240,6 +265,10 @@ class Dashpot:
             return NodeTerm(nonlinear=f"exponent must be 1, got {self.exponent!r}")
         return NodeTerm(damping={self.coordinate: self.damping})
 
+    def rates(self) -> dict[str, NodeRate]:
+        """Return that of its damping, which undamped modes do not feel."""
+        return {"damping": NodeRate(damping={self.coordinate: 1.0})}
+
 
 @dataclass(frozen=True)
 class Support:
@@ -284,6 +313,10 @@ class Support:
     def term(self) -> NodeTerm:
         """Return the held coordinate."""
         return NodeTerm(held=(self.coordinate,))
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Nothing: it has no number but its place."""
+        return {}
 
 
 @dataclass(frozen=True)
@@ -343,6 +376,10 @@ class Hinge:
         """Return the compliance of its spring."""
         compliance = 1.0 / self.stiffness if self.stiffness > 0.0 else math.inf
         return NodeTerm(hinge={"beta": compliance})
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return that of its stiffness."""
+        return {"stiffness": NodeRate(hinge={"beta": 1.0})}
 
 
 @dataclass(frozen=True)

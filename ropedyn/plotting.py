@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from .accuracy import AccuracyCost
     from .compare import Comparison
+    from .damage import Damage
     from .damped_modes import DampedModes
     from .deflection import Deflection
     from .effect import EffectCost
@@ -64,6 +65,23 @@ def plot_modes(modes: Modes | DampedModes, ax: Axes | None, coordinate: str | No
     ax.set(xlabel="position along the rope [m]", ylabel=f"{NAME[coordinate]} [{UNIT[coordinate]}]")
     ax.set_title("mode shapes, largest component of the mode's own coordinate 1")
     ax.legend(title="mode", fontsize="small")
+    return ax
+
+
+def plot_damage(damage: Damage, ax: Axes | None, of: str | None) -> Axes:
+    """Plot what a loss changes as colours over modes and positions."""
+    of = check.one_of(next(iter(damage.change)) if of is None else of, "of", damage.change)
+    value = damage.change[of]
+    ax = new_axes(ax)
+    rows = np.arange(len(damage.frequency) + 1) + 0.5
+    largest = float(np.abs(value).max(initial=0.0)) or 1.0
+    colours = ax.pcolormesh(
+        damage.edge, rows, value, cmap="RdBu_r", vmin=-largest, vmax=largest, shading="flat"
+    )
+    ax.set(xlabel="position along the rope [m]", ylabel="mode", yticks=rows[:-1] + 0.5)
+    ax.set_yticklabels([f"{k + 1}: {f:.4g} Hz" for k, f in enumerate(damage.frequency)])
+    ax.set_title(f"where a loss of {of.replace('_', ' ')} changes frequencies")
+    ax.figure.colorbar(colours, ax=ax, label="relative change per relative loss [1/m]")
     return ax
 
 

@@ -30,6 +30,15 @@ class Change(NamedTuple):
 FACTORS = slice(0, 3)
 """The factors of a change; the rest of it is added."""
 
+FACTOR = {
+    "bending_stiffness": "bending",
+    "torsional_stiffness": "torsion",
+    "linear_density": "density",
+    "rotary_inertia": "density",
+    "polar_inertia": "density",
+}
+"""On each property of a rope that changes; what is added to one has its name."""
+
 
 @dataclass(frozen=True)
 class AddedMass:
@@ -177,6 +186,24 @@ KINDS = (AddedMass, LocalChange)
 """Every kind of part that changes the rope over a stretch."""
 
 
+def changes(stretches: Sequence[Stretch], stations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what all stretches do together, a `Change` for each span between stations.
+
+    Returns
+    -------
+    ndarray, shape (spans, 5)
+    """
+    change = np.tile(np.array(Change()), (len(stations) - 1, 1))
+    starts = mesh.nearest(stations, (stretch.start for stretch in stretches))
+    stops = mesh.nearest(stations, (stretch.stop for stretch in stretches))
+    with np.errstate(over="ignore", under="ignore"):
+        for stretch, start, stop in zip(stretches, starts, stops):
+            amount = np.array(stretch.change())
+            change[start:stop, FACTORS] *= amount[FACTORS]
+            change[start:stop, FACTORS.stop :] += amount[FACTORS.stop :]
+    return change
+
+
 def ropes(
     rope: Rope, stretches: Sequence[Stretch], stations: NDArray[np.float64]
 ) -> tuple[list[Rope], NDArray[np.intp]]:
@@ -196,14 +223,7 @@ def ropes(
     SceneError
         If a changed rope is none.
     """
-    change = np.tile(np.array(Change()), (len(stations) - 1, 1))
-    starts = mesh.nearest(stations, (stretch.start for stretch in stretches))
-    stops = mesh.nearest(stations, (stretch.stop for stretch in stretches))
-    with np.errstate(over="ignore", under="ignore"):
-        for stretch, start, stop in zip(stretches, starts, stops):
-            amount = np.array(stretch.change())
-            change[start:stop, FACTORS] *= amount[FACTORS]
-            change[start:stop, FACTORS.stop :] += amount[FACTORS.stop :]
+    change = changes(stretches, stations)
     distinct, first, which = np.unique(change, axis=0, return_index=True, return_inverse=True)
     found = []
     for row, span in zip(distinct.tolist(), first):
@@ -219,11 +239,60 @@ def ropes(
 
 def _changed(rope: Rope, change: Change) -> Rope:
     """Return the rope with the change."""
-    B, C = rope.bending_stiffness, rope.torsional_stiffness
-    return rope.replace(
-        bending_stiffness=None if B is None else B * change.bending,
-        torsional_stiffness=None if C is None else C * change.torsion,
-        linear_density=rope.linear_density * change.density + change.linear_density,
-        rotary_inertia=(rope.rotary_inertia or 0.0) * change.density,
-        polar_inertia=(rope.polar_inertia or 0.0) * change.density + change.polar_inertia,
-    )
+    values = {}
+    for name, factor in FACTOR.items():
+        own, more = getattr(rope, name), getattr(change, name, 0.0)
+        if own is not None or more:
+            values[name] = (own or 0.0) * getattr(change, factor) + more
+    return rope.replace(**values)
+
+
+def changed_by(name: str) -> set[str]:
+    """Return the properties of a rope that a number of a `Change` acts on."""
+    return {of for of, factor in FACTOR.items() if name in (of, factor)}
+
+
+def rope_rate(change: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return how fast a property of changed ropes grows with that of the rope: by its factor.
+
+    Parameters
+    ----------
+    change : ndarray, shape (spans, 5)
+        As `changes` returns.
+    name : str
+        Of the property.
+
+    Returns
+    -------
+    ndarray, shape (spans,)
+    """
+    if name not in FACTOR:
+        return np.ones(len(change))
+    return change[:, Change._fields.index(FACTOR[name])]
+
+
+def stretch_rate(
+    rope: Rope, change: NDArray[np.float64], part: Stretch, name: str
+) -> dict[str, NDArray[np.float64]]:
+    """Return how fast properties of changed ropes grow with a number of one of the stretches.
+
+    Parameters
+    ----------
+    rope : Rope
+        That all of them change.
+    change : ndarray, shape (spans, 5)
+        As `changes` returns, of the spans that the stretch has.
+    part : AddedMass, LocalChange
+        The stretch.
+    name : str
+        Of a number as in `Change`.
+
+    Returns
+    -------
+    dict of ndarray, shape (spans,)
+        By property: what is added is all there is of it, a factor acts on what the others leave.
+    """
+    if Change._fields.index(name) >= FACTORS.stop:
+        return {name: np.ones(len(change))}
+    others = change[:, Change._fields.index(name)] / getattr(part, name)
+    return {of: others * (getattr(rope, of) or 0.0) for of in changed_by(name)}
