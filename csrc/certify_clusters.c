@@ -4,8 +4,8 @@
 
 enum { LANES = RD_LANES, POLISH = 3 };
 
-static const double FAR = 1e-4;  /* from where a cluster is looked at first, relative */
-static const double NEAR = 1e-9; /* and then */
+static const double FAR = 1e-4;   /* from where a cluster is looked at first, relative */
+static const double NEAR = 1e-13; /* and then: shapes are those at lambda, off by as much */
 
 /* Ritz vectors of the lanes, those n in front whose values are nearest to lambda; false where there
    are less. */
