@@ -1,0 +1,141 @@
+"""Derivatives with respect to all numbers of a scene, held together by its units."""
+
+import numpy as np
+import pytest
+from conftest import EPS
+from random_scene import random_scene
+from test_sensitivity import value_of
+
+import ropedyn as rd
+from ropedyn.rate import rates_of
+from ropedyn.sensitivity import sizes
+
+LENGTHS = {"x": 0, "z": 0, "alpha": 2, "beta": 2}
+"""Powers of length in what stands at a node, mass [kg, kg m^2] or stiffness [N/m, N m]."""
+ROPE = {
+    "tension": (1, 0, 1),
+    "axial_stiffness": (1, 0, 1),
+    "torsional_stiffness": (1, 0, 3),
+    "bending_stiffness": (1, 0, 3),
+    "lay_coupling": (1, 0, 2),
+    "lay_slope": (0, 0, 0),
+    "linear_density": (0, 1, -1),
+    "rotary_inertia": (0, 1, 1),
+    "polar_inertia": (0, 1, 1),
+    "length": (0, 0, 1),
+}
+KINDS = {
+    "continuous": {},
+    "tensed": {"elements": 12},
+    "rigid": {"elements": 40, "element": "rigid"},
+}
+ACCEPTED = 1e-12
+"""Of the sum of the sizes, as single derivatives of closed forms have."""
+RIGID = 1e-6
+"""Of the first eigenvalue of the rope alone, 1 m long: below it a mode is nearly rigid, and beyond
+its inverse local."""
+PLACES = 1e-9
+"""Of lengths, in units of all of them: what moves a place adds on one side of it what it takes on
+the other, and only the rest is seen."""
+ROUNDING = 64 * EPS
+"""Of lengths, in units of what the same elements would have if their nodes moved to and fro as much
+as the mode does: shear forces are differences of the motion of neighbours."""
+LOST = (207, "tensed")
+"""At its fourth eigenvalue a part of the chain between stations is singular by itself, exactly: the
+shape comes out wrong where five modes are asked for."""
+
+
+def powers(scene, path):
+    """Of stiffness, inertia and length in a number, with newtons as kg m/s^2 and seconds kept."""
+    if path in ROPE:
+        return ROPE[path]
+    name = path.rpartition(".")[2]
+    if path.startswith("ends"):
+        return 1, 0, LENGTHS[name]
+    if name == "x":
+        return 0, 0, 1
+    if name == "stiffness":
+        return 1, 0, LENGTHS[scene.parts[int(path[6])].coordinate]
+    return 0, 1, 0 if name == "mass" else 2
+
+
+def imbalance(scene, kind):
+    """Sums of powers times p dlambda/dp, in units of the sum of their sizes.
+
+    Lambda has the powers (1, -1, 0): where all stiffness, all inertia or the unit of length is
+    scaled it changes as that, or not at all.
+
+    Returns
+    -------
+    tuple of three float
+        The last is in units of what is allowed, NaN where parts stand together, whose places have
+        no derivatives.
+    """
+    model = scene.compile(**KINDS[kind])
+    modes = model.modes(4)
+    # nearly rigid motion deforms by rounding, growth under a negative spring is a point of the
+    # rope, and clusters have no mode of their own
+    rope = scene.rope
+    own = (abs(scene.tension) + 10 * (rope.bending_stiffness or 0.0)) / rope.linear_density
+    single = [c[0] for c in modes.sensitivity.shapes.clusters if len(c) == 1]
+    kept = [k for k in single if RIGID * own < abs(modes.eigenvalue[k]) < own / RIGID]
+    sensitivity = modes.sensitivity
+    mass = sensitivity.mass.diagonal()
+    total, size = np.zeros((3, len(mass))), np.zeros((3, len(mass)))
+    rounding = np.zeros(len(mass))
+    for path, rate in rates_of(sensitivity.places).items():
+        power = np.array(powers(scene, path))
+        value = value_of(scene, path)
+        try:
+            weights = sizes(rate().weights(sensitivity.places))
+            change = value * sensitivity.eigenvalue(path)
+        except rd.SceneError:
+            total[2] = np.nan
+            continue
+        total += power[:, None] * change
+        size += np.abs(power[:, None] * change)
+        largest = sensitivity.largest.weigh_stiffness(weights) / mass
+        rounding += abs(power[2] * value) * largest
+    eigenvalue = sensitivity.shapes.eigenvalue
+    total[0] -= eigenvalue
+    total[1] += eigenvalue
+    size = np.maximum(size, np.abs(eigenvalue))
+    size[2] = np.maximum(size[2] * PLACES, rounding * ROUNDING)
+    return (np.abs(total[:, kept]) / size[:, kept]).max(axis=1, initial=0.0)
+
+
+def check_seed(seed, kind, claim):
+    """Check the balance of a random scene."""
+    random = np.random.default_rng(seed)
+    scene = random_scene(random, int(random.choice([1, 2, 3, 4]))).replace(damping=None)
+    try:
+        stiffness, inertia, length = imbalance(scene, kind)
+    except rd.SolveError as refusal:
+        # a mass is all there is, or a part of the rope is pushed too hard
+        pytest.skip(str(refusal))
+    claim(max(stiffness, inertia))
+    assert not length > 1
+
+
+BALANCE = pytest.mark.claim(
+    "sum of p dlambda/dp over all stiffnesses is lambda, over all inertias -lambda; random scenes",
+    reference="scaling of units (Euler's theorem of homogeneous functions)",
+    accepted=ACCEPTED,
+)
+
+
+@BALANCE
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(8))
+def test_derivatives_balance_as_units_do(seed, kind, claim):
+    check_seed(seed, kind, claim)
+
+
+@BALANCE
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(100, 400))
+def test_derivatives_of_many_scenes_balance_as_units_do(seed, kind, claim):
+    if (seed, kind) == LOST:
+        pytest.xfail("the shape of the fourth mode is wrong")
+    check_seed(seed, kind, claim)
