@@ -201,3 +201,14 @@ def test_pinned_tensed_chain_of_any_length_swings_in_sines(n, k):
     z = modes.shape[k - 1, :, 0]
     sine = np.sin(k * math.pi * np.arange(n + 1) / n)
     np.testing.assert_allclose(z * (sine @ sine) / (z @ sine), sine, atol=1e-10)
+
+
+def test_shape_of_a_mode_whose_eigenvalue_is_met_exactly():
+    """T/m l, where K - lambda M is singular to the last bit: the spring stands at a node of it."""
+    tension = 29.09146460022309
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=tension, parts=[rd.Spring(0.25, 8700.648546878794)])
+    modes = scene.compile(elements=12).modes(5)
+    sine = np.sin(np.pi * np.arange(13) / 3)
+    assert modes.eigenvalue[3] == pytest.approx(12 * tension / (0.1 / 12), rel=1e-14)
+    z = modes.shape[3, :, 0]
+    np.testing.assert_allclose(np.sign(z[1]) * z * sine[1], sine, atol=1e-13)
