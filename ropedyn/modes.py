@@ -205,7 +205,9 @@ class Modes(Answer):
             In units of the quantity per unit of the number. Modes whose eigenvalues rounding cannot
             tell apart have no shapes of their own: theirs are the derivatives, in increasing order,
             of the eigenvalues that part when the number grows. Modes close to each other lose as
-            many digits as their distance has less than their eigenvalue.
+            many digits as their distance has less than their eigenvalue. Lengths and places need
+            shear forces, differences of the motion of neighbours: in chains of n elements some
+            1e-16 n^2.5 of such a derivative is rounding, and more where motion is nearly rigid.
 
         Raises
         ------
