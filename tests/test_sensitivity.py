@@ -178,7 +178,7 @@ STRING = rd.Scene(
     tension=TENSION,
     parts=[rd.PointMass(0.4, 0.02)],
 )
-PATH = re.compile(r"(parts|ends)\[(\d)\]\.(?:spring\.)?(\w+)")
+PATH = re.compile(r"(parts|ends)\[(\d+)\]\.(?:(spring|mass|dashpot)\.)?(\w+)")
 
 
 def value_of(scene, path):
@@ -186,9 +186,9 @@ def value_of(scene, path):
     found = PATH.fullmatch(path)
     if found is None:
         return getattr(scene if path == "tension" else scene.rope, path)
-    kind, i, name = found.groups()
+    kind, i, of, name = found.groups()
     one = getattr(scene, kind)[int(i)]
-    return one.spring[name] if kind == "ends" else getattr(one, name)
+    return getattr(one, of)[name] if of else getattr(one, name)
 
 
 def changed(scene, path, value):
@@ -198,8 +198,8 @@ def changed(scene, path, value):
         return scene.replace(tension=value)
     if found is None:
         return scene.replace(rope=scene.rope.replace(**{path: value}))
-    kind, i, name = found.groups()
-    change = {"spring": {name: value}} if kind == "ends" else {name: value}
+    kind, i, of, name = found.groups()
+    change = {of: {name: value}} if of else {name: value}
     some = list(getattr(scene, kind))
     some[int(i)] = dataclasses.replace(some[int(i)], **change)
     return scene.replace(**{kind: tuple(some)})

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from conftest import EPS
-from random_scene import random_scene
-from test_sensitivity import value_of
+from random_scene import damped, random_scene, stretched_scene
+from test_sensitivity import PATH, value_of
 
 import ropedyn as rd
 from ropedyn.rate import rates_of
@@ -23,6 +23,19 @@ ROPE = {
     "rotary_inertia": (0, 1, 1),
     "polar_inertia": (0, 1, 1),
     "length": (0, 0, 1),
+}
+PART = {
+    "x": (0, 0, 1),
+    "start": (0, 0, 1),
+    "stop": (0, 0, 1),
+    "mass": (0, 1, 0),
+    "rotary_inertia": (0, 1, 2),
+    "polar_inertia": (0, 1, 2),
+    "linear_density": (0, 1, -1),
+    "bending": (0, 0, 0),
+    "torsion": (0, 0, 0),
+    "density": (0, 0, 0),
+    "damping": (0, 0, 0),
 }
 KINDS = {
     "continuous": {},
@@ -46,14 +59,15 @@ def powers(scene, path):
     """Of stiffness, inertia and length in a number, with newtons as kg m/s^2 and seconds kept."""
     if path in ROPE:
         return ROPE[path]
-    name = path.rpartition(".")[2]
-    if path.startswith("ends"):
-        return 1, 0, LENGTHS[name]
-    if name == "x":
-        return 0, 0, 1
+    kind, i, of, name = PATH.fullmatch(path).groups()
+    if kind == "ends":
+        stiffness, inertia = float(of == "spring"), float(of == "mass")
+        return stiffness, inertia, LENGTHS[name] * (of != "dashpot")
+    part = scene.parts[int(i)]
     if name == "stiffness":
-        return 1, 0, LENGTHS[scene.parts[int(path[6])].coordinate]
-    return 0, 1, 0 if name == "mass" else 2
+        return 1, 0, LENGTHS[part.coordinate]
+    along = isinstance(part, rd.AddedMass) and name == "polar_inertia"
+    return ROPE[name] if along else PART[name]
 
 
 def imbalance(scene, kind):
@@ -101,10 +115,10 @@ def imbalance(scene, kind):
     return (np.abs(total[:, kept]) / size[:, kept]).max(axis=1, initial=0.0)
 
 
-def check_seed(seed, kind, claim):
+def check_seed(seed, kind, claim, whole=random_scene):
     """Check the balance of a random scene."""
     random = np.random.default_rng(seed)
-    scene = random_scene(random, int(random.choice([1, 2, 3, 4]))).replace(damping=None)
+    scene = whole(random, int(random.choice([1, 2, 3, 4]))).replace(damping=None)
     try:
         stiffness, inertia, length = imbalance(scene, kind)
     except rd.SolveError as refusal:
@@ -114,11 +128,17 @@ def check_seed(seed, kind, claim):
     assert not length > 1
 
 
-BALANCE = pytest.mark.claim(
-    "sum of p dlambda/dp over all stiffnesses is lambda, over all inertias -lambda; random scenes",
-    reference="scaling of units (Euler's theorem of homogeneous functions)",
-    accepted=ACCEPTED,
-)
+def balance_of(scenes):
+    """The claim about such scenes."""
+    return pytest.mark.claim(
+        "sum of p dlambda/dp over all stiffnesses is lambda, over all inertias -lambda; " + scenes,
+        reference="scaling of units (Euler's theorem of homogeneous functions)",
+        accepted=ACCEPTED,
+    )
+
+
+BALANCE = balance_of("random scenes")
+CHANGING = balance_of("random scenes with stretches, dashpots and masses at the ends")
 
 
 @BALANCE
@@ -134,3 +154,23 @@ def test_derivatives_balance_as_units_do(seed, kind, claim):
 @pytest.mark.parametrize("seed", range(100, 400))
 def test_derivatives_of_many_scenes_balance_as_units_do(seed, kind, claim):
     check_seed(seed, kind, claim)
+
+
+def changing_scene(random, width):
+    """A random scene with stretches, dashpots, and masses at its ends."""
+    return damped(random, stretched_scene(random, width))
+
+
+@CHANGING
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(8))
+def test_derivatives_of_changed_ropes_balance_as_units_do(seed, kind, claim):
+    check_seed(seed, kind, claim, changing_scene)
+
+
+@CHANGING
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(100, 400))
+def test_derivatives_of_many_changed_ropes_balance_as_units_do(seed, kind, claim):
+    check_seed(seed, kind, claim, changing_scene)

@@ -57,6 +57,7 @@ SMOOTH = (
     "parts[3].density",
     "parts[4].mass",
     "ends[1].spring.z",
+    "ends[1].mass.z",
 )
 PLACES = (
     "length",
