@@ -84,8 +84,8 @@ class Weights:
 
     Attributes
     ----------
-    element : ndarray, shape (stretches - 1, 8)
-        Section, tension, length.
+    element : ndarray, shape (stretches - 1, 9)
+        Section, tension, length, sag.
     moving : ndarray, shape (stretches - 1, width)
         Inertia per length of continuous elements.
     jump : ndarray, shape (stretches - 1, width)
@@ -158,7 +158,7 @@ class Places:
     @property
     def inertia(self) -> Real:
         """Per length, of each span and coordinate, shape (spans, width)."""
-        return np.stack([inertia_of(self.model.coordinates, rope) for rope in self.ropes])
+        return np.stack([inertia_of(self.model.scene, rope) for rope in self.ropes])
 
     def sections(self, name: str) -> Real:
         """Return `section_rate` of each span, shape (spans, 3, 3)."""
@@ -190,7 +190,7 @@ class Rate:
         """Return the weights that belong to it."""
         span, station, inside = places.span, places.station, places.inside
         section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
-        element = np.column_stack([section, self.tension, self.length])
+        element = np.column_stack([section, self.tension, self.length, np.zeros(len(section))])
         inertia = self._inertia(places)
         diagonal = np.arange(self.mass.shape[1])
         node = np.zeros((len(station), *2 * self.mass.shape[1:]))

@@ -20,7 +20,7 @@ Real = NDArray[np.float64]
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 
-SECTIONS = 8
+SECTIONS = 9
 """Slopes of an element before those of its inertia: section, tension, length."""
 
 NOTHING = 1e-12
@@ -68,7 +68,7 @@ class Slopes:
     eigenvalue : ndarray, shape (m,)
         Of each shape.
     element, jump, node : ndarray
-        Shape (m, stretches - 1, 8 + width), (m, stretches - 1, width), (m, stretches, width,
+        Shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width,
         width): see csrc/sensitivity.h.
     """
 
