@@ -53,7 +53,8 @@ RD_INLINE void node(struct wave *wave, const lanes V[W][W])
             add_pair(wave, i, j, V[i][j]);
 }
 
-/* Nothing follows x of a rope that hangs, so that F is a shear, which turns by less than pi, and after it what leaves x alone */
+/* Of a rope that hangs nothing follows x: F is first a shear of x, which turns by less than pi, and
+   then what leaves x alone. */
 RD_INLINE void hanging_transfer(struct wave *wave, const struct step *step)
 {
     lanes shear[W][W], rest[W][W];

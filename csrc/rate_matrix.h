@@ -10,9 +10,9 @@
        E = | Phi  S'    |   Phi_z,beta = 1,  q = -lambda inertia + s drag, + T for beta,
            | q   -Phi^T |   S' the section flexibility, 1/T for z without bending
 
-   A rope that hangs is curved by w/T, w its weight per length: what moves across it by z stretches by
-   -(w/T) z, and the tension h that this adds pulls it back by (w/T) h (Irvine and Caughey 1974):
-   Phi_x,z = w/T. Then x is along the curve and z away from its centre. */
+   A rope that hangs is curved by w/T, w its weight per length: with x along the curve and z towards
+   its centre, which is up, the strain is x' - (w/T) z, and the tension h that it adds pulls by
+   (w/T) h (Irvine and Caughey 1974): Phi_x,z = w/T. */
 struct rate_matrix {
     cv S[RD_WIDTH_MAX][RD_WIDTH_MAX];          /* S' */
     _Bool elastic[RD_WIDTH_MAX][RD_WIDTH_MAX]; /* where it is not zero */

@@ -62,7 +62,7 @@ static void resist_node(const struct rd_walk *walk, int32_t term, const double T
 }
 
 /* What an element without end forces makes of a motion: D_z,beta = l, and its tension resists any
-   beta; D_x,z = l w/T of sag, where beta never moves alone. D, Q (width, width) */
+   beta; of sag D_x,z = l w/T. D, Q (width, width) */
 static void levers(const struct rd_chain *chain, int32_t element, double *D, double *Q)
 {
     const size_t w = chain->width, beta = w - 1;
@@ -90,7 +90,7 @@ static void tilt(size_t w, const double *D, const double T[W][W], double DT[W][W
         }
 }
 
-/* T <- F^n T, D^2 = 0 */
+/* T <- F^n T, D^2 = 0: of sag but for what beta does to x, and no beta is left under tension */
 static void advance(size_t w, const double *D, size_t n, double T[W][W])
 {
     double DT[W][W];

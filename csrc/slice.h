@@ -113,8 +113,7 @@ RD_INLINE void slice_bend(const struct rate_matrix *s, double l, int terms, cv D
     Q[B][B] = c_mul(stiff, b.Qbb);
 }
 
-/* powers of l from an entry of E that sag adds to the last one that it leads to: h bends the rope by
-   its fifth integral, z needs three */
+/* z follows from F_z by three integrals, x from h by two more */
 enum { SLICE_HANGING = 2 };
 
 /* D = F - I, G, Q of a piece of length l, any couplings */

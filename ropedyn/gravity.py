@@ -16,8 +16,8 @@ class Gravity:
     """Weight of the rope in the plane of z, and with it the sag between its ends.
 
     With the chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord
-    L, the rope hangs in a parabola of the curvature w/H. Along it a small motion x, and z away from
-    the centre of the curve (against the weight), stretch the rope by
+    L, the rope hangs in a parabola of the curvature w/H. A small motion, x along it and z towards
+    the centre of the curve (up, against the weight), strains the rope by
 
         x' - (w/H) z = h/EA_e,  EA_e = EA L/L_e,  L_e = L (1 + (w L/H)^2/8)
 

@@ -211,30 +211,39 @@ def test_pinned_beam_has_the_roots_of_its_sum_over_modes(parameter, stiff):
     assert errors(modes.frequency[symmetric], exact) <= 1e-14
 
 
-QUICK = [(0.01, 1e2, "pinned"), (1e4, 1e3, "clamped")]
-STIFF = [
-    (parameter, stiff, end)
-    for parameter in (0.01, 30.0, 1e4)
-    for stiff in (1e4, 1e7)
-    for end in ("clamped", "pinned")
-]
+def beam_error(parameter, stiff, end):
+    """Largest error of two eigenvalues of a hanging beam over their sensitivity."""
+    scene = beam(parameter, stiff, ends=(end, end))
+    modes = scene.compile().modes(3)
+    assert modes.certified
+    return worst_error(scene, modes, [0, 2])
 
 
 @pytest.mark.parametrize(
-    ("parameter", "stiff", "end"),
-    [*QUICK, *(pytest.param(*c, marks=pytest.mark.slow) for c in STIFF)],
+    ("parameter", "stiff", "end"), [(0.01, 1e2, "pinned"), (1e4, 1e3, "clamped")]
 )
 @pytest.mark.claim(
-    "Frequencies of hanging beams, sag parameter 0.01 to 1e4, T L^2/B 1e2 to 1e7: relative error "
-    "of an eigenvalue over its sensitivity",
+    "Frequencies of hanging beams, sag parameter 0.01 and 1e4: error of an eigenvalue over its "
+    "sensitivity",
     reference="zeros of the determinant in 60 digits: tests/exact_roots.py",
     accepted=1e-13,
 )
 def test_hanging_beam_has_its_exact_frequencies(parameter, stiff, end, claim):
-    scene = beam(parameter, stiff, ends=(end, end))
-    modes = scene.compile().modes(3)
-    assert modes.certified
-    claim(worst_error(scene, modes, [0, 2]))
+    claim(beam_error(parameter, stiff, end))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("end", ["clamped", "pinned"])
+@pytest.mark.parametrize("stiff", [1e2, 1e4, 1e7])
+@pytest.mark.parametrize("parameter", [0.01, 30.0, 1e4])
+@pytest.mark.claim(
+    "Frequencies of hanging beams, sag parameter 0.01 to 1e4, T L^2/B 1e2 to 1e7: error of an "
+    "eigenvalue over its sensitivity",
+    reference="zeros of the determinant in 60 digits: tests/exact_roots.py",
+    accepted=1e-13,
+)
+def test_hanging_beams_of_any_stiffness_have_their_exact_frequencies(parameter, stiff, end, claim):
+    claim(beam_error(parameter, stiff, end))
 
 
 @pytest.mark.slow
@@ -311,29 +320,43 @@ def span_error(scene, f, drive, response):
     return error
 
 
-@pytest.mark.parametrize(
-    "seed", [*range(4), *(pytest.param(k, marks=pytest.mark.slow) for k in range(4, 60))]
-)
-@pytest.mark.claim(
-    "Responses of hanging ropes and of chains of them, sag parameter 1e-6 to 1e6: relative error "
-    "over the condition of the answer",
-    reference="the matrix exponential, and the discrete system, in 60 digits: tests/exact_span.py",
-    accepted=1e-12,
-)
-def test_hanging_rope_responds_as_the_exact_one(seed, claim):
+def response_errors(seed):
+    """Errors over conditions of a response of a random hanging rope and of a chain of it."""
     random = np.random.default_rng(seed)
     scene, f = some_scene(random)
     a, b = (str(random.choice(["x", "z"])) for _ in range(2))
-    claim(span_error(scene, f, (a, random.uniform(0.1, 0.9)), (b, random.uniform(0.1, 0.9))))
+    first = span_error(scene, f, (a, random.uniform(0.1, 0.9)), (b, random.uniform(0.1, 0.9)))
     n = int(random.choice([5, 9, 16]))
     model = scene.compile(elements=n, element=str(random.choice(["tensed", "rigid"])))
     drive, response = (a, int(random.integers(1, n))), (b, int(random.integers(1, n)))
-    error, covered = error_over_condition(model, f, drive, response, enough=1e-14)
+    second, covered = error_over_condition(model, f, drive, response, enough=1e-14)
     assert covered <= 1
-    claim(error)
+    return max(first, second)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.claim(
+    "Responses of hanging ropes and of chains of them: error / condition",
+    reference="the spans and the discrete system in 60 digits: tests/exact_span.py, exact_chain.py",
+    accepted=1e-12,
+)
+def test_hanging_rope_responds_as_the_exact_one(seed, claim):
+    claim(response_errors(seed))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4, 60))
+@pytest.mark.claim(
+    "Responses of 56 random hanging ropes and of chains of them, sag parameter 1e-6 to 1e6: error "
+    "/ condition",
+    reference="the spans and the discrete system in 60 digits: tests/exact_span.py, exact_chain.py",
+    accepted=1e-12,
+)
+def test_random_hanging_ropes_respond_as_the_exact_ones(seed, claim):
+    claim(response_errors(seed))
+
+
+@pytest.mark.parametrize("seed", range(1, 5))
 def test_forces_inside_a_hanging_rope_are_the_exact_ones(seed):
     random = np.random.default_rng(300 + seed)
     scene, f = some_scene(random)
