@@ -119,6 +119,31 @@ def test_frequencies_of_a_string_that_carries_are_those_on_paper(what):
     assert (error <= modes.rounding_error + EPS * modes.frequency).all()
 
 
+# seeds of frequencies, each with a resonator and a wire
+@pytest.mark.parametrize("seed", range(30))
+def test_rounding_error_bounds_the_true_error_at_the_foot_and_at_the_tip(seed):
+    random = np.random.default_rng(seed)
+    x, zeta = float(random.uniform(0.1, 0.9)), float(random.choice([0.0, 0.01]))
+    wire = rd.BrokenWire(x, 0.1, 5e-4, radius=0.0, damping_ratio=zeta)
+    own = rd.Resonator(x, 0.02, 20.0).frequency if random.random() < 0.5 else wire.frequency
+    f = own * float(1 + random.choice([-1, 1]) * random_scene.log_uniform(random, 1e-9, 1.0))
+    parts = (wire, rd.Resonator(x, 0.02, 20.0))
+    frf = taut(*parts).compile().frf(f, drive=("z", x), response=[("z", x), ("wire", 0)])
+    with mpmath.workdps(50):
+        square = omega(f) ** 2
+        k = mpmath.sqrt(square * mpf(DENSITY) / mpf(TENSION))
+        across = mpmath.sin(k * mpf(x)) * mpmath.sin(k * (LENGTH - mpf(x)))
+        stiffness = mpf(TENSION) * k * mpmath.sin(k * LENGTH) / across
+        (zz, _, _), tip, gap = wire_stiffness(wire, square)
+        above, below = poles(parts[1], square, mpmath.mp)
+        foot = 1 / (stiffness + zz / gap + above / below)
+        exact = np.array([foot, tip[0] / gap * foot], dtype=np.complex128)
+    error = np.abs(frf.value[:, 0] - exact)
+    assert (error <= (frf.rounding_error[:, 0] + EPS) * np.abs(frf.value[:, 0])).all()
+    # and is no useless bound: of the condition beside the tuning, and what there is without
+    assert (frf.rounding_error[:, 0] <= 1e4 * EPS * (1 + 1 / abs(f / own - 1))).all()
+
+
 # --- limits -----------------------------------------------------------------------------------
 
 
@@ -220,6 +245,24 @@ def test_an_absorber_keeps_its_foot_still_at_the_frequency_it_is_tuned_to(kind):
     np.testing.assert_allclose(frf.value[1], held.value[0], rtol=1e3 * EPS)
 
 
+@pytest.mark.parametrize("kind", KINDS, ids=KIND_IDS)
+def test_structures_at_free_ends_and_beside_hinges_resonate_where_the_modes_are(kind):
+    parts = [
+        rd.Resonator(0.0, 0.01, 20.0),
+        rd.BrokenWire(1.0, 0.1, 1e-3, radius=1e-3),
+        rd.Hinge(0.4, stiffness=1.0),
+        rd.BrokenWire(0.4, 0.12, 1e-3, radius=1e-3),
+    ]
+    model = taut(*parts, rope=BEAM.replace(lay_slope=0.3), ends=("free", "free")).compile(**kind)
+    modes = model.modes(7)
+    assert modes.certified
+    assert modes.frequency[1] == 0.0 < modes.frequency[2]
+    for f in modes.frequency[2:]:
+        far, near = np.abs(model.frf(f * np.array([1.01, 1 + 1e-7]), drive=("z", 0.0)).value[0])
+        # ten thousand times and more for a hundred thousandth of the distance
+        assert near > 1e4 * far
+
+
 # --- modes in which a foot stands still -------------------------------------------------------
 
 
@@ -300,7 +343,7 @@ def carrying(seed, *, damped=True):
     return random, scene.replace(parts=[*parts, *stay]), parts
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(40))
 def test_sweep_and_band_agree_within_their_estimates_where_structures_are(seed):
     random, scene, parts = carrying(seed)
     f = random_scene.frequency(random, scene) or 1e-3
@@ -367,7 +410,7 @@ def expanded(model):
     return scipy.linalg.eigvalsh(K * scale * scale[:, None])
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", range(15))
 def test_modes_of_ropes_with_structures_are_certified_and_their_energies_add_up(seed):
     _, scene, _ = carrying(seed)
     scene = scene.replace(tension=min(abs(scene.tension), 1e4))
