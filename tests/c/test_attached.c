@@ -1,8 +1,12 @@
 /* Structures that nodes carry: Krylov's functions, feet on both sides of their poles, held counts. */
 #include "attached.h"
 
+#include "certify.h"
 #include "check.h"
+#include "count.h"
 #include "krylov.h"
+#include "sweep.h"
+#include "walked.h"
 
 #include <string.h>
 
@@ -173,8 +177,122 @@ static void test_energies_are_those_of_the_foot(void)
     }
 }
 
+/* A string whose node 7 carries two equal resonators and a wire. */
+struct carrying {
+    struct rope rope;
+    int32_t kind[3], term[3];
+    double row[6], value[12];
+};
+
+enum { NODE = 7 };
+
+static void carrying_make(struct carrying *c)
+{
+    struct recipe recipe = long_string;
+    recipe.elements = 20;
+    recipe.more = 1;
+    *c = (struct carrying){
+        .rope = rope_make(&recipe),
+        .kind = {RD_RESONATOR, RD_RESONATOR, RD_WIRE},
+        .term = {MORE, MORE, MORE},
+        .row = {1, 0, 1, 0, 1, 0},
+    };
+    memcpy(c->value, resonator, sizeof resonator);
+    memcpy(c->value + 4, resonator, sizeof resonator);
+    memcpy(c->value + 8, wire, sizeof wire);
+    c->rope.term_of[NODE] = MORE;
+    rope_gather(&c->rope);
+    c->rope.chain.attached = 3;
+    c->rope.chain.attached_kind = c->kind;
+    c->rope.chain.attached_term = c->term;
+    c->rope.chain.attached_row = c->row;
+    c->rope.chain.attached_value = c->value;
+}
+
+static struct rd_refine refine_make(const struct rd_walk *walk, struct rd_workspace *workspace)
+{
+    struct rd_refine refine;
+    rd_refine_take(walk, 200, 50, workspace, &refine);
+    *workspace = exact_workspace(workspace->used);
+    rd_refine_take(walk, 200, 50, workspace, &refine);
+    return refine;
+}
+
+static void test_equal_resonators_have_a_mode_of_their_own(void)
+{
+    enum { WANTED = 4 };
+    struct carrying c;
+    carrying_make(&c);
+    struct walked walked = walked_make(&c.rope.chain);
+    struct rd_workspace workspace = {0};
+    struct rd_refine refine = refine_make(&walked.walk, &workspace);
+    double *motion = zeros(3 * WANTED), *shape = zeros(WANTED * 21), *numbers = zeros(7 * WANTED);
+    struct rd_certified modes = {
+        .wanted = WANTED,
+        .upper = INFINITY,
+        .lambda = numbers,
+        .error = numbers + WANTED,
+        .certified = numbers + 2 * WANTED,
+        .bracket = numbers + 3 * WANTED,
+        .shape = shape,
+        .motion = motion,
+    };
+    CHECK_INT(rd_certify(&refine, &modes), RD_OK);
+    CHECK_INT(modes.found, WANTED);
+    const double own = resonator[1] / resonator[0];
+    int at = -1;
+    for (int k = 0; k < WANTED; k++) {
+        CHECK_EXACT(modes.certified[k], 1);
+        at = fabs(modes.lambda[k] / own - 1) < 64 * EPS ? k : at;
+    }
+    CHECK(at >= 0);
+    if (at >= 0) { /* against each other, and the string stands still */
+        const double *y = motion + 3 * at;
+        CHECK_ABS(y[0] + y[1], 0, 1e-9 * fabs(y[0]), "the square root of what a quotient sees");
+        CHECK_ABS(shape[at * 21 + NODE], 0, 1e-9 * fabs(y[0]), "the same");
+        const double lambda[] = {own * (1 - 1e-9), own, own * (1 + 1e-9)};
+        double count[3];
+        rd_count(&walked.walk, 3, lambda, count);
+        CHECK_EXACT(count[0], at);
+        CHECK_EXACT(count[2], at + 1);
+        CHECK(count[1] == at || count[1] == at + 1);
+    }
+    free(motion);
+    free(shape);
+    free(numbers);
+    free(workspace.base);
+    walked_free(&walked);
+    rope_free(&c.rope);
+}
+
+static void test_a_foot_stands_still_where_its_resonator_is_tuned(void)
+{
+    struct carrying c;
+    carrying_make(&c);
+    const double one[] = {1, 0, 1, 0}, own = resonator[1] / resonator[0];
+    const double inertia[] = {-own, 0, -2 * own, 0};
+    const double dashpot[] = {0, sqrt(own), 0, sqrt(2 * own)};
+    const int32_t node[] = {NODE};
+    const double at[] = {1, 0};
+    const struct rd_factors factors = {2, one, one, one, inertia, dashpot};
+    const struct rd_ports ports = {1, node, at, NULL};
+    struct rd_workspace space = {0};
+    double value[4], error[2];
+    size_t failed = 0;
+    rd_frf_sweep(&c.rope.chain, &factors, &ports, &ports, &space, value, error, &failed);
+    space = exact_workspace(space.used);
+    CHECK_INT(rd_frf_sweep(&c.rope.chain, &factors, &ports, &ports, &space, value, error, &failed),
+              RD_OK);
+    CHECK(hypot(value[0], value[1]) < EPS * hypot(value[2], value[3]));
+    CHECK(hypot(value[2], value[3]) > 0);
+    free(space.base);
+    rope_free(&c.rope);
+}
+
 int main(void)
 {
+    test_equal_resonators_have_a_mode_of_their_own();
+    test_a_foot_stands_still_where_its_resonator_is_tuned();
     test_krylovs_functions_keep_cosh_and_cos();
     test_krylovs_functions_do_not_jump_where_series_end();
     test_a_growth_leaves_all_of_them_finite();
@@ -183,5 +301,5 @@ int main(void)
     test_counts_with_the_foot_held_change_at_the_roots();
     test_a_resonator_is_finite_on_its_pole();
     test_energies_are_those_of_the_foot();
-    return check_report();
+    return check_report("test_attached");
 }
