@@ -94,6 +94,8 @@ def solve_damped(
         raise SceneError(f'solver must be "sweep" for damped modes, got {solver!r}')
     check_points(model, points)
     limit = math.sqrt(check_asked(number, below))
+    if model.chain.attached_kind is not None:
+        raise SceneError("damped must be False where nodes carry resonators or broken wires")
     if having(model.scene.dampings, "ratio"):
         return solve_modal(model, number, below=below, points=points)
     start = time.perf_counter()

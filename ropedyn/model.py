@@ -253,10 +253,15 @@ class Model:
             Of continuous spans: shapes are given at the ends of so many equal parts of each span
             or element, exactly; so many that the highest mode has 16 to a half wave where left
             out.
+        damped : bool
+            False: damping is ignored. True: rates s and complex shapes of free motion
+            Re(shape e^(s t)), by the sweep; modes are then those of the least |s|, below a
+            frequency those of |s|/2 pi, and all are found and certified, overdamped ones among them
+            (see `DampedModes`).
 
         Returns
         -------
-        Modes
+        Modes, or DampedModes if `damped`
 
         Raises
         ------
@@ -266,7 +271,10 @@ class Model:
             If not exactly one of `number` and `below` is given, or a value has no meaning.
         SolveError
             If more modes are asked for than the model has finite ones (the message says how
-            many), or the stiffness is negative where there is no mass.
+            many), or the stiffness is negative where there is no mass. Of damped modes also: where
+            stiffness damping makes infinitely many overdamped ones accumulate, at 1/(2 pi gamma)
+            Hz, and where rounding decides where they are, as before a dashpot that matches the
+            rope's impedance.
 
         Examples
         --------
@@ -274,6 +282,14 @@ class Model:
         >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=64)
         >>> print(model.modes(2).frequency.round(2))
         [15.81 31.61]
+
+        A dashpot near an end that damps the first mode best, by half the share of the length that
+        it cuts off:
+
+        >>> dashpot = rd.Dashpot(0.02, 15.93 * (100.0 * 0.1) ** 0.5)
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[dashpot]).compile()
+        >>> print(model.modes(1, damped=True).damping_ratio.round(5))
+        [0.01021]
         """
         self._refuse_nonlinear()
         check.instance(damped, "damped", bool, "True or False")
