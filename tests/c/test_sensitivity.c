@@ -49,7 +49,7 @@ static void continuous_matrix(const struct rd_chain *chain, double *K)
     const size_t w = chain->width;
     struct rate_matrix rate;
     struct rd_transfer transfer;
-    rd_rate_fill(chain, 0, c_real(1), c_real(1), c_real(-LAMBDA), &rate);
+    rd_rate_fill(chain, 0, c_real(1), c_real(1), c_real(-LAMBDA), c_zero(), &rate);
     rd_transfer_fill(chain, 0, &rate, &transfer);
     double F[W * W], T[W * W], G[W * W], GF[W * W], FGF[W * W];
     for (size_t i = 0; i < w * w; i++) {
