@@ -501,7 +501,7 @@ class BrokenWire:
     >>> import ropedyn as rd
     >>> wire = rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3)
     >>> print(round(wire.frequency, 2))
-    86.02
+    86.0
     """
 
     kind: ClassVar[str] = "broken wire"
