@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from . import _core
 from .chain import ATTACHED
 from .model import Model
-from .part import BrokenWire
+from .part import BrokenWire, standing
 from .port import Point, locate
 from .unit import WIRE
 
@@ -40,7 +40,8 @@ def tip_of(model: Model, point: Point) -> Tip:
     assert chain.attached_term is not None
     assert chain.attached_row is not None
     kind = ATTACHED.index(BrokenWire.kind)
-    nodes = [locate(model.x, p.x)[0] for p in scene.parts if isinstance(p, BrokenWire)]
+    wires = (p for p in standing(scene.parts) if isinstance(p, BrokenWire))
+    nodes = [locate(model.x, wire.x)[0] for wire in wires]
     # the chain has them by their place, those of one place as the scene has them
     order = sorted(range(len(nodes)), key=nodes.__getitem__)
     rank = order.index(int(point[1]))
