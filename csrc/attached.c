@@ -14,16 +14,17 @@ static const double STEP = 0x1p-200;
 
 /* A mass m on a spring k and a dashpot c: y is its motion,
        D = -lambda m k'/(k' - lambda m),  k' = k + s c,
-   which is -w/e with w = lambda m and e = 1 - lambda m/k'. value: m, k, unused, c */
+   which is -w/e with w = lambda m k'/k and e = (k' - lambda m)/k, polynomials in s. value: m, k, unused,
+   c */
 static void fill_resonator(const double *value, double _Complex inertia, double _Complex dashpot,
                            struct rd_foot *foot)
 {
-    const double _Complex force = inertia * value[0], spring = value[1] + dashpot * value[3];
+    const double _Complex force = inertia * value[0], share = 1 + dashpot * value[3] / value[1];
     *foot = (struct rd_foot){
-        .weight = -force,
-        .gap = 1 + force / spring,
+        .weight = -force * share,
+        .gap = share + force / value[1],
         .lever = {1},
-        .tip = {1},
+        .tip = {share},
     };
     foot->held = creal(foot->gap) < 0;
 }

@@ -6,6 +6,7 @@
 #include "characteristic.h"
 
 #include "span.h"
+#include "sweep_foot.h"
 #include "sweep_kernel.h"
 
 #include <math.h>
@@ -194,6 +195,19 @@ static RD_CLONES void cross(const size_t w, const cv *triple, size_t z, const cv
         }
 }
 
+/* X <- X H: x^T H = conj(H conj(x)) of each row */
+RD_INLINE void turn_columns(size_t w, const cv *v, lanes t, cv (*X)[W])
+{
+    for (size_t i = 0; i < w; i++) {
+        cv x[W];
+        for (size_t j = 0; j < w; j++)
+            x[j] = c_conj(X[i][j]);
+        reflect(v, 1, t, x, 1, w);
+        for (size_t j = 0; j < w; j++)
+            X[i][j] = c_conj(x[j]);
+    }
+}
+
 /* Row e of one of (X, Y) comes to nothing: the limit of Y <- Y + k e e^T X for k -> infinity, divided
    by k. The columns are turned until the first alone has it, which then is (0; e), and no other has
    more of that. */
@@ -204,20 +218,13 @@ static RD_CLONES void vanish(size_t w, size_t e, cv (*X)[W], cv (*Y)[W], struct 
     for (size_t j = 0; j < w; j++)
         row[j] = c_conj(X[e][j]);
     const cv alpha = reflector(row, 1, w, &t);
-    /* x^T H = conj(H conj(x)) */
-    for (size_t i = 0; i < w; i++) {
-        cv x[W], y[W];
+    turn_columns(w, row, t, X);
+    turn_columns(w, row, t, Y);
+    for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j < w; j++) {
-            x[j] = c_conj(X[i][j]);
-            y[j] = c_conj(Y[i][j]);
+            X[i][j] = i == e || j == 0 ? c_zero() : X[i][j];
+            Y[i][j] = i == e ? c_real(j == 0) : j == 0 ? c_zero() : Y[i][j];
         }
-        reflect(row, 1, t, x, 1, w);
-        reflect(row, 1, t, y, 1, w);
-        for (size_t j = 0; j < w; j++) {
-            X[i][j] = i == e || j == 0 ? c_zero() : c_conj(x[j]);
-            Y[i][j] = i == e ? c_real(j == 0) : j == 0 ? c_zero() : c_conj(y[j]);
-        }
-    }
     multiply(product, c_conj(alpha));
 }
 
@@ -240,6 +247,55 @@ static void load(struct characteristic *c, size_t term)
             for (size_t j = 0; j < w; j++)
                 m->V[i][j] = c_add(m->V[i][j], c_mul(N, m->U[k][j]));
         }
+}
+
+/* V <- V + rest U - (w/e) v v^T U of a structure (attached.h), and Delta times e, which has no pole
+   where e is zero: the columns are turned until the first alone moves the foot, v^T U = (r, 0 ..), and
+   that becomes (e U_1; e V_1 - w r v). */
+static void carry(struct characteristic *c, size_t k)
+{
+    const struct rd_chain *chain = c->chain;
+    struct motions *m = &c->motions;
+    const size_t w = chain->width;
+    struct sweep_foot foot;
+    cv v[W], row[W];
+    lanes t;
+    rd_sweep_foot(chain, &c->block, k, &foot);
+    for (size_t part = 0; part < 2; part++) {
+        const double *of = chain->attached_row + (2 * k + part) * w;
+        for (size_t j = 0; j < w; j++) {
+            cv moved = c_zero();
+            for (size_t i = 0; i < w; i++)
+                moved = c_add(moved, c_scale_lanes(m->U[i][j], c->block.z[i] * of[i]));
+            moved = c_mul(foot.rest[part], moved);
+            for (size_t i = 0; i < w; i++)
+                m->V[i][j] = c_add(m->V[i][j], c_scale_lanes(moved, c->block.z[i] * of[i]));
+        }
+    }
+    for (size_t i = 0; i < w; i++)
+        v[i] = c_scale_lanes(foot.lever[i], c->block.z[i]);
+    for (size_t j = 0; j < w; j++) {
+        row[j] = c_zero();
+        for (size_t i = 0; i < w; i++)
+            row[j] = c_add(row[j], c_mul(v[i], m->U[i][j]));
+        row[j] = c_conj(row[j]);
+    }
+    const cv pull = c_mul(foot.weight, c_conj(reflector(row, 1, w, &t)));
+    turn_columns(w, row, t, m->U);
+    turn_columns(w, row, t, m->V);
+    multiply(&m->product, (cv){foot.size, (lanes){0}});
+    for (size_t i = 0; i < w; i++) {
+        m->U[i][0] = c_mul(foot.gap, m->U[i][0]);
+        m->V[i][0] = c_sub(c_mul(foot.gap, m->V[i][0]), c_mul(pull, v[i]));
+    }
+}
+
+/* all structures of a node term */
+static void carry_all(struct characteristic *c, size_t term)
+{
+    const struct rd_chain *chain = c->chain;
+    for (size_t k = rd_attached_first(chain, term); rd_attached_is_of(chain, k, (int32_t)term); k++)
+        carry(c, k);
 }
 
 /* hinges, springs as they are: U <- U + h e e^T V */
@@ -273,6 +329,7 @@ static void leave(struct characteristic *c, size_t term)
             c->power[e] += 2;
         }
     load(c, term);
+    carry_all(c, term);
     if (c->chain->hinge)
         open(c, term);
 }
@@ -375,6 +432,7 @@ static void finish(struct characteristic *c)
     cv A[2 * W][W], r[W];
     lanes t[W];
     load(c, term);
+    carry_all(c, term);
     for (size_t i = 0; i < w; i++) {
         const int held = c->chain->held[term * w + i];
         c->power[i] += held ? 1 : -1;

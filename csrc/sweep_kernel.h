@@ -53,6 +53,7 @@ struct sweep_foot {
     cv lever[RD_WIDTH_MAX];
     int rests[2];            /* rest is not zero in every lane */
     int moves[RD_WIDTH_MAX]; /* nor is lever */
+    lanes size;              /* that weight and gap are both divided by */
 };
 
 struct sweep_walk {

@@ -94,8 +94,8 @@ def solve_damped(
         raise SceneError(f'solver must be "sweep" for damped modes, got {solver!r}')
     check_points(model, points)
     limit = math.sqrt(check_asked(number, below))
-    if model.chain.attached_kind is not None:
-        raise SceneError("damped must be False where nodes carry resonators or broken wires")
+    if "broken wire" in model.scene.effects:
+        raise SceneError("damped must be False where the rope has a broken wire")
     if having(model.scene.dampings, "ratio"):
         return solve_modal(model, number, below=below, points=points)
     start = time.perf_counter()
@@ -205,7 +205,7 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
         columns = np.array([model.coordinates.index(c) for c in component])
         block = np.ix_(mine, nodes, columns)
         shape[block], mass[mine] = _shapes(chain, part, at[mine])
-    strain, kinetic = _energy(fine.chain, shape, value)
+    strain, kinetic, carried = _energy(fine.chain, shape, value)
     own = kinetic.argmax(axis=1)
     size = largest(shape[:, ::more], own)
     everywhere = np.abs(largest(shape, own))
@@ -215,7 +215,7 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=mass / size**2,
         shape=shape[:, ::more] / size[:, None, None],
-        energy=fractions(model, np.abs(value), strain, kinetic, np.zeros((len(value), 3))),
+        energy=fractions(model, np.abs(value), strain, kinetic, carried),
     )
 
 
@@ -241,12 +241,37 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
     return shape, mass
 
 
-def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
-    """Return strain and kinetic energy over a period, twice."""
+def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real, Real]:
+    """Return strain and kinetic energy over a period, twice, and those of what nodes carry."""
     eigenvalue = -np.square(value).real
-    real = _core.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
-    imag = _core.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
-    return real[0] + imag[0], real[1] + imag[1]
+    motion = _carried_motion(chain, shape, value)
+    real = _real_energy(chain, shape.real, motion.real, eigenvalue)
+    imag = _real_energy(chain, shape.imag, motion.imag, eigenvalue)
+    return real[0] + imag[0], real[1] + imag[1], real[2] + imag[2]
+
+
+def _real_energy(
+    chain: Chain, shape: Real, motion: Real, eigenvalue: Real
+) -> tuple[Real, Real, Real]:
+    shape, motion = np.ascontiguousarray(shape), np.ascontiguousarray(motion)
+    strain, kinetic, _ = _core.energy(chain.undamped, shape, eigenvalue)
+    carried = np.zeros((len(shape), 3))
+    if motion.size:
+        carried = _core.carried(chain, shape, motion, eigenvalue)
+    return strain, kinetic, carried
+
+
+def _carried_motion(chain: Chain, shape: Complex, value: Complex) -> Complex:
+    """Return how the masses of resonators move, shape (k, attached)."""
+    if chain.attached_term is None:
+        return np.zeros((len(value), 0), dtype=np.complex128)
+    factor = Rates.of(()).at(value)
+    motion = np.zeros((len(value), len(chain.attached_term)), dtype=np.complex128)
+    for k, term in enumerate(chain.attached_term.tolist()):
+        node = int(chain.first[np.flatnonzero(chain.term == term)[0]])
+        row = _core.tip(chain, k, np.ascontiguousarray(factor))
+        motion[:, k] = (row.T * shape[:, node]).sum(axis=1)
+    return motion
 
 
 # --- against continuous spans -------------------------------------------------------------------

@@ -174,7 +174,11 @@ def most_roots(chain: Chain, rates: Rates) -> int | None:
     The determinant of s^2 M + s C + K has the power 2 rank M + rank of C where M is nothing; masses
     and dashpots stand at nodes.
     """
-    if chain.finite is None or rates.linear[elastic(chain)].any():
+    if (
+        chain.finite is None
+        or chain.attached_kind is not None
+        or rates.linear[elastic(chain)].any()
+    ):
         return None
     count = 0
     each = np.bincount(chain.term_of, minlength=len(chain.mass))

@@ -63,14 +63,14 @@ class Proportional:
 def proportional(chain: Chain, rates: Rates) -> Proportional | None:
     """Say how the damping of a chain is proportional, or None where it is not.
 
-    Everything that holds the chain has one factor, and dashpots are to masses everywhere as one
-    number.
+    Everything that holds the chain has one factor, dashpots are to masses everywhere as one number,
+    and nodes carry no structures, whose springs have factors of their own.
     """
     parts = elastic(chain)
     if chain.stiffness.any() or (chain.hinge is not None and chain.hinge.any()):
         parts.append(SPRING)
     stiff, soften = rates.constant[parts], rates.linear[parts]
-    if (stiff != stiff[0]).any() or (soften != soften[0]).any():
+    if chain.attached_kind is not None or (stiff != stiff[0]).any() or (soften != soften[0]).any():
         return None
     ratio = _dashpots_per_mass(chain)
     if ratio is None:

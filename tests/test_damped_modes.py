@@ -292,6 +292,56 @@ def test_one_mass_is_overdamped_beyond_twice_the_root_of_k_m(c):
         critical(c).modes(3, damped=True)
 
 
+# --- resonators -----------------------------------------------------------------------------------
+
+
+def exact_absorber(x1, m, k, c):
+    """The determinant of a string with a mass m on a spring k and a dashpot c at x1."""
+
+    def f(s):
+        v, z = mpmath.sqrt(mpmath.mpf(T) / MU), mpmath.sqrt(mpmath.mpf(T) * MU)
+        spring = k + s * c
+        felt = s * m * spring / (spring + s * s * m) / z
+        ends = mpmath.sinh(s * x1 / v) * mpmath.sinh(s * (mpmath.mpf(L) - x1) / v)
+        return mpmath.sinh(s * mpmath.mpf(L) / v) + felt * ends
+
+    return f
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.1, 1.5, 20.0])
+def test_tuned_absorber_splits_a_mode_as_its_determinant_says(ratio):
+    x1, m, f = 0.4 * L, 0.02, 12.0
+    omega = 2 * math.pi * f
+    k, c = m * omega**2, 2 * ratio * m * omega
+    modes = string(rd.Resonator(x1, m, f, damping_ratio=ratio)).compile().modes(7, damped=True)
+    assert modes.certified
+    # what the resonator's own numbers round to moves it by 4 eps of |s|
+    for s, error in zip(modes.eigenvalue, 2 * np.pi * modes.rounding_error):
+        assert newton(exact_absorber(x1, m, k, c), s) < error + 4 * EPS * abs(s)
+    if ratio == 0:
+        undamped = string(rd.Resonator(x1, m, f)).compile().modes(7)
+        assert np.allclose(modes.frequency, undamped.frequency, rtol=1e-14, atol=0)
+        assert np.allclose(modes.modal_mass, undamped.modal_mass, rtol=1e-11, atol=0)
+        for name, share in undamped.energy.items():
+            assert np.allclose(modes.energy[name], share, rtol=0, atol=1e-10)
+
+
+def test_rates_do_not_depend_on_poles_of_the_resonator():
+    # far overdamped its spring is a rod but for slow motion, s near -k/c: that of a point mass
+    rod = string(rd.Resonator(0.4, 0.02, 12.0, damping_ratio=1e6)).compile().modes(6, damped=True)
+    mass = string(rd.PointMass(0.4, 0.02)).compile().modes(5)
+    assert rod.certified
+    assert (rod.frequency == 0).sum() == 1
+    # m omega/c, 4e-4 of the share that the mass has in a mode, and its square undamped
+    assert np.allclose(rod.frequency[1:], mass.frequency, rtol=1e-4, atol=0)
+
+
+def test_broken_wires_are_refused():
+    wire = rd.BrokenWire(0.4, 0.05, 5e-4, radius=2e-3)
+    with pytest.raises(rd.SceneError, match=r"damped must be False where .* broken wire"):
+        beam(wire).compile().modes(2, damped=True)
+
+
 # --- proportional damping -------------------------------------------------------------------------
 
 
