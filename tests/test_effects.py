@@ -1,0 +1,165 @@
+"""Only the effects a scene calls for: what is not asked for is not there and not computed."""
+
+import os
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from executed import build, lines_of
+
+import ropedyn as rd
+
+ROPE = {"length": 1.2, "linear_density": 0.1, "bending_stiffness": 0.8}
+BARE = rd.Scene(rd.Rope(**ROPE), tension=250.0)
+"""Bending and tension, nothing else."""
+
+ALONE = {
+    "twist": {"torsional_stiffness": 0.4},
+    "stretch": {"axial_stiffness": 4e3},
+    "lay": {"lay_slope": 0.2},
+    "rotary inertia": {"rotary_inertia": 2e-5},
+    "polar inertia": {"polar_inertia": 1e-6},
+    "hinge": rd.Hinge(0.7, stiffness=2.0),
+    "point mass": rd.PointMass(0.3, 0.02),
+    "spring": rd.Spring(0.5, 700.0),
+    "support": rd.Support(0.8),
+    "dashpot": rd.Dashpot(0.45, 2.0),
+    "added mass": rd.AddedMass(0.1, 0.25, 0.03),
+    "local change": rd.LocalChange(0.9, 1.0, bending=0.6),
+    "resonator": rd.Resonator(0.55, 0.01, 40.0, damping_ratio=0.05),
+    "broken wire": rd.BrokenWire(0.65, 0.05, 3e-4, radius=2e-3),
+    "stiffness damping": rd.StiffnessDamping(1e-4),
+    "rayleigh damping": rd.RayleighDamping(0.3, 2e-5),
+    "loss factor": rd.LossFactor(0.02),
+    "viscous damping": rd.ViscousDamping(0.4),
+    "sag": rd.Gravity(9.81),
+}
+"""What gives a scene each effect, alone or with what it needs."""
+
+NEEDED = {"sag": ("stretch",), "lay": ("twist",), "polar inertia": ("twist",)}
+
+
+def with_only(*effects):
+    """Return the bare scene with these effects and what they need."""
+    given = dict.fromkeys([need for e in effects for need in NEEDED.get(e, ())] + list(effects))
+    rope, parts, dampings, gravity = {}, [], [], None
+    for effect in given:
+        thing = ALONE[effect]
+        if isinstance(thing, dict):
+            rope |= thing
+        elif isinstance(thing, rd.Gravity):
+            gravity = thing
+        elif hasattr(thing, "x") or hasattr(thing, "start"):
+            parts.append(thing)
+        else:
+            dampings.append(thing)
+    return BARE.replace(
+        rope=rd.Rope(**ROPE, **rope), damping=tuple(dampings), parts=parts, gravity=gravity
+    )
+
+
+def full():
+    """Return the scene with every effect."""
+    return with_only(*ALONE)
+
+
+def ask(scene):
+    """Ask everything of a scene, as spans and as a chain."""
+    for model in (scene.compile(), scene.compile(elements=12)):
+        model.modes(4)
+        model.count(below=90.0)
+        model.frf([7.0, 90.0], drive=("z", 0.33), response=[("z", 0.33), ("M_beta", 0.6)])
+        model.static({("z", 0.33): 1.0})
+
+
+def arrays(chain):
+    """The arrays of a chain that only some effects need."""
+    names = ("hinge", "damping", "drag", "sag", "attached_kind", "attached_term", "attached_row")
+    return {name for name in names if getattr(chain, name) is not None}
+
+
+# --- what is compiled ---------------------------------------------------------------------------
+
+BRINGS = {
+    "hinge": {"hinge"},
+    "dashpot": {"damping"},
+    "sag": {"sag"},
+    "resonator": {"attached_kind", "attached_term", "attached_row"},
+    "broken wire": {"attached_kind", "attached_term", "attached_row"},
+}
+"""Arrays of the chain that an effect brings; viscous damping is drag, or dashpots of a chain."""
+
+
+@pytest.mark.parametrize("elements", [None, 12])
+def test_bare_scene_has_no_array_coordinate_or_station_of_an_effect(elements):
+    chain = BARE.compile(elements=elements).chain
+    assert arrays(chain) == set()
+    assert BARE.coordinates == ("z", "beta")
+    assert not chain.stiffness.any()
+    assert len(chain.first) == (2 if elements is None else 3)
+    assert not (chain.mass.any() and elements is None)
+
+
+@pytest.mark.parametrize("elements", [None, 12])
+@pytest.mark.parametrize("effect", ALONE)
+def test_an_effect_brings_its_own_arrays_and_no_other(effect, elements):
+    scene = with_only(effect)
+    assert set(scene.effects) == {"tension", "bending", effect, *NEEDED.get(effect, ())}
+    found = arrays(scene.compile(elements=elements).chain)
+    viscous = {"drag"} if elements is None else {"damping"}
+    assert found == BRINGS.get(effect, viscous if effect == "viscous damping" else set())
+
+
+@pytest.mark.parametrize("effect", ALONE)
+def test_only_stiffnesses_bring_coordinates(effect):
+    given = {effect, *NEEDED.get(effect, ())}
+    more = {c for need, c in (("twist", "alpha"), ("stretch", "x")) if need in given}
+    assert set(with_only(effect).coordinates) == {"z", "beta"} | more
+
+
+@pytest.mark.parametrize("elements", [None, 12])
+@pytest.mark.parametrize("effect", ALONE)
+def test_without_an_effect_is_the_scene_never_given_it_bit_for_bit(effect, elements):
+    never = with_only(*(e for e in ALONE if e != effect and effect not in NEEDED.get(e, ())))
+    left = full().without(effect)
+    assert left == never
+    for mine, other in zip(
+        left.compile(elements=elements).chain, never.compile(elements=elements).chain
+    ):
+        np.testing.assert_array_equal(mine, other)
+
+
+# --- what is executed ---------------------------------------------------------------------------
+
+MECHANISMS = {
+    "rods": ("twist", "stretch"),
+    "hinges": ("hinge",),
+    "supports": ("support",),
+    "what is in proportion to velocity": ("dashpot", "viscous damping"),
+    "drag": ("viscous damping",),
+    "structures that nodes carry": ("resonator", "broken wire"),
+    "wires": ("broken wire",),
+    "sag": ("sag",),
+}
+"""Effects that code of the core serves. All others are numbers of what every scene has: inertia of
+spans and nodes, springs at nodes, sections, complex factors."""
+
+
+@pytest.mark.skipif(shutil.which("gcov") is None, reason="needs gcov")
+def test_code_of_an_effect_runs_only_where_a_scene_has_it(tmp_path):
+    objects = build(tmp_path)
+    scenes = {"BARE": "BARE"} | {e: f"with_only({e!r})" for e in ALONE}
+    scenes |= {f"no {name}": f"full().without{e!r}" for name, e in MECHANISMS.items()}
+    with ThreadPoolExecutor(os.cpu_count()) as executor:
+        found = executor.map(lambda scene: lines_of(scene, tmp_path, objects), scenes.values())
+        lines = dict(zip(scenes, found))
+    for name, served in MECHANISMS.items():
+        # what no scene runs that has another effect alone
+        needed = {need for effect in served for need in NEEDED.get(effect, ())}
+        others = {e for e in ALONE if e not in served and not set(served) & set(NEEDED.get(e, ()))}
+        own = set().union(*(lines[e] for e in served)) - lines["BARE"]
+        own -= set().union(*(lines[e] for e in others | needed))
+        assert own, name
+        # nor may one run it that has all other effects
+        assert not own & lines[f"no {name}"], name
