@@ -89,6 +89,8 @@ def _scene_command(
     _compile_options(parser)
     if name in ("modes", "compare"):
         parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
+    if name == "modes":
+        parser.add_argument("--damped", action="store_true", help="complex modes")
     if name == "frf":
         _frf_options(parser, required=True)
     if name == "compare":
@@ -167,7 +169,11 @@ def _study(options: argparse.Namespace) -> None:
 
 
 def _modes(options: argparse.Namespace) -> None:
-    _show(options, _model(options).modes(options.modes))
+    model = _model(options)
+    if options.damped:
+        _show(options, model.modes(options.modes, damped=True))
+    else:
+        _show(options, model.modes(options.modes))
 
 
 def _frf(options: argparse.Namespace) -> None:

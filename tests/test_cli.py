@@ -31,6 +31,15 @@ def test_modes_prints_the_frequencies_of_the_model(scene_file, capsys):
     assert frequency == model(scene_file).modes(3).frequency.tolist()
 
 
+def test_damped_modes_are_those_of_the_model(tmp_path, capsys):
+    path = tmp_path / "damped.toml"
+    rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[rd.Dashpot(0.2, 1.0)]).save(path)
+    assert main(["modes", str(path), "--modes", "3", "--damped", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    ratio = [row["damping ratio"] for row in rows]
+    assert ratio == model(path).modes(3, damped=True).damping_ratio.tolist()
+
+
 @pytest.mark.parametrize(
     ("options", "how"),
     [
