@@ -838,7 +838,7 @@ def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
         (lambda: rd.Scene(rope(), 100.0), "positional"),
         (lambda: scene().replace(gravity=9.81), "gravity"),
         (lambda: scene().compile(elements=4, accuracy=1e-6), "accuracy"),
-        (lambda: MODEL.modes(1, damped=True), "damped"),
+        (lambda: MODEL.modes(1, animated=True), "animated"),
         (lambda: MODEL.frf([1.0]), "drive"),
         (lambda: MODEL.frf([1.0], ("z", 0.5)), "positional"),
         (MODEL.static, "load"),
