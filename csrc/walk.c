@@ -27,12 +27,15 @@ static size_t hinged_legs(const struct rd_chain *chain, size_t k, size_t node, i
     return 2;
 }
 
-/* whether the next stretch is more of the element on the right of this one */
+/* whether the next stretch is more of the element on the right of this one; structures are met at the
+   beginnings of legs alone */
 static bool goes_on(const struct rd_chain *chain, size_t k)
 {
     if (k + 2 >= chain->stretches || chain->element[k + 1] != chain->element[k])
         return false;
     const int32_t next = chain->term[k + 1];
+    if (rd_attached_is_of(chain, rd_attached_first(chain, (size_t)next), next))
+        return false;
     return chain->inertia ? rd_term_is_bare(chain, next) : !rd_chain_is_hinged(chain, next);
 }
 

@@ -192,6 +192,15 @@ def test_rigid_bodies_carry_their_structures_along():
     assert (modes.shape[0, :, 0] == 1.0).all()
 
 
+@pytest.mark.parametrize(("elements", "x"), [(2, 0.5), (4, 0.25), (4, 0.75), (8, 0.5)])
+def test_all_modes_of_a_regular_chain_with_a_resonator_at_a_node_are_counted(elements, x):
+    model = taut(rd.Resonator(x, 0.003, 10.0)).compile(elements=elements, element="rigid")
+    assert model.count(below=1e5) == elements  # one fewer inner nodes, and it
+    modes = model.modes(elements)
+    assert modes.certified
+    assert (modes.frequency > 0).all()
+
+
 # --- two degrees of freedom -------------------------------------------------------------------
 
 
