@@ -12,19 +12,19 @@ static const double NO_GAP = 1e-20;
 /* of a complex step: its square is nothing beside 1, so derivatives are exact */
 static const double STEP = 0x1p-200;
 
-/* A mass m on a spring k and a dashpot c: y is its motion,
-       D = -lambda m k'/(k' - lambda m),  k' = k + s c,
-   which is -w/e with w = lambda m k'/k and e = (k' - lambda m)/k, polynomials in s. value: m, k, unused,
-   c */
+/* A mass m on a spring k and a dashpot c: k'/k y is its motion, k' = k + s c,
+       D = -lambda m k'/(k' - lambda m),
+   which is -w/e with w = lambda m k'/k and e = (k' - lambda m)/k. value: m, k, unused, c */
 static void fill_resonator(const double *value, double _Complex inertia, double _Complex dashpot,
                            struct rd_foot *foot)
 {
-    const double _Complex force = inertia * value[0], share = 1 + dashpot * value[3] / value[1];
+    const double _Complex force = inertia * value[0], drag = dashpot * value[3];
+    const double _Complex stiff = 1 + drag / value[1];
     *foot = (struct rd_foot){
-        .weight = -force * share,
-        .gap = share + force / value[1],
+        .weight = -force * stiff,
+        .gap = 1 + (force + drag) / value[1],
         .lever = {1},
-        .tip = {share},
+        .tip = {stiff},
     };
     foot->held = creal(foot->gap) < 0;
 }
@@ -50,16 +50,18 @@ static double roots_below(double x, double gap)
        det D = 2 (lambda m l)^2 c_4/e
 
    taken apart by the larger of the two diagonal entries, so that neither part has a zero of the pivot.
-   Its damping ratio z makes the modulus E (1 + 2 i z), in every mode the same. value: m, k, l, z */
+   Its damping ratio z makes the modulus E (1 + 2 i z), in every mode the same, where anything moves in
+   time. value: m, k, l, z */
 static void fill_wire(const double *value, double _Complex inertia, double _Complex dashpot,
                       struct rd_foot *foot)
 {
-    const double l = value[2], turn = copysign(2 * value[3], cimag(dashpot));
-    const double _Complex stiff = value[1] * CMPLX(1, cimag(dashpot) == 0 ? 0 : turn);
+    const double l = value[2], turn = dashpot == 0 ? 0 : 2 * value[3];
+    const double _Complex stiff = value[1] * CMPLX(1, turn);
     const double _Complex pull = -inertia * value[0], q = pull / stiff;
-    const struct rd_krylov f = rd_krylov(-4 * q, rd_krylov_growth(-4 * q));
-    const struct rd_krylov tip = rd_krylov(q, rd_krylov_growth(-4 * q));
+    const double _Complex growth = rd_krylov_growth(-4 * q);
+    const struct rd_krylov f = rd_krylov(-4 * q, growth), tip = rd_krylov(q, growth);
     *foot = (struct rd_foot){
+        .growth = growth,
         .gap = (f.one + f.c[0]) / 2,
         .tip = {tip.c[0], l * tip.c[1]},
     };

@@ -10,15 +10,17 @@
 
        D = -(w/e) v v^T + diag(rest)
 
-   where e, 1 at lambda = 0, passes zero at the eigenvalues that the structure has with its foot held.
+   where e, 1 at lambda = 0 and entire, passes zero at the eigenvalues that the structure has with its foot held.
    There D is infinite and w, v, rest are not: with the unknown y, e y = v^T u, the structure is
 
        w e y^2 - 2 w y v^T u + u^T diag(rest) u
 
-   which is stationary in y and has no pole at all. Its tip moves by t^T u/e. */
+   which is stationary in y and has no pole at all. Its tip moves by t^T u/e. Analytic in s where Im s
+   is not 0, what half plane a hysteretic loss belongs to goes on in the other. */
 struct rd_foot {
     double _Complex weight;   /* w [N/m] */
-    double _Complex gap;      /* e, common factors with w and t left out; never exactly 0 */
+    double _Complex gap;      /* e; never exactly 0 */
+    double _Complex growth;   /* logarithm of the factor that w, e and t have all lost */
     double _Complex lever[2]; /* v [1, m] */
     double _Complex rest[2];  /* [N/m, N m] */
     double _Complex tip[2];   /* t [1, m] */

@@ -7,7 +7,6 @@
 
 #include "span.h"
 #include "sweep_foot.h"
-#include "sweep_kernel.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,10 +18,10 @@ enum { W = RD_WIDTH_MAX, PACKED = W * W + 2 * RD_PAIRS_MAX };
 static const struct sweep_kernel *const kernels[] = {&rd_sweep_kernel_1, &rd_sweep_kernel_2,
                                                      &rd_sweep_kernel_3, &rd_sweep_kernel_4};
 
-/* a product too long for the exponent of a double: value 2^exponent */
+/* a product too long for the exponent of a double: value 2^exponent e^growth */
 struct product {
     cv value;
-    lanes exponent;
+    lanes exponent, growth;
 };
 
 struct motions {
@@ -37,6 +36,7 @@ struct characteristic {
     struct sweep_extent bound;
     struct sweep_block block;
     struct sweep_way way[2];
+    struct sweep_foot *foot; /* (attached) */
     struct motions motions;
     cv value;     /* what the right end leaves of them */
     int power[W]; /* of the scale of each coordinate in the product */
@@ -132,6 +132,22 @@ static size_t at(size_t w, size_t i, size_t j)
     return i <= j ? i * w - i * (i + 1) / 2 + j : j * w - j * (j + 1) / 2 + i;
 }
 
+/* (U; V) <- Q of Y (2w, w) = Q R */
+RD_INLINE void keep(const size_t w, cv (*Y)[W], struct motions *m)
+{
+    cv Q[2 * W][W], r[W];
+    lanes t[W];
+    factorise(w, 2 * w, Y, t, r);
+    for (size_t k = 0; k < w; k++)
+        multiply(&m->product, r[k]);
+    unitary(w, 2 * w, (const cv(*)[W])Y, t, 0, Q);
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            m->U[i][j] = Q[i][j];
+            m->V[i][j] = Q[w + i][j];
+        }
+}
+
 /* The triple u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a of a piece, D = F - I, and beside it a string
    of stiffness k in coordinate z, which a strut needs (strut.h): 0 for all others. The pole of the
    strut's own triple is none of the chain's. With f_b = phi + k e_z (u_b - u_a)_z and u_a = U y
@@ -184,28 +200,59 @@ static RD_CLONES void cross(const size_t w, const cv *triple, size_t z, const cv
         if (string)
             Y[w + z][j] = c_add(Y[w + z][j], c_mul(*string, c_sub(Y[z][j], u[z])));
     }
-    factorise(w, 2 * w, Y, t, r);
-    for (size_t k = 0; k < w; k++)
-        multiply(&m->product, r[k]);
-    unitary(w, 2 * w, (const cv(*)[W])Y, t, 0, N);
-    for (size_t i = 0; i < w; i++)
-        for (size_t j = 0; j < w; j++) {
-            m->U[i][j] = N[i][j];
-            m->V[i][j] = N[w + i][j];
-        }
+    keep(w, Y, m);
 }
 
-/* X <- X H: x^T H = conj(H conj(x)) of each row */
-RD_INLINE void turn_columns(size_t w, const cv *v, lanes t, cv (*X)[W])
+/* The structure V <- V - (a/e) p p^T U (attached.h), p scaled to 1, which is infinite where e is 0.
+   With g = |a| + |e| and the unknown y of V <- V - (a/g) p y
+
+       (U^T p; -e/g)^T (c; y) = 0
+
+   always has w solutions, the columns of (N; n^T) that a reflector leaves of its w + 1; then
+
+       U <- U N,  V <- V N - (a/g) p n^T,  e Delta = .. g alpha
+
+   where (alpha, 0 ..) is what it makes of the row: |det N| is |e/(g alpha)|. */
+static RD_CLONES void attach(const size_t w, const struct sweep_foot *foot, const lanes *z,
+                             struct motions *m)
 {
+    cv p[W], row[W + 1], Y[2 * W][W];
+    lanes square = {0}, t;
     for (size_t i = 0; i < w; i++) {
-        cv x[W];
-        for (size_t j = 0; j < w; j++)
-            x[j] = c_conj(X[i][j]);
-        reflect(v, 1, t, x, 1, w);
-        for (size_t j = 0; j < w; j++)
-            X[i][j] = c_conj(x[j]);
+        p[i] = c_scale_lanes(foot->lever[i], z[i]);
+        square += c_square(p[i]);
     }
+    const cv a = c_scale_lanes(foot->weight, square);
+    const lanes g = c_size(a) + c_size(foot->gap);
+    const lanes unit = 1.0 / l_select(square > 0.0, l_sqrt(square), l_fill(INFINITY));
+    for (size_t i = 0; i < w; i++)
+        p[i] = c_scale_lanes(p[i], unit);
+    for (size_t j = 0; j < w; j++) {
+        row[j] = c_zero();
+        for (size_t i = 0; i < w; i++)
+            row[j] = c_add(row[j], c_conj(c_mul(p[i], m->U[i][j])));
+    }
+    row[w] = c_conj(c_scale_lanes(foot->gap, -1.0 / g));
+    const cv alpha = reflector(row, 1, w + 1, &t), load = c_scale_lanes(a, -1.0 / g);
+    for (size_t j = 0; j < w; j++) {
+        cv N[W + 1];
+        for (size_t i = 0; i <= w; i++)
+            N[i] = c_real(i == j + 1);
+        reflect(row, 1, t, N, 1, w + 1);
+        const cv force = c_mul(load, N[w]);
+        for (size_t i = 0; i < w; i++) {
+            Y[i][j] = c_zero();
+            Y[w + i][j] = c_mul(p[i], force);
+            for (size_t k = 0; k < w; k++) {
+                Y[i][j] = c_add(Y[i][j], c_mul(m->U[i][k], N[k]));
+                Y[w + i][j] = c_add(Y[w + i][j], c_mul(m->V[i][k], N[k]));
+            }
+        }
+    }
+    multiply(&m->product, c_scale_lanes(c_conj(alpha), g));
+    multiply(&m->product, foot->phase);
+    m->product.growth += foot->growth;
+    keep(w, Y, m);
 }
 
 /* Row e of one of (X, Y) comes to nothing: the limit of Y <- Y + k e e^T X for k -> infinity, divided
@@ -218,17 +265,47 @@ static RD_CLONES void vanish(size_t w, size_t e, cv (*X)[W], cv (*Y)[W], struct 
     for (size_t j = 0; j < w; j++)
         row[j] = c_conj(X[e][j]);
     const cv alpha = reflector(row, 1, w, &t);
-    turn_columns(w, row, t, X);
-    turn_columns(w, row, t, Y);
-    for (size_t i = 0; i < w; i++)
+    /* x^T H = conj(H conj(x)) */
+    for (size_t i = 0; i < w; i++) {
+        cv x[W], y[W];
         for (size_t j = 0; j < w; j++) {
-            X[i][j] = i == e || j == 0 ? c_zero() : X[i][j];
-            Y[i][j] = i == e ? c_real(j == 0) : j == 0 ? c_zero() : Y[i][j];
+            x[j] = c_conj(X[i][j]);
+            y[j] = c_conj(Y[i][j]);
         }
+        reflect(row, 1, t, x, 1, w);
+        reflect(row, 1, t, y, 1, w);
+        for (size_t j = 0; j < w; j++) {
+            X[i][j] = i == e || j == 0 ? c_zero() : c_conj(x[j]);
+            Y[i][j] = i == e ? c_real(j == 0) : j == 0 ? c_zero() : c_conj(y[j]);
+        }
+    }
     multiply(product, c_conj(alpha));
 }
 
 /* --- the chain ------------------------------------------------------------------------------- */
+
+/* structures that a node carries */
+static void carry(struct characteristic *c, size_t term)
+{
+    const struct rd_chain *chain = c->chain;
+    struct motions *m = &c->motions;
+    const size_t w = chain->width;
+    for (size_t k = rd_attached_first(chain, term); rd_attached_is_of(chain, k, (int32_t)term);
+         k++) {
+        for (size_t part = 0; part < 2; part++) {
+            const double *row = chain->attached_row + (2 * k + part) * w;
+            for (size_t j = 0; j < w; j++) {
+                cv force = c_zero();
+                for (size_t i = 0; i < w; i++)
+                    force = c_add(force, c_scale_lanes(m->U[i][j], row[i] * c->block.z[i]));
+                force = c_mul(c->foot[k].rest[part], force);
+                for (size_t i = 0; i < w; i++)
+                    m->V[i][j] = c_add(m->V[i][j], c_scale_lanes(force, row[i] * c->block.z[i]));
+            }
+        }
+        attach(w, c->foot + k, c->block.z, m);
+    }
+}
 
 /* V <- V + N U */
 static void load(struct characteristic *c, size_t term)
@@ -247,55 +324,6 @@ static void load(struct characteristic *c, size_t term)
             for (size_t j = 0; j < w; j++)
                 m->V[i][j] = c_add(m->V[i][j], c_mul(N, m->U[k][j]));
         }
-}
-
-/* V <- V + rest U - (w/e) v v^T U of a structure (attached.h), and Delta times e, which has no pole
-   where e is zero: the columns are turned until the first alone moves the foot, v^T U = (r, 0 ..), and
-   that becomes (e U_1; e V_1 - w r v). */
-static void carry(struct characteristic *c, size_t k)
-{
-    const struct rd_chain *chain = c->chain;
-    struct motions *m = &c->motions;
-    const size_t w = chain->width;
-    struct sweep_foot foot;
-    cv v[W], row[W];
-    lanes t;
-    rd_sweep_foot(chain, &c->block, k, &foot);
-    for (size_t part = 0; part < 2; part++) {
-        const double *of = chain->attached_row + (2 * k + part) * w;
-        for (size_t j = 0; j < w; j++) {
-            cv moved = c_zero();
-            for (size_t i = 0; i < w; i++)
-                moved = c_add(moved, c_scale_lanes(m->U[i][j], c->block.z[i] * of[i]));
-            moved = c_mul(foot.rest[part], moved);
-            for (size_t i = 0; i < w; i++)
-                m->V[i][j] = c_add(m->V[i][j], c_scale_lanes(moved, c->block.z[i] * of[i]));
-        }
-    }
-    for (size_t i = 0; i < w; i++)
-        v[i] = c_scale_lanes(foot.lever[i], c->block.z[i]);
-    for (size_t j = 0; j < w; j++) {
-        row[j] = c_zero();
-        for (size_t i = 0; i < w; i++)
-            row[j] = c_add(row[j], c_mul(v[i], m->U[i][j]));
-        row[j] = c_conj(row[j]);
-    }
-    const cv pull = c_mul(foot.weight, c_conj(reflector(row, 1, w, &t)));
-    turn_columns(w, row, t, m->U);
-    turn_columns(w, row, t, m->V);
-    multiply(&m->product, (cv){foot.size, (lanes){0}});
-    for (size_t i = 0; i < w; i++) {
-        m->U[i][0] = c_mul(foot.gap, m->U[i][0]);
-        m->V[i][0] = c_sub(c_mul(foot.gap, m->V[i][0]), c_mul(pull, v[i]));
-    }
-}
-
-/* all structures of a node term */
-static void carry_all(struct characteristic *c, size_t term)
-{
-    const struct rd_chain *chain = c->chain;
-    for (size_t k = rd_attached_first(chain, term); rd_attached_is_of(chain, k, (int32_t)term); k++)
-        carry(c, k);
 }
 
 /* hinges, springs as they are: U <- U + h e e^T V */
@@ -329,7 +357,7 @@ static void leave(struct characteristic *c, size_t term)
             c->power[e] += 2;
         }
     load(c, term);
-    carry_all(c, term);
+    carry(c, term);
     if (c->chain->hinge)
         open(c, term);
 }
@@ -432,7 +460,7 @@ static void finish(struct characteristic *c)
     cv A[2 * W][W], r[W];
     lanes t[W];
     load(c, term);
-    carry_all(c, term);
+    carry(c, term);
     for (size_t i = 0; i < w; i++) {
         const int held = c->chain->held[term * w + i];
         c->power[i] += held ? 1 : -1;
@@ -477,7 +505,8 @@ static void answer(const struct characteristic *c, size_t lane, double *value, d
 {
     const cv v = c->value, p = c->motions.product.value;
     const double size = hypot(p.re[lane], p.im[lane]);
-    double log_size = log(size) + c->motions.product.exponent[lane] * log(2.0);
+    double log_size =
+        log(size) + c->motions.product.exponent[lane] * log(2.0) + c->motions.product.growth[lane];
     for (size_t i = 0; i < c->chain->width; i++)
         log_size += c->power[i] * log(c->block.z[i][lane]);
     const double re = p.re[lane] / size, im = p.im[lane] / size;
@@ -491,12 +520,15 @@ enum rd_status rd_characteristic(const struct rd_chain *chain, const struct rd_f
                                  double *value, double *magnitude, size_t *steps)
 {
     struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
+    struct sweep_foot *foot =
+        rd_take_aligned(workspace, chain->attached, sizeof *foot, sizeof(lanes));
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
     struct characteristic c = {
         .chain = chain,
         .kernel = kernels[chain->width - 1],
         .bound = rd_sweep_extent(bound, 0),
+        .foot = foot,
     };
     rd_runs_find(chain, run, &c.runs);
     *steps = 0;
@@ -509,6 +541,7 @@ enum rd_status rd_characteristic(const struct rd_chain *chain, const struct rd_f
             extent[lane] = rd_sweep_extent(factors, index[lane]);
         }
         rd_sweep_scale(chain, &c.runs, factors, index, extent, &c.block, c.way);
+        rd_sweep_feet(chain, &c.block, foot);
         const enum rd_status status = walk_all(&c);
         if (status != RD_OK)
             return status;

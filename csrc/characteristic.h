@@ -10,7 +10,8 @@
 
        Delta(s) = value exp(magnitude),  |value| <= 1
 
-   is real for real factors and has the multiplicity of each eigenvalue. It is analytic while pieces
+   is real for real factors and has the multiplicity of each eigenvalue, the freedom of structures that
+   nodes carry included: their e (attached.h) are among its factors. It is analytic while pieces
    are below their first cantilever resonance, and no element has one, as `bound` says: one set of
    factors, the least |section| and the largest of the others that a search meets. It sets the pieces,
    so all that is compared must have the same.

@@ -21,9 +21,10 @@ static void load(const struct rd_chain *chain, const struct sweep_block *block, 
     rd_attached_row(chain, k, foot.lever, lever);
     /* their quotient counts: squares of both are numbers */
     const double size = fmax(cabs(foot.gap), 1);
-    into->size[lane] = size;
     set(&into->weight, lane, foot.weight / size);
     set(&into->gap, lane, foot.gap / size);
+    set(&into->phase, lane, cexp(CMPLX(0, cimag(foot.growth))));
+    into->growth[lane] = creal(foot.growth) + log(size);
     for (int part = 0; part < 2; part++) {
         set(into->rest + part, lane, foot.rest[part]);
         into->rests[part] |= foot.rest[part] != 0;
@@ -34,19 +35,14 @@ static void load(const struct rd_chain *chain, const struct sweep_block *block, 
     }
 }
 
-void rd_sweep_foot(const struct rd_chain *chain, const struct sweep_block *block, size_t k,
-                   struct sweep_foot *foot)
-{
-    *foot = (struct sweep_foot){.rests = {0}};
-    for (int lane = 0; lane < RD_LANES; lane++)
-        load(chain, block, k, lane, foot);
-}
-
 void rd_sweep_feet(const struct rd_chain *chain, const struct sweep_block *block,
                    struct sweep_foot *foot)
 {
-    for (size_t k = 0; k < chain->attached; k++)
-        rd_sweep_foot(chain, block, k, foot + k);
+    for (size_t k = 0; k < chain->attached; k++) {
+        foot[k] = (struct sweep_foot){.rests = {0}};
+        for (int lane = 0; lane < RD_LANES; lane++)
+            load(chain, block, k, lane, foot + k);
+    }
 }
 
 lanes rd_sweep_foot_size(const struct rd_chain *chain, const struct sweep_foot *foot, size_t term,

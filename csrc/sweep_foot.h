@@ -4,10 +4,6 @@
 
 #include "sweep_kernel.h"
 
-/* of structure k */
-void rd_sweep_foot(const struct rd_chain *chain, const struct sweep_block *block, size_t k,
-                   struct sweep_foot *foot);
-
 /* foot (attached) at the block's factors of inertia and dashpots */
 void rd_sweep_feet(const struct rd_chain *chain, const struct sweep_block *block,
                    struct sweep_foot *foot);

@@ -51,9 +51,10 @@ struct sweep_way {
 struct sweep_foot {
     cv weight, gap, rest[2];
     cv lever[RD_WIDTH_MAX];
+    cv phase; /* common factor left out of weight and gap: phase e^growth */
+    lanes growth;
     int rests[2];            /* rest is not zero in every lane */
     int moves[RD_WIDTH_MAX]; /* nor is lever */
-    lanes size;              /* that weight and gap are both divided by */
 };
 
 struct sweep_walk {

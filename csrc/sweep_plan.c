@@ -20,9 +20,7 @@ static const struct sweep_kernel *const kernels[] = {&rd_sweep_kernel_1, &rd_swe
 /* lane vectors want more alignment than the workspace gives */
 static void *take_lanes(struct rd_workspace *workspace, size_t count, size_t size)
 {
-    const size_t most = SIZE_MAX / 2 / size;
-    char *p = rd_take(workspace, count < most ? count * size + ALIGN : SIZE_MAX, 1);
-    return p ? p + (ALIGN - (uintptr_t)p % ALIGN) % ALIGN : NULL;
+    return rd_take_aligned(workspace, count, size, ALIGN);
 }
 
 /* pieces of 1, 2, 4, .. elements or parts of them, up to all of the chain */

@@ -20,6 +20,13 @@ void *rd_take(struct rd_workspace *workspace, size_t count, size_t size)
     return workspace->base + start;
 }
 
+void *rd_take_aligned(struct rd_workspace *workspace, size_t count, size_t size, size_t alignment)
+{
+    const size_t most = SIZE_MAX / 2 / size;
+    char *p = rd_take(workspace, count < most ? count * size + alignment : SIZE_MAX, 1);
+    return p ? p + (alignment - (uintptr_t)p % alignment) % alignment : NULL;
+}
+
 bool rd_workspace_fits(const struct rd_workspace *workspace)
 {
     return workspace->base != NULL && workspace->used <= workspace->size;

@@ -16,6 +16,9 @@ struct rd_workspace {
 /* count pieces of `size` bytes; NULL while measuring or where the block is too small */
 void *rd_take(struct rd_workspace *workspace, size_t count, size_t size);
 
+/* the same where the address is to be a multiple of `alignment` */
+void *rd_take_aligned(struct rd_workspace *workspace, size_t count, size_t size, size_t alignment);
+
 /* false where some piece did not fit */
 bool rd_workspace_fits(const struct rd_workspace *workspace);
 

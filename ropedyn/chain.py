@@ -114,6 +114,25 @@ class Chain(NamedTuple):
         return tuple(ATTACHED[kind] for kind in sorted(kinds))
 
     @property
+    def resists(self) -> bool:
+        """Whether structures that nodes carry have damping of their own."""
+        return bool(self._own_damping(range(len(ATTACHED))).any())
+
+    @property
+    def is_hysteretic(self) -> bool:
+        """Whether that of some, of broken wires, is a complex modulus."""
+        return bool(self._own_damping([ATTACHED.index("broken wire")]).any())
+
+    def _own_damping(self, kinds: Sequence[int]) -> NDArray[np.float64]:
+        """Return the damping of the structures of some kinds that these nodes carry."""
+        if self.attached_value is None:
+            return np.zeros(0)
+        assert self.attached_kind is not None
+        assert self.attached_term is not None
+        own = np.isin(self.attached_kind, kinds) & np.isin(self.attached_term, self.term)
+        return self.attached_value[own, -1]
+
+    @property
     def at_rest(self) -> Chain:
         """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
         kind = self.kind if self.inertia is None else TENSED

@@ -53,7 +53,7 @@ class Rates:
 
     @property
     def is_real(self) -> bool:
-        """Whether roots come in conjugate pairs."""
+        """Whether those of conjugate rates are conjugate."""
         return not (self.constant.imag.any() or self.linear.imag.any())
 
     def bound(self, radius: float) -> Complex:
@@ -113,6 +113,11 @@ class Characteristic:
         self.bound = self.rates.bound(self.reach)
         self.steps = int(_core.steps(self.chain, self.bound))
         self.rounding = ROUNDING * float(np.finfo(float).eps * np.sqrt(self.steps))
+
+    @property
+    def is_paired(self) -> bool:
+        """Whether roots come in conjugate pairs."""
+        return self.rates.is_real and not self.chain.is_hysteretic
 
     def __call__(self, s: Complex) -> tuple[Complex, Real]:
         """Return value and magnitude, each of the shape of s."""

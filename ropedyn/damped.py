@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from . import _core, check
 from .answer import Cost
+from .carried import Carried
 from .chain import Chain
 from .characteristic import Complex, Rates, Real
 from .compile import check_points, finer
@@ -94,8 +95,6 @@ def solve_damped(
         raise SceneError(f'solver must be "sweep" for damped modes, got {solver!r}')
     check_points(model, points)
     limit = math.sqrt(check_asked(number, below))
-    if "broken wire" in model.scene.effects:
-        raise SceneError("damped must be False where the rope has a broken wire")
     if having(model.scene.dampings, "ratio"):
         return solve_modal(model, number, below=below, points=points)
     start = time.perf_counter()
@@ -198,31 +197,34 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
     step = points * more
     shape = np.zeros((len(which), len(fine.x), len(model.coordinates)), dtype=np.complex128)
     mass = np.zeros(len(which), dtype=np.complex128)
+    carried = Carried.none(len(which))
     for k, ((component, first, last), part) in enumerate(zip(answer.parts, answer.found)):
         chain = fine.chain.only(component).between(first * step, last * step)
         mine = np.flatnonzero(which == k)
         nodes = np.arange(first * step, last * step + 1)
         columns = np.array([model.coordinates.index(c) for c in component])
         block = np.ix_(mine, nodes, columns)
-        shape[block], mass[mine] = _shapes(chain, part, at[mine])
-    strain, kinetic, carried = _energy(fine.chain, shape, value)
+        shape[block], mass[mine], own = _shapes(chain, part, at[mine])
+        carried.energy[mine], carried.motion[mine] = own
+    strain, kinetic = _energy(fine.chain, shape, value)
     own = kinetic.argmax(axis=1)
     size = largest(shape[:, ::more], own)
-    everywhere = np.abs(largest(shape, own))
+    everywhere = np.maximum(np.abs(largest(shape, own)), carried.motion)
     # where a mode has its nodes at all points, that elsewhere
     size = np.where(np.abs(size) < UNSEEN * everywhere, everywhere, size)
     return DampedVectors(
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=mass / size**2,
         shape=shape[:, ::more] / size[:, None, None],
-        energy=fractions(model, np.abs(value), strain, kinetic, carried),
+        energy=fractions(model, np.abs(value), strain, kinetic, carried.energy),
     )
 
 
-def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex]:
-    """Return some motions of a chain and their modal masses."""
+def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex, Carried]:
+    """Return some motions of a chain, their modal masses and what it carries in them."""
     shape = np.zeros((len(wanted), chain.nodes, chain.held.shape[1]), dtype=np.complex128)
     mass = np.zeros(len(wanted), dtype=np.complex128)
+    carried = Carried.none(len(wanted))
     value = part.value[wanted]
     # rigid motion is that without damping
     mode = np.cumsum(value == 0) - 1 if part.mode is None else part.mode[wanted]
@@ -232,46 +234,27 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
         assert found.shape is not None
         own, eigenvalue = found.shape[mode[real]], found.eigenvalue[mode[real]]
         shape[real] = own
+        assert found.motion is not None
+        moved = found.motion[mode[real]]
+        carried.energy[real], carried.motion[real] = Carried.real(chain, own, moved, eigenvalue)
         mass[real] = _core.energy(chain.undamped, own, eigenvalue)[1].sum(axis=1)
+        mass[real] += carried.energy[real, 1]
         if part.closed is not None:
             mass *= part.closed.mass_ratio(value, eigenvalue)
     if not real.all():
         shape[~real] = motions(chain, part, wanted[~real])
         mass[~real] = 1 / (2 * value[~real])
-    return shape, mass
+        rates = part.rates.at(value[~real])
+        carried.energy[~real], carried.motion[~real] = Carried.at(chain, rates, shape[~real])
+    return shape, mass, carried
 
 
-def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real, Real]:
-    """Return strain and kinetic energy over a period, twice, and those of what nodes carry."""
+def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
+    """Return strain and kinetic energy over a period, twice."""
     eigenvalue = -np.square(value).real
-    motion = _carried_motion(chain, shape, value)
-    real = _real_energy(chain, shape.real, motion.real, eigenvalue)
-    imag = _real_energy(chain, shape.imag, motion.imag, eigenvalue)
-    return real[0] + imag[0], real[1] + imag[1], real[2] + imag[2]
-
-
-def _real_energy(
-    chain: Chain, shape: Real, motion: Real, eigenvalue: Real
-) -> tuple[Real, Real, Real]:
-    shape, motion = np.ascontiguousarray(shape), np.ascontiguousarray(motion)
-    strain, kinetic, _ = _core.energy(chain.undamped, shape, eigenvalue)
-    carried = np.zeros((len(shape), 3))
-    if motion.size:
-        carried = _core.carried(chain, shape, motion, eigenvalue)
-    return strain, kinetic, carried
-
-
-def _carried_motion(chain: Chain, shape: Complex, value: Complex) -> Complex:
-    """Return how the masses of resonators move, shape (k, attached)."""
-    if chain.attached_term is None:
-        return np.zeros((len(value), 0), dtype=np.complex128)
-    factor = Rates.of(()).at(value)
-    motion = np.zeros((len(value), len(chain.attached_term)), dtype=np.complex128)
-    for k, term in enumerate(chain.attached_term.tolist()):
-        node = int(chain.first[np.flatnonzero(chain.term == term)[0]])
-        row = _core.tip(chain, k, np.ascontiguousarray(factor))
-        motion[:, k] = (row.T * shape[:, node]).sum(axis=1)
-    return motion
+    real = _core.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
+    imag = _core.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
+    return real[0] + imag[0], real[1] + imag[1]
 
 
 # --- against continuous spans -------------------------------------------------------------------

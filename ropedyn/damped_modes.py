@@ -56,7 +56,8 @@ class DampedModes(Answer):
 
     Of each conjugate pair the one with Im s > 0 is given; overdamped motion, with real s, has two
     rates, which are modes each. Rigid-body motion, s = 0, is one mode even where it drifts on
-    undamped.
+    undamped. A complex modulus, of a loss factor or of a broken wire with damping, is one of
+    oscillation: there only rates with Im s > 0 and rigid-body motion are modes.
 
     What follows from the shapes (`shape`, `energy`, `family`, `modal_mass`) is computed when it is
     first asked for, and so is `mesh_error`.

@@ -102,10 +102,11 @@ def _closed(chain: Chain, rates: Rates, closed: Proportional, radius: float, edg
     eigenvalue = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
     whole = 2 * len(eigenvalue) == most_roots(chain.undamped, Rates.of(()))
     s = closed.rates(eigenvalue)
-    uncertain = found.error[:, None]
+    uncertain = np.broadcast_to(found.error[:, None], s.shape)
     # at critical damping both rates are one, sqrt(stiff dlambda) wide
     most = np.sqrt(abs(closed.stiff) * uncertain)
-    error = np.minimum(closed.sensitivity(s, eigenvalue[:, None]) * uncertain, most)
+    moved = closed.sensitivity(s, eigenvalue[:, None])
+    error = np.minimum(np.multiply(moved, uncertain, out=most.copy(), where=most > 0), most)
     error += 2 * np.finfo(float).eps * np.abs(s)
     # of a pair the one above the axis, of rigid motion, 0 twice, one
     kept = (s.imag >= 0) & (np.abs(s) < radius)
@@ -159,7 +160,7 @@ def _sorted(roots: Roots, paired: bool, still: int) -> tuple[Complex, Real, Comp
     # what rounding cannot tell from an axis is on it
     value = np.where(np.abs(value.real) <= error, 1j * value.imag, value)
     value = np.where(np.abs(value.imag) <= error, value.real + 0j, value)
-    kept = value.imag >= 0 if paired else value.imag > 0
+    kept = value.imag >= 0 if paired else (value.imag > 0) | (value == 0)
     nearby = value[value.imag > 0].conj() if paired else value[~kept]
     # a motion that nothing resists has the rate 0 twice where nothing damps it either
     kept[np.flatnonzero(value == 0)[still:]] = False
@@ -172,23 +173,36 @@ def most_roots(chain: Chain, rates: Rates) -> int | None:
     """Return how many rates a chain has in all; None where elements do not say.
 
     The determinant of s^2 M + s C + K has the power 2 rank M + rank of C where M is nothing; masses
-    and dashpots stand at nodes.
+    and dashpots stand at nodes, on masses of resonators and between those and their nodes.
     """
-    if (
-        chain.finite is None
-        or chain.attached_kind is not None
-        or rates.linear[elastic(chain)].any()
-    ):
+    if chain.finite is None or rates.linear[elastic(chain)].any():
         return None
     count = 0
     each = np.bincount(chain.term_of, minlength=len(chain.mass))
+    dashpots = _dashpots(chain)
     for term in np.flatnonzero(each):
         free = chain.held[term] == 0
         mass = chain.mass[term][np.ix_(free, free)]
         size, axis = np.linalg.eigh(mass)
         massless = axis[:, size == 0]
         count += 2 * int((size != 0).sum()) * int(each[term])
-        if chain.damping is not None:
-            rest = massless.T @ chain.damping[term][np.ix_(free, free)] @ massless
-            count += int(np.linalg.matrix_rank(rest)) * int(each[term]) if rest.size else 0
-    return count
+        rest = massless.T @ dashpots[term][np.ix_(free, free)] @ massless
+        count += int(np.linalg.matrix_rank(rest)) * int(each[term]) if rest.size else 0
+    return count + 2 * _resonators(chain)
+
+
+def _resonators(chain: Chain) -> int:
+    terms = () if chain.attached_term is None else chain.attached_term
+    return int(np.isin(terms, chain.term).sum())
+
+
+def _dashpots(chain: Chain) -> Real:
+    """Return those of node terms with those of resonators, shape (terms, width, width)."""
+    total = np.zeros_like(chain.mass) if chain.damping is None else chain.damping.copy()
+    if chain.attached_row is not None:
+        assert chain.attached_term is not None
+        assert chain.attached_value is not None
+        foot = chain.attached_row[:, 0]
+        each = chain.attached_value[:, -1, None, None] * foot[:, :, None] * foot[:, None, :]
+        np.add.at(total, chain.attached_term, each)
+    return total

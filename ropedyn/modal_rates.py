@@ -33,6 +33,7 @@ def solve_modal(
     dampings, effects = model.scene.dampings, model.scene.effects
     others = [one.kind for one in having(dampings, "rate", "loss", "drag")]
     others += ["dashpot"] if "dashpot" in effects else []
+    others += model.chain.carried if model.chain.resists else []
     if others:
         raise SceneError(
             "damping must not be modal damping beside another that is not 0 for damped modes, "

@@ -386,8 +386,8 @@ class Hinge:
 class Resonator:
     """A mass on a spring: a tuned absorber, an attached instrument.
 
-    It moves transversely, with the rope's z as the motion of its foot. In the modes it is free of
-    damping, as the rope is. Rayleigh damping of the rope acts on its mass, other dampings of the
+    It moves transversely, with the rope's z as the motion of its foot. In undamped modes it is free
+    of damping, as the rope is. Rayleigh damping of the rope acts on its mass, other dampings of the
     rope do not act on it.
 
     Parameters
@@ -467,10 +467,10 @@ class BrokenWire:
     """The free end of a broken wire: a small cantilever that the rope carries.
 
     A solid round Euler-Bernoulli beam parallel to the axis, towards larger x. Its root moves
-    transversely by z + radius alpha and turns by beta, where the scene has these. In the modes it
-    is free of damping, as the rope is; dampings of the rope do not act on it, but Rayleigh damping
-    on its mass. The motion of its tip is the response ("wire", 0) of `Model.frf` for the first one
-    among the parts, and so on.
+    transversely by z + radius alpha and turns by beta, where the scene has these. In undamped modes
+    it is free of damping, as the rope is; dampings of the rope do not act on it, but Rayleigh
+    damping on its mass. The motion of its tip is the response ("wire", 0) of `Model.frf` for the
+    first one among the parts, and so on.
 
     Parameters
     ----------
@@ -485,8 +485,8 @@ class BrokenWire:
     density : float, optional
         [kg/m^3].
     damping_ratio : float, optional
-        The modulus is E (1 + 2 i damping_ratio) in the frequency response: every mode of the wire
-        has this damping ratio at its resonance.
+        The modulus is E (1 + 2 i damping_ratio) in the frequency response and in damped modes:
+        every mode of the wire has this damping ratio at its resonance.
 
     Raises
     ------

@@ -63,17 +63,20 @@ class Proportional:
 def proportional(chain: Chain, rates: Rates) -> Proportional | None:
     """Say how the damping of a chain is proportional, or None where it is not.
 
-    Everything that holds the chain has one factor, dashpots are to masses everywhere as one number,
-    and nodes carry no structures, whose springs have factors of their own.
+    Everything that holds the chain has one factor, and dashpots are to masses everywhere as one
+    number.
     """
     parts = elastic(chain)
     if chain.stiffness.any() or (chain.hinge is not None and chain.hinge.any()):
         parts.append(SPRING)
     stiff, soften = rates.constant[parts], rates.linear[parts]
-    if chain.attached_kind is not None or (stiff != stiff[0]).any() or (soften != soften[0]).any():
+    if (stiff != stiff[0]).any() or (soften != soften[0]).any():
         return None
     ratio = _dashpots_per_mass(chain)
     if ratio is None:
+        return None
+    # what nodes carry knows no factors but that of inertia
+    if chain.carried and (chain.resists or ratio or stiff[0] != 1 or soften[0] != 0):
         return None
     drag = rates.linear[INERTIA] + ratio * rates.linear[DASHPOT]
     return Proportional(complex(stiff[0]), complex(soften[0]), complex(drag))

@@ -108,10 +108,12 @@ def _room(value: Complex, group: Index, damped: Damped) -> float:
 
 
 def _probes(chain: Chain) -> NDArray[np.int64]:
-    """Return the ends of a chain and some nodes spread along it."""
+    """Return the ends of a chain, some nodes spread along it and those that carry structures."""
     last = chain.nodes - 1
     spread = np.rint(np.arange(1, PLACES + 1) * GOLDEN % 1.0 * last).astype(np.int64)
-    return np.unique(np.concatenate([[0, last], spread]))
+    carrying = () if chain.attached_term is None else chain.attached_term
+    feet = chain.first[np.isin(chain.term, carrying)]
+    return np.unique(np.concatenate([[0, last], spread, feet]))
 
 
 def _ports(chain: Chain, nodes: NDArray[np.int64]) -> Ports:

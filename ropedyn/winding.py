@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from .chain import Chain
 from .characteristic import Characteristic, Complex, Real
 
 FIRST = 16
@@ -82,10 +84,11 @@ def winding(function: Characteristic, radius: float) -> Winding | None:
         None where the function is no more than its rounding at a point of the circle: a root lies
         there, or motion decays so fast that no digit of it comes back.
     """
-    paired = function.rates.is_real
+    paired = function.is_paired
     whole = np.pi if paired else 2 * np.pi
     # pieces turn by 1.2 at most, and twice that between s and -s
     arcs = max(FIRST, 2 * len(function.chain.coordinate) * function.steps)
+    arcs += turning(function.chain, radius)
     angle = np.linspace(0.0, whole, 1 + (arcs if paired else 2 * arcs))
     value, magnitude = function(radius * np.exp(1j * angle))
     end = np.stack([angle[:-1], angle[1:]])
@@ -121,6 +124,18 @@ def winding(function: Characteristic, radius: float) -> Winding | None:
     if abs(count - round(count)) > 1e-3:
         return None
     return Winding(radius, round(count), point, change, paired)
+
+
+def turning(chain: Chain, radius: float) -> int:
+    """Return how many radians structures alone turn the function by on a half circle, and more.
+
+    As many times pi as they have modes there with their feet held: a resonator one, a broken wire
+    x/pi where x^4 = m radius^2/k (csrc/attached.h).
+    """
+    if chain.attached_value is None:
+        return 0
+    mass, spring = chain.attached_value[:, :2].T
+    return int(np.ceil(2 * math.pi * (1 + (radius**2 * mass / spring) ** 0.25 / math.pi)).sum())
 
 
 def _change(value: Complex, magnitude: Real, later: Complex, greater: Real) -> Complex:

@@ -336,12 +336,6 @@ def test_rates_do_not_depend_on_poles_of_the_resonator():
     assert np.allclose(rod.frequency[1:], mass.frequency, rtol=1e-4, atol=0)
 
 
-def test_broken_wires_are_refused():
-    wire = rd.BrokenWire(0.4, 0.05, 5e-4, radius=2e-3)
-    with pytest.raises(rd.SceneError, match=r"damped must be False where .* broken wire"):
-        beam(wire).compile().modes(2, damped=True)
-
-
 # --- proportional damping -------------------------------------------------------------------------
 
 
