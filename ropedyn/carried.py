@@ -27,8 +27,9 @@ class Carried(NamedTuple):
 
     Attributes
     ----------
-    energy : ndarray, shape (k, 3)
-        Twice the strain energy, what they add to the modal mass, and losses, which are not filled.
+    energy : ndarray, shape (kinds, k, 3)
+        Of each kind in `ATTACHED`: twice the strain energy, what they add to the modal mass, and
+        losses, which are not filled.
     motion : ndarray, shape (k,)
         The largest of any.
     """
@@ -39,15 +40,23 @@ class Carried(NamedTuple):
     @classmethod
     def none(cls, count: int) -> Carried:
         """Return those of nothing."""
-        return cls(np.zeros((count, 3)), np.zeros(count))
+        return cls(np.zeros((len(ATTACHED), count, 3)), np.zeros(count))
 
     @classmethod
     def real(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> Carried:
         """Return those of undamped modes, whose own motion is known."""
-        if motion.shape[1] == 0:
-            return cls.none(len(shape))
-        energy = _core.carried(chain, shape, motion, eigenvalue)
-        return cls(energy, np.abs(motion).max(axis=1, initial=0.0))
+        every = cls.none(len(shape))
+        for kind in chain.carried:
+            these = chain.carries(kind)
+            own = np.ascontiguousarray(motion[:, these])
+            energy = _core.carried(chain.carrying(these), shape, own, eigenvalue)
+            every.energy[ATTACHED.index(kind)] = energy
+        np.abs(motion).max(axis=1, initial=0.0, out=every.motion)
+        return every
+
+    def of(self, chain: Chain) -> Real:
+        """Return the energies of the kinds that a chain carries, shape (kinds, k, 3)."""
+        return self.energy[[ATTACHED.index(kind) for kind in chain.carried]]
 
     @classmethod
     def at(cls, chain: Chain, factor: Complex, shape: Complex) -> Carried:
@@ -72,8 +81,8 @@ class Carried(NamedTuple):
                 strain, kinetic = _wire(value, factor[INERTIA], foot)
             else:
                 strain, kinetic = _resonator(value, factor[INERTIA], factor[DASHPOT], foot[:, 0])
-            every.energy[:, 0] += strain
-            every.energy[:, 1] += kinetic
+            every.energy[kind, :, 0] += strain
+            every.energy[kind, :, 1] += kinetic
         return every
 
 

@@ -19,6 +19,9 @@ TENSED, CONTINUOUS = KINDS.index("tensed"), KINDS.index("continuous")
 ATTACHED = ("resonator", "broken wire")
 """Kinds of structure that a node carries, in the core's order."""
 
+CARRIED = {kind: f"{kind} mass" for kind in ATTACHED}
+"""Names of the kinetic energy of each."""
+
 CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 """Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
 
@@ -187,24 +190,36 @@ class Chain(NamedTuple):
             damping=_present(damping),
             drag=_present(columns(self.drag)),
             sag=self.sag if {"x", "z"} <= set(coordinates) else None,
-        )._with_attached(columns(self.attached_row))
+            attached_row=columns(self.attached_row),
+        )._moving_attached
 
-    def _with_attached(self, row: NDArray[np.float64] | None) -> Chain:
-        """Return the chain with those structures alone whose feet these coordinates move."""
-        if row is None or self.attached_kind is None:
-            return self
-        moved = row.any(axis=(1, 2))
-        if not moved.any():
+    def carries(self, kind: str) -> NDArray[np.bool_]:
+        """Return which structures are of a kind of `ATTACHED`, shape (attached,)."""
+        if self.attached_kind is None:
+            return np.zeros(0, dtype=np.bool_)
+        return np.asarray(self.attached_kind == ATTACHED.index(kind))
+
+    @property
+    def _moving_attached(self) -> Chain:
+        """The chain with those structures alone whose feet its coordinates move."""
+        row = self.attached_row
+        return self if row is None else self.carrying(np.asarray(row.any(axis=(1, 2))))
+
+    def carrying(self, these: NDArray[np.bool_]) -> Chain:
+        """Return the chain with some of its structures alone, chosen by shape (attached,)."""
+        if not these.any():
             return self._replace(
                 attached_kind=None, attached_term=None, attached_row=None, attached_value=None
             )
+        assert self.attached_kind is not None
         assert self.attached_term is not None
+        assert self.attached_row is not None
         assert self.attached_value is not None
         return self._replace(
-            attached_kind=self.attached_kind[moved],
-            attached_term=self.attached_term[moved],
-            attached_row=row[moved],
-            attached_value=self.attached_value[moved],
+            attached_kind=self.attached_kind[these],
+            attached_term=self.attached_term[these],
+            attached_row=self.attached_row[these],
+            attached_value=self.attached_value[these],
         )
 
 

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .chain import CARRIED
 from .eigen import solve_modes
 from .frf import FRF
 from .mesh_error import in_hertz
 from .model import Model
 from .modes import Modes
 
-MOTIONS = {"axial": ("x",), "transverse": ("z", "beta"), "torsional": ("alpha",)}
-"""What modes are told apart by: a cross section that turns with dz/dx belongs to z."""
+MOTIONS = {
+    "axial": ("x",),
+    "transverse": ("z", "beta"),
+    "torsional": ("alpha",),
+    **{kind: (name,) for kind, name in CARRIED.items()},
+}
+"""What modes are told apart by: which kinetic energies are whose.
+
+A cross section that turns with dz/dx belongs to z; what the rope carries has modes of its own.
+"""
 
 FURTHEST = 16
 """Times as many modes as were asked for, among which the partners of modes are looked for."""
 
-OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]")
+OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
 """What is measured of a change, the largest first."""
 
@@ -83,14 +92,14 @@ def change_of_modes(whole: Modes, model: Model, solver: str) -> Change:
     mine = motions(whole)
     partners = _partners(mine, model, solver)
     paired = [np.flatnonzero(mine == motion)[: len(one)] for motion, one in partners.items()]
-    before, error = _frequency(whole)[np.concatenate(paired)].T
-    after, uncertain = np.concatenate(list(partners.values())).T
+    before, error, ratio = _numbers(whole)[np.concatenate(paired)].T
+    after, uncertain, left = np.concatenate(list(partners.values())).T
     hertz, percent = np.abs(after - before), 100 * relative(after, before)
     error = error + uncertain
     lost = len(mine) - len(after)
     size = [measure(each) for each in (hertz, percent) for measure in (_largest, _root_mean_square)]
     return Change(
-        size=dict(zip(OF_MODES, size)),
+        size=dict(zip(OF_MODES, (*size, _largest_known(np.abs(left - ratio))))),
         error=_at_largest(error, hertz),
         beyond_error=bool(lost > 0 or (hertz > error).any()),
         lost=lost,
@@ -102,12 +111,11 @@ def motions(modes: Modes) -> NDArray[np.str_]:
 
     By kinetic energy. Where a coupling mixes two modes in equal parts, each has about half of
     either motion, and both could be called the same: so what a mode has of the motions that it is
-    not called is owed to them, and the next mode pays. Of two mixed modes one is always each.
+    not called is owed to them, and the next mode pays. Of two mixed modes one is always each. The
+    shares that a resonator has of all modes there are have the sum 1: it is given one of them.
     """
-    moving = _moving(modes.coordinates)
+    moving = _moving(modes.energy)
     names = np.array(list(moving))
-    if len(names) == 1:
-        return np.repeat(names, len(modes.frequency))
     shares = {motion: sum(modes.energy[c] for c in own) for motion, own in moving.items()}
     owed, which = np.zeros(len(names)), []
     for share in np.stack(list(shares.values()), axis=1):
@@ -117,9 +125,9 @@ def motions(modes: Modes) -> NDArray[np.str_]:
     return names[which]
 
 
-def _moving(coordinates: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
-    """Return the motions there are, and on which coordinates."""
-    present = {m: tuple(c for c in coordinates if c in own) for m, own in MOTIONS.items()}
+def _moving(energies: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """Return the motions there are, and which of the energies are theirs."""
+    present = {m: tuple(e for e in energies if e in own) for m, own in MOTIONS.items()}
     return {motion: own for motion, own in present.items() if own}
 
 
@@ -135,38 +143,44 @@ def _partners(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str, Re
 
     Returns
     -------
-    dict of ndarray, shape (partners, 2)
-        Of each motion: frequency and error [Hz], from the fewest modes among which all are.
+    dict of ndarray, shape (partners, 3)
+        Of each motion: frequency and error [Hz] and damping ratio, from the fewest modes among
+        which all are.
     """
+    energies = (*model.coordinates, *(CARRIED[kind] for kind in model.chain.carried))
     wanted = {
-        motion: min(int(np.sum(mine == motion)), _most(model, own))
-        for motion, own in _moving(model.coordinates).items()
+        motion: min(int(np.sum(mine == motion)), _most(model, motion, own))
+        for motion, own in _moving(energies).items()
     }
-    found = {motion: np.zeros((0, 2)) for motion in wanted}
+    found = {motion: np.zeros((0, 3)) for motion in wanted}
     number = len(mine)
     while True:
         modes = solve_modes(model, number, below=None, solver=solver, strict=False)
-        which, frequency = motions(modes), _frequency(modes)
+        which, numbers = motions(modes), _numbers(modes)
         for motion in [m for m in wanted if len(found[m]) < wanted[m]]:
-            found[motion] = frequency[which == motion][: wanted[motion]]
+            found[motion] = numbers[which == motion][: wanted[motion]]
         complete = all(len(found[motion]) == wanted[motion] for motion in wanted)
         if complete or len(modes.frequency) < number or number >= FURTHEST * len(mine):
             return found
         number *= 2
 
 
-def _most(model: Model, own: tuple[str, ...]) -> int:
+def _most(model: Model, motion: str, own: tuple[str, ...]) -> int:
     """Return how many modes of a motion there can be: as many as coordinates have inertia."""
+    endless = np.iinfo(np.int32).max
+    if motion in CARRIED:
+        return int(model.chain.carries(motion).sum()) if motion == "resonator" else endless
     chain = model.chain.only(own)
     if chain.inertia is not None and chain.inertia.any():
-        return np.iinfo(np.int32).max
+        return endless
     heavy = chain.mass.any(axis=2) & (chain.held == 0)
     return int(heavy[chain.term_of].sum())
 
 
-def _frequency(modes: Modes) -> Real:
-    """Return frequency and error of each mode [Hz], shape (k, 2)."""
-    return np.stack([in_hertz(modes.eigenvalue), modes.mesh_error + modes.rounding_error], axis=1)
+def _numbers(modes: Modes) -> Real:
+    """Return frequency and error [Hz] and damping ratio of each mode, shape (k, 3)."""
+    error = modes.mesh_error + modes.rounding_error
+    return np.stack([in_hertz(modes.eigenvalue), error, modes.damping_ratio], axis=1)
 
 
 # --- frequency response -----------------------------------------------------------------------
@@ -241,6 +255,10 @@ def _peak_shift(whole: FRF, left: FRF) -> float:
 
 def _largest(change: Real) -> float:
     return float(change.max()) if change.size else np.nan
+
+
+def _largest_known(change: Real) -> float:
+    return _largest(change[~np.isnan(change)])
 
 
 def _median(change: Real) -> float:

@@ -205,7 +205,7 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
         columns = np.array([model.coordinates.index(c) for c in component])
         block = np.ix_(mine, nodes, columns)
         shape[block], mass[mine], own = _shapes(chain, part, at[mine])
-        carried.energy[mine], carried.motion[mine] = own
+        carried.energy[:, mine], carried.motion[mine] = own
     strain, kinetic = _energy(fine.chain, shape, value)
     own = kinetic.argmax(axis=1)
     size = largest(shape[:, ::more], own)
@@ -216,7 +216,7 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=mass / size**2,
         shape=shape[:, ::more] / size[:, None, None],
-        energy=fractions(model, np.abs(value), strain, kinetic, carried.energy),
+        energy=fractions(model, np.abs(value), strain, kinetic, carried.of(model.chain)),
     )
 
 
@@ -236,16 +236,16 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
         shape[real] = own
         assert found.motion is not None
         moved = found.motion[mode[real]]
-        carried.energy[real], carried.motion[real] = Carried.real(chain, own, moved, eigenvalue)
+        carried.energy[:, real], carried.motion[real] = Carried.real(chain, own, moved, eigenvalue)
         mass[real] = _core.energy(chain.undamped, own, eigenvalue)[1].sum(axis=1)
-        mass[real] += carried.energy[real, 1]
+        mass[real] += carried.energy[:, real, 1].sum(axis=0)
         if part.closed is not None:
             mass *= part.closed.mass_ratio(value, eigenvalue)
     if not real.all():
         shape[~real] = motions(chain, part, wanted[~real])
         mass[~real] = 1 / (2 * value[~real])
         rates = part.rates.at(value[~real])
-        carried.energy[~real], carried.motion[~real] = Carried.at(chain, rates, shape[~real])
+        carried.energy[:, ~real], carried.motion[~real] = Carried.at(chain, rates, shape[~real])
     return shape, mass, carried
 
 

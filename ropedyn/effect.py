@@ -46,10 +46,12 @@ class EffectCost(Answer):
         What leaving the effect out changes. Of modes ``"largest [Hz]"``, ``"rms [Hz]"``,
         ``"largest [%]"`` and ``"rms [%]"``, of frequencies; where motion grows -growth/2 pi is the
         frequency. Each mode is compared with that of the same order among those of the same
-        motion: transverse, torsional or axial. Of a frequency response ``"largest [dB]"`` and
-        ``"median [dB]"``, of the level |20 log10(without/with)| of all lines, and
-        ``"peak shift [Hz]"``, from the largest peak to the nearest one without the effect, where
-        that has the same number. NaN where there is nothing to compare.
+        motion: transverse, torsional, axial, of a resonator or of a broken wire. And
+        ``"damping ratio [1]"``, the largest change of any damping ratio, which has no error bars.
+        Of a frequency response ``"largest [dB]"`` and ``"median [dB]"``, of the level
+        |20 log10(without/with)| of all lines, and ``"peak shift [Hz]"``, from the largest peak to
+        the nearest one without the effect, where that has the same number. NaN where there is
+        nothing to compare.
     error : ndarray, shape (rows,)
         Error bars of both answers together, of mesh and rounding, where the change is largest
         [Hz, dB].

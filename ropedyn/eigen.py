@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _core, check, damping
 from .answer import Cost, Work
-from .chain import CHANNELS, Chain
+from .chain import CARRIED, CHANNELS, Chain
 from .compile import check_points, divided, finer, stations_of
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
@@ -468,9 +468,7 @@ def _vectors(
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
     motion = _motion(model, found)[order]
-    carried = np.zeros((len(order), 3))
-    if motion.size:
-        carried = _core.carried(model.chain, shape, motion, eigenvalue)
+    carried = _carried(model.chain, shape, motion, eigenvalue)
     own = kinetic.argmax(axis=1)
     size, most = largest(shape, own), np.abs(motion).max(axis=1, initial=0.0)
     # where the rope stands still, what it carries is what moves
@@ -478,11 +476,12 @@ def _vectors(
     shape /= size[:, None, None]
     strain, kinetic, carried = (e / size[:, None] ** 2 for e in (strain, kinetic, carried))
     dragged /= size**2
-    omega = np.sqrt(np.maximum(eigenvalue, 0.0))
+    omega, all_carried = np.sqrt(np.maximum(eigenvalue, 0.0)), carried.sum(axis=0)
+    energies = _Energies(strain, kinetic, dragged, all_carried)
     return Vectors(
-        damping_ratio=_damping_ratio(model, omega, _Energies(strain, kinetic, dragged, carried)),
+        damping_ratio=_damping_ratio(model, omega, energies),
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
-        modal_mass=kinetic.sum(axis=1) + carried[:, 1],
+        modal_mass=kinetic.sum(axis=1) + all_carried[:, 1],
         shape=shape,
         energy=fractions(model, eigenvalue, strain, kinetic, carried),
     )
@@ -504,6 +503,16 @@ def _motion(model: Model, found: Sequence[Found]) -> Real:
             motion[:, moved] = part.motion
         motions.append(motion)
     return np.concatenate(motions)
+
+
+def _carried(chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> Real:
+    """Return energies of the structures of each kind in `Chain.carried`, shape (kinds, k, 3)."""
+    each = np.zeros((len(chain.carried), len(shape), 3))
+    for k, kind in enumerate(chain.carried):
+        these = chain.carries(kind)
+        part = np.ascontiguousarray(motion[:, these])
+        each[k] = _core.carried(chain.carrying(these), shape, part, eigenvalue)
+    return each
 
 
 def _spread(model: Model, found: Sequence[Found]) -> Real:
@@ -548,7 +557,7 @@ class _Energies(NamedTuple):
     dragged: NDArray[np.float64]
     """(k,) modal damping of drag and dashpots."""
     carried: NDArray[np.float64]
-    """(k, 3) strain, modal mass and losses of the structures that nodes carry."""
+    """(k, 3) strain, modal mass and losses of all structures that nodes carry."""
 
 
 def _damping_ratio(
@@ -584,8 +593,12 @@ def fractions(
     kinetic: NDArray[np.float64],
     carried: NDArray[np.float64],
 ) -> dict[str, NDArray[np.float64]]:
-    """Return shares of the strain and of the kinetic energy."""
-    total, moving = strain.sum(axis=1) + carried[:, 0], kinetic.sum(axis=1) + carried[:, 1]
+    """Return shares of the strain and of the kinetic energy.
+
+    `carried`, shape (kinds, k, 3), is of each kind of structure that the nodes carry.
+    """
+    of_all = carried.sum(axis=0)
+    total, moving = strain.sum(axis=1) + of_all[:, 0], kinetic.sum(axis=1) + of_all[:, 1]
     moves = (eigenvalue != 0) & (total != 0)
     energy = {}
     stores = {"spring": {"spring", "hinge"}}
@@ -595,7 +608,7 @@ def fractions(
             energy[name] = share
     for k, name in enumerate(model.coordinates):
         energy[name] = kinetic[:, k] / moving
-    if model.chain.attached_row is not None:
-        energy["attached"] = np.divide(carried[:, 0], total, out=np.zeros_like(total), where=moves)
-        energy["attached mass"] = carried[:, 1] / moving
+    for kind, own in zip(model.chain.carried, carried):
+        energy[kind] = np.divide(own[:, 0], total, out=np.zeros_like(total), where=moves)
+        energy[CARRIED[kind]] = own[:, 1] / moving
     return energy

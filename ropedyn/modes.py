@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from . import check
 from .answer import TRANSIENT, Answer, Cost, axes, freeze, nested
+from .chain import CARRIED
 from .errors import SceneError
 from .table import Table
 
@@ -104,8 +105,9 @@ class Modes(Answer):
     energy : dict of ndarray, shape (k,)
         Fractions: strain "bending", "twist", "stretch", "lay", "tension", "spring" as far as the
         scene has them, sum 1 (all 0 for rigid-body motion); kinetic "x", "z", "alpha", "beta" of
-        the coordinates there are, sum 1. The springs and the motion of resonators and broken wires
-        are "attached" and "attached mass", where the scene has any.
+        the coordinates there are, sum 1. What the rope carries is, where the scene has any,
+        "resonator" and "broken wire" in the first, "resonator mass" and "broken wire mass" in the
+        second.
     cost : Cost
         What the frequencies cost.
     """
@@ -285,7 +287,7 @@ class Modes(Answer):
         }
         if (self.growth > 0).any():
             columns["growth [1/s]"] = self.growth
-        moving = (*self.coordinates, "attached mass")
+        moving = (*self.coordinates, *CARRIED.values())
         kinds = {"kinetic": tuple(k for k in moving if k in self.energy)}
         kinds["strain"] = tuple(k for k in self.energy if k not in moving)
         for kind, names in kinds.items():

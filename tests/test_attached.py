@@ -12,6 +12,7 @@ from conftest import EPS
 from mpmath import mpf
 
 import ropedyn as rd
+from ropedyn.chain import CARRIED
 
 TENSION, DENSITY, LENGTH = 100.0, 0.1, 1.0
 STRING = rd.Rope(LENGTH, DENSITY)
@@ -287,7 +288,7 @@ def test_equal_resonators_at_one_place_move_against_each_other(kind, rope):
     np.testing.assert_allclose(modes.frequency, exact, rtol=100 * EPS)
     # there the rope stands still and the absorbers have all of the energy and their own damping
     assert (np.abs(modes.shape[1:3]) < 1e-6).all()
-    for group in ("attached", "attached mass"):
+    for group in ("resonator", "resonator mass"):
         np.testing.assert_allclose(modes.energy[group][1:3], 1.0, atol=1e-9)
     np.testing.assert_allclose(modes.damping_ratio[1:3], 0.03, rtol=1e-9)
 
@@ -316,9 +317,9 @@ def test_equal_wires_at_one_place_have_modes_of_their_own():
     wire = rd.BrokenWire(0.4, 0.1, 3e-4, radius=2e-3, damping_ratio=0.004)
     modes = taut(wire, wire, rope=BEAM).compile().modes(below=200.0)
     assert modes.certified
-    own = int(modes.energy["attached"].argmax())
+    own = int(modes.energy["broken wire"].argmax())
     assert modes.frequency[own] == pytest.approx(wire.frequency, rel=100 * EPS)
-    assert modes.energy["attached mass"][own] == pytest.approx(1.0, abs=1e-9)
+    assert modes.energy["broken wire mass"][own] == pytest.approx(1.0, abs=1e-9)
     assert modes.damping_ratio[own] == pytest.approx(0.004, rel=1e-9)
 
 
@@ -425,7 +426,7 @@ def test_modes_of_ropes_with_structures_are_certified_and_their_energies_add_up(
     scene = scene.replace(tension=min(abs(scene.tension), 1e4))
     modes = scene.compile().modes(6)
     assert modes.certified
-    moving = {*modes.coordinates, "attached mass"}
+    moving = {*modes.coordinates, *CARRIED.values()} & set(modes.energy)
     kinetic = sum(modes.energy[k] for k in moving)
     strain = sum(modes.energy[k] for k in modes.energy if k not in moving)
     np.testing.assert_allclose(kinetic, 1.0, rtol=1e-12)
@@ -531,7 +532,7 @@ def test_a_scene_without_structures_is_one_that_never_had_any(kind):
     f = {"frequency": [3.0, 30.0], "drive": ("z", 0.3)}
     assert model.frf(**f).value.tobytes() == never.frf(**f).value.tobytes()
     assert model.modes(4).shape.tobytes() == never.modes(4).shape.tobytes()
-    assert "attached" not in model.modes(1).energy
+    assert not {*CARRIED, *CARRIED.values()} & set(model.modes(1).energy)
 
 
 REFUSED = {

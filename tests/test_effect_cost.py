@@ -47,7 +47,7 @@ def test_a_mass_that_halves_the_first_frequency_of_a_string():
     loaded = STRING.replace(parts=[rd.PointMass(0.5, 0.1 * 4 / math.pi)])
     answer = cost(loaded, rd.ask.modes(2))
     half = FUNDAMENTAL / 2
-    right = (half, half / math.sqrt(2), 100.0, 100.0 / math.sqrt(2))
+    right = (half, half / math.sqrt(2), 100.0, 100.0 / math.sqrt(2), 0.0)
     # a difference of two frequencies, each right to a few eps
     found = list(changes(answer, "point mass").values())
     np.testing.assert_allclose(found, right, rtol=32 * EPS)
@@ -177,8 +177,67 @@ def test_modes_below_a_limit_are_compared_one_by_one():
 
 
 def test_damping_changes_no_undamped_frequency():
-    answer = cost(rd.Scene(BEAM, damping=rd.StiffnessDamping(1e-4)), rd.ask.modes(3))
-    assert set(changes(answer, "stiffness damping").values()) == {0.0}
+    scene = rd.Scene(BEAM, damping=rd.StiffnessDamping(1e-4))
+    answer = cost(scene, rd.ask.modes(3))
+    *frequency, ratio = changes(answer, "stiffness damping").values()
+    assert set(frequency) == {0.0}
+    assert not answer.beyond_error[row(answer, "stiffness damping")]
+    # of the third mode, gamma omega/2: shares of an energy whose sum is 1 to a few eps
+    highest = 2 * math.pi * scene.compile().modes(3).frequency[2]
+    assert ratio == pytest.approx(1e-4 * highest / 2, rel=64 * EPS)
+
+
+def test_a_dashpot_changes_the_damping_ratio_of_the_mode_that_it_is_at():
+    # first order: c phi^2/(2 omega M), phi = 1 and M = mu L/2 in the middle of a string; where the
+    # second mode stands still it does nothing
+    answer = cost(STRING.replace(parts=[rd.Dashpot(0.5, 0.01)]), rd.ask.modes(2))
+    omega = 2 * math.pi * FUNDAMENTAL
+    ratio = changes(answer, "dashpot")["damping ratio [1]"]
+    assert ratio == pytest.approx(0.01 / (0.1 * omega), rel=64 * EPS)
+
+
+def test_damping_ratios_that_are_not_given_are_not_compared():
+    answer = cost(STRING.replace(damping=rd.ModalDamping([0.01, 0.03])), rd.ask.modes(3))
+    assert changes(answer, "modal damping")["damping ratio [1]"] == 0.03
+
+
+# what the rope carries
+
+FEATHER = rd.Resonator(0.3, 1e-12, 1.3 * FUNDAMENTAL)
+BRISTLE = rd.BrokenWire(0.7, 0.05, 1e-5, radius=0.0)
+
+
+@pytest.mark.parametrize("elements", [None, 20])  # with a node where the resonator stands
+def test_the_mode_of_a_light_resonator_is_only_there_with_it(elements):
+    scene = STRING.replace(parts=[FEATHER, FEATHER])
+    assert scene.compile().modes(3).frequency[0] == pytest.approx(FUNDAMENTAL, rel=1e-9)
+    answer = cost(scene, rd.ask.modes(5), elements=elements)
+    at = row(answer, "resonator")
+    assert answer.only_with[at] == 2
+    # of its neighbours the change is of the order of the mass ratio, 1e-11; those of another order
+    # are 20 % and more away
+    assert changes(answer, "resonator")["largest [%]"] < 1e-7
+
+
+def test_of_two_modes_that_a_resonator_makes_of_one_the_other_is_compared():
+    # in the middle of the half wave: f (1 -+ sqrt(m/(mu L/2))/2), right to the mass ratio
+    tuned = rd.Resonator(0.5, 1e-8, FUNDAMENTAL)
+    answer = cost(STRING.replace(parts=[tuned]), rd.ask.modes(2))
+    assert answer.only_with[row(answer, "resonator")] == 1
+    split = FUNDAMENTAL * math.sqrt(1e-8 / 0.05) / 2
+    assert changes(answer, "resonator")["largest [Hz]"] == pytest.approx(split, rel=1e-3)
+
+
+def test_a_wire_keeps_its_modes_when_a_resonator_goes():
+    scene = STRING.replace(parts=[FEATHER, BRISTLE])
+    modes = scene.compile().modes(6)
+    own = [int((modes.energy[f"{kind} mass"] > 0.5).sum()) for kind in ("resonator", "broken wire")]
+    assert own == [1, 2]
+    answer = cost(scene, rd.ask.modes(6))
+    for effect, number in zip(("resonator", "broken wire"), own):
+        assert answer.only_with[row(answer, effect)] == number
+        # both weigh 1e-6 of the rope at most
+        assert changes(answer, effect)["largest [%]"] < 0.01
 
 
 # frequency response
