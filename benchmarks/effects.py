@@ -1,13 +1,17 @@
 """What each effect of a scene changes and costs: modes and a response of a short rope.
 
+And what each costs alone, on a rope that has nothing but tension and bending.
+
 python benchmarks/effects.py
 """
 
 # isort: off
-import timing  # noqa: F401  before numpy
+import timing  # before numpy
 
 # isort: on
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import report
@@ -37,10 +41,48 @@ these are made up."""
 
 QUESTIONS = (rd.ask.modes(10), rd.ask.frf(np.linspace(1.0, 700.0, 400), drive=("z", 0.5)))
 
+BASE = rd.Scene(rd.Rope(1.35, 0.1017, bending_stiffness=1.54), tension=2830.0)
+TWISTED = BASE.rope.replace(torsional_stiffness=0.1485, polar_inertia=2.0e-7)
+STRETCHED = BASE.rope.replace(axial_stiffness=9e5)
+LINES = np.linspace(1.0, 700.0, 1000)
+
+
+def with_part(part: Any) -> rd.Scene:
+    return BASE.replace(parts=[part])
+
+
+def with_damping(damping: Any) -> rd.Scene:
+    return BASE.replace(damping=damping)
+
+
+ALONE = {
+    "nothing": BASE,
+    "no bending": BASE.without("bending"),
+    "twist": BASE.replace(rope=TWISTED),
+    "twist and lay": BASE.replace(rope=TWISTED.replace(lay_slope=0.01)),
+    "stretch": BASE.replace(rope=STRETCHED),
+    "stretch and sag": BASE.replace(rope=STRETCHED, gravity=rd.Gravity()),
+    "rotary inertia": BASE.replace(rope=BASE.rope.replace(rotary_inertia=1e-7)),
+    "point mass": with_part(rd.PointMass(0.4, 0.005)),
+    "spring": with_part(rd.Spring(0.4, 1e3)),
+    "dashpot": with_part(rd.Dashpot(0.4, 1.0)),
+    "hinge": with_part(rd.Hinge(0.4, stiffness=40.0)),
+    "resonator": with_part(rd.Resonator(0.4, 0.007, 58.0, damping_ratio=0.1)),
+    "broken wire": with_part(rd.BrokenWire(0.4, 0.03, 3e-4, radius=1.85e-3)),
+    "added mass": with_part(rd.AddedMass(0.4, 0.5, 0.02)),
+    "local change": with_part(rd.LocalChange(0.4, 0.5, bending=0.8)),
+    "stiffness damping": with_damping(rd.StiffnessDamping(1e-5)),
+    "rayleigh damping": with_damping(rd.RayleighDamping(1.0, 1e-6)),
+    "loss factor": with_damping(rd.LossFactor(1e-3)),
+    "viscous damping": with_damping(rd.ViscousDamping(0.1)),
+    "modal damping": with_damping(rd.ModalDamping(0.01)),
+}
+"""Scenes with one effect more than the first."""
+
 
 def main() -> None:
     costs = [rd.effect_cost(SCENE, question, repeat=101) for question in QUESTIONS]
-    report.write("effects.md", page(costs))
+    report.write("effects.md", f"{page(costs)}\n\n{alone()}")
     draw(costs)
 
 
@@ -83,6 +125,38 @@ def rows(cost: rd.EffectCost) -> str:
 def note(row: dict[str, object]) -> str:
     lost = row["only with it"]
     return f"{row['changes the answer'] or ''}{f', {lost} only with it' if lost else ''}"
+
+
+def alone() -> str:
+    """Time every scene of `ALONE` from the scene to the answer."""
+
+    def modes(scene: rd.Scene) -> Callable[[], Any]:
+        return lambda: scene.compile().modes(10)
+
+    def response(scene: rd.Scene) -> Callable[[], Any]:
+        return lambda: scene.compile().frf(LINES, drive=("z", 0.5), threads=1)
+
+    asked = (modes, response)
+    every = {(name, ask): ask(scene) for name, scene in ALONE.items() for ask in asked}
+    times = timing.quartiles(every, repeat=51)
+    columns = ("ms", "quartiles", "ratio")
+    head = ["with", *(f"{k}: {c}" for k in ("modes", "response") for c in columns)]
+    lines = []
+    for name in ALONE:
+        line = [name]
+        for ask in asked:
+            lower, median, upper = (report.digits(1e3 * t) for t in times[name, ask])
+            ratio = times[name, ask][1] / times["nothing", ask][1]
+            line += [median, f"{lower} to {upper}", f"{ratio:.2f}"]
+        lines.append(line)
+    return f"""## What one effect costs alone
+
+The same rope with nothing but tension and bending, and with one thing more (or less): 10 modes and
+a response of {len(LINES)} lines, ratios to the first row. What a scene does not have is not
+computed, so an effect that is not used costs nothing. Undamped modes know no damping; parts cut the
+rope into two or three spans.
+
+{report.table(head, lines)}"""
 
 
 def draw(costs: list[rd.EffectCost]) -> None:

@@ -1,4 +1,4 @@
-"""Medians of calls that take turns, on one core; import before numpy, which reads OPENBLAS_*."""
+"""Times of calls that take turns, on one core; import before numpy, which reads OPENBLAS_*."""
 
 import os
 
@@ -31,6 +31,22 @@ def medians(
             if first[name] <= LONG or k < 2:
                 times[name].append(seconds(call, row.get(name, 1)))
     return {name: statistics.median(values) for name, values in times.items()}
+
+
+def quartiles(
+    calls: Mapping[str, Callable[[], Any]], *, repeat: int
+) -> dict[str, tuple[float, float, float]]:
+    """Return lower quartile, median and upper quartile of the time of each call [s].
+
+    Calls take turns, and are made so often, after one that warms up in each turn.
+    """
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(repeat):
+        for name, call in calls.items():
+            call()
+            times[name].append(seconds(call))
+    cut = {name: statistics.quantiles(each, n=4) for name, each in times.items()}
+    return {name: (lower, middle, upper) for name, (lower, middle, upper) in cut.items()}
 
 
 def seconds(call: Callable[[], Any], row: int = 1) -> float:
