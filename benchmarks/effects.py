@@ -136,17 +136,18 @@ def alone() -> str:
     def response(scene: rd.Scene) -> Callable[[], Any]:
         return lambda: scene.compile().frf(LINES, drive=("z", 0.5), threads=1)
 
-    asked = (modes, response)
-    every = {(name, ask): ask(scene) for name, scene in ALONE.items() for ask in asked}
-    times = timing.quartiles(every, repeat=51)
+    times = [
+        timing.quartiles({name: ask(scene) for name, scene in ALONE.items()}, repeat=51)
+        for ask in (modes, response)
+    ]
     columns = ("ms", "quartiles", "ratio")
     head = ["with", *(f"{k}: {c}" for k in ("modes", "response") for c in columns)]
     lines = []
     for name in ALONE:
         line = [name]
-        for ask in asked:
-            lower, median, upper = (report.digits(1e3 * t) for t in times[name, ask])
-            ratio = times[name, ask][1] / times["nothing", ask][1]
+        for of in times:
+            lower, median, upper = (report.digits(1e3 * t) for t in of[name])
+            ratio = of[name][1] / of["nothing"][1]
             line += [median, f"{lower} to {upper}", f"{ratio:.2f}"]
         lines.append(line)
     return f"""## What one effect costs alone
