@@ -303,8 +303,8 @@ def test_energies_of_an_overdamped_absorber_are_those_of_its_mass_and_spring():
     s = modes.eigenvalue
     Y = (k + c * s) / (k + c * s + m * s**2)
     mass, spring = m * np.abs(Y) ** 2, k * np.abs(Y - 1) ** 2
-    assert np.allclose(modes.energy["attached mass"], mass / (mass + M), rtol=1e-12, atol=0)
-    assert np.allclose(modes.energy["attached"], spring / (spring + K), rtol=1e-12, atol=0)
+    assert np.allclose(modes.energy["resonator mass"], mass / (mass + M), rtol=1e-12, atol=0)
+    assert np.allclose(modes.energy["resonator"], spring / (spring + K), rtol=1e-12, atol=0)
 
 
 def test_modal_damping_is_refused_beside_a_damped_resonator():
