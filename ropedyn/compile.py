@@ -393,10 +393,14 @@ def lumped(
 
 def inertia_of(scene: Scene, rope: Rope) -> NDArray[np.float64]:
     """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
+    own = [getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
+    return np.where(has_inertia(scene), own, 0.0)
+
+
+def has_inertia(scene: Scene) -> NDArray[np.bool_]:
+    """Say on which coordinates the rope's own inertia acts, shape (width,)."""
     still = () if scene.gravity is None else ("x",)
-    return np.array(
-        [0.0 if c in still else getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
-    )
+    return np.array([c not in still for c in scene.coordinates])
 
 
 def _drag(scene: Scene) -> NDArray[np.float64]:

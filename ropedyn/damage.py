@@ -13,7 +13,7 @@ from .answer import Answer, axes
 from .compile import lumped
 from .errors import SceneError, SolveError
 from .rate import DENSITIES, ENTRIES, Places, inertia_rate
-from .sensitivity import SECTIONS, Pairs, Shapes, Slopes
+from .sensitivity import SAG, SECTIONS, Pairs, Shapes, Slopes
 from .table import Table
 
 if TYPE_CHECKING:
@@ -45,7 +45,8 @@ class Damage(Answer):
         "polar_inertia" and "rotary_inertia" as far as the rope has them: relative change of the
         frequency per relative loss of that property and per length of rope that loses it [1/m], the
         exact mean over each part. The property is what it is there, with all that changes the rope
-        over a stretch; the tension stays. 0 where the frequency is 0.
+        over a stretch; the tension stays, and under gravity the length of the whole rope's curve. 0
+        where the frequency is 0.
     """
 
     edge: Real = field(metadata=axes("edge", unit="m"))
@@ -154,9 +155,13 @@ def _forms(model: Model, pairs: Pairs) -> dict[str, Real]:
             section = slopes.element[..., : rate.shape[1]]
             forms[name] = np.einsum("mei,ei->me", section, rate[span])
     for name in DENSITIES:
-        own = places.inertia[span] * inertia_rate(model.coordinates, name)
+        own = places.inertia[span] * inertia_rate(model.scene, name)
         if own.any():
             forms[name] = -slopes.eigenvalue[:, None] * _moving(model, slopes, own)
+    if model.scene.gravity is not None:
+        # what is lighter sags less
+        sag = places.linear_density * places.pull
+        forms["linear_density"] += slopes.element[..., SAG] * sag[span]
     return forms
 
 

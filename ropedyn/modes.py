@@ -194,7 +194,9 @@ class Modes(Answer):
         path : str
             ``"tension"``, a property of the rope as ``"bending_stiffness"`` or ``"length"``, of a
             part as ``"parts[0].mass"``, ``"parts[0].x"``, ``"parts[1].bending"`` or
-            ``"parts[1].start"``, or of an end as ``"ends[0].spring.beta"``. When the length grows
+            ``"parts[1].start"``, of an end as ``"ends[0].spring.beta"``, or ``"gravity.g"`` and
+            ``"gravity.inclination"``. Under gravity tension, linear density and length change the
+            sag too. When the length grows
             parts keep their places, except those at the right end, which stay there. Dashpots
             have derivatives of 0: frequencies are undamped ones.
         of : {"frequency", "eigenvalue", "growth"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -10,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import mesh
-from .compile import INERTIA, inertia_of, lumped, section, standing_at, stations_of
+from .compile import INERTIA, has_inertia, inertia_of, lumped, section, standing_at, stations_of
 from .end import end_of
 from .errors import SceneError
 from .model import Model
 from .part import NodeRate, standing, stretches
 from .part import places as places_of
 from .rope import Rope
+from .scene import Scene
 from .stretch import KINDS as STRETCHES
 from .stretch import Change, Stretch, changed_by, changes, rope_rate, ropes, stretch_rate
 
@@ -38,6 +40,9 @@ STIFFNESS = {
 
 SECTION = STIFFNESS.keys() | {"lay_slope"}
 """Properties of a rope that its section depends on."""
+
+GRAVITY = ("g", "inclination")
+"""Numbers of gravity."""
 
 DENSITIES = tuple(dict.fromkeys(INERTIA.values()))
 """Properties of a rope that are inertia per length."""
@@ -70,9 +75,10 @@ def section_rate(rope: Rope, name: str) -> Real:
     return -own.T @ STIFFNESS[name] @ own
 
 
-def inertia_rate(coordinates: tuple[str, ...], name: str) -> Real:
+def inertia_rate(scene: Scene, name: str) -> Real:
     """Return the derivative of the inertia per length of each coordinate, shape (width,)."""
-    return np.array([float(INERTIA[c] == name) for c in coordinates])
+    own = np.array([float(INERTIA[c] == name) for c in scene.coordinates])
+    return np.where(has_inertia(scene), own, 0.0)
 
 
 @dataclass(frozen=True)
@@ -160,9 +166,34 @@ class Places:
         """Per length, of each span and coordinate, shape (spans, width)."""
         return np.stack([inertia_of(self.model.scene, rope) for rope in self.ropes])
 
+    @property
+    def linear_density(self) -> Real:
+        """Of each span [kg/m], shape (spans,)."""
+        return np.array([rope.linear_density for rope in self.ropes])
+
+    @property
+    def stretch(self) -> Real:
+        """Axial flexibility of each span along its own curve [1/N], shape (spans,)."""
+        return np.array([section(rope)[0, 0] for rope in self.ropes])
+
+    @property
+    def pull(self) -> float:
+        """Curvature of the rope that hangs per linear density, g cos(inclination)/T [m/kg]."""
+        scene = self.model.scene
+        if scene.gravity is None:
+            return 0.0
+        return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.tension
+
     def sections(self, name: str) -> Real:
-        """Return `section_rate` of each span, shape (spans, 3, 3)."""
-        return np.stack([section_rate(rope, name) for rope in self.ropes])
+        """Return the derivative of the section flexibility of each span, shape (spans, 3, 3)."""
+        return self.longer(np.stack([section_rate(rope, name) for rope in self.ropes]))
+
+    def longer(self, flexibility: Real) -> Real:
+        """Return sections of a rope that hangs, longer than its chord along x."""
+        scene = self.model.scene
+        if scene.gravity is not None:
+            flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.tension)
+        return flexibility
 
 
 class Rate:
@@ -172,6 +203,9 @@ class Rate:
     ----------
     rope : dict of ndarray, shape (spans,)
         Of properties of the rope there.
+    pull, chord : float
+        Of g cos(inclination)/T, and of mu L of the scene's own rope, by which all of it is
+        lengthened.
     tension : ndarray, shape (spans,)
     length : ndarray, shape (spans,)
         Of each element.
@@ -182,6 +216,7 @@ class Rate:
     def __init__(self, places: Places) -> None:
         spans, width = len(places.counts), len(places.model.coordinates)
         self.rope: dict[str, Real] = {}
+        self.pull = self.chord = 0.0
         self.tension, self.length = np.zeros(spans), np.zeros(spans)
         self.mass = np.zeros((spans + 1, width))
         self.stiffness, self.hinge = np.zeros_like(self.mass), np.zeros_like(self.mass)
@@ -190,7 +225,7 @@ class Rate:
         """Return the weights that belong to it."""
         span, station, inside = places.span, places.station, places.inside
         section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
-        element = np.column_stack([section, self.tension, self.length, np.zeros(len(section))])
+        element = np.column_stack([section, self.tension, self.length, self._sag(places)])
         inertia = self._inertia(places)
         diagonal = np.arange(self.mass.shape[1])
         node = np.zeros((len(station), *2 * self.mass.shape[1:]))
@@ -210,13 +245,25 @@ class Rate:
         flexibility = np.zeros((len(places.counts), 3, 3))
         for name in self.rope.keys() & SECTION:
             flexibility += self.rope[name][:, None, None] * places.sections(name)
+        flexibility[:, 0, 0] += self._lengthening(places) * places.stretch
         return flexibility
+
+    def _lengthening(self, places: Places) -> float:
+        """Return the derivative of 1 + s^2/8, s = mu L g cos(inclination)/T."""
+        rope = places.model.scene.rope
+        own = rope.linear_density * rope.length
+        return own * places.pull * (self.chord * places.pull + own * self.pull) / 4
+
+    def _sag(self, places: Places) -> Real:
+        """Return the derivative of the curvature of each span, mu g cos(inclination)/T."""
+        density = self.rope.get("linear_density", np.zeros(len(places.counts)))
+        return density * places.pull + places.linear_density * self.pull
 
     def _inertia(self, places: Places) -> Real:
         """Return the derivative of the inertia per length of each span."""
         inertia = np.zeros((len(places.counts), self.mass.shape[1]))
         for name in self.rope.keys() & set(DENSITIES):
-            inertia += np.outer(self.rope[name], inertia_rate(places.model.coordinates, name))
+            inertia += np.outer(self.rope[name], inertia_rate(places.model.scene, name))
         return inertia
 
     def _given(self, places: Places, inertia: Real) -> Real:
@@ -243,6 +290,8 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
     model = places.model
     rope = model.scene.rope
     found: dict[str, Callable[[], Rate]] = {}
+    if model.scene.gravity is not None:
+        found |= {f"gravity.{name}": partial(_of_gravity, places, name) for name in GRAVITY}
     if "z" in model.coordinates and not (model.element == "difference" and _bends(model)):
         found["tension"] = partial(_of_tension, places)
     acting = _acting(model)
@@ -265,7 +314,7 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
 def _acting(model: Model) -> set[str]:
     """Return the properties that a rope may have and this model's depends on."""
     stiffness = {name for name in SECTION if getattr(model.scene.rope, name) is not None}
-    return stiffness | {c for c in DENSITIES if inertia_rate(model.coordinates, c).any()}
+    return stiffness | {c for c in DENSITIES if inertia_rate(model.scene, c).any()}
 
 
 def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[[], Rate]]:
@@ -291,6 +340,18 @@ def _bends(model: Model) -> bool:
 def _of_tension(places: Places) -> Rate:
     rate = Rate(places)
     rate.tension[:] = 1.0
+    if places.pull:
+        rate.pull = -places.pull / places.model.scene.tension
+    return rate
+
+
+def _of_gravity(places: Places, name: str) -> Rate:
+    """Return that of g cos(inclination)/T."""
+    gravity, tension = places.model.scene.gravity, places.model.scene.tension
+    assert gravity is not None
+    turned = math.cos(gravity.inclination), -gravity.g * math.sin(gravity.inclination)
+    rate = Rate(places)
+    rate.pull = turned[GRAVITY.index(name)] / tension
     return rate
 
 
@@ -298,6 +359,8 @@ def _of_rope(places: Places, name: str) -> Rate:
     """Return that of a property of the rope, which stretches multiply."""
     rate = Rate(places)
     rate.rope[name] = rope_rate(places.change, name)
+    if name == "linear_density":
+        rate.chord = places.model.scene.rope.length
     return rate
 
 
@@ -305,6 +368,7 @@ def _of_length(places: Places) -> Rate:
     """Let the last span grow: parts keep their x."""
     rate = Rate(places)
     rate.length[-1] = 1.0 / places.counts[-1]
+    rate.chord = places.model.scene.rope.linear_density
     return rate
 
 

@@ -21,7 +21,10 @@ Real = NDArray[np.float64]
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 
 SECTIONS = 9
-"""Slopes of an element before those of its inertia: section, tension, length."""
+"""Slopes of an element before those of its inertia: section, tension, length, sag."""
+
+SAG = 8
+"""Among them that of the sag."""
 
 NOTHING = 1e-12
 """Of the largest change that a shape of the same size could make: less is rounding."""

@@ -184,6 +184,8 @@ PATH = re.compile(r"(parts|ends)\[(\d+)\]\.(?:(spring|mass|dashpot)\.)?(\w+)")
 def value_of(scene, path):
     """The number at a path."""
     found = PATH.fullmatch(path)
+    if path.startswith("gravity."):
+        return getattr(scene.gravity, path.removeprefix("gravity."))
     if found is None:
         return getattr(scene if path == "tension" else scene.rope, path)
     kind, i, of, name = found.groups()
@@ -196,6 +198,9 @@ def changed(scene, path, value):
     found = PATH.fullmatch(path)
     if path == "tension":
         return scene.replace(tension=value)
+    if path.startswith("gravity."):
+        change = {path.removeprefix("gravity."): value}
+        return scene.replace(gravity=dataclasses.replace(scene.gravity, **change))
     if found is None:
         return scene.replace(rope=scene.rope.replace(**{path: value}))
     kind, i, of, name = found.groups()
