@@ -34,6 +34,11 @@ static double highest_of_resonator(const double *value)
     return value[1] / value[0];
 }
 
+static double loss_of_resonator(const double *value)
+{
+    return value[1];
+}
+
 /* The roots of 1 + cos x cosh x below x, one in each ((n - 1) pi, n pi): e is positive behind the
    even ones. */
 static double roots_below(double x, double gap)
@@ -85,9 +90,15 @@ static double highest_of_wire(const double *value)
     return INFINITY;
 }
 
+static double loss_of_wire(const double *value)
+{
+    (void)value;
+    return 0.5;
+}
+
 const struct rd_attached rd_attached_of[RD_ATTACHED_KINDS] = {
-    [RD_RESONATOR] = {fill_resonator, highest_of_resonator},
-    [RD_WIRE] = {fill_wire, highest_of_wire},
+    [RD_RESONATOR] = {fill_resonator, highest_of_resonator, loss_of_resonator},
+    [RD_WIRE] = {fill_wire, highest_of_wire, loss_of_wire},
 };
 
 void rd_attached_fill(const struct rd_chain *chain, size_t k, double _Complex inertia,
@@ -145,14 +156,18 @@ void rd_attached_tip(const struct rd_chain *chain, size_t k, double _Complex ine
     rd_attached_row(chain, k, tip, row);
 }
 
-/* w e y^2 - 2 w y v^T u + u^T diag(rest) u, u (width) being the motion of the node */
-static double _Complex form_of(const struct rd_chain *chain, size_t k, const struct rd_foot *foot,
-                               const double *u, double y)
+/* displacement and rotation of the foot with the motion u (width) of the node */
+static void move_foot(const struct rd_chain *chain, size_t k, const double *u, double *moved)
 {
-    double moved[2] = {0};
+    const double *row = chain->attached_row + k * 2 * chain->width;
+    moved[0] = moved[1] = 0;
     for (size_t i = 0; i < 2 * chain->width; i++)
-        moved[i / chain->width] +=
-            chain->attached_row[k * 2 * chain->width + i] * u[i % chain->width];
+        moved[i / chain->width] += row[i] * u[i % chain->width];
+}
+
+/* w e y^2 - 2 w y v^T u + u^T diag(rest) u, u being the motion of the foot */
+static double _Complex form_of(const struct rd_foot *foot, const double *moved, double y)
+{
     const double _Complex along = foot->lever[0] * moved[0] + foot->lever[1] * moved[1];
     return foot->weight * y * (foot->gap * y - 2 * along) + foot->rest[0] * moved[0] * moved[0] +
            foot->rest[1] * moved[1] * moved[1];
@@ -165,10 +180,11 @@ static void add_energy(const struct rd_chain *chain, size_t k, double lambda, co
 {
     const double *given = chain->attached_value + k * RD_ATTACHED_VALUES;
     const struct rd_attached *kind = rd_attached_of + chain->attached_kind[k];
-    double value[RD_ATTACHED_VALUES];
+    double value[RD_ATTACHED_VALUES], moved[2];
     struct rd_foot foot;
+    move_foot(chain, k, u, moved);
     rd_attached_fill(chain, k, CMPLX(-lambda, -STEP), 0, &foot);
-    const double _Complex form = form_of(chain, k, &foot, u, y);
+    const double _Complex form = form_of(&foot, moved, y);
     const double kinetic = -cimag(form) / STEP;
     energy[RD_CARRIED_KINETIC] += kinetic;
     energy[RD_CARRIED_STRAIN] += creal(form) + lambda * kinetic;
@@ -177,7 +193,7 @@ static void add_energy(const struct rd_chain *chain, size_t k, double lambda, co
     memcpy(value, given, sizeof value);
     value[RD_ATTACHED_VALUES - 1] *= STEP;
     kind->fill(value, -lambda, CMPLX(0, sqrt(lambda)), &foot);
-    energy[RD_CARRIED_LOST] += cimag(form_of(chain, k, &foot, u, y)) / STEP;
+    energy[RD_CARRIED_LOST] += cimag(form_of(&foot, moved, y)) / STEP;
 }
 
 void rd_attached_energy(const struct rd_chain *chain, double lambda, const double *shape,
@@ -190,6 +206,43 @@ void rd_attached_energy(const struct rd_chain *chain, double lambda, const doubl
         for (size_t k = rd_attached_first(chain, (size_t)term); rd_attached_is_of(chain, k, term);
              k++)
             add_energy(chain, k, lambda, u, y[k], energy);
+    }
+}
+
+/* The form at fixed u and y by m, which lambda multiplies, by k and by the motion of the foot. */
+static void fill_slope(const struct rd_chain *chain, size_t k, double lambda, const double *u,
+                       double y, double *number, double *row)
+{
+    const struct rd_attached *kind = rd_attached_of + chain->attached_kind[k];
+    double value[RD_ATTACHED_VALUES], moved[2];
+    struct rd_foot foot;
+    move_foot(chain, k, u, moved);
+    rd_attached_fill(chain, k, CMPLX(-lambda, -STEP), 0, &foot);
+    number[RD_CARRIED_OF_MASS] = -cimag(form_of(&foot, moved, y)) / STEP;
+    memcpy(value, chain->attached_value + k * RD_ATTACHED_VALUES, sizeof value);
+    value[RD_ATTACHED_VALUES - 1] = STEP * kind->loss(value);
+    kind->fill(value, -lambda, I, &foot);
+    number[RD_CARRIED_OF_STIFFNESS] = cimag(form_of(&foot, moved, y)) / STEP;
+    for (size_t i = 0; i < 2 * chain->width; i++) {
+        const size_t line = i / chain->width;
+        const double force =
+            creal(foot.rest[line]) * moved[line] - creal(foot.weight) * y * creal(foot.lever[line]);
+        row[i] = 2 * force * u[i % chain->width];
+    }
+}
+
+void rd_attached_slopes(const struct rd_chain *chain, double lambda, const double *shape,
+                        const double *y, double *number, double *row)
+{
+    memset(number, 0, chain->attached * RD_CARRIED_NUMBERS * sizeof *number);
+    memset(row, 0, chain->attached * 2 * chain->width * sizeof *row);
+    for (size_t s = 0; s < chain->stretches; s++) {
+        const int32_t term = chain->term[s];
+        const double *u = shape + (size_t)chain->first[s] * chain->width;
+        for (size_t k = rd_attached_first(chain, (size_t)term); rd_attached_is_of(chain, k, term);
+             k++)
+            fill_slope(chain, k, lambda, u, y[k], number + k * RD_CARRIED_NUMBERS,
+                       row + k * 2 * chain->width);
     }
 }
 

@@ -34,6 +34,8 @@ struct rd_attached {
                  struct rd_foot *foot);
     /* the largest eigenvalue with the foot held, INFINITY where there is none [rad^2/s^2] */
     double (*highest)(const double *value);
+    /* the damping with which the stiffness k is k (1 + i) at dashpot = i */
+    double (*loss)(const double *value);
 };
 
 /* (RD_ATTACHED_KINDS) */
@@ -66,6 +68,16 @@ enum rd_carried { RD_CARRIED_STRAIN, RD_CARRIED_KINETIC, RD_CARRIED_LOST, RD_CAR
 /* energy (RD_CARRIED) of all structures in the mode lambda, shape (nodes, width) with y (attached) */
 void rd_attached_energy(const struct rd_chain *chain, double lambda, const double *shape,
                         const double *y, double *energy);
+
+/* Of the form of a structure, which its numbers change at fixed u and y: of m it is -lambda/m times
+   the first, which is what the kinetic energy adds to shape^T M shape; of k, the second over k. */
+enum rd_carried_number { RD_CARRIED_OF_MASS, RD_CARRIED_OF_STIFFNESS, RD_CARRIED_NUMBERS };
+
+/* number (attached, RD_CARRIED_NUMBERS) and row (attached, 2, width), of each entry of attached_row:
+   the slopes of each structure in the mode lambda, shape (nodes, width) with y (attached). A length l
+   of the structure with m and k kept is a factor on the rotation of its foot. */
+void rd_attached_slopes(const struct rd_chain *chain, double lambda, const double *shape,
+                        const double *y, double *number, double *row);
 
 /* The inertia (width, width) that they have where all moves together, -dD/dlambda at 0; added. */
 void rd_attached_inertia(const struct rd_chain *chain, size_t term, double *M);

@@ -3,41 +3,98 @@
 
 #include "attached.h"
 
+/* Modes of what carries structures, as they are handed in. */
+struct carrying {
+    struct py_chain parsed;
+    PyArrayObject *shapes, *motions, *lambdas;
+    npy_intp count, carried, width;
+};
+
+static void release(struct carrying *modes)
+{
+    Py_XDECREF(modes->lambdas);
+    Py_XDECREF(modes->motions);
+    Py_XDECREF(modes->shapes);
+    py_chain_release(&modes->parsed);
+}
+
+/* chain, shape, motion, eigenvalue; -1 with an error set, to be released all the same */
+static int parse(PyObject *arguments, struct carrying *modes)
+{
+    PyObject *object[4];
+    *modes = (struct carrying){0};
+    if (!PyArg_ParseTuple(arguments, "OOOO", object, object + 1, object + 2, object + 3) ||
+        py_chain_view(object[0], &modes->parsed) < 0)
+        return -1;
+    const struct rd_chain *chain = &modes->parsed.chain;
+    modes->carried = (npy_intp)chain->attached;
+    modes->width = (npy_intp)chain->width;
+    const npy_intp of_shape[] = {-1, (npy_intp)chain->nodes, modes->width};
+    modes->shapes = py_array(object[1], NPY_DOUBLE, 3, of_shape, "shape");
+    if (modes->shapes == NULL)
+        return -1;
+    modes->count = PyArray_DIM(modes->shapes, 0);
+    const npy_intp of_motion[] = {modes->count, modes->carried};
+    modes->motions = py_array(object[2], NPY_DOUBLE, 2, of_motion, "motion");
+    if (modes->motions == NULL)
+        return -1;
+    modes->lambdas = py_array(object[3], NPY_DOUBLE, 1, &modes->count, "eigenvalue");
+    return modes->lambdas == NULL ? -1 : 0;
+}
+
+static double lambda_of(const struct carrying *modes, npy_intp i)
+{
+    return ((const double *)PyArray_DATA(modes->lambdas))[i];
+}
+
+static const double *shape_of(const struct carrying *modes, npy_intp i)
+{
+    return (const double *)PyArray_GETPTR1(modes->shapes, i);
+}
+
+static const double *motion_of(const struct carrying *modes, npy_intp i)
+{
+    return (const double *)PyArray_DATA(modes->motions) + i * modes->carried;
+}
+
 PyObject *py_carried(PyObject *module, PyObject *arguments)
 {
     (void)module;
-    struct py_chain parsed = {0};
-    PyArrayObject *shapes = NULL, *motions = NULL, *lambdas = NULL;
-    PyObject *object[4], *energy = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OOOO", object, object + 1, object + 2, object + 3))
-        return NULL;
-    if (py_chain_view(object[0], &parsed) < 0)
-        goto done;
-    const struct rd_chain *chain = &parsed.chain;
-    const npy_intp nodes = (npy_intp)chain->nodes, width = (npy_intp)chain->width;
-    shapes = py_array(object[1], NPY_DOUBLE, 3, (npy_intp[]){-1, nodes, width}, "shape");
-    if (shapes == NULL)
-        goto done;
-    const npy_intp count = PyArray_DIM(shapes, 0), carried = (npy_intp)chain->attached;
-    motions = py_array(object[2], NPY_DOUBLE, 2, (npy_intp[]){count, carried}, "motion");
-    if (motions == NULL)
-        goto done;
-    lambdas = py_array(object[3], NPY_DOUBLE, 1, &count, "eigenvalue");
-    energy = lambdas == NULL ? NULL : py_new(NPY_DOUBLE, 2, (npy_intp[]){count, RD_CARRIED});
-    if (energy == NULL)
-        goto done;
-    for (npy_intp i = 0; i < count; i++)
-        rd_attached_energy(chain, ((const double *)PyArray_DATA(lambdas))[i],
-                           (const double *)PyArray_DATA(shapes) + i * nodes * width,
-                           (const double *)PyArray_DATA(motions) + i * carried,
+    struct carrying modes;
+    PyObject *energy = NULL;
+    if (parse(arguments, &modes) == 0)
+        energy = py_new(NPY_DOUBLE, 2, (npy_intp[]){modes.count, RD_CARRIED});
+    for (npy_intp i = 0; energy != NULL && i < modes.count; i++)
+        rd_attached_energy(&modes.parsed.chain, lambda_of(&modes, i), shape_of(&modes, i),
+                           motion_of(&modes, i),
                            (double *)PyArray_DATA((PyArrayObject *)energy) + i * RD_CARRIED);
-    result = Py_NewRef(energy);
+    release(&modes);
+    return energy;
+}
+
+PyObject *py_carried_slopes(PyObject *module, PyObject *arguments)
+{
+    (void)module;
+    struct carrying modes;
+    PyObject *number = NULL, *row = NULL, *result = NULL;
+    if (parse(arguments, &modes) < 0)
+        goto done;
+    const npy_intp of_number = modes.carried * RD_CARRIED_NUMBERS;
+    const npy_intp of_row = modes.carried * 2 * modes.width;
+    number = py_new(NPY_DOUBLE, 3, (npy_intp[]){modes.count, modes.carried, RD_CARRIED_NUMBERS});
+    row = py_new(NPY_DOUBLE, 4, (npy_intp[]){modes.count, modes.carried, 2, modes.width});
+    if (number == NULL || row == NULL)
+        goto done;
+    for (npy_intp i = 0; i < modes.count; i++)
+        rd_attached_slopes(&modes.parsed.chain, lambda_of(&modes, i), shape_of(&modes, i),
+                           motion_of(&modes, i),
+                           (double *)PyArray_DATA((PyArrayObject *)number) + i * of_number,
+                           (double *)PyArray_DATA((PyArrayObject *)row) + i * of_row);
+    result = PyTuple_Pack(2, number, row);
 done:
-    Py_XDECREF(energy);
-    Py_XDECREF(lambdas);
-    Py_XDECREF(motions);
-    Py_XDECREF(shapes);
-    py_chain_release(&parsed);
+    Py_XDECREF(row);
+    Py_XDECREF(number);
+    release(&modes);
     return result;
 }
 

@@ -91,6 +91,7 @@ PyObject *py_triple(PyObject *module, PyObject *arguments);
 PyObject *py_mixed(PyObject *module, PyObject *arguments);
 PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments);
 PyObject *py_carried(PyObject *module, PyObject *arguments);
+PyObject *py_carried_slopes(PyObject *module, PyObject *arguments);
 PyObject *py_tip(PyObject *module, PyObject *arguments);
 
 #endif

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +14,7 @@ from .damping import drag
 from .end import end_of
 from .errors import SceneError
 from .model import MOST_POINTS, Model
-from .part import NodeTerm, places, standing, stretches
+from .part import Attached, NodeTerm, places, standing, stretches
 from .rope import Rope
 from .scene import Scene
 from .stretch import ropes
@@ -263,10 +263,9 @@ def _chain(
 
 def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) -> Chain:
     """Return the chain with the structures that its stations carry."""
-    carried = [(at, one) for at, term in standing_at(scene, stations) for one in term.attached]
+    carried = [(at, one) for at, _, one in carried_by(standing_at(scene, stations))]
     if not carried:
         return chain
-    carried.sort(key=lambda pair: pair[0])  # stable: those of a station in the order of the parts
     row = np.zeros((len(carried), 2, len(scene.coordinates)))
     for k, (station, one) in enumerate(carried):
         for line, moves in enumerate((one.displacement, one.rotation)):
@@ -284,6 +283,15 @@ def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) ->
         attached_row=row,
         attached_value=np.array([one.value for _, one in carried]),
     )
+
+
+def carried_by(
+    terms: Iterable[tuple[int, NodeTerm]],
+) -> list[tuple[int, NodeTerm, Attached]]:
+    """Return the structures of what stands at stations, in the order that the chain has them in."""
+    carried = [(at, term, one) for at, term in terms for one in term.attached]
+    carried.sort(key=lambda one: one[0])  # stable: those of a station in the order of the parts
+    return carried
 
 
 def _terms(

@@ -459,7 +459,8 @@ def _shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = No
             break
         more *= 2
     order = order[: last + 1]
-    return Shapes(model, value[: last + 1], _spread(model, found)[order], tuple(kept), edges)
+    shape, motion = _spread(model, found)[order], _motion(model, found)[order]
+    return Shapes(model, value[: last + 1], shape, motion, tuple(kept), edges)
 
 
 def _vectors(

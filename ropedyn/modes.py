@@ -193,12 +193,12 @@ class Modes(Answer):
         ----------
         path : str
             ``"tension"``, a property of the rope as ``"bending_stiffness"`` or ``"length"``, of a
-            part as ``"parts[0].mass"``, ``"parts[0].x"``, ``"parts[1].bending"`` or
-            ``"parts[1].start"``, of an end as ``"ends[0].spring.beta"``, or ``"gravity.g"`` and
-            ``"gravity.inclination"``. Under gravity tension, linear density and length change the
-            sag too. When the length grows
+            part as ``"parts[0].mass"``, ``"parts[0].x"``, ``"parts[1].bending"``,
+            ``"parts[1].start"`` or ``"parts[2].frequency"`` of a resonator, of an end as
+            ``"ends[0].spring.beta"``, or ``"gravity.g"`` and ``"gravity.inclination"``. Under
+            gravity tension, linear density and length change the sag too. When the length grows
             parts keep their places, except those at the right end, which stay there. Dashpots
-            have derivatives of 0: frequencies are undamped ones.
+            and damping ratios have derivatives of 0: frequencies are undamped ones.
         of : {"frequency", "eigenvalue", "growth"}
             `frequency` [Hz] has the derivative 0 where motion grows, `growth` [1/s] where it does
             not; `eigenvalue` [rad^2/s^2] has one everywhere.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple, Protocol
@@ -51,6 +51,23 @@ class NodeTerm(NamedTuple):
     """Structures that it carries."""
 
 
+class AttachedRate(NamedTuple):
+    """How fast a structure changes with one number of it."""
+
+    size: float = 0.0
+    """Relative, of mass and stiffness together."""
+    mass: float = 0.0
+    """Relative, at the same stiffness."""
+    stiffness: float = 0.0
+    """Relative, at the same mass."""
+    damping: float = 0.0
+    """Of its damping ratio."""
+    displacement: Mapping[str, float] = MappingProxyType({})
+    """Of the foot per motion of the node."""
+    rotation: Mapping[str, float] = MappingProxyType({})
+    """Times the length of the structure, over that length: it feels no other rotation."""
+
+
 class NodeRate(NamedTuple):
     """How fast what stands at a node changes with one number of it, per coordinate."""
 
@@ -59,6 +76,17 @@ class NodeRate(NamedTuple):
     hinge: Mapping[str, float] = MappingProxyType({})
     """Of the stiffness across a hinge."""
     damping: Mapping[str, float] = MappingProxyType({})
+    attached: AttachedRate | None = None
+    """Of the structure that it carries."""
+
+    def acts(self, coordinates: Collection[str]) -> bool:
+        """Whether it changes anything where there are only some coordinates."""
+        moved = [self.mass, self.stiffness, self.hinge, self.damping]
+        if self.attached is not None:
+            if self.attached._replace(displacement={}, rotation={}) != AttachedRate():
+                return True
+            moved += [self.attached.displacement, self.attached.rotation]
+        return any(c in coordinates for values in moved for c in values)
 
 
 class Part(Protocol):
@@ -461,6 +489,15 @@ class Resonator:
         """Return the structure, which moves with z."""
         return NodeTerm(attached=[Attached(self.kind, {"z": 1.0}, {}, self._values)])
 
+    def rates(self) -> dict[str, NodeRate]:
+        """Return those of a spring mass (2 pi frequency)^2; undamped modes feel no dashpot."""
+        attached = {
+            "mass": AttachedRate(size=1 / self.mass),
+            "frequency": AttachedRate(stiffness=2 / self.frequency),
+            "damping_ratio": AttachedRate(damping=1.0),
+        }
+        return {name: NodeRate(attached=rate) for name, rate in attached.items()}
+
 
 @dataclass(frozen=True)
 class BrokenWire:
@@ -559,6 +596,21 @@ class BrokenWire:
         """Return the structure, which moves with z and alpha and turns with beta."""
         moves = {"z": 1.0, "alpha": self.radius}
         return NodeTerm(attached=[Attached(self.kind, moves, {"beta": 1.0}, self._values)])
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return those of a mass as density d^2 l and a stiffness as E d^4/l^3."""
+        length, d = self.length, self.diameter
+        attached = {
+            "length": AttachedRate(
+                size=1 / length, stiffness=-4 / length, rotation={"beta": 1 / length}
+            ),
+            "diameter": AttachedRate(size=2 / d, stiffness=2 / d),
+            "radius": AttachedRate(displacement={"alpha": 1.0}),
+            "youngs_modulus": AttachedRate(stiffness=1 / self.youngs_modulus),
+            "density": AttachedRate(mass=1 / self.density),
+            "damping_ratio": AttachedRate(damping=1.0),
+        }
+        return {name: NodeRate(attached=rate) for name, rate in attached.items()}
 
 
 KINDS = (PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, *_stretch.KINDS)

@@ -11,11 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import mesh
-from .compile import INERTIA, has_inertia, inertia_of, lumped, section, standing_at, stations_of
+from .compile import (
+    INERTIA,
+    carried_by,
+    has_inertia,
+    inertia_of,
+    lumped,
+    section,
+    standing_at,
+    stations_of,
+)
 from .end import end_of
 from .errors import SceneError
 from .model import Model
-from .part import NodeRate, standing, stretches
+from .part import AttachedRate, NodeRate, standing, stretches
 from .part import places as places_of
 from .rope import Rope
 from .scene import Scene
@@ -86,7 +95,7 @@ class Weights:
     """By what the slopes of a form are multiplied, see `_core.sensitivity`.
 
     The derivative of the form is the sum of slopes times `element`, `jump` and `node`, less lambda
-    times that of slopes times `moving` and `mass`.
+    times that of slopes times `moving`, `mass` and `heavier`.
 
     Attributes
     ----------
@@ -98,6 +107,10 @@ class Weights:
         Stiffness of hinges.
     node, mass : ndarray, shape (stretches, width, width)
         Springs and inertia.
+    stiffer, heavier : ndarray, shape (attached,)
+        Relative changes of stiffness and mass of the structures that nodes carry.
+    foot : ndarray, shape (attached, 2, width)
+        Displacement and rotation of their feet.
     """
 
     element: Real
@@ -105,6 +118,9 @@ class Weights:
     jump: Real
     node: Real
     mass: Real
+    stiffer: Real
+    heavier: Real
+    foot: Real
 
 
 @dataclass(frozen=True)
@@ -211,6 +227,8 @@ class Rate:
         Of each element.
     mass, stiffness, hinge : ndarray, shape (stations, width)
         Of what stands there on each coordinate; of the spring across a hinge.
+    stiffer, heavier, foot : ndarray
+        Of the structures that nodes carry, see `Weights`.
     """
 
     def __init__(self, places: Places) -> None:
@@ -220,6 +238,10 @@ class Rate:
         self.tension, self.length = np.zeros(spans), np.zeros(spans)
         self.mass = np.zeros((spans + 1, width))
         self.stiffness, self.hinge = np.zeros_like(self.mass), np.zeros_like(self.mass)
+        rows = places.model.chain.attached_row
+        carried = 0 if rows is None else len(rows)
+        self.stiffer, self.heavier = np.zeros(carried), np.zeros(carried)
+        self.foot = np.zeros((carried, 2, width))
 
     def weights(self, places: Places) -> Weights:
         """Return the weights that belong to it."""
@@ -238,7 +260,8 @@ class Rate:
         mass += np.where((station < len(given))[:, None, None], given[right, 0], 0.0)
         mass += np.where((inside | (station > 0))[:, None, None], given[left, 1], 0.0)
         jump = np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]])
-        return Weights(element[span], inertia[span], jump, node, mass)
+        carried = (self.stiffer, self.heavier, self.foot)
+        return Weights(element[span], inertia[span], jump, node, mass, *carried)
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
@@ -329,7 +352,7 @@ def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[
     return {
         name: partial(_of_part, places, i, rate)
         for name, rate in part.rates().items()
-        if any(c in places.model.coordinates for values in rate for c in values)
+        if rate.acts(places.model.coordinates)
     }
 
 
@@ -418,7 +441,26 @@ def _of_part(places: Places, i: int, of: NodeRate) -> Rate:
         if c in of.hinge:
             others = sum(t.hinge.get(c, 0.0) for s, t in terms if s == station and t is not term)
             rate.hinge[station, k] = of.hinge[c] * _share(term.hinge[c], others) ** 2
+    if of.attached is not None:
+        own = [t is term for _, t, _ in carried_by(terms)].index(True)
+        _set_attached(rate, places, own, of.attached)
     return rate
+
+
+def _set_attached(rate: Rate, places: Places, k: int, of: AttachedRate) -> None:
+    """Let structure k of the chain change.
+
+    A larger one is the same under a larger motion of its foot: its form is of second order there.
+    So nothing of the strain and the kinetic energy has to cancel where the foot hardly moves.
+    """
+    rows = places.model.chain.attached_row
+    assert rows is not None
+    rate.heavier[k], rate.stiffer[k] = of.mass, of.stiffness
+    rate.foot[k] = of.size / 2 * rows[k]
+    for line, moves in enumerate((of.displacement, of.rotation)):
+        for c, value in moves.items():
+            if c in places.model.coordinates:
+                rate.foot[k, line, places.model.coordinates.index(c)] += value
 
 
 def _share(own: float, others: float) -> float:

@@ -41,6 +41,8 @@ class Shapes:
     eigenvalue : ndarray, shape (k,)
         [rad^2/s^2].
     shape : ndarray, shape (k, nodes, width)
+    motion : ndarray, shape (k, attached)
+        Of the structures that nodes carry, as y in csrc/attached.h [m].
     clusters : tuple of ndarray of int
         The modes in order; rounding cannot tell those of one cluster apart.
     edges : ndarray of int, shape (parts + 1,)
@@ -50,6 +52,7 @@ class Shapes:
     model: Model
     eigenvalue: Real
     shape: Real
+    motion: Real
     clusters: tuple[NDArray[np.intp], ...]
     edges: NDArray[np.intp]
 
@@ -73,32 +76,41 @@ class Slopes:
     element, jump, node : ndarray
         Shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width,
         width): see csrc/sensitivity.h.
+    stiffer, heavier, foot : ndarray
+        Shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h.
     """
 
     eigenvalue: Real
     element: Real
     jump: Real
     node: Real
+    stiffer: Real
+    heavier: Real
+    foot: Real
 
     @classmethod
-    def of(cls, chain: Chain, eigenvalue: Real, shape: Real) -> Slopes:
+    def of(cls, chain: Chain, eigenvalue: Real, shape: Real, motion: Real) -> Slopes:
         """Ask the core."""
         element, jump, node = _core.sensitivity(chain, shape, eigenvalue)
-        return cls(eigenvalue, element[..., : SECTIONS + shape.shape[2]], jump, node)
+        number, foot = _core.carried_slopes(chain, shape, motion, eigenvalue)
+        element = element[..., : SECTIONS + shape.shape[2]]
+        return cls(eigenvalue, element, jump, node, number[..., 1], number[..., 0], foot)
 
     def weigh(self, weights: Weights) -> Real:
         """Return dPi/dp, shape (m,)."""
         moving = _sum(self.element[..., SECTIONS:], weights.moving) + _sum(self.node, weights.mass)
+        moving += _sum(self.heavier, weights.heavier)
         return self.weigh_stiffness(weights) - self.eigenvalue * moving
 
     def weigh_stiffness(self, weights: Weights) -> Real:
         """Return the part of dPi/dp that is not inertia, shape (m,)."""
         elastic = _sum(self.element[..., :SECTIONS], weights.element)
-        return elastic + _sum(self.jump, weights.jump) + _sum(self.node, weights.node)
+        elastic += _sum(self.jump, weights.jump) + _sum(self.node, weights.node)
+        return elastic + _sum(self.stiffer, weights.stiffer) + _sum(self.foot, weights.foot)
 
     def mass(self, chain: Chain) -> Real:
         """Return shape^T M shape, shape (m,)."""
-        mass = _sum(self.node, chain.mass[chain.term])
+        mass = _sum(self.node, chain.mass[chain.term]) + self.heavier.sum(axis=1)
         if chain.inertia is not None:
             mass += _sum(self.element[..., SECTIONS:], chain.inertia[chain.element])
         return mass
@@ -131,14 +143,14 @@ class Pairs:
 
     def slopes(self, chain: Chain) -> Slopes:
         """Return those of the modes, of the sums and of the differences."""
-        u, value = self.shapes.shape, self.shapes.eigenvalue
+        value = self.shapes.eigenvalue
         first, second = self.pair.T
         mean = (value[first] + value[second]) / 2
-        return Slopes.of(
-            chain,
-            np.concatenate([value, mean, mean]),
-            np.concatenate([u, u[first] + u[second], u[first] - u[second]]),
+        u, y = (
+            np.concatenate([one, one[first] + one[second], one[first] - one[second]])
+            for one in (self.shapes.shape, self.shapes.motion)
         )
+        return Slopes.of(chain, np.concatenate([value, mean, mean]), u, y)
 
     def bilinear(self, form: Real) -> tuple[Real, Real]:
         """Return forms of the modes themselves and of the pairs, shape (k, ...) and (p, ...)."""
@@ -192,9 +204,11 @@ class Sensitivity:
     @cached_property
     def largest(self) -> Slopes:
         """Sizes of those of shapes as large as the modes that turn from node to node."""
-        u = np.abs(self.shapes.shape).max(axis=1, keepdims=True)
-        sign = 1.0 - 2.0 * (np.arange(self.shapes.shape.shape[1]) % 2)
-        return sizes(Slopes.of(self.shapes.model.chain, self.shapes.eigenvalue, u * sign[:, None]))
+        shapes = self.shapes
+        u = np.abs(shapes.shape).max(axis=1, keepdims=True)
+        sign = 1.0 - 2.0 * (np.arange(shapes.shape.shape[1]) % 2)
+        turning = u * sign[:, None]
+        return sizes(Slopes.of(shapes.model.chain, shapes.eigenvalue, turning, shapes.motion))
 
     def rate(self, path: str) -> Rate:
         """Return the rate of a path, checked."""

@@ -66,6 +66,9 @@ ENTRIES = {
     "triple": lambda chain: _core.triple(chain, 0, FACTOR.T.copy()),
     "energy": lambda chain: _core.energy(chain, SHAPES, np.array([1e4, 1e6])),
     "carried": lambda chain: _core.carried(chain, SHAPES, MOTIONS, np.array([1e4, 1e6])),
+    "carried_slopes": lambda chain: _core.carried_slopes(
+        chain, SHAPES, MOTIONS, np.array([1e4, 1e6])
+    ),
     "tip": lambda chain: _core.tip(chain, 1, FACTOR.T.copy()),
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, np.array([1e4, 1e6])),
 }
@@ -79,6 +82,9 @@ SPANS = {
     "triple": ENTRIES["triple"],
     "tip": ENTRIES["tip"],
     "carried": lambda chain: _core.carried(chain, SHAPES[:, :4], MOTIONS, np.array([1e4, 1e6])),
+    "carried_slopes": lambda chain: _core.carried_slopes(
+        chain, SHAPES[:, :4], MOTIONS, np.array([1e4, 1e6])
+    ),
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES[:, :4], np.array([10.0, 100.0])),

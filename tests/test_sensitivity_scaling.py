@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from conftest import EPS
-from random_scene import damped, random_scene, stretched_scene
+from random_scene import LENGTH, damped, log_uniform, random_scene, stretched_scene
 from test_sensitivity import PATH, value_of
 
 import ropedyn as rd
@@ -36,6 +36,13 @@ PART = {
     "torsion": (0, 0, 0),
     "density": (0, 0, 0),
     "damping": (0, 0, 0),
+    "frequency": (0.5, -0.5, 0),
+    "damping_ratio": (0, 0, 0),
+    "length": (0, 0, 1),
+    "diameter": (0, 0, 1),
+    "radius": (0, 0, 1),
+    "youngs_modulus": (1, 0, -1),
+    "density of a wire": (0, 1, -3),
 }
 KINDS = {
     "continuous": {},
@@ -66,6 +73,8 @@ def powers(scene, path):
     part = scene.parts[int(i)]
     if name == "stiffness":
         return 1, 0, LENGTHS[part.coordinate]
+    if isinstance(part, rd.BrokenWire) and name == "density":
+        return PART["density of a wire"]
     along = isinstance(part, rd.AddedMass) and name == "polar_inertia"
     return ROPE[name] if along else PART[name]
 
@@ -115,15 +124,20 @@ def imbalance(scene, kind):
     return (np.abs(total[:, kept]) / size[:, kept]).max(axis=1, initial=0.0)
 
 
-def check_seed(seed, kind, claim, whole=random_scene):
-    """Check the balance of a random scene."""
+def balance(seed, kind, whole):
+    """`imbalance` of a random scene that has modes."""
     random = np.random.default_rng(seed)
     scene = whole(random, int(random.choice([1, 2, 3, 4]))).replace(damping=None)
     try:
-        stiffness, inertia, length = imbalance(scene, kind)
+        return imbalance(scene, kind)
     except rd.SolveError as refusal:
         # a mass is all there is, or a part of the rope is pushed too hard
         pytest.skip(str(refusal))
+
+
+def check_seed(seed, kind, claim, whole=random_scene):
+    """Check the balance of a random scene."""
+    stiffness, inertia, length = balance(seed, kind, whole)
     claim(max(stiffness, inertia))
     assert not length > 1
 
@@ -156,6 +170,48 @@ def test_derivatives_of_many_scenes_balance_as_units_do(seed, kind, claim):
     check_seed(seed, kind, claim)
 
 
+CARRYING = pytest.mark.claim(
+    "sum of p dlambda/dp over all stiffnesses is lambda; random scenes with resonators and broken "
+    "wires",
+    reference="scaling of units (Euler's theorem of homogeneous functions)",
+    accepted=ACCEPTED,
+)
+
+
+def check_carrying(seed, kind, claim):
+    """Check the balance of a random scene with structures.
+
+    A larger structure is felt by the motion of its foot, so that an error of the shape is of first
+    order in the sum over inertias, where it is of second order in energies. Nearly rigid shapes err
+    by a rounding of the rope's own eigenvalue over theirs.
+    """
+    stiffness, inertia, length = balance(seed, kind, carrying_scene)
+    claim(stiffness)
+    assert inertia <= EPS / RIGID
+    assert not length > 1
+
+
+def carrying_scene(random, width):
+    """A random scene with resonators and broken wires."""
+    scene = random_scene(random, width)
+    resonators = [
+        rd.Resonator(
+            float(random.uniform(0.01, 0.99)) * LENGTH,
+            log_uniform(random, 1e-4, 1e1),
+            log_uniform(random, 1e-1, 1e3),
+        )
+        for _ in range(int(random.integers(1, 3)))
+    ]
+    length = log_uniform(random, 0.02, 1.0)
+    wire = rd.BrokenWire(
+        float(random.uniform(0.01, 0.99)) * LENGTH,
+        length,
+        length * log_uniform(random, 1e-3, 1e-1),
+        radius=float(random.uniform(-1e-2, 1e-2)),
+    )
+    return scene.replace(parts=(*scene.parts, *resonators, wire))
+
+
 def changing_scene(random, width):
     """A random scene with stretches, dashpots, and masses at its ends."""
     return damped(random, stretched_scene(random, width))
@@ -174,3 +230,18 @@ def test_derivatives_of_changed_ropes_balance_as_units_do(seed, kind, claim):
 @pytest.mark.parametrize("seed", range(100, 400))
 def test_derivatives_of_many_changed_ropes_balance_as_units_do(seed, kind, claim):
     check_seed(seed, kind, claim, changing_scene)
+
+
+@CARRYING
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(8))
+def test_derivatives_of_what_carries_balance_as_units_do(seed, kind, claim):
+    check_carrying(seed, kind, claim)
+
+
+@CARRYING
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(100, 400))
+def test_derivatives_of_many_that_carry_balance_as_units_do(seed, kind, claim):
+    check_carrying(seed, kind, claim)

@@ -177,6 +177,34 @@ static void test_energies_are_those_of_the_foot(void)
     }
 }
 
+/* m d/dm + k d/dk = u^T D u, -lambda times the kinetic part being the first; the same by Euler's
+   theorem of the motion of the foot, and without the sum's cancellation */
+static void test_slopes_add_up_to_the_form(void)
+{
+    const double lambda = 5e3, shape[] = {1, -3, 0, 0};
+    const int32_t *const kind[] = {resonator_kind, wire_kind};
+    const double *const value[] = {resonator, wire};
+    for (int i = 0; i < 2; i++) {
+        const struct rd_chain chain = carry(kind[i], value[i]);
+        double _Complex D[4] = {0};
+        double number[RD_CARRIED_NUMBERS], slope[4];
+        struct rd_foot foot;
+        rd_attached_fill(&chain, 0, -lambda, 0, &foot);
+        const double y = creal((foot.lever[0] * shape[0] + foot.lever[1] * shape[1]) / foot.gap);
+        rd_attached_slopes(&chain, lambda, shape, &y, number, slope);
+        rd_attached_add(&chain, 0, -lambda, 0, D);
+        double form = 0, sum = 0;
+        for (int j = 0; j < 4; j++) {
+            form += creal(D[j]) * shape[j / 2] * shape[j % 2];
+            sum += row[j] * slope[j] / 2;
+        }
+        const double size = lambda * number[RD_CARRIED_OF_MASS] + number[RD_CARRIED_OF_STIFFNESS];
+        CHECK_ABS(number[RD_CARRIED_OF_STIFFNESS] - lambda * number[RD_CARRIED_OF_MASS], form,
+                  16 * EPS * size, "a few products");
+        CHECK_ABS(sum, form, 16 * EPS * fabs(form), "a few products");
+    }
+}
+
 /* A string whose node 7 carries two equal resonators and a wire. */
 struct carrying {
     struct rope rope;
@@ -301,5 +329,6 @@ int main(void)
     test_counts_with_the_foot_held_change_at_the_roots();
     test_a_resonator_is_finite_on_its_pole();
     test_energies_are_those_of_the_foot();
+    test_slopes_add_up_to_the_form();
     return check_report("test_attached");
 }
