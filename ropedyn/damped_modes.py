@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .answer import Answer, Cost, axes, freeze, nested
+from .chain import CARRIED
 from .table import Table
 
 if TYPE_CHECKING:
@@ -54,7 +55,8 @@ class DampedMesh:
 class DampedModes(Answer):
     """Rates s of free motion Re(shape e^(s t)) of a damped model, those of the least |s| first.
 
-    Of each conjugate pair the one with Im s > 0 is given; overdamped motion, with real s, has two
+    Of each conjugate pair the one with Im s > 0 is given (with a loss factor, whose stiffness is
+    another below the real axis, it has no partner); overdamped motion, with real s, has two
     rates, which are modes each. Rigid-body motion, s = 0, is one mode even where it drifts on
     undamped. A complex modulus, of a loss factor or of a broken wire with damping, is one of
     oscillation: there only rates with Im s > 0 and rigid-body motion are modes.
@@ -187,8 +189,9 @@ class DampedModes(Answer):
             "rounding error [Hz]": self.rounding_error,
             "family": self.family,
         }
-        kinds = {"kinetic": self.coordinates}
-        kinds["strain"] = tuple(k for k in self.energy if k not in self.coordinates)
+        moving = (*self.coordinates, *CARRIED.values())
+        kinds = {"kinetic": tuple(k for k in moving if k in self.energy)}
+        kinds["strain"] = tuple(k for k in self.energy if k not in moving)
         for kind, names in kinds.items():
             columns |= {f"{kind} {name} [%]": 100 * self.energy[name] for name in names}
         return Table.of("damped modes", columns)

@@ -131,9 +131,9 @@ class RayleighDamping:
 class LossFactor:
     """Elastic stiffness times (1 + i eta): sections and springs, not tension.
 
-    It has a meaning at each frequency of a response alone, 0 Hz included: there the response is
+    It has a meaning at each frequency, not in time. At 0 Hz the response is
     the complex one of the limit, and lags its force. `Model.static` is real and knows nothing of
-    it, and there is no damping matrix.
+    it, and there is no damping matrix. Damped modes are those of the stiffness times (1 + i eta).
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ class Gravity:
 
     and the tension h that this adds pulls z back by (w/H) h:
 
-        B z'''' - H z'' + mu z_tt = -(w/H) h
+        B z'''' - H z'' + mu z_tt = (w/H) h
 
     The stretch follows at once: the rope has no inertia along x where gravity acts, so that h is
     the same wherever nothing holds x, and there are no axial modes. With both ends held, h =

@@ -148,7 +148,12 @@ def solve_frf(
     factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
-        refuse_other_damping(model.scene)
+        refuse_other_damping(model)
+        if any(map(tip.is_tip, responses)):
+            raise SceneError(
+                "damping must not be modal where the tip of a wire is asked for, whose modes are "
+                "those of rope and wire together"
+            )
     start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if point[0] in component]

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from . import _core, damping
 from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
+from .model import Model
 from .port import Point, is_force
-from .scene import Scene
 
 if TYPE_CHECKING:
     from .harmonic import Question
@@ -69,11 +69,13 @@ class Poles(NamedTuple):
     """Largest damping ratio."""
 
 
-def refuse_other_damping(scene: Scene) -> None:
+def refuse_other_damping(model: Model) -> None:
     """Refuse modal damping beside any other, which would couple the modes."""
+    scene, chain = model.scene, model.chain
     others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
     if "dashpot" in scene.effects:
         others.append("dashpot")
+    others += chain.carried if chain.resists else []
     if others:
         raise SceneError(
             "damping must be modal alone in a frequency response, where other damping couples the "

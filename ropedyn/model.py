@@ -122,9 +122,10 @@ class Model:
     def separable(self) -> bool:
         """Whether damping scales parts of the assembled stiffness that the model keeps apart.
 
-        In a tensed element that bends, sections and tension are one.
+        In a tensed element that bends, sections and tension are one, and in a string that hangs.
         """
-        inseparable = self.element == "tensed" and "beta" in self.coordinates
+        bends = "beta" in self.coordinates
+        inseparable = self.element == "tensed" if bends else self.scene.gravity is not None
         if not inseparable or self.scene.tension == 0:
             return True
         return separable(self.scene.dampings)
@@ -194,8 +195,8 @@ class Model:
             )
         if not self.separable:
             raise SceneError(
-                "damping must scale sections and tension alike for tensed elements with tension "
-                f"to have a damping matrix, got {self.scene.damping}"
+                "damping must scale sections and tension alike for tensed elements or a hanging "
+                f"string to have a damping matrix, got {self.scene.damping}"
             )
         from .matrices import damping
 

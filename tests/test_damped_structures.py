@@ -311,3 +311,12 @@ def test_modal_damping_is_refused_beside_a_damped_resonator():
     part = rd.Resonator(0.3, 0.02, 20.0, damping_ratio=0.2)
     with pytest.raises(rd.SceneError, match=r"modal damping beside another.*got resonator"):
         taut(part, damping=rd.ModalDamping(0.01)).compile().modes(3, damped=True)
+
+
+def test_table_of_damped_modes_has_shares_that_sum_to_one():
+    absorber = rd.Resonator(0.3, 0.1, 5.0, damping_ratio=0.1)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[absorber])
+    for row in scene.compile().modes(2, damped=True).table().to_records():
+        for kind in ("kinetic", "strain"):
+            shares = [value for name, value in row.items() if name.startswith(kind)]
+            assert sum(shares) == pytest.approx(100.0, rel=1e-9)

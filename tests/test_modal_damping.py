@@ -255,3 +255,17 @@ def test_motion_without_inertia_is_static():
     # alpha per moment at 0.25 of a shaft held at both ends: 0.25 0.75 L/C
     frf = model.frf([0.0, 3.0], drive=("alpha", 0.25))
     np.testing.assert_allclose(frf.value, 0.25 * 0.75 / 2.0, rtol=16 * EPS)
+
+
+def test_modal_damping_is_refused_beside_structures_with_damping_of_their_own():
+    carried = [rd.Resonator(0.3, 0.1, 5.0, damping_ratio=0.1)]
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ModalDamping(0.01), parts=carried)
+    with pytest.raises(rd.SceneError, match=r"damping must be modal alone .* got resonator"):
+        scene.compile().frf([4.5], drive=("z", 0.5))
+
+
+def test_modal_damping_is_refused_where_the_tip_of_a_wire_is_asked_for():
+    wire = rd.BrokenWire(0.3, 0.2, 1e-3, radius=0.0)
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ModalDamping(0.01), parts=[wire])
+    with pytest.raises(rd.SceneError, match="must not be modal where the tip of a wire"):
+        scene.compile().frf([4.5], drive=("z", 0.5), response=("wire", 0))

@@ -556,3 +556,13 @@ def test_gravity_without_meaning_is_refused(what):
 def test_gravity_of_a_wrong_type_is_refused(make, message):
     with pytest.raises(TypeError, match=message):
         make()
+
+
+@pytest.mark.parametrize("element", ["rigid", "tensed"])
+def test_hanging_string_has_no_matrix_of_stiffness_damping(element):
+    rope = rd.Rope(100.0, 2.0, axial_stiffness=2e7)
+    scene = rd.Scene(
+        rope, tension=2e4, gravity=rd.Gravity(), damping=rd.StiffnessDamping(1e-3)
+    ).compile(elements=8, element=element)
+    with pytest.raises(rd.SceneError, match="damping must scale sections and tension alike"):
+        scene.damping()
