@@ -12,6 +12,14 @@ static const double NO_GAP = 1e-20;
 /* of a complex step: its square is nothing beside 1, so derivatives are exact */
 static const double STEP = 0x1p-200;
 
+/* w e y^2 - 2 w y v^T u + u^T diag(rest) u, u being the motion of the foot */
+static double _Complex form_of(const struct rd_foot *foot, const double *moved, double y)
+{
+    const double _Complex along = foot->lever[0] * moved[0] + foot->lever[1] * moved[1];
+    return foot->weight * y * (foot->gap * y - 2 * along) + foot->rest[0] * moved[0] * moved[0] +
+           foot->rest[1] * moved[1] * moved[1];
+}
+
 /* A mass m on a spring k and a dashpot c: k'/k y is its motion, k' = k + s c,
        D = -lambda m k'/(k' - lambda m),
    which is -w/e with w = lambda m k'/k and e = (k' - lambda m)/k. value: m, k, unused, c */
@@ -34,9 +42,12 @@ static double highest_of_resonator(const double *value)
     return value[1] / value[0];
 }
 
-static double loss_of_resonator(const double *value)
+/* k times the square of what the spring is longer by, lambda m y/k */
+static double stiffer_resonator(const double *value, double lambda, const double *moved, double y)
 {
-    return value[1];
+    const double force = lambda * value[0] * y;
+    (void)moved;
+    return force * (force / value[1]);
 }
 
 /* The roots of 1 + cos x cosh x below x, one in each ((n - 1) pi, n pi): e is positive behind the
@@ -90,15 +101,18 @@ static double highest_of_wire(const double *value)
     return INFINITY;
 }
 
-static double loss_of_wire(const double *value)
+/* by a step in the modulus E (1 + 2 i z) */
+static double stiffer_wire(const double *value, double lambda, const double *moved, double y)
 {
-    (void)value;
-    return 0.5;
+    const double stepped[RD_ATTACHED_VALUES] = {value[0], value[1], value[2], STEP / 2};
+    struct rd_foot foot;
+    fill_wire(stepped, -lambda, I, &foot);
+    return cimag(form_of(&foot, moved, y)) / STEP;
 }
 
 const struct rd_attached rd_attached_of[RD_ATTACHED_KINDS] = {
-    [RD_RESONATOR] = {fill_resonator, highest_of_resonator, loss_of_resonator},
-    [RD_WIRE] = {fill_wire, highest_of_wire, loss_of_wire},
+    [RD_RESONATOR] = {fill_resonator, highest_of_resonator, stiffer_resonator},
+    [RD_WIRE] = {fill_wire, highest_of_wire, stiffer_wire},
 };
 
 void rd_attached_fill(const struct rd_chain *chain, size_t k, double _Complex inertia,
@@ -165,14 +179,6 @@ static void move_foot(const struct rd_chain *chain, size_t k, const double *u, d
         moved[i / chain->width] += row[i] * u[i % chain->width];
 }
 
-/* w e y^2 - 2 w y v^T u + u^T diag(rest) u, u being the motion of the foot */
-static double _Complex form_of(const struct rd_foot *foot, const double *moved, double y)
-{
-    const double _Complex along = foot->lever[0] * moved[0] + foot->lever[1] * moved[1];
-    return foot->weight * y * (foot->gap * y - 2 * along) + foot->rest[0] * moved[0] * moved[0] +
-           foot->rest[1] * moved[1] * moved[1];
-}
-
 /* The form being stationary in y, twice the kinetic energy over lambda is -d/dlambda of it, the
    strain energy what is left, and its change with a small damping that of the whole. */
 static void add_energy(const struct rd_chain *chain, size_t k, double lambda, const double *u,
@@ -214,15 +220,13 @@ static void fill_slope(const struct rd_chain *chain, size_t k, double lambda, co
                        double y, double *number, double *row)
 {
     const struct rd_attached *kind = rd_attached_of + chain->attached_kind[k];
-    double value[RD_ATTACHED_VALUES], moved[2];
+    double moved[2];
     struct rd_foot foot;
     move_foot(chain, k, u, moved);
     rd_attached_fill(chain, k, CMPLX(-lambda, -STEP), 0, &foot);
     number[RD_CARRIED_OF_MASS] = -cimag(form_of(&foot, moved, y)) / STEP;
-    memcpy(value, chain->attached_value + k * RD_ATTACHED_VALUES, sizeof value);
-    value[RD_ATTACHED_VALUES - 1] = STEP * kind->loss(value);
-    kind->fill(value, -lambda, I, &foot);
-    number[RD_CARRIED_OF_STIFFNESS] = cimag(form_of(&foot, moved, y)) / STEP;
+    number[RD_CARRIED_OF_STIFFNESS] =
+        kind->stiffer(chain->attached_value + k * RD_ATTACHED_VALUES, lambda, moved, y);
     for (size_t i = 0; i < 2 * chain->width; i++) {
         const size_t line = i / chain->width;
         const double force =

@@ -34,8 +34,8 @@ struct rd_attached {
                  struct rd_foot *foot);
     /* the largest eigenvalue with the foot held, INFINITY where there is none [rad^2/s^2] */
     double (*highest)(const double *value);
-    /* the damping with which the stiffness k is k (1 + i) at dashpot = i */
-    double (*loss)(const double *value);
+    /* k d/dk, k its stiffness, of the form at fixed motion of the foot and y */
+    double (*stiffer)(const double *value, double lambda, const double *moved, double y);
 };
 
 /* (RD_ATTACHED_KINDS) */

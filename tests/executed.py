@@ -5,14 +5,18 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+import numpy as np
+import scipy_openblas32 as lapacke
 
 ROOT = Path(__file__).parent.parent
 
 ASK = """
 import sys
-import tempfile
 sys.path[:0] = [{package!r}, {tests!r}]
 import ropedyn as rd
 assert rd.__file__.startswith({package!r})
@@ -25,12 +29,25 @@ def build(folder):
     """Build the package with counters; return where its object files are."""
     shutil.copytree(ROOT / "csrc", folder / "csrc")
     shutil.copytree(ROOT / "ropedyn", folder / "ropedyn", ignore=shutil.ignore_patterns("*.so"))
-    for name in ("setup.py", "pyproject.toml", "README.md"):
-        shutil.copy(ROOT / name, folder)
-    command = [sys.executable, "setup.py", "-q", "build_ext", "--inplace"]
-    environment = os.environ | {"CFLAGS": "-O0 --coverage -w"}
-    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
-    return next(folder.glob("build/temp*/csrc"))
+    objects = folder / "objects"
+    objects.mkdir()
+    include = (np.get_include(), lapacke.get_include_dir(), sysconfig.get_paths()["include"])
+    flags = ["-std=c17", "-O0", "--coverage", "-fPIC", "-w", *(f"-I{path}" for path in include)]
+
+    def compile_one(source):
+        made = str(objects / f"{source.stem}.o")
+        name = str(source.relative_to(folder))
+        subprocess.run(["gcc", *flags, "-c", name, "-o", made], cwd=folder, check=True)
+        return made
+
+    with ThreadPoolExecutor(os.cpu_count()) as executor:
+        made = list(executor.map(compile_one, sorted((folder / "csrc").glob("*.c"))))
+    library = lapacke.get_lib_dir()
+    links = [f"-L{library}", "-lscipy_openblas", f"-Wl,-rpath,{library}", "-lm"]
+    core = folder / "ropedyn" / f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
+    command = ["gcc", "-shared", "--coverage", *made, *links, "-o", str(core)]
+    subprocess.run(command, check=True)
+    return objects
 
 
 def lines_of(scene, folder, objects):
