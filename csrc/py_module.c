@@ -37,7 +37,8 @@ static PyMethodDef methods[] = {
     {"carried", py_carried, METH_VARARGS,
      "carried(chain, shape, motion, eigenvalue) -> (k, 3) strain, kinetic, lost"},
     {"carried_slopes", py_carried_slopes, METH_VARARGS,
-     "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the foot"},
+     "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the "
+     "foot"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (width, f)"},
     {"sensitivity", py_sensitivity, METH_VARARGS,
      "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},
