@@ -16,17 +16,30 @@ from .deflection import Deflection
 from .effect import EffectCost, effect_cost
 from .end import End
 from .errors import RopedynError, SceneError, SolveError
+from .force import Chirp, Impulse, Sine, Step
 from .frf import FRF
 from .gravity import Gravity
+from .history import History
 from .model import Model
 from .modes import Modes
-from .part import BrokenWire, Dashpot, Hinge, PointMass, Resonator, Spring, Support
+from .part import (
+    BrokenWire,
+    Dashpot,
+    Hinge,
+    NodeForce,
+    PointMass,
+    Resonator,
+    Spring,
+    Stop,
+    Support,
+)
 from .peaks import Peaks
 from .resonance import Resonances
 from .rope import Rope
 from .scene import Scene
 from .stretch import AddedMass, LocalChange
 from .table import Table
+from .tension import Tension
 
 __version__ = "0.1.0"
 
@@ -36,6 +49,7 @@ __all__ = [
     "AddedMass",
     "Answer",
     "BrokenWire",
+    "Chirp",
     "Choice",
     "Comparison",
     "Cost",
@@ -47,11 +61,14 @@ __all__ = [
     "End",
     "Gravity",
     "Hinge",
+    "History",
+    "Impulse",
     "LocalChange",
     "LossFactor",
     "ModalDamping",
     "Model",
     "Modes",
+    "NodeForce",
     "Peaks",
     "PointMass",
     "RayleighDamping",
@@ -61,11 +78,15 @@ __all__ = [
     "RopedynError",
     "Scene",
     "SceneError",
+    "Sine",
     "SolveError",
     "Spring",
+    "Step",
     "StiffnessDamping",
+    "Stop",
     "Support",
     "Table",
+    "Tension",
     "ViscousDamping",
     "accuracy_cost",
     "ask",

@@ -73,7 +73,11 @@ def divided(
         Elements of each span.
     """
     kind = KINDS.index(element)
-    if element == "difference" and scene.tension != 0 and scene.rope.bending_stiffness is not None:
+    if (
+        element == "difference"
+        and scene.mean_tension != 0
+        and scene.rope.bending_stiffness is not None
+    ):
         raise SceneError(
             'element must not be "difference" where there is bending and tension: the '
             "2015 study's kinematics has no geometric stiffness"
@@ -124,7 +128,7 @@ def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
     bending = [rope.bending_stiffness for rope in local if rope.bending_stiffness is not None]
     if not bending:
         return
-    radians = scene.rope.length * np.sqrt(abs(scene.tension)) / np.sqrt(min(bending))
+    radians = scene.rope.length * np.sqrt(abs(scene.mean_tension)) / np.sqrt(min(bending))
     if not radians <= MOST_RADIANS:
         raise SceneError(
             f"bending_stiffness must leave L sqrt(T/B) at most {MOST_RADIANS:g} in continuous "
@@ -200,8 +204,8 @@ def _distinct(
     sag = None
     if scene.gravity is not None:
         # a rope that hangs is longer than its chord along x
-        flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.tension)
-        curvature = [scene.gravity.curvature(one, scene.tension) for one in local]
+        flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
+        curvature = [scene.gravity.curvature(one, scene.mean_tension) for one in local]
         sag = np.array(curvature)[rope[first]]
     return Elements(
         length=length[first],
@@ -244,7 +248,7 @@ def _chain(
             [check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32
         ),
         length=length,
-        tension=np.full(len(length), scene.tension),
+        tension=np.full(len(length), scene.mean_tension),
         flexibility=flexibility,
         first=first,
         element=element,

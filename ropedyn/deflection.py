@@ -40,6 +40,8 @@ class Deflection(Answer):
     force : ndarray, shape (nodes, coordinates)
         What the surroundings put on each node: loads, and reactions where a coordinate is held or
         a spring stands [N, N m].
+    load : tuple of (point, float)
+        That was asked for [N, N m].
     cost : Cost
         What it cost.
     """
@@ -48,6 +50,7 @@ class Deflection(Answer):
     x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
     displacement: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="m or rad"))
     force: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="N or N m"))
+    load: tuple[tuple[Point, float], ...]
     cost: Cost
 
     def table(self) -> Table:
@@ -71,7 +74,7 @@ def solve_static(
 ) -> Deflection:
     """Find the static deflection; see `Model.static`."""
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
-    loads = _checked(model, load)
+    loads = checked_loads(model, load)
     check_points(model, points)
     if model.element == "continuous":
         model = finer(model, points or POINTS)
@@ -105,6 +108,7 @@ def solve_static(
         x=x,
         displacement=displacement,
         force=force,
+        load=tuple(loads.items()),
         cost=Cost(seconds, solver, len(model.x) - 1, unknowns, *Work.of(works)),
     )
 
@@ -217,16 +221,17 @@ SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
 """What finds motion of and forces on the nodes of one component."""
 
 
-def _checked(model: Model, load: Any) -> dict[Point, float]:
+def checked_loads(model: Model, load: Any, name: str = "load") -> dict[Point, float]:
+    """Return forces at points, those given twice as their sum."""
     what = 'a mapping such as {("z", 0.5): 10.0}'
-    check.instance(load, "load", Mapping, what)
+    check.instance(load, name, Mapping, what)
     if not load:
-        raise SceneError(f"load must be {what} with at least one entry, got {{}}")
+        raise SceneError(f"{name} must be {what} with at least one entry, got {{}}")
     loads: dict[Point, float] = {}
     for key, value in load.items():
-        point = check.point(key, "load point", model.coordinates, model.scene.rope.length)
+        point = check.point(key, f"{name} point", model.coordinates, model.scene.rope.length)
         unit = FORCE_UNIT[point[0]]
-        loads[point] = loads.get(point, 0.0) + check.number(value, f"load[{key}]", unit)
+        loads[point] = loads.get(point, 0.0) + check.number(value, f"{name}[{key}]", unit)
     return loads
 
 

@@ -338,7 +338,7 @@ def _scale(model: Model, component: tuple[str, ...]) -> float:
     with np.errstate(divide="ignore", over="ignore"):
         own = np.divide(1.0, soft)
     stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}
-    stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.tension)
+    stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.mean_tension)
     orders = [
         stiffness[c] * wave / inertia[k]
         for k, c in enumerate(model.coordinates)

@@ -21,7 +21,7 @@ from .frf import FRF, Mesh
 from .mesh_error import mesh_of_frf
 from .modal_sum import modal_sum, refuse_other_damping
 from .model import EXACT, MOST_STEPS, Model
-from .part import BrokenWire
+from .place import points
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reaction import first_left_end
 from .unit import OF_FORCE, QUANTITIES
@@ -71,7 +71,7 @@ class Question:
         bends, rods = "beta" in self.component, {"x", "alpha"} & set(self.component)
         has = {
             damping.SECTION: bends or bool(rods),
-            damping.TENSION: "z" in self.component and self.model.scene.tension != 0,
+            damping.TENSION: "z" in self.component and self.model.scene.mean_tension != 0,
             damping.SPRING: bool(chain.stiffness.any()),
             damping.INERTIA: True,
             damping.DASHPOT: chain.damping is not None
@@ -138,8 +138,8 @@ def solve_frf(
     workers = _workers(threads)
     check.one_of(quantity, "quantity", QUANTITIES)
     f = check.frequencies(frequency)
-    drives, several = _points(model, drive, "drive", forces=False)
-    responses = drives if response is None else _points(model, response, "response")[0]
+    drives, several = points(model, drive, "drive", forces=False)
+    responses = drives if response is None else points(model, response, "response")[0]
     asked = tip.spread(model, responses)
     value = np.zeros((len(drives), len(asked), len(f)), dtype=np.complex128)
     error = np.zeros(value.shape)
@@ -211,27 +211,6 @@ def _workers(threads: int | None) -> int:
     if not text.isdecimal():
         raise SceneError(f"ROPEDYN_THREADS must be a whole number from 1 to 1024, got {text!r}")
     return check.count(int(text), "ROPEDYN_THREADS", most=1024)
-
-
-def _points(
-    model: Model, given: Any, name: str, *, forces: bool = True
-) -> tuple[tuple[Point, ...], bool]:
-    """Return one or several points, and whether a list of them was given."""
-    several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
-    length = model.scene.rope.length
-    wires = sum(isinstance(part, BrokenWire) for part in model.scene.parts)
-    points = tuple(
-        check.point(
-            one,
-            f"{name}[{k}]" if several else name,
-            model.coordinates,
-            length,
-            forces=forces,
-            wires=wires if forces else None,
-        )
-        for k, one in enumerate(given if several else (given,))
-    )
-    return points, several
 
 
 def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:

@@ -16,6 +16,7 @@ from .choice import Choice
 from .damping import having, separable
 from .errors import SceneError
 from .port import Point
+from .progress import Progress
 from .scene import Scene
 from .stretch import KINDS as STRETCHES
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from .damped_modes import DampedModes
     from .deflection import Deflection
     from .frf import FRF
+    from .history import History
     from .modes import Modes
 
 
@@ -126,7 +128,7 @@ class Model:
         """
         bends = "beta" in self.coordinates
         inseparable = self.element == "tensed" if bends else self.scene.gravity is not None
-        if not inseparable or self.scene.tension == 0:
+        if not inseparable or self.scene.mean_tension == 0:
             return True
         return separable(self.scene.dampings)
 
@@ -470,6 +472,114 @@ class Model:
         from .deflection import solve_static
 
         return solve_static(self, load, solver=solver, points=points)
+
+    def transient(
+        self,
+        time: ArrayLike,
+        *,
+        drive: Any = None,
+        force: Any = None,
+        response: Point | Sequence[Point] | None = None,
+        quantity: str = "displacement",
+        start: Mapping[Point, float] | Deflection | None = None,
+        method: str = "auto",
+        modes: int | None = None,
+        step: float | None = None,
+        tolerance: float | None = None,
+        spectral_radius: float = 1.0,
+        snapshots: ArrayLike | None = None,
+        progress: Progress = None,
+        partial: bool = False,
+    ) -> History:
+        """Integrate the motion over time.
+
+        Parameters
+        ----------
+        time : array_like, shape (t,)
+            When the motion is asked for [s], increasing; it begins at the first.
+        drive : point or list of points, optional
+            What the force acts on, such as ``("z", 0.5)``; ``("end", 0, "z")`` is the left end,
+            whose motion [m, rad] is then given in place of a force. None: free motion.
+        force : array_like, shape (t,), Sine, Chirp, Step or Impulse, or a tuple of them (their sum)
+            [N, N m]; one for each where a list of drives is given. An array is a straight line
+            between its samples; the others act as the functions they are.
+        response : point or list of points, optional
+            What is watched, as in `frf`; the drive points where left out.
+        quantity : {"displacement", "velocity", "acceleration"}
+            Of the responses.
+        start : mapping from points to float, or Deflection, optional
+            Static loads [N, N m] under which the rope rests before it is let go at the first time:
+            pluck and release. At rest without load where left out.
+        method : {"auto", "modal", "direct"}
+            ``"modal"``: linear scenes, the sum over modes, each integrated exactly however far
+            apart the times are, with the static motion of the modes that are left out; complex
+            modes where damping is not proportional. ``"direct"``: chains, linear or not, an
+            implicit scheme of second order, unconditionally stable, whose steps are solved along
+            the chain in scattering form (see csrc/march.h). ``"auto"``: modal where it can be.
+        modes : int, optional
+            Of each component, that the modal method sums; where left out all of a chain's (at most
+            1000), and of continuous spans those below eight times what force and times resolve.
+        step : float, optional
+            Of the direct method [s], at most; a whole number of them lies between two times.
+        tolerance : float, optional
+            Of the direct method, instead of `step`: the steps are chosen so that the error they
+            cause is estimated within this part of the largest value of each response; 1e-4 where
+            both are left out.
+        spectral_radius : float
+            Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
+            motion, less takes it from the frequencies that the steps do not resolve.
+        snapshots : array_like, optional
+            When the displacement of the whole rope is kept [s].
+        progress : None, True or callable
+            True: a line on stderr; a callable takes the fraction that is done.
+        partial : bool
+            True: where the numbers fail, or at Ctrl-C, what was computed up to there is the answer,
+            and `History.stopped` says why it ends.
+
+        Returns
+        -------
+        History
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning, such as times that do not increase or a force that is not
+            finite, or the method does not take the scene.
+        SolveError
+            If a step does not converge; the message says when, and how far it was off.
+
+        Examples
+        --------
+        A string plucked in the middle moves there between its deflection and its mirror image:
+
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=64)
+        >>> start = {("z", 0.5): 0.4}
+        >>> history = model.transient([0.0, 0.1], start=start, response=("z", 0.5))
+        >>> print(history.value[0].round(3) + 0.0)
+        [ 0.01 -0.01]
+        """
+        from .transient import solve_transient
+
+        return solve_transient(
+            self,
+            time,
+            drive=drive,
+            force=force,
+            response=response,
+            quantity=quantity,
+            start=start,
+            method=method,
+            modes=modes,
+            step=step,
+            tolerance=tolerance,
+            spectral_radius=spectral_radius,
+            snapshots=snapshots,
+            progress=progress,
+            partial=partial,
+        )
 
     def _refuse_matrices(self) -> None:
         if self.element == "continuous":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple, Protocol
@@ -32,6 +32,18 @@ class Attached(NamedTuple):
     """Its numbers."""
 
 
+class Law(NamedTuple):
+    """A force on one coordinate that is not in proportion to its motion."""
+
+    coordinate: str
+    kind: str
+    """"power": value[0] |v|^value[1] sign(v); "stop": value[0] times how far u is beyond value[1]
+    in the direction value[2], +1 or -1; "call": what `call` returns."""
+    value: tuple[float, ...] = ()
+    call: Callable[[float, float, float], float] | None = None
+    """Of time, displacement and velocity, the force on the rope."""
+
+
 class NodeTerm(NamedTuple):
     """What stands at one node, per coordinate."""
 
@@ -49,6 +61,8 @@ class NodeTerm(NamedTuple):
     """What must be otherwise where time is not integrated, empty where nothing must."""
     attached: Sequence[Attached] = ()
     """Structures that it carries."""
+    laws: Sequence[Law] = ()
+    """Forces that only integration over time takes."""
 
 
 class AttachedRate(NamedTuple):
@@ -247,16 +261,17 @@ class Dashpot:
     coordinate : {"z", "x", "alpha", "beta"}
         What it acts on.
     exponent : float
-        1: in proportion to velocity. Others have a meaning in the time domain alone: frequencies,
-        frequency response, static deflection and matrices are refused.
+        1: in proportion to velocity; 2: a quadratic damper; 0: Coulomb friction, which holds the
+        rope while less than `damping` is needed for that. Others than 1 have a meaning in the time
+        domain alone: frequencies, frequency response, static deflection and matrices are refused.
 
     Raises
     ------
     TypeError
         If something is not a number or the coordinate not a string.
     SceneError
-        If something is not finite, the damping or exponent is not positive or the coordinate is
-        unknown.
+        If something is not finite, the damping is not positive, the exponent is negative or the
+        coordinate is unknown.
 
     Examples
     --------
@@ -279,7 +294,7 @@ class Dashpot:
         unit = "N s/m" if self.coordinate in ("x", "z") else "N m s"
         damping = check.number(self.damping, "damping", unit, sign="positive")
         object.__setattr__(self, "damping", damping)
-        exponent = check.number(self.exponent, "exponent", sign="positive")
+        exponent = check.number(self.exponent, "exponent", sign="nonnegative")
         object.__setattr__(self, "exponent", exponent)
 
     @property
@@ -290,7 +305,8 @@ class Dashpot:
     def term(self) -> NodeTerm:
         """Damping on the diagonal, if it is linear."""
         if self.exponent != 1.0:
-            return NodeTerm(nonlinear=f"exponent must be 1, got {self.exponent!r}")
+            law = Law(self.coordinate, "power", (self.damping, self.exponent))
+            return NodeTerm(nonlinear=f"exponent must be 1, got {self.exponent!r}", laws=(law,))
         return NodeTerm(damping={self.coordinate: self.damping})
 
     def rates(self) -> dict[str, NodeRate]:
@@ -613,7 +629,150 @@ class BrokenWire:
         return {name: NodeRate(attached=rate) for name, rate in attached.items()}
 
 
-KINDS = (PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, *_stretch.KINDS)
+@dataclass(frozen=True)
+class NodeForce:
+    """A force that depends on time and on the motion of the place it acts at.
+
+    Only `Model.transient` and `Model.stepped_sine` take it, by the direct method, and call the law
+    about four times for each stage of each step: some 10 microseconds of Python each.
+
+    Parameters
+    ----------
+    x : float
+        Where it acts [m].
+    law : callable
+        ``law(t, u, v)`` returns the force on the rope [N, or N m on a rotation] at the time t [s]
+        from the displacement u [m, rad] and the velocity v [m/s, rad/s].
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it acts on.
+
+    Raises
+    ------
+    TypeError
+        If the position is not a number, the law not callable or the coordinate not a string.
+    SceneError
+        If the position is not finite or the coordinate is unknown.
+
+    Examples
+    --------
+    A spring that hardens:
+
+    >>> import ropedyn as rd
+    >>> rd.NodeForce(0.5, lambda t, u, v: -1e3 * u - 1e9 * u**3).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "node force"
+
+    x: float
+    law: Callable[[float, float, float], float]
+    _: KW_ONLY
+    coordinate: str = "z"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        if not callable(self.law):
+            raise TypeError(f"law must be callable as law(t, u, v), got {check.shown(self.law)}")
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self) -> NodeTerm:
+        """Return the law."""
+        law = Law(self.coordinate, "call", call=self.law)
+        return NodeTerm(nonlinear="law must be absent", laws=(law,))
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Nothing: it has no number but its place."""
+        return {}
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A spring that the rope meets after a gap, on one side.
+
+    Only `Model.transient` and `Model.stepped_sine` take it, by the direct method.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    stiffness : float
+        While in contact [N/m for x and z, N m for alpha and beta].
+    gap : float
+        From rest to contact [m, rad].
+    side : {1, -1}
+        Whether it stops motion in the positive or in the negative direction.
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it acts on.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number or the coordinate not a string.
+    SceneError
+        If something is not finite, the stiffness is not positive, the gap is negative, the side is
+        neither 1 nor -1 or the coordinate is unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Stop(0.5, 1e6, gap=1e-3).side
+    1
+    """
+
+    kind: ClassVar[str] = "stop"
+
+    x: float
+    stiffness: float
+    _: KW_ONLY
+    gap: float = 0.0
+    side: int = 1
+    coordinate: str = "z"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+        unit = "N/m" if self.coordinate in ("x", "z") else "N m"
+        stiffness = check.number(self.stiffness, "stiffness", unit, sign="positive")
+        object.__setattr__(self, "stiffness", stiffness)
+        unit = "m" if self.coordinate in ("x", "z") else "rad"
+        object.__setattr__(self, "gap", check.number(self.gap, "gap", unit, sign="nonnegative"))
+        side = int(check.number(self.side, "side", sign="nonzero"))
+        if side not in (1, -1) or side != self.side:
+            raise SceneError(f"side must be 1 or -1, got {self.side!r}")
+        object.__setattr__(self, "side", side)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self) -> NodeTerm:
+        """Return the law."""
+        law = Law(self.coordinate, "stop", (self.stiffness, self.gap, float(self.side)))
+        return NodeTerm(nonlinear="stiffness must be that of a Spring, got a Stop", laws=(law,))
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Nothing: undamped modes do not know it."""
+        return {}
+
+
+KINDS = (
+    PointMass,
+    Spring,
+    Dashpot,
+    Support,
+    Hinge,
+    Resonator,
+    BrokenWire,
+    NodeForce,
+    Stop,
+    *_stretch.KINDS,
+)
 """Every kind of part."""
 
 

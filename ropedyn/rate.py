@@ -198,7 +198,7 @@ class Places:
         scene = self.model.scene
         if scene.gravity is None:
             return 0.0
-        return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.tension
+        return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
 
     def sections(self, name: str) -> Real:
         """Return the derivative of the section flexibility of each span, shape (spans, 3, 3)."""
@@ -208,7 +208,7 @@ class Places:
         """Return sections of a rope that hangs, longer than its chord along x."""
         scene = self.model.scene
         if scene.gravity is not None:
-            flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.tension)
+            flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
         return flexibility
 
 
@@ -364,13 +364,13 @@ def _of_tension(places: Places) -> Rate:
     rate = Rate(places)
     rate.tension[:] = 1.0
     if places.pull:
-        rate.pull = -places.pull / places.model.scene.tension
+        rate.pull = -places.pull / places.model.scene.mean_tension
     return rate
 
 
 def _of_gravity(places: Places, name: str) -> Rate:
     """Return that of g cos(inclination)/T."""
-    gravity, tension = places.model.scene.gravity, places.model.scene.tension
+    gravity, tension = places.model.scene.gravity, places.model.scene.mean_tension
     assert gravity is not None
     turned = math.cos(gravity.inclination), -gravity.g * math.sin(gravity.inclination)
     rate = Rate(places)

@@ -21,12 +21,15 @@ from .gravity import Gravity
 from .part import Part
 from .rope import Rope
 from .stretch import Stretch
+from .tension import Tension
 
 if TYPE_CHECKING:
     from .model import Model
 
 EFFECTS = (
     "tension",
+    Tension.pulsating,
+    Tension.growing,
     "bending",
     "twist",
     "stretch",
@@ -60,14 +63,15 @@ class Scene:
     ----------
     rope : Rope
         The rope.
-    tension : float
-        [N]; negative is compression, which needs bending stiffness.
+    tension : float or Tension
+        [N]; negative is compression, which needs bending stiffness. A `Tension` may pulsate or grow
+        with the amplitude; one that does neither is its number.
     ends : pair of {"clamped", "pinned", "free"} or End
         Left and right end.
     damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, optional
         A tuple of them is their sum.
     parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, \
-AddedMass, LocalChange
+NodeForce, Stop, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
     gravity : Gravity, optional
         Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
@@ -93,7 +97,7 @@ AddedMass, LocalChange
 
     rope: Rope
     _: KW_ONLY
-    tension: float = 0.0
+    tension: float | Tension = 0.0
     ends: tuple[str | End, str | End] = ("clamped", "clamped")
     damping: Damping | tuple[Damping, ...] | None = None
     parts: tuple[Part | Stretch, ...] = ()
@@ -101,7 +105,7 @@ AddedMass, LocalChange
 
     def __post_init__(self) -> None:
         check.instance(self.rope, "rope", Rope, "a Rope")
-        object.__setattr__(self, "tension", check.number(self.tension, "tension", "N"))
+        object.__setattr__(self, "tension", _checked_tension(self.tension))
         object.__setattr__(self, "ends", _checked_ends(self.ends))
         object.__setattr__(self, "damping", _checked_damping(self.damping))
         object.__setattr__(self, "parts", _checked_parts(self.parts))
@@ -114,13 +118,16 @@ AddedMass, LocalChange
         ends = mesh.stations(self.rope.length, _part.places(changing))
         _stretch.ropes(self.rope, changing, ends)
         self._check_gravity()
+        self._check_stretching()
 
     def _check_coordinates(self) -> None:
         bends = self.rope.bending_stiffness is not None
-        if self.tension < 0 and not bends:
+        least = self.mean_tension
+        if isinstance(self.tension, Tension):
+            least -= self.tension.amplitude
+        if least < 0 and not bends:
             raise SceneError(
-                "tension must be >= 0 for a rope without bending_stiffness [N], "
-                f"got {self.tension:g}"
+                f"tension must be >= 0 for a rope without bending_stiffness [N], got {least:g}"
             )
         if not self.coordinates:
             raise SceneError(
@@ -183,13 +190,14 @@ AddedMass, LocalChange
             return
         if self.rope.axial_stiffness is None:
             raise SceneError("gravity needs axial_stiffness of the rope [N], got None")
-        if not self.tension > 0:
-            raise SceneError(f"tension must be > 0 where there is gravity, got {self.tension:g}")
-        lengthening = self.gravity.lengthening(self.rope, self.tension)
+        tension = self.mean_tension
+        if not tension > 0:
+            raise SceneError(f"tension must be > 0 where there is gravity, got {tension:g}")
+        lengthening = self.gravity.lengthening(self.rope, tension)
         if not math.isfinite(lengthening):
             raise SceneError(
                 "gravity must be small enough for 1 + (w L/H)^2/8 to be a number, got "
-                f"g = {self.gravity.g!r} m/s^2 with the tension {self.tension!r} N"
+                f"g = {self.gravity.g!r} m/s^2 with the tension {tension!r} N"
             )
         terms = [_end.end_of(end).term() for end in self.ends]
         terms += [part.term() for part in _part.standing(self.parts)]
@@ -199,13 +207,36 @@ AddedMass, LocalChange
                 f"inertia along x, got ends {check.shown(self.ends)}"
             )
 
+    def _check_stretching(self) -> None:
+        if not isinstance(self.tension, Tension) or not self.tension.stretching:
+            return
+        if self.rope.axial_stiffness is None:
+            raise SceneError(
+                "tension must not be stretching without axial_stiffness of the rope [N], got None"
+            )
+        if self.gravity is not None:
+            raise SceneError(
+                "tension must not be stretching where there is gravity: along a sag it is not the "
+                "integral of the slope alone"
+            )
+        if not all("x" in _end.end_of(end).term().held for end in self.ends):
+            raise SceneError(
+                "ends must hold x where the tension is stretching, "
+                f"got ends {check.shown(self.ends)}"
+            )
+
+    @property
+    def mean_tension(self) -> float:
+        """The tension about which motion is small [N]."""
+        return self.tension.mean if isinstance(self.tension, Tension) else self.tension
+
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Coordinates of a node: z with bending or tension, beta with bending, and so on."""
         rope = self.rope
         present = {
             "x": rope.axial_stiffness is not None,
-            "z": rope.bending_stiffness is not None or self.tension != 0,
+            "z": rope.bending_stiffness is not None or self.mean_tension != 0,
             "alpha": rope.torsional_stiffness is not None,
             "beta": rope.bending_stiffness is not None,
         }
@@ -226,7 +257,9 @@ AddedMass, LocalChange
         for end in self.ends:
             stands |= {_end.STANDING[name] for name in _end.end_of(end).standing}
         acts = {
-            "tension": self.tension != 0,
+            "tension": self.mean_tension != 0,
+            Tension.pulsating: isinstance(self.tension, Tension) and self.tension.pulsates,
+            Tension.growing: isinstance(self.tension, Tension) and self.tension.stretching,
             "bending": rope.bending_stiffness is not None,
             "twist": rope.torsional_stiffness is not None,
             "stretch": rope.axial_stiffness is not None,
@@ -276,9 +309,12 @@ AddedMass, LocalChange
             check.one_of(effect, "effect", EFFECTS)
         gone = {name for effect in effects for name in _PROPERTIES.get(effect, ())}
         rope = self.rope.replace(**dict.fromkeys(gone))
-        bare = Scene(rope, tension=0.0 if "tension" in effects else self.tension)
+        tension = _left_of_tension(self.tension, effects)
+        mean = tension.mean if isinstance(tension, Tension) else tension
+        bare = Scene(rope, tension=mean)
         kept = tuple(d for d in self.dampings if d.kind not in effects)
         return bare.replace(
+            tension=tension,
             ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
             damping=kept,
             gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
@@ -395,6 +431,25 @@ AddedMass, LocalChange
         from .scene_file import load
 
         return load(path)
+
+
+def _checked_tension(tension: Any) -> float | Tension:
+    if not isinstance(tension, Tension):
+        return check.number(tension, "tension", "N")
+    return tension.mean if tension.is_constant else tension
+
+
+def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
+    """Return the tension of a scene that never had these effects."""
+    if "tension" in effects:
+        return 0.0
+    if not isinstance(tension, Tension):
+        return tension
+    if Tension.pulsating in effects:
+        tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
+    if {Tension.growing, "stretch"} & set(effects):
+        tension = dataclasses.replace(tension, stretching=False)
+    return _checked_tension(tension)
 
 
 def _checked_ends(ends: Any) -> tuple[str | End, str | End]:

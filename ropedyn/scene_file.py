@@ -15,6 +15,7 @@ from .errors import SceneError
 from .gravity import Gravity
 from .rope import Rope
 from .scene import Scene
+from .tension import Tension
 
 
 def load(path: str | os.PathLike[str]) -> Scene:
@@ -36,8 +37,11 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
     import tomli_w
 
     check.path(path)
+    for i, one in enumerate(scene.parts):
+        if isinstance(one, part.NodeForce):
+            raise SceneError(f"parts[{i}].law cannot be written to a file, got {one.law!r}")
     document: dict[str, Any] = {
-        "tension": scene.tension,
+        "tension": scene.tension if isinstance(scene.tension, float) else _plain(scene.tension),
         "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
         "rope": _plain(scene.rope),
     }
@@ -73,6 +77,8 @@ def _scene(document: Mapping[str, Any]) -> Scene:
         raise SceneError("key rope is missing: a scene needs a table [rope]")
     arguments = dict(document)
     arguments["rope"] = _built(Rope, document["rope"], "rope")
+    if isinstance(document.get("tension"), dict):
+        arguments["tension"] = _built(Tension, document["tension"], "tension")
     if "gravity" in document:
         arguments["gravity"] = _built(Gravity, document["gravity"], "gravity")
     if "ends" in document:

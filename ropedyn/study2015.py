@@ -341,7 +341,7 @@ def _verdict(found: tuple[Reading, ...]) -> str:
         f"energy in z, {100 * energy['beta'][2]:.0f} % in bending rotation and "
         f"{100 * energy['alpha'][2]:.1f} % in twist.",
         f"A tensed beam meets all three measured peaks within 1 %, by least squares (T = "
-        f"{fitted.model.scene.tension / 1000:.2f} kN, B = {rope.bending_stiffness:.2f} N m^2) "
+        f"{fitted.model.scene.mean_tension / 1000:.2f} kN, B = {rope.bending_stiffness:.2f} N m^2) "
         f"within {_largest(fitted, measured):.1f} %: two parameters, three peaks, evidence but no "
         "proof. The peaks fix T per mass; B they hardly feel.",
         f"The study's B = {BENDING_STIFFNESS:.1f} N m^2 is {BENDING_STIFFNESS / rod:.0f} times "

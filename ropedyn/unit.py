@@ -14,8 +14,12 @@ NAME = {
 FAMILY = {"x": "axial", "z": "transverse", "alpha": "torsional", "beta": "bending rotation"}
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """How often the displacement is differentiated."""
+MOTIONS = {"displacement": 0, "velocity": 1, "acceleration": 2}
+"""How often the displacement is differentiated."""
 WIRE = "wire"
 """In a response: the tip of a broken wire, by its number among them."""
+END = "end"
+"""In a drive: the motion of an end, by its number."""
 
 
 def label(
@@ -25,7 +29,7 @@ def label(
     name, x = response
     unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT.get(name, UNIT["z"])
     where = f"tip of {name} {x:.0f}" if name == WIRE else f"{name} at {x:.3f} m"
-    unit += ("", "/s", "/s^2")[QUANTITIES[quantity]]
+    unit += ("", "/s", "/s^2")[(QUANTITIES | MOTIONS)[quantity]]
     if drive is None:
         return f"{where} [{unit}]"
     force = FORCE_UNIT[drive]
