@@ -71,7 +71,7 @@ class Tension:
     stretching: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", check.number(self.mean, "tension", "N"))
+        object.__setattr__(self, "mean", check.number(self.mean, "mean", "N"))
         amplitude = check.number(self.amplitude, "amplitude", "N", sign="nonnegative")
         object.__setattr__(self, "amplitude", amplitude)
         frequency = check.number(self.frequency, "frequency", "Hz", sign="nonnegative")

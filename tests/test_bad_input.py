@@ -211,13 +211,13 @@ row(
     NOT_A_NUMBER,
     NOT_FINITE | ZERO,
 )
-for name in ("damping", "exponent"):
+for name, wrong in (("damping", ZERO), ("exponent", {})):
     row(
         "Dashpot",
         name,
         lambda v, name=name: PARTS["Dashpot"](**{name: v}),
         NOT_A_NUMBER,
-        NOT_FINITE | ZERO | NEGATIVE,
+        NOT_FINITE | wrong | NEGATIVE,
     )
 for part in ("Spring", "Dashpot", "Support"):
     row(

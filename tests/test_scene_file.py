@@ -73,6 +73,9 @@ def ends(draw):
     return rd.End(**words_of, **standing)
 
 
+tensions = st.builds(
+    rd.Tension, anything, amplitude=at_least_zero, frequency=positive, phase=anything
+)
 coordinates = st.sampled_from(["x", "z", "alpha", "beta"])
 parts = st.one_of(
     st.builds(
@@ -107,7 +110,7 @@ def scenes(draw):
         rope = rope.replace(axial_stiffness=1.0)
     return rd.Scene(
         rope,
-        tension=draw(anything),
+        tension=draw(anything | tensions),
         ends=(draw(ends()), draw(ends())),
         damping=draw(st.none() | dampings | st.lists(dampings, max_size=3)),
         parts=draw(st.lists(parts, max_size=4)),
@@ -134,13 +137,13 @@ def test_a_sum_of_dampings_survives_its_file(count, tmp_path):
     assert rd.Scene.load(tmp_path / "rope.toml") == scene
 
 
-@pytest.mark.parametrize("effect", rd.scene.EFFECTS)
-def test_every_effect_survives_the_file(effect, tmp_path):
+def every_effect_but_a_law():
+    """Return the scenes that together have every effect which a file can hold."""
     rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=2.0, axial_stiffness=3.0)
     rope = rope.replace(lay_slope=0.1, lay_coupling=0.1, rotary_inertia=1e-5, polar_inertia=1e-6)
-    whole = rd.Scene(
+    sagging = rd.Scene(
         rope,
-        tension=1.0,
+        tension=rd.Tension(1.0, amplitude=0.5, frequency=20.0, phase=0.3),
         damping=(
             rd.StiffnessDamping(1e-4),
             rd.RayleighDamping(0.1, 1e-5),
@@ -156,15 +159,32 @@ def test_every_effect_survives_the_file(effect, tmp_path):
             rd.Hinge(0.6),
             rd.Resonator(0.7, 0.01, 20.0, damping_ratio=0.02),
             rd.BrokenWire(0.8, 0.05, 3e-4, radius=2e-3),
+            rd.Stop(0.9, 1e5, gap=1e-3, side=-1),
             rd.AddedMass(0.1, 0.7, 0.02, polar_inertia=1e-6),
             rd.LocalChange(0.5, 0.9, bending=0.5, torsion=0.7, density=0.9),
         ],
         gravity=rd.Gravity(1.62, inclination=-0.2),
     )
+    # a rope that sags cannot stretch with the amplitude
+    stretching = rd.Scene(rope, tension=rd.Tension(1.0, stretching=True))
+    return sagging, stretching
+
+
+@pytest.mark.parametrize("effect", [e for e in rd.scene.EFFECTS if e != rd.NodeForce.kind])
+def test_every_effect_survives_the_file(effect, tmp_path):
+    whole = next(scene for scene in every_effect_but_a_law() if effect in scene.effects)
     path = tmp_path / "rope.toml"
-    whole.without(effect).save(path)
-    assert rd.Scene.load(path) == whole.without(effect)
+    for scene in (whole, whole.without(effect)):
+        scene.save(path)
+        assert rd.Scene.load(path) == scene
     assert whole.without(effect) != whole
+
+
+def test_a_law_cannot_be_written(tmp_path):
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=[rd.NodeForce(0.5, min)])
+    with pytest.raises(rd.SceneError, match=r"parts\[0\].law cannot be written to a file"):
+        scene.save(tmp_path / "rope.toml")
+    assert list(tmp_path.iterdir()) == []
 
 
 def write(path, document):
@@ -193,6 +213,11 @@ def test_a_single_damping_may_be_a_table(tmp_path):
     document = changed("damping", value=DOCUMENT["damping"][0])
     scene = SCENE.replace(damping=rd.StiffnessDamping(1e-4))
     assert rd.Scene.load(write(tmp_path / "rope.toml", document)) == scene
+
+
+def test_a_table_of_a_steady_tension_is_its_mean(tmp_path):
+    document = changed("tension", value={"mean": 300.0})
+    assert rd.Scene.load(write(tmp_path / "rope.toml", document)) == SCENE
 
 
 def test_a_rope_alone_is_a_file(tmp_path):
@@ -252,7 +277,23 @@ REFUSED = {
         changed("rope", "bending_stiffness", value=0),
         "rope.bending_stiffness must be a finite number > 0 [N m^2], got 0",
     ),
-    "tension of a table": (changed("tension", value={"mean": 1.0}), "tension must be a finite"),
+    "tension of text": (changed("tension", value="high"), "tension must be a finite"),
+    "tension without a mean": (
+        changed("tension", value={"amplitude": 1.0}),
+        "key tension.mean is missing",
+    ),
+    "unknown key of the tension": (
+        changed("tension", value={"mean": 1.0, "period": 2.0}),
+        "unknown key 'period' in tension",
+    ),
+    "pulsation of no frequency": (
+        changed("tension", value={"mean": 1.0, "amplitude": 0.5}),
+        "tension.frequency must be > 0 where the tension pulsates",
+    ),
+    "mean of text": (
+        changed("tension", value={"mean": "high"}),
+        "tension.mean must be a finite number [N], got 'high'",
+    ),
     "tension of infinity": (changed("tension", value=math.inf), "got inf"),
     "tension too large": (changed("tension", value=10**400), "tension must be a finite"),
     "ends of a word": (changed("ends", value="clamped"), "ends must be a pair of"),
