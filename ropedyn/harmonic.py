@@ -6,9 +6,9 @@ import os
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,7 @@ from .chain import Chain
 from .errors import SceneError, SolveError
 from .frf import FRF, Mesh
 from .mesh_error import mesh_of_frf
-from .modal_sum import modal_sum, refuse_other_damping
+from .modal_sum import Solver, Summed, modal_sum, refuse_other_damping
 from .model import EXACT, MOST_STEPS, Model
 from .place import points
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
@@ -141,35 +141,14 @@ def solve_frf(
     drives, several = points(model, drive, "drive", forces=False)
     responses = drives if response is None else points(model, response, "response")[0]
     asked = tip.spread(model, responses)
-    value = np.zeros((len(drives), len(asked), len(f)), dtype=np.complex128)
-    error = np.zeros(value.shape)
-    truncation = np.zeros(value.shape)
-    unknowns, solved = 0, 0
     factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
-        refuse_other_damping(model)
-        if any(map(tip.is_tip, responses)):
-            raise SceneError(
-                "damping must not be modal where the tip of a wire is asked for, whose modes are "
-                "those of rope and wire together"
-            )
+        refuse_other_damping(model, responses)
     start = time.perf_counter()
-    for component, free in zip(model.components, model.unknowns):
-        d = [k for k, point in enumerate(drives) if point[0] in component]
-        r = [k for k, point in enumerate(asked) if moving(point) in component]
-        if not d or not r:
-            continue
-        block = np.ix_(d, r)
-        pushed, watched = [drives[k] for k in d], [asked[k] for k in r]
-        question = Question(model, component, f, factor, pushed, watched, workers)
-        if is_modal:
-            value[block], error[block], truncation[block], lines = modal_sum(question, solve)
-        else:
-            value[block], error[block] = solve(question)
-            lines = len(f)
-        unknowns += free
-        solved += lines
+    whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers)
+    got = _by_components(whole, partial(modal_sum if is_modal else _line_by_line, solver=solve))
+    value, error, truncation = got.value, got.error, got.truncation
     if any(map(tip.is_tip, responses)):
         _, truncation = tip.gather(model, responses, factor, value, truncation)
         value, error = tip.gather(model, responses, factor, value, error)
@@ -194,12 +173,53 @@ def solve_frf(
             seconds,
             solver,
             len(model.x) - 1,
-            unknowns,
-            sweeps=2 * solved if solver == "sweep" else 0,
-            factorisations=0 if solver == "sweep" else solved,
+            got.unknowns,
+            sweeps=2 * got.lines if solver == "sweep" else 0,
+            factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh_source=mesh,
     )
+
+
+class Receptance(NamedTuple):
+    """Motion and internal forces per unit force, of all components."""
+
+    value: Complex
+    """(drives, responses, f)."""
+    error: Real
+    """Estimated relative error of rounding, as value."""
+    truncation: Real
+    """Bound of the relative error that modes cause which are left out, as value."""
+    unknowns: int
+    """Of the components that take part."""
+    lines: int
+    """That were solved."""
+
+
+def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:
+    """Ask each component for what it has of the drives and responses; nothing else moves."""
+    model, drives, responses = whole.model, whole.drives, whole.responses
+    value = np.zeros((len(drives), len(responses), len(whole.frequency)), dtype=np.complex128)
+    error, truncation = np.zeros(value.shape), np.zeros(value.shape)
+    unknowns, lines = 0, 0
+    for component, free in zip(model.components, model.unknowns):
+        d = [k for k, point in enumerate(drives) if point[0] in component]
+        r = [k for k, point in enumerate(responses) if moving(point) in component]
+        if not d or not r:
+            continue
+        block = np.ix_(d, r)
+        pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
+        got = answer(replace(whole, component=component, drives=pushed, responses=watched))
+        value[block], error[block], truncation[block] = got.value, got.rounding, got.truncation
+        unknowns += free
+        lines += got.lines
+    return Receptance(value, error, truncation, unknowns, lines)
+
+
+def _line_by_line(question: Question, solver: Solver) -> Summed:
+    """Solve at each frequency, with the damping that acts at it."""
+    value, error = solver(question)
+    return Summed(value, error, np.zeros(error.shape), len(question.frequency))
 
 
 def _workers(threads: int | None) -> int:

@@ -14,7 +14,7 @@ lambda_k, which a few points give to all digits.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
 from .model import Model
 from .port import Point, is_force
+from .tip import is_tip
 
 if TYPE_CHECKING:
     from .harmonic import Question
@@ -69,8 +70,8 @@ class Poles(NamedTuple):
     """Largest damping ratio."""
 
 
-def refuse_other_damping(model: Model) -> None:
-    """Refuse modal damping beside any other, which would couple the modes."""
+def refuse_other_damping(model: Model, responses: Iterable[Point]) -> None:
+    """Refuse modal damping beside any other, which would couple the modes, and for tips."""
     scene, chain = model.scene, model.chain
     others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
     if "dashpot" in scene.effects:
@@ -80,6 +81,11 @@ def refuse_other_damping(model: Model) -> None:
         raise SceneError(
             "damping must be modal alone in a frequency response, where other damping couples the "
             f"modes, got {', '.join(others)}"
+        )
+    if any(map(is_tip, responses)):
+        raise SceneError(
+            "damping must not be modal where the tip of a wire is asked for, whose modes are those "
+            "of rope and wire together"
         )
 
 
@@ -93,7 +99,7 @@ class Summed(NamedTuple):
     truncation: Real
     """Bound of the relative error that the modes cause which are left out, as value."""
     lines: int
-    """Lines of the undamped response that it took."""
+    """Lines of the solver that it took."""
 
 
 def modal_sum(question: Question, solver: Solver) -> Summed:
