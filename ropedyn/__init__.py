@@ -7,6 +7,7 @@ Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask f
 from . import ask, study2015
 from .accuracy import AccuracyCost, accuracy_cost
 from .answer import Answer, Cost, load
+from .broken_wire import BrokenWire
 from .choice import Choice
 from .compare import Comparison, compare
 from .damage import Damage
@@ -22,21 +23,14 @@ from .gravity import Gravity
 from .history import History
 from .model import Model
 from .modes import Modes
-from .part import (
-    BrokenWire,
-    Dashpot,
-    Hinge,
-    NodeForce,
-    PointMass,
-    Resonator,
-    Spring,
-    Stop,
-    Support,
-)
+from .node_force import NodeForce
+from .part import Dashpot, Hinge, PointMass, Spring, Support
 from .peaks import Peaks
 from .resonance import Resonances
+from .resonator import Resonator
 from .rope import Rope
 from .scene import Scene
+from .stop import Stop
 from .stretch import AddedMass, LocalChange
 from .table import Table
 from .tension import Tension

@@ -14,7 +14,8 @@ from .damping import drag
 from .end import end_of
 from .errors import SceneError
 from .model import MOST_POINTS, Model
-from .part import Attached, NodeTerm, places, standing, stretches
+from .node import Attached, NodeTerm
+from .part import places, standing, stretches
 from .rope import Rope
 from .scene import Scene
 from .stretch import ropes

@@ -8,7 +8,8 @@ from typing import Any
 
 from . import check
 from .errors import SceneError
-from .part import Dashpot, NodeTerm, PointMass, Spring
+from .node import NodeTerm
+from .part import Dashpot, PointMass, Spring
 
 STANDING = {"spring": Spring.kind, "dashpot": Dashpot.kind, "mass": PointMass.kind}
 """What can stand at an end, and the effect it is."""

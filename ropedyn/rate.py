@@ -24,8 +24,9 @@ from .compile import (
 from .end import end_of
 from .errors import SceneError
 from .model import Model
-from .part import AttachedRate, NodeRate, standing, stretches
+from .node import AttachedRate, NodeRate
 from .part import places as places_of
+from .part import standing, stretches
 from .rope import Rope
 from .scene import Scene
 from .stretch import KINDS as STRETCHES

@@ -13,6 +13,7 @@ from .atomic import write_bytes
 from .end import End, PerCoordinate
 from .errors import SceneError
 from .gravity import Gravity
+from .node_force import NodeForce
 from .rope import Rope
 from .scene import Scene
 from .tension import Tension
@@ -38,7 +39,7 @@ def save(scene: Scene, path: str | os.PathLike[str]) -> None:
 
     check.path(path)
     for i, one in enumerate(scene.parts):
-        if isinstance(one, part.NodeForce):
+        if isinstance(one, NodeForce):
             raise SceneError(f"parts[{i}].law cannot be written to a file, got {one.law!r}")
     document: dict[str, Any] = {
         "tension": scene.tension if isinstance(scene.tension, float) else _plain(scene.tension),

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from .broken_wire import BrokenWire
 from .chain import ATTACHED
 from .model import Model
-from .part import BrokenWire, standing
+from .part import standing
 from .port import Point, locate
 from .unit import WIRE
 
