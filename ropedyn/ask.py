@@ -28,7 +28,7 @@ from .frf import FRF
 from .model import Model
 from .modes import Modes
 from .port import Point
-from .unit import QUANTITIES
+from .unit import QUANTITIES, place
 
 Real = NDArray[np.float64]
 
@@ -137,7 +137,7 @@ class FRFQuestion:
         f = self.frequency
         lines = f"{f[0]:g} Hz" if len(f) == 1 else f"{len(f)} lines, {f.min():g} to {f.max():g} Hz"
         drives = (self.drive,) if isinstance(self.drive[0], str) else self.drive
-        driven = " and ".join(f"{c} at {x:.3f} m" for c, x in drives)
+        driven = " and ".join(map(place, drives))
         return f"{self.quantity} of {lines}, driven in {driven}"
 
     @property
@@ -234,7 +234,8 @@ def frf(
     frequency : array_like, shape (f,)
         [Hz], each >= 0.
     drive : point or list of points
-        Coordinate and position of a unit force or moment, such as ``("z", 0.5)``.
+        Coordinate and position of a unit force or moment, such as ``("z", 0.5)``, or an end that
+        is moved, such as ``("end", 0, "z")``.
     response : point or list of points, optional
         What is watched; the drive points where left out.
     quantity : {"receptance", "mobility", "accelerance"}
@@ -264,11 +265,14 @@ def frf(
 
 def _points(value: Any, name: str, *, forces: bool) -> Any:
     """Return a point, or several, of a rope that is not known yet."""
-    wires = check.MOST_WIRES if forces else None
     if isinstance(value, (tuple, list)) and len(value) > 0 and not isinstance(value[0], str):
-        every = check.COORDINATES
-        return tuple(
-            check.point(one, f"{name}[{k}]", every, None, forces=forces, wires=wires)
-            for k, one in enumerate(value)
-        )
+        return tuple(_point(one, f"{name}[{k}]", forces=forces) for k, one in enumerate(value))
+    return _point(value, name, forces=forces)
+
+
+def _point(value: Any, name: str, *, forces: bool) -> Any:
+    """Return a response, or a drive, which may be an end."""
+    if not forces and check.is_end(value):
+        return check.end(value, name, check.COORDINATES)
+    wires = check.MOST_WIRES if forces else None
     return check.point(value, name, check.COORDINATES, None, forces=forces, wires=wires)

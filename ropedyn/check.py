@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
-from .unit import OF_FORCE, WIRE
+from .unit import END, OF_FORCE, WIRE
 
 COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
@@ -191,6 +191,20 @@ def point(
     if length is None:
         return coordinate, number(value[1], f"{name}[1]", "m")
     return coordinate, position(value[1], f"{name}[1]", length)
+
+
+def end(value: Any, name: str, present: Sequence[str]) -> tuple[str, int, str]:
+    """Return the coordinate of an end that is moved, such as ("end", 0, "z")."""
+    if len(value) != 3:
+        what = 'an end and a coordinate such as ("end", 0, "z")'
+        raise SceneError(_expected(name, what, "", value))
+    number = count(value[1], f"{name}[1]", least=0, most=1)
+    return (END, number, one_of(value[2], f"{name}[2]", present))
+
+
+def is_end(value: Any) -> bool:
+    """Whether somebody means an end that is moved."""
+    return isinstance(value, (tuple, list)) and len(value) > 0 and value[0] == END
 
 
 def path(value: Any) -> Path:

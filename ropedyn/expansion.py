@@ -11,12 +11,13 @@ Real = NDArray[np.float64]
 
 
 class Expansion(NamedTuple):
-    """What responses are to drives, in the rate s of a motion e^(s t):
+    """What responses are to drives, in the rate s of a motion e^(s t).
 
         H(s) = rest + sum_k (a_k + b_k s)/(s^2 + 2 sigma_k s + square_k) + sum_j r_j/(s - p_j)
 
     Pairs are conjugate rates -sigma +- i sqrt(square - sigma^2), rigid motion (sigma = square = 0),
-    modes that decay without oscillation by two rates, or grow (square < 0); p_j are real rates alone.
+    modes that decay without oscillation by two rates, or grow (square < 0); p_j are real rates
+    alone.
     """
 
     sigma: Real

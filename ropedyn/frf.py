@@ -16,7 +16,7 @@ from .errors import SceneError
 from .port import Point
 from .resonance import Resonances, resonances
 from .table import Table
-from .unit import QUANTITIES, label
+from .unit import QUANTITIES, label, place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,15 +43,17 @@ class FRF(Answer):
     Attributes
     ----------
     drive : tuple of points
-        Where and on what the forces act; one, unless a list was asked for.
+        Where and on what the forces act, or whose motion is given; one, unless a list was asked
+        for.
     response : tuple of points
         What is watched.
     quantity : {"receptance", "mobility", "accelerance"}
-        Displacement, velocity or acceleration per force.
+        Displacement, velocity or acceleration per force, or per displacement of an end.
     frequency : ndarray, shape (f,)
         [Hz].
     value : ndarray of complex, shape (responses, f) or (drives, responses, f)
-        [m/N, rad/N, m/(N m), rad/(N m), and these per s or s^2].
+        [m/N, rad/N, m/(N m), rad/(N m), of internal forces N/N and so on, per motion of an end
+        m/m, rad/m and so on; and these per s or s^2].
     rounding_error : ndarray, as value
         Estimated relative error that rounding causes.
     mesh_error : ndarray, as value
@@ -88,7 +90,7 @@ class FRF(Answer):
     @property
     def labels(self) -> tuple[str, ...]:
         """What each response is, with its unit, for the first drive."""
-        return tuple(label(r, self.drive[0][0], self.quantity) for r in self.response)
+        return tuple(label(r, self.drive[0], self.quantity) for r in self.response)
 
     def curve(self, response: int = 0, drive: int = 0) -> NDArray[np.complex128]:
         """Return one response to one drive, shape (f,).
@@ -159,11 +161,11 @@ class FRF(Answer):
     def table(self) -> Table:
         """Return amplitude and phase of every response over frequency."""
         columns: dict[str, Any] = {"frequency [Hz]": self.frequency}
-        for d, (coordinate, x) in enumerate(self.drive):
+        for d, drive in enumerate(self.drive):
             for r, point in enumerate(self.response):
-                name = label(point, coordinate, self.quantity)
+                name = label(point, drive, self.quantity)
                 if len(self.drive) > 1:
-                    name += f" driven in {coordinate} at {x:.3f} m"
+                    name += f" driven in {place(drive)}"
                 curve = self.curve(r, d)
                 columns[f"|{name}|" if name not in columns else name] = np.abs(curve)
                 columns[f"phase of {name} [deg]"] = np.degrees(np.angle(curve))

@@ -21,7 +21,8 @@ from .frf import FRF, Mesh
 from .mesh_error import mesh_of_frf
 from .modal_sum import Solver, Summed, modal_sum, refuse_other_damping
 from .model import EXACT, MOST_STEPS, Model
-from .place import points
+from .moved_end import moves_ends
+from .place import observed, points
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reaction import first_left_end
 from .unit import OF_FORCE, QUANTITIES
@@ -132,19 +133,19 @@ def solve_frf(
     threads: int | None,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
-    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
     workers = _workers(threads)
     check.one_of(quantity, "quantity", QUANTITIES)
     f = check.frequencies(frequency)
-    drives, several = points(model, drive, "drive", forces=False)
-    responses = drives if response is None else points(model, response, "response")[0]
+    drives, several = points(model, drive, "drive", forces=False, ends=True)
+    responses = observed(model, response, drives)
     asked = tip.spread(model, responses)
     factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
-        refuse_other_damping(model, responses)
+        refuse_other_damping(model, drives, responses)
     start = time.perf_counter()
     whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers)
     got = _by_components(whole, partial(modal_sum if is_modal else _line_by_line, solver=solve))
@@ -203,7 +204,7 @@ def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Rec
     error, truncation = np.zeros(value.shape), np.zeros(value.shape)
     unknowns, lines = 0, 0
     for component, free in zip(model.components, model.unknowns):
-        d = [k for k, point in enumerate(drives) if point[0] in component]
+        d = [k for k, point in enumerate(drives) if moving(point) in component]
         r = [k for k, point in enumerate(responses) if moving(point) in component]
         if not d or not r:
             continue

@@ -24,6 +24,7 @@ from . import _core, damping
 from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
 from .model import Model
+from .moved_end import is_end
 from .port import Point, is_force
 from .tip import is_tip
 
@@ -70,8 +71,8 @@ class Poles(NamedTuple):
     """Largest damping ratio."""
 
 
-def refuse_other_damping(model: Model, responses: Iterable[Point]) -> None:
-    """Refuse modal damping beside any other, which would couple the modes, and for tips."""
+def refuse_other_damping(model: Model, drives: Iterable[Point], responses: Iterable[Point]) -> None:
+    """Refuse modal damping beside any other, which would couple the modes, of ends and tips."""
     scene, chain = model.scene, model.chain
     others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
     if "dashpot" in scene.effects:
@@ -81,6 +82,11 @@ def refuse_other_damping(model: Model, responses: Iterable[Point]) -> None:
         raise SceneError(
             "damping must be modal alone in a frequency response, where other damping couples the "
             f"modes, got {', '.join(others)}"
+        )
+    if any(map(is_end, drives)):
+        raise SceneError(
+            "damping must not be modal where an end is moved: a ratio does not say whether it is "
+            "of motion past the ground or past the end"
         )
     if any(map(is_tip, responses)):
         raise SceneError(

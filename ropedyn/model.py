@@ -346,15 +346,17 @@ class Model:
         solver: str = "sweep",
         threads: int | None = None,
     ) -> FRF:
-        """Compute the frequency response to a harmonic force or moment.
+        """Compute the frequency response to a harmonic force or moment, or motion of an end.
 
         Parameters
         ----------
         frequency : array_like, shape (f,)
             [Hz], each >= 0.
         drive : point or list of points
-            Coordinate and position of a unit force or moment, such as ``("z", 0.5)``; with a list
-            the values have a leading axis of drives.
+            Coordinate and position of a unit force or moment, such as ``("z", 0.5)``; or
+            ``("end", 0, "z")``, a coordinate that the left end (0; the right one is 1) holds: it
+            moves by 1 m or 1 rad then, and the value is the transmissibility. With a list the
+            values have a leading axis of drives.
         response : point or list of points, optional
             What is watched; the drive points where left out. Also internal forces such as
             ``("F_z", 0.3)`` or ``("M_beta", 0.0)``: what the rope right of the position puts on

@@ -9,7 +9,6 @@ from .errors import SceneError
 from .model import Model
 from .part import BrokenWire
 from .port import Point
-from .unit import END
 
 
 def points(
@@ -36,7 +35,7 @@ def points(
     found = []
     for k, one in enumerate(given if several else (given,)):
         called = f"{name}[{k}]" if several else name
-        if ends and isinstance(one, (tuple, list)) and len(one) > 0 and one[0] == END:
+        if ends and check.is_end(one):
             found.append(_end(model, one, called))
             continue
         found.append(
@@ -56,14 +55,20 @@ def _end(model: Model, given: Any, name: str) -> Any:
     """Return an end that is moved: it must hold the coordinate."""
     from .end import end_of
 
-    what = 'an end and a coordinate such as ("end", 0, "z")'
-    if len(given) != 3:
-        raise SceneError(f"{name} must be {what}, got {check.shown(given)}")
-    number = check.count(given[1], f"{name}[1]", least=0, most=1)
-    coordinate = check.one_of(given[2], f"{name}[2]", model.coordinates)
+    _, number, coordinate = found = check.end(given, name, model.coordinates)
     if coordinate not in end_of(model.scene.ends[number]).term().held:
         raise SceneError(
             f"{name} must be a coordinate that the end holds, got {coordinate!r} of "
             f"{check.shown(model.scene.ends[number])}"
         )
-    return (END, number, coordinate)
+    return found
+
+
+def observed(model: Model, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
+    """Return what is watched: the drives where nothing else is said."""
+    if given is not None:
+        return points(model, given, "response")[0]
+    if not drives or any(map(check.is_end, drives)):
+        what = "an end is moved" if drives else "nothing drives"
+        raise SceneError(f"response must be given where {what}, got None")
+    return drives

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .unit import NAME, UNIT, label, power
+from .unit import NAME, UNIT, label, place, power
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,15 +88,15 @@ def plot_damage(damage: Damage, ax: Axes | None, of: str | None) -> Axes:
 def plot_frf(frf: FRF, ax: Axes | None) -> Axes:
     """Plot amplitudes over frequency on a logarithmic scale."""
     ax = new_axes(ax)
-    for d, (coordinate, x) in enumerate(frf.drive):
+    for d, drive in enumerate(frf.drive):
         for r, response in enumerate(frf.response):
-            name = label(response, coordinate, frf.quantity)
+            name = label(response, drive, frf.quantity)
             if len(frf.drive) > 1:
-                name += f", driven in {coordinate} at {x:.3f} m"
+                name += f", driven in {place(drive)}"
             amplitude = np.abs(frf.curve(r, d))
             if amplitude.any():
                 ax.semilogy(frf.frequency, amplitude, label=name)
-    drives = ", ".join(f"{c} at {x:.3f} m" for c, x in frf.drive)
+    drives = ", ".join(map(place, frf.drive))
     ax.set(xlabel="frequency [Hz]", ylabel=f"{frf.quantity}, amplitude")
     ax.set_title(f"frequency response, driven in {drives}")
     ax.grid(True, which="both", color="0.92")

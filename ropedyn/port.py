@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from . import _core
 from .chain import Chain
 from .check import COORDINATES, NEAR
 from .errors import SolveError
-from .unit import OF_FORCE
+from .unit import END, OF_FORCE
 
 MOST_PIECES = 1000
 """That a compressed element is cut into."""
@@ -36,9 +36,10 @@ def is_force(point: Point) -> bool:
     return point[0] in OF_FORCE
 
 
-def moving(point: Point) -> str:
-    """Return the coordinate of a point, of an internal force the one it belongs to."""
-    return OF_FORCE.get(point[0], point[0])
+def moving(point: tuple[Any, ...]) -> str:
+    """Return the coordinate of a point or an end, of an internal force the one it belongs to."""
+    name = str(point[2] if point[0] == END else point[0])
+    return OF_FORCE.get(name, name)
 
 
 def locate(x: NDArray[np.float64], at: float) -> tuple[int, float | None]:

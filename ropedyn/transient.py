@@ -16,7 +16,7 @@ from .force import Force, forces
 from .history import History
 from .model import Model
 from .part import standing
-from .place import points
+from .place import observed, points
 from .port import Point
 from .progress import reporter
 from .tension import Tension
@@ -100,9 +100,7 @@ def solve_transient(
     check.one_of(quantity, "quantity", MOTIONS)
     t = _times(time)
     drives, given = _driven(model, drive, force, t)
-    responses = drives if response is None else points(model, response, "response")[0]
-    if not responses:
-        raise SceneError("response must be given where nothing drives, got None")
+    responses = observed(model, response, drives)
     run = Run(
         model=model,
         time=t,

@@ -1,5 +1,9 @@
 """Units and names of coordinates and of their forces."""
 
+from __future__ import annotations
+
+from typing import Any
+
 UNIT = {"x": "m", "z": "m", "alpha": "rad", "beta": "rad"}
 FORCE = {"x": "F_x", "z": "F_z", "alpha": "M_alpha", "beta": "M_beta"}
 OF_FORCE = {force: coordinate for coordinate, force in FORCE.items()}
@@ -22,19 +26,28 @@ END = "end"
 """In a drive: the motion of an end, by its number."""
 
 
+def place(point: tuple[Any, ...]) -> str:
+    """Say where a point is, such as ``z at 0.500 m``."""
+    name, x = point[:2]
+    if name == END:
+        return f"{point[2]} of end {x}"
+    return f"tip of {name} {x:.0f}" if name == WIRE else f"{name} at {x:.3f} m"
+
+
 def label(
-    response: tuple[str, float], drive: str | None = None, quantity: str = "receptance"
+    response: tuple[str, float],
+    drive: tuple[Any, ...] | None = None,
+    quantity: str = "receptance",
 ) -> str:
-    """Say what a response is, such as ``z at 0.500 m [m/N]``."""
-    name, x = response
+    """Say what a response is, such as ``z at 0.500 m [m/N]``; per motion of an end ``[m/m]``."""
+    name = response[0]
     unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT.get(name, UNIT["z"])
-    where = f"tip of {name} {x:.0f}" if name == WIRE else f"{name} at {x:.3f} m"
     unit += ("", "/s", "/s^2")[(QUANTITIES | MOTIONS)[quantity]]
     if drive is None:
-        return f"{where} [{unit}]"
-    force = FORCE_UNIT[drive]
-    per = f"{unit}/{force}" if " " not in force else f"{unit}/({force})"
-    return f"{where} [{per}]"
+        return f"{place(response)} [{unit}]"
+    cause = UNIT[drive[2]] if drive[0] == END else FORCE_UNIT[drive[0]]
+    per = f"{unit}/{cause}" if " " not in cause else f"{unit}/({cause})"
+    return f"{place(response)} [{per}]"
 
 
 def power(value: float) -> str:
