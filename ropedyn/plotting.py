@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
     from .accuracy import AccuracyCost
     from .compare import Comparison
+    from .curves import Curves
     from .damage import Damage
     from .damped_modes import DampedModes
     from .deflection import Deflection
     from .effect import EffectCost
-    from .frf import FRF
     from .modes import Modes
 
 
@@ -85,19 +85,19 @@ def plot_damage(damage: Damage, ax: Axes | None, of: str | None) -> Axes:
     return ax
 
 
-def plot_frf(frf: FRF, ax: Axes | None) -> Axes:
+def plot_curves(curves: Curves, ax: Axes | None) -> Axes:
     """Plot amplitudes over frequency on a logarithmic scale."""
     ax = new_axes(ax)
-    for d, drive in enumerate(frf.drive):
-        for r, response in enumerate(frf.response):
-            name = label(response, drive, frf.quantity)
-            if len(frf.drive) > 1:
+    for d, drive in enumerate(curves.drive):
+        for r, response in enumerate(curves.response):
+            name = label(response, drive, curves.quantity)
+            if len(curves.drive) > 1:
                 name += f", driven in {place(drive)}"
-            amplitude = np.abs(frf.curve(r, d))
+            amplitude = np.abs(curves.curve(r, d))
             if amplitude.any():
-                ax.semilogy(frf.frequency, amplitude, label=name)
-    drives = ", ".join(map(place, frf.drive))
-    ax.set(xlabel="frequency [Hz]", ylabel=f"{frf.quantity}, amplitude")
+                ax.semilogy(curves.frequency, amplitude, label=name)
+    drives = ", ".join(map(place, curves.drive))
+    ax.set(xlabel="frequency [Hz]", ylabel=f"{curves.quantity}, amplitude")
     ax.set_title(f"frequency response, driven in {drives}")
     ax.grid(True, which="both", color="0.92")
     if ax.lines:

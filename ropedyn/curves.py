@@ -1,0 +1,124 @@
+"""Responses over frequency: what a calculated and a measured one have in common."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .answer import Answer
+from .errors import SceneError
+from .port import Point
+from .resonance import Resonances, resonances
+from .table import Table
+from .unit import QUANTITIES, label, place
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Curves(Answer):
+    """Base of what holds motion Re(value exp(+i omega t)) per unit force."""
+
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str
+    frequency: NDArray[np.float64]
+    value: NDArray[np.complex128]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What each response is, with its unit, for the first drive."""
+        return tuple(label(r, self.drive[0], self.quantity) for r in self.response)
+
+    def curve(self, response: int = 0, drive: int = 0) -> NDArray[np.complex128]:
+        """Return one response to one drive, shape (f,).
+
+        Raises
+        ------
+        TypeError, SceneError
+            If a number is none of those there are.
+        """
+        check.count(response, "response", least=0, most=len(self.response) - 1)
+        check.count(drive, "drive", least=0, most=len(self.drive) - 1)
+        return self.value[response] if self.value.ndim == 2 else self.value[drive, response]
+
+    def to(self, quantity: str) -> Self:
+        """Return the same response as another quantity.
+
+        Parameters
+        ----------
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration per force.
+
+        Raises
+        ------
+        SceneError
+            If the quantity is unknown, or a motion at 0 Hz would have to be integrated.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=8)
+        >>> frf = model.frf([1.0], drive=("z", 0.5)).to("mobility")
+        >>> frf.labels
+        ('z at 0.500 m [m/s/N]',)
+        """
+        check.one_of(quantity, "quantity", QUANTITIES)
+        times = QUANTITIES[quantity] - QUANTITIES[self.quantity]
+        if times < 0 and (self.frequency == 0).any():
+            raise SceneError(
+                f"quantity must be {self.quantity!r} where a frequency is 0, got {quantity!r}"
+            )
+        value = self.value * (2j * np.pi * self.frequency) ** times
+        # every kind of curves is a dataclass with these fields
+        return replace(self, quantity=quantity, value=value)  # type: ignore[type-var]
+
+    def peaks(self, drive: int = 0) -> tuple[Resonances, ...]:
+        """Find the resonances that show as peaks, for each response.
+
+        Parameters
+        ----------
+        drive : int, optional
+            Which drive.
+
+        Returns
+        -------
+        tuple of Resonances
+            Frequency [Hz], amplitude and damping ratio of each peak.
+
+        Raises
+        ------
+        TypeError, SceneError
+            If the drive is none of those there are.
+        """
+        check.count(drive, "drive", least=0, most=len(self.drive) - 1)
+        return tuple(
+            resonances(self.frequency, self.curve(r, drive), self.quantity, self.labels[r])
+            for r in range(len(self.response))
+        )
+
+    def table(self) -> Table:
+        """Return amplitude and phase of every response over frequency."""
+        return Table.of(f"{self.quantity} over frequency", self._columns())
+
+    def _columns(self) -> dict[str, Any]:
+        columns: dict[str, Any] = {"frequency [Hz]": self.frequency}
+        for d, drive in enumerate(self.drive):
+            for r, point in enumerate(self.response):
+                name = label(point, drive, self.quantity)
+                if len(self.drive) > 1:
+                    name += f" driven in {place(drive)}"
+                curve = self.curve(r, d)
+                columns[f"|{name}|" if name not in columns else name] = np.abs(curve)
+                columns[f"phase of {name} [deg]"] = np.degrees(np.angle(curve))
+        return columns
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the amplitudes over frequency."""
+        from .plotting import plot_curves
+
+        return plot_curves(self, ax)
