@@ -2,19 +2,45 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import SceneError, SolveError
 from .expansion import Expansion
-from .force import Force
+from .exponentials import Complex, Exponentials, Indices, evaluate, invert, rates
+from .force import Chirp, Force, Samples, Sum
+from .piece import Piece, pieces
+from .truncation import left_out
+
+__all__ = ["convolve", "left_out", "release"]
 
 Real = NDArray[np.float64]
+
+LARGEST = 1e300
+"""What a growing mode may reach."""
+
+
+class Pairs(NamedTuple):
+    """Modes q'' + 2 sigma q' + square q = f that move responses by a q + b q'."""
+
+    sigma: Real
+    """(k,) [1/s]."""
+    square: Real
+    """(k,) [rad^2/s^2]."""
+    a: Real
+    """(responses, k)."""
+    b: Real
+    """(responses, k)."""
 
 
 def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: int) -> Real:
     """Return what one force moves, from rest at the first time, shape (responses, t).
 
-    What the force did before the first time is not felt.
+    What the force did before the first time is not felt, and nothing is sampled: sines, steps and
+    blows are exponentials, chirps have Faddeeva's function, straight lines an exact recurrence.
+    Where something jumps, it is the value from the right.
 
     Parameters
     ----------
@@ -34,7 +60,17 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
     SolveError
         If a growing mode leaves the numbers.
     """
-    raise NotImplementedError
+    if isinstance(force, Sum):
+        parts = [convolve(expansion, drive, one, time, order) for one in force.forces]
+        return np.sum(parts, axis=0)
+    modes = _pairs(expansion, drive)
+    rest = expansion.rest[drive][:, None]
+    if isinstance(force, Chirp):
+        raise NotImplementedError
+    if isinstance(force, Samples):
+        raise NotImplementedError
+    turns = [piece for piece in pieces(force, float(time[0])) if piece.start <= time[-1]]
+    return checked(_sines(modes, rest, turns, time, order), time)
 
 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
@@ -45,23 +81,83 @@ def release(expansion: Expansion, drive: int, load: float, time: Real, order: in
     SceneError
         If a mode is rigid or grows: it has no rest under a load.
     """
-    raise NotImplementedError
+    modes = _pairs(expansion, drive)
+    growing = np.concatenate([expansion.square <= 0, expansion.p >= 0])
+    if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():
+        raise SceneError("start must be None where the rope has no rest under a load")
+    rest = load * np.divide(1.0, modes.square, out=np.zeros_like(modes.square), where=~growing)
+    terms = _motion(modes, Piece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
+    return checked(evaluate(terms.rate, _seen(modes, terms, order), time - time[0]), time)
 
 
-def left_out(force: Force, time: Real, bound: Real, beyond: float, order: int = 0) -> Real:
-    """Bound what modes above an angular frequency add to their static response, as `bound`.
+def checked(value: Real, time: Real) -> Real:
+    """Refuse what has left the numbers."""
+    bad = ~(np.abs(value) <= LARGEST).all(axis=0)
+    if bad.any():
+        when = float(time[np.argmax(bad)])
+        raise SolveError(f"the motion grows beyond {LARGEST:g} until t = {when:g} s")
+    return value
 
-    Parameters
-    ----------
-    force : Force
-        Of absolute time.
-    time : ndarray, shape (t,)
-        [s]; the motion begins at rest at the first.
-    bound : ndarray
-        Of their static response to 1 N, each mode by its magnitude.
-    beyond : float
-        Lowest angular frequency of them [rad/s].
-    order : {0, 1, 2}
-        How often the response is differentiated.
+
+def _pairs(expansion: Expansion, drive: int) -> Pairs:
+    """Return all modes as pairs: r/(s - p) is r (s - p)/(s - p)^2."""
+    a, b, p, r = expansion.a[drive], expansion.b[drive], expansion.p, expansion.r[drive]
+    return Pairs(
+        np.concatenate([expansion.sigma, -p]),
+        np.concatenate([expansion.square, p * p]),
+        np.concatenate([a, -r * p], axis=1),
+        np.concatenate([b, r], axis=1),
+    )
+
+
+def _sines(modes: Pairs, rest: Real, turns: list[Piece], time: Real, order: int) -> Real:
+    """Return the responses to pieces of sines."""
+    value = np.zeros((len(rest), len(time)))
+    q = v = np.zeros_like(modes.sigma)
+    for piece, following in zip(turns, [*turns[1:], None]):
+        stop = time[-1] if following is None else following.start
+        last = len(time) if following is None else np.searchsorted(time, stop)
+        now = slice(np.searchsorted(time, piece.start), last)
+        v = v + piece.kick
+        terms = _motion(modes, piece, q, v, stop - piece.start or time[-1] - time[0])
+        value[:, now] = evaluate(terms.rate, _seen(modes, terms, order), time[now] - piece.start)
+        value[:, now] += rest * piece.value(time[now], order)
+        if following is not None:
+            q, v = _state(terms, len(q), stop - piece.start)
+    return value
+
+
+def _motion(modes: Pairs, piece: Piece, q: Real, v: Real, span: float) -> Exponentials:
+    """Return the motion of each mode under a piece from a state.
+
+    Q(s) = ((cosine s + sine w)/(s^2 + w^2) + v + (s + 2 sigma) q)/(s^2 + 2 sigma s + square)
     """
-    raise NotImplementedError
+    w = piece.frequency
+    acts = piece.cosine != 0 or (piece.sine != 0 and w != 0)
+    forced = np.array([] if not acts else [1j * w, -1j * w] if w else [0])
+    own = rates(modes.sigma, modes.square)
+    poles = np.concatenate([own, np.broadcast_to(forced, (len(own), len(forced)))], axis=1)
+
+    def numerator(s: Complex, k: Indices) -> Complex:
+        free = v[k] + (s + 2 * modes.sigma[k]) * q[k]
+        if not acts:
+            return free
+        force = piece.cosine * s + piece.sine * w if w else piece.cosine
+        return force + free * np.prod(s[:, None] - forced, axis=1)
+
+    return invert(poles, numerator, span)
+
+
+def _seen(modes: Pairs, terms: Exponentials, order: int) -> Complex:
+    """Return the weights of the responses, shape (responses, j)."""
+    k, s = terms.mode, terms.rate
+    return (modes.a[:, k] + modes.b[:, k] * s) * s**order * terms.weight
+
+
+def _state(terms: Exponentials, modes: int, time: float) -> tuple[Real, Real]:
+    """Return q and q' of each mode at a time."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        part = terms.weight * np.exp(terms.rate * time)
+        state = [part.real, (part * terms.rate).real]
+    q, v = (np.bincount(terms.mode, each, modes).astype(np.float64) for each in state)
+    return q, v

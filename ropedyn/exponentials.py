@@ -1,0 +1,212 @@
+"""A motion as a sum of exponentials: Re sum_j weight_j e^(rate_j t)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Indices = NDArray[np.intp]
+Numerator = Callable[[Complex, Indices], Complex]
+
+BLOCK = 128
+"""Times whose powers are tabled: a grid of n needs BLOCK + n/BLOCK exponentials of each rate."""
+SLICE = 1 << 16
+"""Exponentials at once where times are not a grid."""
+DIGITS = 38.0
+"""Of circles, as a natural logarithm."""
+CLOSE = 0.5
+"""Poles nearer than this part of what time and decay can tell apart go into one circle."""
+
+
+class Exponentials(NamedTuple):
+    """Terms Re(weight e^(rate t)), each of one mode."""
+
+    rate: Complex
+    """(j,) [1/s]."""
+    weight: Complex
+    """(j,)."""
+    mode: Indices
+    """(j,)."""
+
+
+def rates(sigma: Real, square: Real) -> Complex:
+    """Return the two zeros of s^2 + 2 sigma s + square, shape (k, 2), neither by cancellation."""
+    split = np.sqrt(np.abs(sigma**2 - square))
+    swings = square > sigma**2
+    far = -(sigma + np.copysign(split, sigma))
+    near = np.divide(square, far, out=np.zeros_like(far), where=far != 0)
+    first = np.where(swings, -sigma + 1j * split, near)
+    return np.stack([first, np.where(swings, np.conj(first), far)], axis=1)
+
+
+def invert(poles: Complex, numerator: Numerator, span: float) -> Exponentials:
+    """Return what functions of time have the transforms numerator/prod_i (s - pole_i).
+
+        q(t) = 1/(2 pi i) sum over poles of the integral around them of Q(s) e^(s t) ds
+
+    A simple pole gives one term, its residue. Around poles that nearly or wholly meet residues
+    cancel: the trapezoidal rule on a circle around all of them gives as many terms as it has nodes,
+    and its error falls as a power of their number (L. N. Trefethen, J. A. C. Weideman, SIAM Review
+    56 (2014) 385).
+
+    Parameters
+    ----------
+    poles : ndarray, shape (k, m)
+        Of each mode [1/s], conjugate ones in pairs.
+    numerator : callable
+        Of rates and the mode of each; real at real rates.
+    span : float
+        For how long it is asked for [s].
+    """
+    apart = ~_close(poles, span).any(axis=(1, 2))
+    parts = [_residues(poles, numerator, np.flatnonzero(apart))]
+    for k in np.flatnonzero(~apart):
+        parts.extend(_circled(poles[k], numerator, k, span))
+    rate, weight, mode = (np.concatenate(each) for each in zip(*parts))
+    return Exponentials(rate, weight, mode)
+
+
+def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:
+    """Return Re sum_j coefficient[r, j] e^(rate_j t), shape (r, t); not finite if it overflows."""
+    acts = coefficient.any(axis=0)
+    rate, where = np.unique(rate[acts], return_inverse=True)
+    merged = np.zeros((len(rate), len(coefficient)), dtype=complex)
+    np.add.at(merged, where, coefficient[:, acts].T)
+    with np.errstate(over="ignore", invalid="ignore"):
+        if is_uniform(time):
+            return _on_grid(rate, merged.T, time)
+        return _anywhere(rate, merged.T, time)
+
+
+def is_uniform(time: Real) -> bool:
+    """Say whether times are a grid, up to their rounding."""
+    if len(time) < 2:
+        return False
+    grid = np.linspace(time[0], time[-1], len(time))
+    return bool(np.all(np.abs(time - grid) <= 2 * np.spacing(np.abs(time[-1]))))
+
+
+def _on_grid(rate: Complex, coefficient: Complex, time: Real) -> Real:
+    """Evaluate by blocks: e^(z (a BLOCK + b) h) is a product, the sum over z one of matrices."""
+    h = (time[-1] - time[0]) / (len(time) - 1)
+    blocks = -(-len(time) // BLOCK)
+    start = np.exp(np.multiply.outer(rate, time[0] + h * BLOCK * np.arange(blocks)))
+    within = np.exp(np.multiply.outer(rate, h * np.arange(min(BLOCK, len(time)))))
+    left = (coefficient[:, :, None] * start).transpose(0, 2, 1)
+    left = np.concatenate([left.real, -left.imag], axis=2).reshape(-1, 2 * len(rate))
+    values = left @ np.concatenate([within.real, within.imag])
+    return values.reshape(len(coefficient), -1)[:, : len(time)]
+
+
+def _anywhere(rate: Complex, coefficient: Complex, time: Real) -> Real:
+    out = np.empty((len(coefficient), len(time)))
+    step = max(1, SLICE // max(1, len(rate)))
+    for first in range(0, len(time), step):
+        now = slice(first, first + step)
+        power = np.exp(np.multiply.outer(rate, time[now]))
+        out[:, now] = coefficient.real @ power.real - coefficient.imag @ power.imag
+    return out
+
+
+def _close(poles: Complex, span: float) -> NDArray[np.bool_]:
+    """Say which poles of a mode cancel, shape (k, m, m), the diagonal False."""
+    one, other = poles[..., :, None], poles[..., None, :]
+    close = np.abs(one - other) < CLOSE * _width(one + other, span)
+    diagonal = np.arange(poles.shape[-1])
+    close[..., diagonal, diagonal] = False
+    return close
+
+
+def _width(twice: Complex, span: float) -> Real:
+    """Return how far rates around a mean differ in what they do: over the span, or before decay."""
+    return 1 / span + np.maximum(-twice.real, 0) / 4
+
+
+def _residues(poles: Complex, numerator: Numerator, modes: Indices) -> Exponentials:
+    rate, weight, mode = [], [], []
+    for i in range(poles.shape[1]):
+        pole = poles[modes, i]
+        use = pole.imag >= 0
+        z, k = pole[use], modes[use]
+        others = np.delete(poles[k], i, axis=1)
+        rate.append(z)
+        weight.append(_both(z) * numerator(z, k) / np.prod(z[:, None] - others, axis=1))
+        mode.append(k)
+    return Exponentials(np.concatenate(rate), np.concatenate(weight), np.concatenate(mode))
+
+
+def _both(rate: Complex) -> Real:
+    """Return the share of a term that stands for its conjugate as well."""
+    return np.where(rate.imag > 0, 2.0, 1.0)
+
+
+def _circled(poles: Complex, numerator: Numerator, k: int, span: float) -> list[Exponentials]:
+    """Return the terms of a mode some of whose poles are close."""
+    parts = []
+    for inside in _groups(poles, span):
+        center = poles[inside].mean()
+        if center.imag < 0:
+            continue
+        if inside.sum() == 1:
+            one = np.concatenate([poles[inside], poles[~inside]])[None]
+            at = np.zeros(1, dtype=np.intp)
+            weight = _both(center) * numerator(one[:, 0], at + k)
+            weight /= np.prod(one[0, 0] - one[0, 1:])
+            parts.append(Exponentials(one[:, 0], weight, at + k))
+            continue
+        radius, nodes = _circle(poles, inside, span)
+        angle = 2 * np.pi * (np.arange(nodes) + 0.5) / nodes
+        arm = radius * np.exp(1j * angle if center.imag else 1j * angle[: nodes // 2])
+        at = np.full(len(arm), k)
+        z = center + arm
+        weight = 2 * arm * numerator(z, at) / np.prod(z[:, None] - poles, axis=1) / nodes
+        parts.append(Exponentials(z, weight, at))
+    return parts
+
+
+def _groups(poles: Complex, span: float) -> list[NDArray[np.bool_]]:
+    """Return which poles one circle goes around: those that are close, and what is in its way."""
+    reach = np.linalg.matrix_power(_close(poles, span) + np.eye(len(poles)), len(poles)) > 0
+    while True:
+        groups = list(np.unique(reach, axis=0))
+        for inside in groups:
+            center = poles[inside].mean()
+            inner, outer = _ring(poles, inside)
+            if outer < 1.4 * inner:
+                near = np.abs(poles - center) < 1.4 * inner * (1 + 1e-9)
+                joined = reach[near].any(axis=0) if center.imag == 0 else near | True
+                reach[np.ix_(joined, joined)] = True
+                break
+        else:
+            return groups
+
+
+def _ring(poles: Complex, inside: NDArray[np.bool_]) -> tuple[float, float]:
+    """Return how far the farthest of some poles is from their mean, and the nearest other."""
+    away = np.abs(poles - poles[inside].mean())
+    return float(away[inside].max()), float(away[~inside].min(initial=math.inf))
+
+
+def _circle(poles: Complex, inside: NDArray[np.bool_], span: float) -> tuple[float, int]:
+    """Return the radius of a circle around some poles, and how many nodes it takes.
+
+    With n nodes the poles add (inner/radius)^n and (radius/outer)^n, the exponential its term
+    (radius t)^n/n! of Taylor's series, which decay keeps below (radius/decay)^n.
+    """
+    inner, outer = _ring(poles, inside)
+    center = poles[inside].mean()
+    width = float(_width(2 * center, span))
+    radius = math.sqrt(max(inner, width / 4) * min(outer, 4 * width))
+    ratio = max(inner / radius, radius / outer)
+    nodes = 2 * math.ceil(DIGITS / math.log(1 / ratio) / 2) if ratio > 0 else 2
+    decay = max(-center.real, 0)
+    slow = math.log(decay / radius) if decay > radius else 0.0
+    while max(slow * nodes, math.lgamma(nodes + 1) - nodes * math.log(radius * span)) < DIGITS:
+        nodes += 2
+    return radius, nodes
