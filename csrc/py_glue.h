@@ -93,5 +93,6 @@ PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments);
 PyObject *py_carried(PyObject *module, PyObject *arguments);
 PyObject *py_carried_slopes(PyObject *module, PyObject *arguments);
 PyObject *py_tip(PyObject *module, PyObject *arguments);
+PyObject *py_recurrence(PyObject *module, PyObject *arguments);
 
 #endif

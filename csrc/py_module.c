@@ -39,6 +39,8 @@ static PyMethodDef methods[] = {
     {"carried_slopes", py_carried_slopes, METH_VARARGS,
      "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the "
      "foot"},
+    {"recurrence", py_recurrence, METH_VARARGS,
+     "recurrence(change, seen, length, force, state) -> value, state"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (width, f)"},
     {"sensitivity", py_sensitivity, METH_VARARGS,
      "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +9,9 @@ from .errors import SceneError, SolveError
 from .expansion import Expansion
 from .exponentials import Complex, Exponentials, Indices, evaluate, invert, rates
 from .force import Chirp, Force, Samples, Sum
+from .pair import Pairs, pairs
 from .piece import Piece, pieces
+from .recurrence import straight_lines
 from .truncation import left_out
 
 __all__ = ["convolve", "left_out", "release"]
@@ -20,19 +20,6 @@ Real = NDArray[np.float64]
 
 LARGEST = 1e300
 """What a growing mode may reach."""
-
-
-class Pairs(NamedTuple):
-    """Modes q'' + 2 sigma q' + square q = f that move responses by a q + b q'."""
-
-    sigma: Real
-    """(k,) [1/s]."""
-    square: Real
-    """(k,) [rad^2/s^2]."""
-    a: Real
-    """(responses, k)."""
-    b: Real
-    """(responses, k)."""
 
 
 def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: int) -> Real:
@@ -63,12 +50,12 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
     if isinstance(force, Sum):
         parts = [convolve(expansion, drive, one, time, order) for one in force.forces]
         return np.sum(parts, axis=0)
-    modes = _pairs(expansion, drive)
+    modes = pairs(expansion, drive)
     rest = expansion.rest[drive][:, None]
     if isinstance(force, Chirp):
         raise NotImplementedError
     if isinstance(force, Samples):
-        raise NotImplementedError
+        return checked(straight_lines(modes, rest, force, time, order), time)
     turns = [piece for piece in pieces(force, float(time[0])) if piece.start <= time[-1]]
     return checked(_sines(modes, rest, turns, time, order), time)
 
@@ -81,7 +68,7 @@ def release(expansion: Expansion, drive: int, load: float, time: Real, order: in
     SceneError
         If a mode is rigid or grows: it has no rest under a load.
     """
-    modes = _pairs(expansion, drive)
+    modes = pairs(expansion, drive)
     growing = np.concatenate([expansion.square <= 0, expansion.p >= 0])
     if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():
         raise SceneError("start must be None where the rope has no rest under a load")
@@ -97,17 +84,6 @@ def checked(value: Real, time: Real) -> Real:
         when = float(time[np.argmax(bad)])
         raise SolveError(f"the motion grows beyond {LARGEST:g} until t = {when:g} s")
     return value
-
-
-def _pairs(expansion: Expansion, drive: int) -> Pairs:
-    """Return all modes as pairs: r/(s - p) is r (s - p)/(s - p)^2."""
-    a, b, p, r = expansion.a[drive], expansion.b[drive], expansion.p, expansion.r[drive]
-    return Pairs(
-        np.concatenate([expansion.sigma, -p]),
-        np.concatenate([expansion.square, p * p]),
-        np.concatenate([a, -r * p], axis=1),
-        np.concatenate([b, r], axis=1),
-    )
 
 
 def _sines(modes: Pairs, rest: Real, turns: list[Piece], time: Real, order: int) -> Real:

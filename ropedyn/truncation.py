@@ -126,7 +126,7 @@ def _change_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Chan
     growth = (force.stop - force.start) / force.duration
     w = [2 * math.pi * (force.start + growth * t) for t in (begin, last)]
     c, most = abs(2 * math.pi * growth), max(w)
-    size = [1, most, most**2 + c, most**3 + 3 * most * c]
+    size = [1, most, most**2 + c, most**3 + 3 * most * c, most**4 + 6 * most**2 * c + 3 * c**2]
     ends = abs(force.amplitude) * size[order]
     jump = ends * (2 if last < end else 1)
     return Change(jump, jump + abs(force.amplitude) * size[order + 1] * (last - begin))
