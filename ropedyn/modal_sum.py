@@ -24,7 +24,7 @@ from . import _core, damping
 from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
 from .model import Model
-from .moved_end import is_end
+from .moved_end import refuse_moved_ends
 from .port import Point, is_force
 from .tip import is_tip
 
@@ -83,11 +83,7 @@ def refuse_other_damping(model: Model, drives: Iterable[Point], responses: Itera
             "damping must be modal alone in a frequency response, where other damping couples the "
             f"modes, got {', '.join(others)}"
         )
-    if any(map(is_end, drives)):
-        raise SceneError(
-            "damping must not be modal where an end is moved: a ratio does not say whether it is "
-            "of motion past the ground or past the end"
-        )
+    refuse_moved_ends(drives)
     if any(map(is_tip, responses)):
         raise SceneError(
             "damping must not be modal where the tip of a wire is asked for, whose modes are those "
@@ -178,7 +174,7 @@ def _poles(question: Question) -> Poles:
         raise _too_high(question, f"{wanted} below {REACH:g} times it, more than {MOST}")
     eigenvalue, error = spectrum(model, component, wanted + 1)
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
-    ratio = _ratios(question, eigenvalue)
+    ratio = ratios_of(model, component, eigenvalue)
     known = int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])
     poles = _grouped(eigenvalue, error, ratio[: min(known, wanted)], highest)
     if not poles.beyond > highest:
@@ -196,12 +192,11 @@ def _too_high(question: Question, why: str) -> SolveError:
     )
 
 
-def _ratios(question: Question, eigenvalue: Real) -> Real:
+def ratios_of(model: Model, component: tuple[str, ...], eigenvalue: Real) -> Real:
     """Return the damping ratios: modes are numbered over all components."""
-    model = question.model
     number = np.arange(len(eigenvalue))
     for other in model.components:
-        if other != question.component:
+        if other != component:
             below = _core.count(model.chain.only(other), np.minimum(eigenvalue, HIGHEST))
             number = number + below.astype(np.intp)
     last = int(number.max(initial=-1))

@@ -11,7 +11,7 @@ whatever the spring and the dashpot are: they only keep both away from resonance
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import Chain
+from .errors import SceneError
 from .model import Model
 from .port import Point
 from .unit import END
@@ -34,6 +35,15 @@ Solver = Callable[["Question"], tuple[Complex, Real]]
 def is_end(drive: tuple[Any, ...]) -> bool:
     """Whether the drive is the motion of an end, such as ("end", 0, "z")."""
     return bool(drive[0] == END)
+
+
+def refuse_moved_ends(drives: Iterable[tuple[Any, ...]]) -> None:
+    """Refuse the motion of ends where damping is modal."""
+    if any(map(is_end, drives)):
+        raise SceneError(
+            "damping must not be modal where an end is moved: a ratio does not say whether it is "
+            "of motion past the ground or past the end"
+        )
 
 
 def moves_ends(solver: Solver) -> Solver:
