@@ -23,7 +23,7 @@ from .damping import DASHPOT, INERTIA
 from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
 from .harmonic import SOLVERS, Question
-from .modal_sum import LEAST, MOST, REACH, ratios_of, refuse_other_damping
+from .modal_sum import LEAST, REACH, ratios_of, refuse_other_damping
 from .model import Model
 from .moved_end import is_end, moves_ends
 from .port import Point, is_force, moving
@@ -34,7 +34,7 @@ Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
 
 LARGEST = 1000
-"""Unknowns of a chain all of whose modes are summed where no number is given."""
+"""Unknowns of a chain all of whose modes are summed where no number is given; modes at most."""
 
 WIDER = 3
 """Times the radius is doubled in which all damped modes of a chain are looked for."""
@@ -91,6 +91,7 @@ def expand(
     *,
     modes: int | None = None,
     resolved: float = 0.0,
+    bound: bool = True,
 ) -> tuple[Share, ...]:
     """Expand the transfer functions of each component.
 
@@ -102,9 +103,11 @@ def expand(
         As in `Model.frf`.
     modes : int, optional
         Of each component; where left out all of a chain with at most 1000 unknowns, and else those
-        below eight times the highest angular frequency, 64 at least.
+        below eight times the highest angular frequency, 64 at least and 1000 at most.
     resolved : float
         Highest angular frequency that is of interest [rad/s].
+    bound : bool
+        Whether the bound of what is left out is wanted; it is infinite without.
 
     Raises
     ------
@@ -113,7 +116,7 @@ def expand(
         the motion of an end; or stiffness is damped where an internal force is asked for per motion
         of an end.
     SolveError
-        If there are more than 5000 modes, or where `Model.modes` refuses damped ones.
+        Where `Model.modes` refuses damped ones.
     """
     refuse_hysteresis(model)
     if damping.having(model.scene.dampings, "ratio"):
@@ -123,9 +126,8 @@ def expand(
         d = [k for k, drive in enumerate(drives) if moving(drive) in component]
         r = [k for k, point in enumerate(responses) if _coordinate(model, point) in component]
         if d and r:
-            asked = _Asked(
-                model, component, [drives[k] for k in d], [responses[k] for k in r], modes, resolved
-            )
+            pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
+            asked = _Asked(model, component, pushed, watched, modes, resolved, bound)
             shares.append(Share(component, np.array(d), np.array(r), _expansion(asked)))
     return tuple(shares)
 
@@ -158,6 +160,7 @@ class _Asked:
     responses: list[Point]
     modes: int | None
     resolved: float
+    bound: bool
 
     def at(self, factor: Complex) -> Complex:
         """Return them at the factors (5, n) of the parts, shape (drives, responses, n)."""
@@ -222,17 +225,19 @@ def _eigenvalues(asked: _Asked) -> tuple[_Known, float]:
     elif finite is not None and chain.free <= LARGEST:
         wanted = finite
     else:
-        below = min((REACH * asked.resolved) ** 2, HIGHEST)
-        wanted = max(count_component(model, component, below), LEAST)
-        if wanted > MOST:
-            raise SolveError(
-                f"({', '.join(component)}) has {wanted} modes below {REACH:g} times the highest "
-                f"frequency, {asked.resolved / (2 * np.pi):.6g} Hz, of force and times, more than "
-                f"{MOST}: give modes, a slower force or fewer times"
-            )
+        wanted = min(max(_below(asked), LEAST), LARGEST)
     value, error = spectrum(model, component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
     return _Known(value[:wanted], error[:wanted]), beyond
+
+
+def _below(asked: _Asked) -> int:
+    """Return how many modes there are below eight times what is of interest."""
+    try:
+        below = min((REACH * asked.resolved) ** 2, HIGHEST)
+        return count_component(asked.model, asked.component, below)
+    except SolveError:  # more than can be walked
+        return LARGEST
 
 
 # --- damping in proportion ----------------------------------------------------------------------
@@ -297,6 +302,8 @@ def _bound(asked: _Asked, left: Any) -> Real:
 
     There is no bound of internal forces, tips and motion of ends.
     """
+    if not asked.bound:
+        return np.full((len(asked.drives), len(asked.responses)), np.inf)
     own: dict[Any, float] = {}
     for point in dict.fromkeys([*asked.drives, *asked.responses]):
         plain = not (is_end(point) or is_force(point) or tip.is_tip(point))

@@ -1,0 +1,185 @@
+"""Motion over time as a sum over modes, each of them exact."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time as clock
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .answer import Cost
+from .convolution import convolve, left_out, release
+from .damping import having
+from .deflection import POINTS
+from .eigen import within
+from .energy_balance import balance
+from .errors import SceneError, SolveError
+from .expansion import Expansion, Share, expand
+from .force import Chirp, Force, Impulse, Sine, Sum
+from .history import Balance, Deviation, History
+from .model import Model
+from .progress import reporter
+from .transient import Run
+from .unit import MOTIONS
+
+Real = NDArray[np.float64]
+
+WAVE = 8
+"""Samples of a period that times resolve."""
+
+silent = reporter(None)
+
+
+def superpose(run: Run) -> History:
+    """Sum up the modes of a linear model; see `Model.transient`."""
+    start = clock.perf_counter()
+    drives = [*run.drives, *run.loads]
+    shares = expand(
+        run.model, drives, run.responses, modes=run.modes, resolved=fastest(run.forces, run.time)
+    )
+    value = _responses(run, shares, len(run.responses))
+    x, snapshot = _snapshots(run, drives)
+    seconds = clock.perf_counter() - start
+    truncation = _truncation(run, shares)
+    deviation: Deviation | Callable[[], Deviation]
+    deviation = partial(_deviation, run, value)
+    if run.model.element == "continuous":
+        deviation = Deviation(np.zeros(value.shape), np.zeros(value.shape))
+    source: Callable[[], Balance] = partial(balance, run)
+    return History(
+        drive=run.drives,
+        response=run.responses,
+        quantity=list(MOTIONS)[run.order],
+        coordinates=run.model.coordinates,
+        time=run.time,
+        value=value,
+        force=_forces(run),
+        truncation_error=truncation,
+        snapshot_time=run.snapshots,
+        x=x,
+        snapshot=snapshot,
+        cost=Cost(
+            seconds,
+            "modal",
+            len(run.model.x) - 1,
+            sum(len(s.expansion.sigma) + len(s.expansion.p) for s in shares),
+        ),
+        balance_source=source,
+        deviation_source=deviation,
+    )
+
+
+def fastest(forces: Sequence[Force], time: Real) -> float:
+    """Return the highest angular frequency that forces have or times resolve [rad/s]."""
+    resolved = 2 * math.pi / WAVE * (len(time) - 1) / float(time[-1] - time[0])
+    return max([resolved, *map(_own, forces)])
+
+
+def _own(force: Force) -> float:
+    """Return the highest angular frequency that a force has by itself [rad/s]."""
+    if isinstance(force, Sum):
+        return max(map(_own, force.forces), default=0.0)
+    if isinstance(force, Sine):
+        return 2 * math.pi * force.frequency
+    if isinstance(force, Chirp):
+        return 2 * math.pi * max(force.start, force.stop)
+    if isinstance(force, Impulse) and force.duration > 0:
+        return math.pi / force.duration
+    return 0.0
+
+
+def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
+    """Return what all forces and loads move together, shape (count, t)."""
+    value = np.zeros((count, len(run.time)))
+    given = [*run.forces, *run.loads.values()]
+    for done, share in enumerate(shares):
+        for k, d in enumerate(share.drive):
+            one, at = given[d], int(k)
+            if isinstance(one, float):
+                moved = release(share.expansion, at, one, run.time, run.order)
+            else:
+                moved = convolve(share.expansion, at, one, run.time, run.order)
+            value[share.response] += moved
+            run.progress((done + (k + 1) / len(share.drive)) / len(shares))
+    return value
+
+
+def _forces(run: Run) -> Real:
+    if not run.forces:
+        return np.zeros((0, len(run.time)))
+    return np.stack([force.value(run.time) for force in run.forces])
+
+
+def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
+    """Bound what the modes cause that are left out, shape (responses,)."""
+    error = np.zeros(len(run.responses))
+    given = [*run.forces, *run.loads.values()]
+    for share in shares:
+        expansion = share.expansion
+        ratio = _ratio(run.model, expansion)
+        for k, d in enumerate(share.drive):
+            own, one = expansion.bound[k], given[d]
+            if not own.any() or one == 0.0:
+                continue
+            if isinstance(one, float):  # let go, they swing about 0
+                most = own * abs(one) if run.order == 0 else np.full(len(own), np.inf)
+                error[share.response] += np.where(own > 0, most, 0.0)
+            else:
+                most = left_out(one, run.time, own, expansion.beyond, run.order, ratio=ratio)
+                error[share.response] += np.nan_to_num(most, nan=np.inf, posinf=np.inf)
+    return error
+
+
+def _ratio(model: Model, expansion: Expansion) -> float:
+    """Return the largest damping ratio of the modes that are left out.
+
+    (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.
+    """
+    omega = np.sqrt(np.maximum(expansion.square, 0.0))
+    ratio = np.divide(expansion.sigma, omega, out=np.zeros_like(omega), where=omega > 0)
+    if having(model.scene.dampings, "ratio"):
+        return float(ratio.max(initial=0.0))
+    if not omega.any() or np.isinf(expansion.beyond):
+        return 0.0
+    k = int(omega.argmax())
+    return float(ratio[k] * expansion.beyond / omega[k])
+
+
+def _snapshots(run: Run, drives: list[Any]) -> tuple[Real, Real]:
+    """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
+    model = run.model
+    x = within(model.x, POINTS) if model.element == "continuous" else model.x
+    width = len(model.coordinates)
+    if len(run.snapshots) == 0:
+        return x, np.zeros((0, len(x), width))
+    points = [(c, float(at)) for at in x for c in model.coordinates]
+    shares = expand(
+        model, drives, points, modes=run.modes, resolved=fastest(run.forces, run.time), bound=False
+    )
+    time = np.unique(np.append(run.time[0], run.snapshots))
+    looks = dataclasses.replace(run, time=time, order=0, progress=silent)
+    kept = _responses(looks, shares, len(points))[:, len(time) - len(run.snapshots) :]
+    return x, np.ascontiguousarray(kept.T).reshape(-1, len(x), width)
+
+
+# --- against continuous spans -------------------------------------------------------------------
+
+
+def _deviation(run: Run, value: Real) -> Deviation:
+    """Return the distance to the motion of continuous spans."""
+    step = np.zeros(value.shape)
+    try:
+        model: Model = run.model.scene.compile()
+        true = superpose(
+            dataclasses.replace(
+                run, model=model, modes=None, snapshots=np.zeros(0), progress=silent
+            )
+        )
+    except (SceneError, SolveError):
+        return Deviation(step, np.full(value.shape, np.inf))
+    return Deviation(step, np.abs(value - true.value) + true.truncation_error[:, None])
