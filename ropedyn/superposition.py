@@ -39,9 +39,8 @@ def superpose(run: Run) -> History:
     """Sum up the modes of a linear model; see `Model.transient`."""
     start = clock.perf_counter()
     drives = [*run.drives, *run.loads]
-    shares = expand(
-        run.model, drives, run.responses, modes=run.modes, resolved=fastest(run.forces, run.time)
-    )
+    resolved = fastest(run.forces, run.time)
+    shares = expand(run.model, drives, run.responses, modes=run.modes, resolved=resolved)
     value = _responses(run, shares, len(run.responses))
     x, snapshot = _snapshots(run, drives)
     seconds = clock.perf_counter() - start
@@ -50,7 +49,7 @@ def superpose(run: Run) -> History:
     deviation = partial(_deviation, run, value)
     if run.model.element == "continuous":
         deviation = Deviation(np.zeros(value.shape), np.zeros(value.shape))
-    source: Callable[[], Balance] = partial(balance, run)
+    source: Callable[[], Balance] = partial(balance, run, resolved)
     return History(
         drive=run.drives,
         response=run.responses,
