@@ -36,122 +36,131 @@ MOST = 1 << 21
 """Numbers at a time."""
 
 
-class Circle(NamedTuple):
-    """Around poles with no others in it."""
+class Circles(NamedTuple):
+    """Around poles, with no others in them."""
 
-    center: complex
-    radius: float
-    members: Index
-    """Which poles."""
+    center: Complex
+    """(n,)."""
+    radius: Real
+    """(n,)."""
+    members: list[Index]
+    """Which poles, n arrays."""
+
+    def some(self, which: Index) -> Circles:
+        """Return some of them."""
+        return Circles(self.center[which], self.radius[which], [self.members[k] for k in which])
+
+    @property
+    def size(self) -> NDArray[np.intp]:
+        """How many poles each has in it, shape (n,)."""
+        return np.array([len(one) for one in self.members], dtype=np.intp)
 
 
-def on_a_line(pole: Real, error: Real, beyond: float) -> list[Circle]:
+def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
     """Draw circles around real poles, in order, the next of which is beyond."""
     limit = ALIKE * np.maximum(np.abs(pole[1:]), np.abs(pole[:-1])) + 4 * (error[1:] + error[:-1])
-    groups = np.split(np.arange(len(pole)), np.flatnonzero(np.diff(pole) > limit) + 1)
-    if len(pole) == 0:
-        return []
-    first, last = (np.array([pole[group[k]] for group in groups]) for k in (0, -1))
-    left = first - np.append(-np.inf, last[:-1])
-    right = np.append(first[1:], beyond) - last
-    return [_circle(pole, *one) for one in zip(groups, np.minimum(left, right).tolist())]
+    apart = np.flatnonzero(np.diff(pole) > limit) + 1
+    first = np.append(0, apart)[: len(pole)]
+    last = np.append(apart, len(pole))[: len(pole)] - 1
+    room = np.concatenate([[np.inf], pole[first[1:]] - pole[last[:-1]], [beyond - pole[-1:].sum()]])
+    room = np.minimum(room[:-1], room[1:])[: len(first)]
+    every = np.arange(len(pole))
+    members = [every[i : j + 1] for i, j in zip(first.tolist(), last.tolist())]
+    return _circles(pole, members, room)
 
 
-def in_the_plane(pole: Complex, error: Real, beyond: float) -> list[Circle]:
+def in_the_plane(pole: Complex, error: Real, beyond: float) -> Circles:
     """Draw circles around poles, all there are but for those beyond a modulus."""
     size = np.abs(pole)
-    near = np.abs(pole[:, None] - pole) <= ALIKE * np.maximum.outer(size, size) + 4 * np.add.outer(
-        error, error
-    )
-    left, circles = set(range(len(pole))), []
+    limit = ALIKE * np.maximum.outer(size, size) + 4 * np.add.outer(error, error)
+    near = np.abs(pole[:, None] - pole) <= limit
+    left, members, room = set(range(len(pole))), [], []
     while left:
         own = {min(left)}
         while (more := set(np.flatnonzero(near[sorted(own)].any(axis=0)).tolist())) != own:
             own = more
         left -= own
-        members = np.array(sorted(own))
-        rest = np.delete(pole, members)
-        center = pole[members].mean()
-        room = float(np.abs(rest - center).min(initial=beyond - abs(center)))
-        circles.append(_circle(pole, members, room))
-    return circles
+        members.append(np.array(sorted(own)))
+        center = pole[members[-1]].mean()
+        others = np.abs(np.delete(pole, members[-1]) - center)
+        room.append(float(others.min(initial=beyond - abs(center))))
+    return _circles(pole, members, np.array(room))
 
 
-def _circle(pole: Complex | Real, members: Index, room: float) -> Circle:
-    center = complex(pole[members].mean())
-    spread = float(np.abs(pole[members] - center).max())
-    size = abs(center) if center != 0 else 1.0
-    room = min(room, size) if center != 0 or not np.isfinite(room) else room
-    radius = max(RADIUS * room, np.sqrt(spread * room)) if len(members) > 1 else RADIUS * room
-    return Circle(center, float(radius), members)
+def _circles(pole: Complex | Real, members: list[Index], room: Real) -> Circles:
+    """Draw circles around poles that have so much room."""
+    first = np.array([one[0] for one in members], dtype=np.intp)
+    center, spread = pole[first].astype(np.complex128), np.zeros(len(members))
+    several = [k for k, one in enumerate(members) if len(one) > 1]
+    for k in several:
+        center[k] = pole[members[k]].mean()
+        spread[k] = np.abs(pole[members[k]] - center[k]).max()
+    size = np.abs(center)
+    room = np.where(size > 0, np.minimum(room, size), np.where(np.isfinite(room), room, 1.0))
+    radius = RADIUS * room
+    radius[several] = np.maximum(radius, np.sqrt(spread * room))[several]
+    return Circles(center, radius, members)
 
 
-def moments(function: Function, circles: list[Circle], count: int) -> list[Complex]:
+def moments(function: Function, circles: Circles, count: int, points: int) -> Complex:
     """Return the sums of r_k ((p_k - c)/rho)^j in each circle, j < count.
 
     Parameters
     ----------
     function : callable
         Conjugate at conjugate points.
-    circles : list of Circle
+    circles : Circles
         Of real center together, and others.
     count : int
         How many.
+    points : int
+        Of each circle, even.
 
     Returns
     -------
-    list of ndarray, shape (count, ...)
+    ndarray, shape (circles, count, ...)
     """
-    every: list[Complex] = []
-    points = ALONE if all(len(circle.members) == 1 for circle in circles) else TOGETHER
-    is_real = all(circle.center.imag == 0 for circle in circles)
+    is_real = not circles.center.imag.any()
     half = points // 2 if is_real else points
     t = np.exp(2j * np.pi * (np.arange(half) + 0.5) / points)
+    power = t[:, None] ** np.arange(1, count + 1) / half
+    every: list[Complex] = []
     step, at = 1, 0
-    while at < len(circles):
-        part = circles[at : at + step]
-        radius = np.array([circle.radius for circle in part])[:, None]
-        z = np.array([circle.center for circle in part])[:, None] + radius * t
+    while at < len(circles.center):
+        center, radius = (one[at : at + step, None] for one in circles[:2])
+        z = center + radius * t
         value = function(z.ravel())
-        value = value.reshape(*value.shape[:-1], *z.shape)
-        power = t[:, None] ** np.arange(1, count + 1)
-        mean = radius * (value @ power) / half  # (..., circles, count)
-        mean = np.moveaxis(mean, (-2, -1), (0, 1))
-        every.extend(mean.real.astype(np.complex128) if is_real else mean)
+        mean = radius * (value.reshape(*value.shape[:-1], *z.shape) @ power)
+        every.append(np.moveaxis(mean, (-2, -1), (0, 1)))
         at += step
-        step = max(1, MOST // max(value.size // len(part), 1))
-    return every
+        step = max(1, MOST * len(z) // max(value.size, 1))
+    result: Complex = np.concatenate(every)
+    return np.asarray(result.real, dtype=np.complex128) if is_real else result
 
 
-def residues(function: Function, pole: Complex | Real, circles: list[Circle]) -> Complex:
+def residues(function: Function, pole: Complex | Real, circles: Circles) -> Complex:
     """Return residues whose sum is right, shape (..., poles); poles in no circle have none."""
-    alone = [circle for circle in circles if len(circle.members) == 1]
-    parts: list[tuple[Circle, Complex]] = []
-    for some in _alike(alone):
-        parts += zip(some, moments(function, some, 1))
-    for circle in circles:
-        if len(circle.members) > 1:
-            parts.append((circle, moments(function, [circle], len(circle.members))[0]))
+    count, is_real = circles.size, circles.center.imag == 0
+    parts: list[tuple[Index, Complex]] = []
+    for alone in ((count == 1) & is_real, (count == 1) & ~is_real):
+        if alone.any():
+            some = circles.some(np.flatnonzero(alone))
+            own = moments(function, some, 1, ALONE)[:, 0]
+            parts.append((np.concatenate(some.members), np.moveaxis(own, 0, -1)))
+    for k in np.flatnonzero(count > 1):
+        one = circles.some(np.array([k]))
+        moment = moments(function, one, int(count[k]), TOGETHER)[0]
+        parts.append((circles.members[k], _split(pole, one, moment)))
     assert parts
-    result = np.zeros((*parts[0][1].shape[1:], len(pole)), dtype=np.complex128)
-    for circle, moment in parts:
-        result[..., circle.members] = _split(pole, circle, moment)
+    result = np.zeros((*parts[0][1].shape[:-1], len(pole)), dtype=np.complex128)
+    for members, own in parts:
+        result[..., members] = own
     return result
 
 
-def _alike(circles: list[Circle]) -> list[list[Circle]]:
-    """Part those of real center from the others."""
-    real = [circle for circle in circles if circle.center.imag == 0]
-    other = [circle for circle in circles if circle.center.imag != 0]
-    return [some for some in (real, other) if some]
-
-
-def _split(pole: Complex | Real, circle: Circle, moment: Complex) -> Complex:
+def _split(pole: Complex | Real, circle: Circles, moment: Complex) -> Complex:
     """Return the residues of least size that have these moments, shape (..., members)."""
-    if len(circle.members) == 1:
-        return np.moveaxis(moment, 0, -1)
-    place = (pole[circle.members] - circle.center) / circle.radius
+    place = (pole[circle.members[0]] - circle.center[0]) / circle.radius[0]
     powers = place ** np.arange(len(place))[:, None]
-    flat = moment.reshape(len(moment), -1)
-    own = np.linalg.lstsq(powers, flat, rcond=1e-13)[0]
+    own: Complex = np.linalg.lstsq(powers, moment.reshape(len(moment), -1), rcond=1e-13)[0]
     return np.moveaxis(own.reshape(moment.shape), 0, -1)

@@ -275,11 +275,11 @@ def _closed(
     return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest)
 
 
-def _apart(asked: _Asked, eigenvalue: Real, circles: list[contour.Circle]) -> tuple[Real, Real]:
+def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[Real, Real]:
     """Return residues, (drives, responses, k), and what is left of the response at one place."""
     shape = (len(asked.drives), len(asked.responses))
     a = np.zeros((*shape, len(eigenvalue)))
-    if circles:
+    if len(eigenvalue):
         a = -contour.residues(asked.undamped, eigenvalue, circles).real
     shift = _shift(eigenvalue)
     whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
@@ -391,7 +391,7 @@ Terms = tuple[Real, Real, Real, Real, Real, Real]
 
 
 def _taken(
-    asked: _Asked, rates: Rates, poles: _Poles, circles: list[contour.Circle]
+    asked: _Asked, rates: Rates, poles: _Poles, circles: contour.Circles
 ) -> tuple[Terms, Real]:
     """Return sigma, square, a, b, p, r and what is left."""
     shape = (len(asked.drives), len(asked.responses))
@@ -409,7 +409,7 @@ def _taken(
 def _terms(
     function: contour.Function,
     pole: Complex,
-    circles: list[contour.Circle],
+    circles: contour.Circles,
     shape: tuple[int, int],
 ) -> Terms:
     """Turn residues into real terms.
@@ -417,26 +417,25 @@ def _terms(
     Two real rates, or two that are nearly one, of residues known together alone, are a pair:
     (m_0 (s - c) + m_1 rho - m_0 (d_1 + d_2))/((s - p_1)(s - p_2)), p = c + d.
     """
-    upper = [circle for circle in circles if circle.center.imag >= 0]
-    joined = [circle for circle in upper if _is_pair(pole, circle)]
-    others = [circle for circle in upper if not _is_pair(pole, circle)]
-    R = contour.residues(function, pole, others) if others else None
+    upper, is_pair = circles.center.imag >= 0, _is_pair(pole, circles)
+    joined, others = (np.flatnonzero(upper & one) for one in (is_pair, ~is_pair))
     pairs: list[tuple[float, float, Real, Real]] = []
-    for circle in joined:
-        m0, m1 = contour.moments(function, [circle], 2)[0].real
-        p = pole[circle.members] if len(circle.members) == 2 else np.zeros(2)
+    for k in joined:
+        one = circles.some(np.array([k]))
+        m0, m1 = contour.moments(function, one, 2, contour.TOGETHER)[0].real
+        p = pole[one.members[0]] if len(one.members[0]) == 2 else np.zeros(2)
         total, product = float(p.sum().real), float(p.prod().real)
-        pairs.append((-total / 2, product, m1 * circle.radius - m0 * circle.center.real, m0))
+        a = m1 * one.radius[0] - m0 * one.center[0].real
+        pairs.append((-total / 2, product, a, m0))
     real: list[tuple[float, Real]] = []
-    for circle in others:
-        for k in circle.members:
-            assert R is not None
-            own = R[..., k]
-            if pole[k].imag > 0:
-                a, b = -2 * (own * pole[k].conj()).real, 2 * own.real
-                pairs.append((-pole[k].real, abs(pole[k]) ** 2, a, b))
-            elif pole[k].imag == 0:
-                real.append((pole[k].real, own.real))
+    R = contour.residues(function, pole, circles.some(others)) if len(others) else np.zeros(0)
+    for k in np.concatenate([circles.members[i] for i in others]) if len(others) else ():
+        own = R[..., k]
+        if pole[k].imag > 0:
+            a, b = -2 * (own * pole[k].conj()).real, 2 * own.real
+            pairs.append((-pole[k].real, abs(pole[k]) ** 2, a, b))
+        elif pole[k].imag == 0:
+            real.append((pole[k].real, own.real))
 
     def stacked(arrays: list[Real]) -> Real:
         return np.stack(arrays, axis=-1) if arrays else np.zeros((*shape, 0))
@@ -451,8 +450,7 @@ def _terms(
     )
 
 
-def _is_pair(pole: Complex, circle: contour.Circle) -> bool:
-    """Whether a circle on the real axis holds two rates, or rigid motion."""
-    if circle.center.imag != 0:
-        return False
-    return len(circle.members) == 2 or bool((pole[circle.members] == 0).all())
+def _is_pair(pole: Complex, circles: contour.Circles) -> NDArray[np.bool_]:
+    """Whether each circle lies on the real axis and holds two rates, or rigid motion."""
+    still = np.array([bool((pole[one] == 0).all()) for one in circles.members], dtype=np.bool_)
+    return np.asarray((circles.center.imag == 0) & (still | (circles.size == 2)))

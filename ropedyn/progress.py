@@ -19,12 +19,16 @@ def reporter(progress: Progress) -> Callable[[float], Any]:
         If `progress` is none of None, True, False and callable.
     """
     if progress is None or progress is False:
-        return lambda fraction: None
+        return silent
     if progress is True:
         return _print
     if not callable(progress):
         raise TypeError(f"progress must be None, True or callable, got {progress!r}")
     return progress
+
+
+def silent(fraction: float) -> None:
+    """Take it and say nothing."""
 
 
 def _print(fraction: float) -> None:

@@ -21,9 +21,9 @@ from .energy_balance import balance
 from .errors import SceneError, SolveError
 from .expansion import Expansion, Share, expand
 from .force import Chirp, Force, Impulse, Sine, Sum
-from .history import Balance, Deviation, History
+from .history import Deviation, History
 from .model import Model
-from .progress import reporter
+from .progress import silent
 from .transient import Run
 from .unit import MOTIONS
 
@@ -31,8 +31,6 @@ Real = NDArray[np.float64]
 
 WAVE = 8
 """Samples of a period that times resolve."""
-
-silent = reporter(None)
 
 
 def superpose(run: Run) -> History:
@@ -45,11 +43,11 @@ def superpose(run: Run) -> History:
     x, snapshot = _snapshots(run, drives)
     seconds = clock.perf_counter() - start
     truncation = _truncation(run, shares)
-    deviation: Deviation | Callable[[], Deviation]
-    deviation = partial(_deviation, run, value)
+    # what is computed later says nothing, and pickles
+    run = dataclasses.replace(run, progress=silent)
+    deviation: Deviation | Callable[[], Deviation] = partial(_deviation, run, value)
     if run.model.element == "continuous":
         deviation = Deviation(np.zeros(value.shape), np.zeros(value.shape))
-    source: Callable[[], Balance] = partial(balance, run, resolved)
     return History(
         drive=run.drives,
         response=run.responses,
@@ -68,7 +66,7 @@ def superpose(run: Run) -> History:
             len(run.model.x) - 1,
             sum(len(s.expansion.sigma) + len(s.expansion.p) for s in shares),
         ),
-        balance_source=source,
+        balance_source=partial(balance, run, resolved),
         deviation_source=deviation,
     )
 
@@ -174,11 +172,7 @@ def _deviation(run: Run, value: Real) -> Deviation:
     step = np.zeros(value.shape)
     try:
         model: Model = run.model.scene.compile()
-        true = superpose(
-            dataclasses.replace(
-                run, model=model, modes=None, snapshots=np.zeros(0), progress=silent
-            )
-        )
+        true = superpose(dataclasses.replace(run, model=model, modes=None, snapshots=np.zeros(0)))
     except (SceneError, SolveError):
         return Deviation(step, np.full(value.shape, np.inf))
     return Deviation(step, np.abs(value - true.value) + true.truncation_error[:, None])
