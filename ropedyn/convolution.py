@@ -10,8 +10,9 @@ from .expansion import Expansion
 from .exponentials import Complex, Exponentials, Indices, evaluate, invert, rates
 from .force import Chirp, Force, Samples, Sum
 from .pair import Pairs, pairs
-from .piece import Piece, pieces
+from .piece import Piece, pieces, sine
 from .recurrence import straight_lines
+from .swept import chirping, is_steady, while_it_lasts
 from .truncation import left_out
 
 __all__ = ["convolve", "left_out", "release"]
@@ -53,11 +54,10 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
     modes = pairs(expansion, drive)
     rest = expansion.rest[drive][:, None]
     if isinstance(force, Chirp):
-        raise NotImplementedError
+        return checked(_chirp(modes, rest, force, time, order), time)
     if isinstance(force, Samples):
         return checked(straight_lines(modes, rest, force, time, order), time)
-    turns = [piece for piece in pieces(force, float(time[0])) if piece.start <= time[-1]]
-    return checked(_sines(modes, rest, turns, time, order), time)
+    return checked(_sines(modes, rest, pieces(force, float(time[0])), time, order), time)
 
 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
@@ -86,10 +86,30 @@ def checked(value: Real, time: Real) -> Real:
     return value
 
 
+def _chirp(modes: Pairs, rest: Real, force: Chirp, time: Real, order: int) -> Real:
+    """Return the responses to a chirp: while it lasts, and free after it."""
+    begin, end = float(time[0]), force.duration
+    if begin >= end:
+        return np.zeros((len(rest), len(time)))
+    now = chirping(force, begin)
+    span = min(end, float(time[-1])) - begin
+    if is_steady(now, span):
+        turns = [sine(begin, now.frequency, now.amplitude, now.phase), Piece(end)]
+        return _sines(modes, rest, turns, time, order)
+    last = np.searchsorted(time, end)
+    value = np.zeros((len(rest), len(time)))
+    value[:, :last], *state = while_it_lasts(modes, rest, now, time[:last] - begin, span, order)
+    if last < len(time):
+        terms = _motion(modes, Piece(end), *state, time[-1] - end or span)
+        value[:, last:] = evaluate(terms.rate, _seen(modes, terms, order), time[last:] - end)
+    return value
+
+
 def _sines(modes: Pairs, rest: Real, turns: list[Piece], time: Real, order: int) -> Real:
     """Return the responses to pieces of sines."""
     value = np.zeros((len(rest), len(time)))
     q = v = np.zeros_like(modes.sigma)
+    turns = [piece for piece in turns if piece.start <= time[-1]]
     for piece, following in zip(turns, [*turns[1:], None]):
         stop = time[-1] if following is None else following.start
         last = len(time) if following is None else np.searchsorted(time, stop)

@@ -41,7 +41,7 @@ def pieces(force: Force, begin: float) -> list[Piece]:
     """Return what acts from a time on, in turn."""
     if isinstance(force, Sine):
         w = 2 * math.pi * force.frequency
-        return [_sine(begin, w, force.amplitude, w * begin + force.phase)]
+        return [sine(begin, w, force.amplitude, w * begin + force.phase)]
     if isinstance(force, Step):
         return [Piece(max(force.time, begin), cosine=force.amplitude)]
     assert isinstance(force, Impulse)
@@ -51,9 +51,9 @@ def pieces(force: Force, begin: float) -> list[Piece]:
     if end <= begin:
         return []
     w = math.pi / force.duration
-    return [_sine(start, w, force.amplitude, w * (start - force.time)), Piece(end)]
+    return [sine(start, w, force.amplitude, w * (start - force.time)), Piece(end)]
 
 
-def _sine(start: float, w: float, amplitude: float, phase: float) -> Piece:
+def sine(start: float, w: float, amplitude: float, phase: float) -> Piece:
     """Return amplitude sin(w (t - start) + phase)."""
     return Piece(start, w, amplitude * math.sin(phase), amplitude * math.cos(phase))

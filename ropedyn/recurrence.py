@@ -108,15 +108,26 @@ def _series(sigma: Real, square: Real, h: Real) -> Real:
 
 
 def _inverted(sigma: Real, square: Real, h: Real) -> Real:
-    """Invert 1, 1/s and 1/s^2 times the transform of S."""
+    """Invert 1, 1/s and 1/s^2 times the transform of S; R'' + 2 sigma R' + square R = h as well."""
     result = np.zeros((3, len(h), len(sigma)))
     own = rates(sigma, square)
-    for k in range(3 if len(sigma) else 0):
-        poles = np.concatenate([own, np.zeros((len(own), k))], axis=1)
+    for k in range(2):
+        result[k] = _inverted_over(own, k, h)
+    slow = np.abs(own).min(axis=1) * h.min() < SHORT / 2
+    result[2][:, slow] = _inverted_over(own[slow], 2, h)
+    S, P = result[:2, :, ~slow]
+    result[2][:, ~slow] = (h[:, None] - 2 * sigma[~slow] * P - S) / square[~slow]
+    return result
+
+
+def _inverted_over(own: Complex, power: int, h: Real) -> Real:
+    """Invert 1/s^power of each mode's own, shape (h, k)."""
+    result = np.zeros((len(h), len(own)))
+    if len(own):
+        poles = np.concatenate([own, np.zeros((len(own), power))], axis=1)
         terms = invert(poles, _one, float(h.max()))
-        for j in range(len(sigma)):
-            use = terms.mode == j
-            result[k, :, j] = (np.exp(np.outer(h, terms.rate[use])) @ terms.weight[use]).real
+        parts = (np.exp(np.multiply.outer(h, terms.rate)) * terms.weight).real
+        np.add.at(result.T, terms.mode, parts.T)
     return result
 
 
