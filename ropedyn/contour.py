@@ -162,5 +162,5 @@ def _split(pole: Complex | Real, circle: Circles, moment: Complex) -> Complex:
     """Return the residues of least size that have these moments, shape (..., members)."""
     place = (pole[circle.members[0]] - circle.center[0]) / circle.radius[0]
     powers = place ** np.arange(len(place))[:, None]
-    own: Complex = np.linalg.lstsq(powers, moment.reshape(len(moment), -1), rcond=1e-13)[0]
-    return np.moveaxis(own.reshape(moment.shape), 0, -1)
+    own = np.linalg.lstsq(powers, moment.reshape(len(moment), -1), rcond=1e-13)[0]
+    return np.asarray(np.moveaxis(own.reshape(moment.shape), 0, -1), dtype=np.complex128)

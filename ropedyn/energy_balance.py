@@ -7,7 +7,8 @@ A mode that a force of 1 at the drive d moves by phi_d eta_d has r = phi_d phi_e
     input      integral of f_d (r_de eta_e' + rest_de y_e'),
 
 y = f where what is left out of the modes follows at once, and y + gamma y' = f where stiffness is
-damped. Integrals are Gauss's, between all that jumps, of pieces below the fastest mode's period.
+damped; without blows at an instant, which would put infinite energy there. Integrals are Gauss's,
+between all that jumps, of pieces below the fastest mode's period.
 """
 
 from __future__ import annotations
@@ -119,13 +120,10 @@ class Driven:
 
     def _power(self, time: Real) -> Real:
         """Return what forces do to the modes, and to what lags."""
-        modes = self.own._replace(rest=np.zeros_like(self.rest))
-        if not self.lag:
-            modes = modes._replace(p=np.zeros(0), r=np.zeros((*self.rest.shape, 0)))
-        velocity = np.zeros((len(self.given), len(time) + 1))
         since = np.append(self.time[0], time)
-        for d, one in enumerate(self.given):
-            velocity += _moved(modes, d, one, since, 1)
+        velocity = self._velocity(since)
+        if self.lag:
+            velocity = velocity + self.rest @ self._rest(since, 1)
         return np.asarray((self._force(time) * velocity[:, 1:]).sum(axis=0))
 
     def _loss(self, time: Real) -> Real:
@@ -139,6 +137,13 @@ class Driven:
             y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
             lost += self.lag * np.einsum("de,dt,et->t", self.rest, y, y)
         return lost
+
+    def _velocity(self, time: Real) -> Real:
+        """Return what the modes have of the velocity of each drive, (drives, t)."""
+        shape = self.rest.shape
+        modes = self.own._replace(rest=np.zeros(shape), p=np.zeros(0), r=np.zeros((*shape, 0)))
+        moved = [_moved(modes, d, one, time, 1) for d, one in enumerate(self.given)]
+        return np.asarray(np.sum(moved, axis=0))
 
     def _modes(self, part: slice, time: Real, order: int) -> Real:
         """Return the motion of each mode per drive, (drives, modes, t)."""
@@ -154,7 +159,7 @@ class Driven:
             return self._force(time)
         p = np.array([-1 / self.lag])
         unit = _nothing(0, 1)._replace(p=p, r=np.full((1, 1, 1), 1 / self.lag))
-        return np.stack([_moved(unit, 0, one, time, order)[0] for one in self.given])
+        return np.stack([_moved(unit, 0, _smooth(one), time, order)[0] for one in self.given])
 
     def _force(self, time: Real) -> Real:
         still = np.zeros(len(time))
@@ -167,7 +172,8 @@ class Driven:
         jumps = [at for force in self.given for at in _jumps(force)]
         inside = [at for at in jumps if self.time[0] < at < self.time[-1]]
         edges = np.unique(np.concatenate([self.time, inside]))
-        fastest = float(np.sqrt(np.abs(self.own.square).max(initial=0.0)))
+        own, lag = self.own, 1 / self.lag if self.lag else 0.0
+        fastest = max(lag, *(np.sqrt(np.abs(own.square)) + own.sigma).tolist(), 0.0)
         parts = np.ceil(np.diff(edges) * fastest / RADIANS).astype(np.intp) + 1
         step = np.repeat(np.diff(edges) / parts, parts)
         first = np.repeat(np.cumsum(parts) - parts, parts)
@@ -178,8 +184,7 @@ class Driven:
         for k in range(0, len(step), most):
             some = slice(k, k + most)
             at = begin[some, None] + step[some, None] * (node + 1) / 2
-            own = power(at.ravel()).reshape(at.shape)
-            sums[some] = own @ weight * step[some] / 2
+            sums[some] = power(at.ravel()).reshape(at.shape) @ weight * step[some] / 2
         total = np.concatenate([[0.0], np.cumsum(sums)])[np.append(0, np.cumsum(parts))]
         return np.asarray(total[np.searchsorted(edges, self.time)])
 
@@ -188,20 +193,21 @@ class Driven:
         blows: dict[float, Real] = {}
         for d, force in enumerate(self.given):
             for one in _parts(force):
-                if isinstance(one, Impulse) and one.duration == 0 and one.time >= self.time[0]:
+                if isinstance(one, Impulse) and _is_blow(one) and one.time >= self.time[0]:
                     kick = blows.setdefault(one.time, np.zeros(len(self.given)))
                     kick[d] += one.impulse
         total, r = np.zeros(len(self.time)), self.own.a.sum(axis=-1)
-        modes = self.own._replace(rest=np.zeros_like(self.rest))
         for when, kick in blows.items():
             since = np.array([self.time[0], when]) if when > self.time[0] else self.time[:2]
             at = int(when > self.time[0])
-            after = sum(_moved(modes, d, f, since, 1)[:, at] for d, f in enumerate(self.given))
+            after = self._velocity(since)[:, at]
             total[self.time >= when] += kick @ (after - r @ kick / 2)
         return total
 
 
 def _moved(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:
+    if not isinstance(given, float) and not _parts(given):
+        return np.zeros((expansion.rest.shape[1], len(time)))
     if isinstance(given, float):
         return release(expansion, drive, given, time, order)
     return convolve(expansion, drive, given, time, order)
@@ -218,6 +224,16 @@ def _nothing(modes: int, responses: int) -> Expansion:
 
 def _blocks(count: int) -> list[slice]:
     return [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
+
+
+def _smooth(force: Force | float) -> Force | float:
+    """Return a force without blows at an instant."""
+    parts = tuple(one for one in _parts(force) if not _is_blow(one))
+    return force if isinstance(force, float) else Sum(parts)
+
+
+def _is_blow(force: Force) -> bool:
+    return isinstance(force, Impulse) and force.duration == 0
 
 
 def _parts(force: Force | float) -> list[Force]:

@@ -1,0 +1,362 @@
+"""Motion over time by modes, against closed forms and exponentials of assembled matrices."""
+
+import pickle
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+import ropedyn as rd
+
+LENGTH, DENSITY, TENSION = 1.3, 0.1, 100.0
+SPEED = np.sqrt(TENSION / DENSITY)
+STRING = rd.Rope(LENGTH, DENSITY)
+ROPE = rd.Rope(LENGTH, DENSITY, bending_stiffness=0.8)
+TIME = np.array([0.0, 0.0013, 0.013, 0.02, 0.05, 0.2])
+
+
+def sines(x, count):
+    """Shapes of a string or a pinned beam at x, modal mass 1, and wave numbers."""
+    k = np.arange(1, count + 1) * np.pi / LENGTH
+    return np.sqrt(2 / LENGTH / DENSITY) * np.sin(k * x), k
+
+
+# --- against closed forms -----------------------------------------------------------------------
+
+
+def test_plucked_string_is_two_waves():
+    """d'Alembert: half of the triangle goes to the left and half to the right."""
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    at, load = 0.4, 2.0
+    time = np.linspace(0.0, 3 * LENGTH / SPEED, 200)
+    history = model.transient(time, start={("z", at): load}, response=[("z", 0.9), ("z", at)])
+
+    def triangle(x):
+        x = np.mod(x, 2 * LENGTH)
+        odd = np.where(x > LENGTH, -1.0, 1.0)
+        x = np.where(x > LENGTH, 2 * LENGTH - x, x)
+        shape = np.minimum(x * (LENGTH - at), at * (LENGTH - x)) / LENGTH
+        return odd * load / TENSION * shape
+
+    for x, value, most in zip((0.9, at), history.value, history.truncation_error):
+        exact = (triangle(x - SPEED * time) + triangle(x + SPEED * time)) / 2
+        assert np.abs(value - exact).max() <= most * (1 + 1e-9)  # it is attained at t = 0
+        assert most < 1e-2 * np.abs(exact).max()
+    more = model.transient(time, start={("z", at): load}, response=("z", 0.9), modes=250)
+    assert more.truncation_error[0] < history.truncation_error[0]
+
+
+def test_plucked_string_is_its_sines():
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    history = model.transient(TIME, start={("z", 0.4): 2.0}, response=("z", 0.9), modes=30)
+    (a, k), (b, _) = sines(0.4, 30), sines(0.9, 30)
+    w = SPEED * k
+    exact = 2.0 * (a * b / w**2) @ np.cos(np.outer(w, TIME))
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-12 * np.abs(exact).max())
+    assert history.cost.unknowns == 30
+
+
+def oscillated(w, decay, drive, time):
+    """A mode at rest under sin(drive t): damped, with p = -decay +- i sqrt(w^2 - decay^2)."""
+    steady = 1 / (w**2 - drive**2 + 2j * decay * drive)
+    p = -decay + 1j * np.sqrt(w**2 - decay**2)
+    # q = Im(steady e^(i drive t)) + Re(c e^(pt)), q(0) = q'(0) = 0
+    start, slope = steady.imag, (1j * drive * steady).imag
+    c = -start + 1j * (slope - p.real * start) / p.imag
+    return (steady * np.exp(1j * drive * time)).imag + (c * np.exp(p * time)).real
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.05])
+def test_mass_on_a_string_is_an_oscillator(ratio):
+    mass, drive = 0.5, 2 * np.pi * 3.0
+    w = np.sqrt(4 * TENSION / LENGTH / mass)
+    dashpot = [rd.Dashpot(LENGTH / 2, 2 * ratio * w * mass)] if ratio else []
+    parts = [rd.PointMass(LENGTH / 2, mass), *dashpot]
+    scene = rd.Scene(rd.Rope(LENGTH, 1e-14), tension=TENSION, parts=parts)
+    middle = ("z", LENGTH / 2)
+    model = scene.compile(elements=2)
+    history = model.transient(TIME, drive=middle, force=rd.Sine(0.7, 3.0))
+    exact = 0.7 / mass * oscillated(w, ratio * w, drive, TIME)
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-11 * np.abs(exact).max())
+
+
+def test_string_under_a_sine_is_the_sum_of_its_modes_and_the_static_rest():
+    model = rd.Scene(STRING, tension=TENSION, damping=rd.ViscousDamping(0.3)).compile()
+    history = model.transient(
+        TIME, drive=("z", 0.4), force=rd.Sine(0.7, 20.0), response=("z", 0.9), modes=25
+    )
+    (a, k), (b, _) = sines(0.4, 25), sines(0.9, 25)
+    w = SPEED * k
+    motion = np.stack([oscillated(one, 0.3 / DENSITY / 2, 40 * np.pi, TIME) for one in w])
+    rest = 0.4 * 0.4 / LENGTH / TENSION - (a * b / w**2).sum()
+    exact = 0.7 * (a * b @ motion + rest * np.sin(40 * np.pi * TIME))
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-11 * np.abs(exact).max())
+    every = model.transient(
+        TIME, drive=("z", 0.4), force=rd.Sine(0.7, 20.0), response=("z", 0.9), modes=400
+    )
+    assert np.abs(every.value - history.value).max() <= history.truncation_error[0]
+
+
+def test_static_motion_of_the_modes_left_out_brings_the_sum_nearer():
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    asked = {"drive": ("z", 0.4), "force": rd.Sine(0.7, 20.0)}
+    few = model.transient(TIME, **asked, modes=5).value[0]
+    every = model.transient(TIME, **asked, modes=300).value[0]
+    a, k = sines(0.4, 5)
+    motion = np.stack([oscillated(SPEED * one, 0.0, 40 * np.pi, TIME) for one in k])
+    alone = 0.7 * a * a @ motion
+    assert np.abs(few - every).max() < 0.1 * np.abs(alone - every).max()
+
+
+def test_beam_under_a_step_swings_to_twice_its_deflection():
+    beam = rd.Rope(LENGTH, DENSITY, bending_stiffness=2.0)
+    model = rd.Scene(beam, ends=("pinned", "pinned")).compile()
+    begin = 0.004
+    history = model.transient(
+        TIME, drive=("z", 0.4), force=rd.Step(3.0, time=begin), response=("z", 0.9), modes=20
+    )
+    (a, k), (b, _) = sines(0.4, 20), sines(0.9, 20)
+    w = k**2 * np.sqrt(2.0 / DENSITY)
+    since = np.maximum(TIME - begin, 0.0)
+    rest = model.static({("z", 0.4): 1.0}, points=13).displacement[9, 0] - (a * b / w**2).sum()
+    exact = 3.0 * (a * b / w**2 @ (1 - np.cos(np.outer(w, since))) + rest * (begin <= TIME))
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-10 * np.abs(exact).max())
+
+
+def test_string_moved_at_its_end_carries_the_wave():
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    before = np.linspace(0.0, (2 * LENGTH - 0.6) / SPEED, 40)  # that is reflected comes back
+    force = rd.Sine(0.01, 30.0)
+    history = model.transient(
+        before, drive=("end", 0, "z"), force=force, response=("z", 0.6), modes=400
+    )
+    since = np.maximum(before - 0.6 / SPEED, 0.0)
+    exact = 0.01 * np.sin(60 * np.pi * since)
+    # a kink of the slope 60 pi has the series sum of 2/(pi n^2): what is left of it after 400
+    assert np.abs(history.value[0] - exact).max() < 60 * LENGTH / SPEED * 2 / np.pi / 400 * 0.01 * 2
+    assert history.truncation_error[0] == np.inf
+    assert (history.force[0] == 0.01 * np.sin(60 * np.pi * before)).all()
+
+
+def test_string_moved_at_its_end_is_the_sum_of_its_modes():
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    history = model.transient(
+        TIME, drive=("end", 1, "z"), force=rd.Sine(0.01, 30.0), response=("z", 0.6), modes=15
+    )
+    b, k = sines(0.6, 15)
+    w = SPEED * k
+    # the force of the shape on the end: -T phi'(L)
+    pull = -TENSION * np.sqrt(2 / LENGTH / DENSITY) * k * np.cos(k * LENGTH)
+    motion = np.stack([oscillated(one, 0.0, 60 * np.pi, TIME) for one in w])
+    rest = 0.6 / LENGTH - (pull * b / w**2).sum()
+    exact = 0.01 * (pull * b @ motion + rest * np.sin(60 * np.pi * TIME))
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-9 * np.abs(exact).max())
+
+
+def test_free_rope_under_a_force_moves_off_as_a_body():
+    scene = rd.Scene(ROPE, ends=("free", "free"))
+    x = ("z", LENGTH / 2)
+    history = scene.compile(elements=16).transient([0.0, 50.0], drive=x, force=rd.Step(1.0))
+    fall = 0.5 * 50.0**2 / (LENGTH * DENSITY)
+    assert history.value[0, 1] == pytest.approx(fall, abs=0.1)  # the rest swings by as much
+    with pytest.raises(rd.SceneError, match="no rest under a load"):
+        scene.compile(elements=16).transient([0.0, 1.0], start={x: 1.0}, response=x)
+
+
+# --- against exponentials of matrices -----------------------------------------------------------
+
+
+class Dense:
+    """The assembled chain as a first-order system, what has no mass condensed."""
+
+    def __init__(self, model):
+        self.model = model
+        K, M, C = (one().toarray() for one in (model.stiffness, model.mass, model.damping))
+        moves = (np.abs(M).sum(axis=1) + np.abs(C).sum(axis=1)) > 0
+        still = ~moves
+        K, self.whole = self._condensed(K, moves, still), K
+        self.M, self.C, self.K = M[np.ix_(moves, moves)], C[np.ix_(moves, moves)], K
+        self.moves, n = np.flatnonzero(moves), moves.sum()
+        solved = np.linalg.solve(self.M, np.hstack([self.K, self.C]))
+        self.A = np.block([[np.zeros((n, n)), np.eye(n)], [-solved]])
+
+    @staticmethod
+    def _condensed(K, moves, still):
+        follows = np.linalg.solve(K[np.ix_(still, still)], K[np.ix_(still, moves)])
+        return K[np.ix_(moves, moves)] - K[np.ix_(moves, still)] @ follows
+
+    def of(self, x):
+        """Which state is z at x."""
+        free = self.model.chain.held[self.model.chain.term_of] == 0
+        number = np.cumsum(free.ravel()).reshape(free.shape) - 1
+        row = number[np.abs(self.model.x - x).argmin(), self.model.coordinates.index("z")]
+        return int(np.flatnonzero(self.moves == row)[0])
+
+    def under_a_sine(self, x, frequency, time):
+        """Motion, velocity and acceleration, each (n, t), from rest under sin."""
+        n, w = len(self.K), 2 * np.pi * frequency
+        big = np.zeros((2 * n + 2, 2 * n + 2))
+        big[: 2 * n, : 2 * n] = self.A
+        big[n : 2 * n, 2 * n] = np.linalg.solve(self.M, np.eye(n)[self.of(x)])
+        big[2 * n, 2 * n + 1], big[2 * n + 1, 2 * n] = w, -w
+        start = np.append(np.zeros(2 * n + 1), 1.0)
+        state = np.stack([scipy.linalg.expm(big * t) @ start for t in time], axis=1)
+        return state[:n], state[n : 2 * n], (big @ state)[n : 2 * n]
+
+    def let_go(self, x, time):
+        """Motion after a load of 1."""
+        n = len(self.K)
+        start = np.append(np.linalg.solve(self.K, np.eye(n)[self.of(x)]), np.zeros(n))
+        return np.stack([scipy.linalg.expm(self.A * t) @ start for t in time], axis=1)[:n]
+
+
+CHAINS = {
+    "string": rd.Scene(STRING, tension=TENSION),
+    "rope": rd.Scene(ROPE, tension=TENSION),
+    "rope with a dashpot": rd.Scene(
+        ROPE, tension=TENSION, parts=[rd.Dashpot(LENGTH / 3, 1.0), rd.PointMass(LENGTH / 2, 0.2)]
+    ),
+    "overdamped string": rd.Scene(STRING, tension=TENSION, parts=[rd.Dashpot(LENGTH / 3, 20.0)]),
+    "drag": rd.Scene(ROPE, tension=TENSION, damping=rd.ViscousDamping(0.4)),
+    "rayleigh": rd.Scene(STRING, tension=TENSION, damping=rd.RayleighDamping(0.4, 1e-4)),
+}
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_all_modes_of_a_chain_are_the_exponential_of_its_matrices(name):
+    model = CHAINS[name].compile(elements=12)
+    dense, pushed, seen = Dense(model), model.x[4], model.x[6]
+    exact = dense.under_a_sine(pushed, 20.0, TIME)
+    asked = {"drive": ("z", pushed), "response": ("z", seen)}
+    for quantity, one in zip(("displacement", "velocity", "acceleration"), exact):
+        history = model.transient(TIME, **asked, force=rd.Sine(1.0, 20.0), quantity=quantity)
+        motion = one[dense.of(seen)]
+        np.testing.assert_allclose(history.value[0], motion, atol=1e-10 * np.abs(motion).max())
+        assert history.truncation_error[0] == 0
+    history = model.transient(TIME, start={("z", pushed): 0.4}, response=("z", seen))
+    one = 0.4 * dense.let_go(pushed, TIME)[dense.of(seen)]
+    np.testing.assert_allclose(history.value[0], one, atol=1e-10 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_chains_are_the_exponentials_of_their_matrices(seed):
+    """Masses, springs and dashpots at some of the nodes of equal elements."""
+    random = np.random.default_rng(seed)
+    nodes = np.linspace(0.0, LENGTH, 13)[1:-1]
+    parts = []
+    for x in random.choice(nodes, 4, replace=False):
+        kind = random.integers(3)
+        parts.append(
+            rd.PointMass(x, 10 ** random.uniform(-3, 0))
+            if kind == 0
+            else rd.Spring(x, 10 ** random.uniform(0, 4))
+            if kind == 1
+            else rd.Dashpot(x, 10 ** random.uniform(-2, 1))
+        )
+    scene = rd.Scene(ROPE, tension=10 ** random.uniform(0, 3), parts=parts)
+    model = scene.compile(elements=12)
+    dense, pushed, seen = Dense(model), *random.choice(model.x[1:-1], 2)
+    exact = dense.under_a_sine(pushed, 20.0, TIME)[0][dense.of(seen)]
+    history = model.transient(
+        TIME, drive=("z", pushed), force=rd.Sine(1.0, 20.0), response=("z", seen)
+    )
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-10 * np.abs(exact).max())
+
+
+# --- what else an answer says -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["rope", "drag", "rayleigh"])
+def test_energy_is_that_of_the_matrices(name):
+    model = CHAINS[name].compile(elements=12)
+    dense, pushed = Dense(model), model.x[4]
+    u, v, _ = dense.under_a_sine(pushed, 20.0, TIME)
+    energy = model.transient(TIME, drive=("z", pushed), force=rd.Sine(1.0, 20.0)).energy
+    kinetic = np.einsum("it,ij,jt->t", v, dense.M, v) / 2
+    strain = np.einsum("it,ij,jt->t", u, dense.K, u) / 2
+    for own, exact in (("kinetic", kinetic), ("strain", strain)):
+        np.testing.assert_allclose(energy[own], exact, atol=1e-10 * exact.max())
+
+
+FORCES = {
+    "sines": [rd.Sine(1.0, 20.0), rd.Sine(2.0, 33.0)],
+    "hammer": [rd.Impulse(0.01, time=0.0333, duration=0.001), rd.Step(1.0, time=0.01)],
+    "blows": [rd.Impulse(0.01, time=0.0333), (rd.Impulse(0.02), rd.Impulse(0.01, time=0.0333))],
+    "samples": [np.random.default_rng(1).normal(size=41), rd.Chirp(1.0, 5.0, 90.0, 0.15)],
+}
+
+
+@pytest.mark.parametrize("name", FORCES)
+@pytest.mark.parametrize(
+    "damping", [None, rd.RayleighDamping(0.4, 1e-4), rd.ModalDamping(0.03)], ids=str
+)
+def test_energy_is_kept_to_rounding(name, damping):
+    """Input and losses are Gauss sums that know nothing of the balance."""
+    model = rd.Scene(ROPE, tension=TENSION, damping=damping).compile(elements=12)
+    history = model.transient(
+        np.linspace(0.0, 0.2, 41),
+        drive=[("z", 0.4), ("z", 0.7)],
+        force=FORCES[name],
+        start={("z", 0.6): 3.0},
+    )
+    energy = history.energy
+    total = energy["kinetic"] + energy["strain"] - energy["input"] + energy["dissipated"]
+    assert np.ptp(total) < 1e-9 * energy["strain"].max()
+    assert energy["dissipated"][-1] > 0 or damping is None
+
+
+def test_energy_of_what_modes_do_not_part_is_refused():
+    for name, drive in (("rope with a dashpot", ("z", 0.4)), ("rope", ("end", 0, "z"))):
+        model = CHAINS[name].compile(elements=6)
+        history = model.transient(TIME, drive=drive, force=rd.Sine(1.0, 5.0), response=("z", 0.4))
+        with pytest.raises(rd.SceneError, match='method must be "direct" for the energy'):
+            _ = history.energy
+
+
+def test_snapshots_are_the_responses_of_all_nodes():
+    asked = {"drive": ("z", 0.4), "force": rd.Step(1.0), "snapshots": [0.0, 0.013, 0.05]}
+    for elements in (12, None):
+        model = CHAINS["rope"].compile(elements=elements)
+        history = model.transient(TIME, **asked, response=("beta", 0.65), modes=11)
+        assert history.snapshot.shape == (3, len(history.x), 2)
+        middle = np.abs(history.x - 0.65).argmin()
+        np.testing.assert_allclose(
+            history.snapshot[:, middle, 1], history.value[0, [0, 2, 4]], rtol=1e-9, atol=1e-15
+        )
+        assert (history.snapshot[:, [0, -1]] == 0).all()
+
+
+def test_mesh_error_is_the_distance_to_continuous_spans():
+    asked = {"drive": ("z", 0.4), "force": rd.Sine(1.0, 20.0), "response": ("z", 0.9)}
+    chain = CHAINS["string"].compile(elements=16).transient(TIME, **asked)
+    true = CHAINS["string"].compile().transient(TIME, **asked)
+    apart = np.abs(chain.value - true.value) + true.truncation_error[:, None]
+    np.testing.assert_array_equal(chain.mesh_error, apart)
+    assert (true.mesh_error == 0).all()
+    assert (chain.step_error == 0).all()
+
+
+def test_blow_at_an_instant_has_no_bound_but_of_all_modes():
+    asked = {"drive": ("z", 0.4), "force": rd.Impulse(0.01), "response": ("z", 0.9)}
+    model = CHAINS["rope"].compile(elements=12)
+    assert model.transient(TIME, **asked).truncation_error[0] == 0
+    assert model.transient(TIME, **asked, modes=5).truncation_error[0] == np.inf
+
+
+def test_history_pickles_with_what_was_not_asked_yet():
+    history = (
+        CHAINS["rope"]
+        .compile(elements=6)
+        .transient(TIME, drive=("z", 0.4), force=rd.Sine(1.0, 20.0), progress=lambda fraction: None)
+    )
+    again = pickle.loads(pickle.dumps(history))
+    np.testing.assert_array_equal(again.mesh_error, history.mesh_error)
+    np.testing.assert_array_equal(again.energy["input"], history.energy["input"])
+
+
+def test_progress_ends_at_one():
+    told = []
+    model = CHAINS["rope"].compile(elements=6)
+    drive = [("z", 0.4), ("z", 0.7)]
+    model.transient(TIME, drive=drive, force=[rd.Sine(1.0, 20.0)] * 2, progress=told.append)
+    assert told == [0.5, 1.0]
