@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from . import contour, damping, tip
 from .chain import Chain
-from .characteristic import Rates
-from .damped_roots import Damped, damped_roots, most_roots
+from .characteristic import Rates, horizon
+from .damped_roots import MARGIN, Damped, damped_roots, most_roots
 from .damping import DASHPOT, INERTIA
 from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
@@ -36,8 +36,11 @@ Index = NDArray[np.intp]
 LARGEST = 1000
 """Unknowns of a chain all of whose modes are summed where no number is given; modes at most."""
 
-WIDER = 3
-"""Times the radius is doubled in which all damped modes of a chain are looked for."""
+SEARCHED = 200
+"""The same where damping is not proportional: each of those is searched for."""
+
+WIDER, ATTEMPTS = 2, 4
+"""Times the radius is doubled in which all damped modes are looked for; tries with less."""
 
 POINTS = 8
 """Whose own responses are computed at once."""
@@ -103,7 +106,8 @@ def expand(
         As in `Model.frf`.
     modes : int, optional
         Of each component; where left out all of a chain with at most 1000 unknowns, and else those
-        below eight times the highest angular frequency, 64 at least and 1000 at most.
+        below eight times the highest angular frequency, 64 at least and 1000 at most (200 where
+        damping is not proportional).
     resolved : float
         Highest angular frequency that is of interest [rad/s].
     bound : bool
@@ -190,10 +194,10 @@ class _Asked:
 
 def _expansion(asked: _Asked) -> Expansion:
     model, component = asked.model, asked.component
-    eigenvalue, beyond = _eigenvalues(asked)
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     rates = Rates.of(model.scene.dampings)
     closed = proportional(model.chain.only(component), rates)
+    eigenvalue, beyond = _eigenvalues(asked, LARGEST if is_modal or closed else SEARCHED)
     if is_modal:
         ratio = ratios_of(model, component, eigenvalue.value)
         known = int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])
@@ -215,29 +219,29 @@ class _Known(NamedTuple):
     error: Real
 
 
-def _eigenvalues(asked: _Asked) -> tuple[_Known, float]:
+def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
     """Return those of the undamped modes that are summed, and the next one."""
     model, component = asked.model, asked.component
     chain = model.chain.only(component)
     finite = chain.finite
     if asked.modes is not None:
         wanted = asked.modes
-    elif finite is not None and chain.free <= LARGEST:
+    elif finite is not None and chain.free <= most:
         wanted = finite
     else:
-        wanted = min(max(_below(asked), LEAST), LARGEST)
+        wanted = min(max(_below(asked, most), LEAST), most)
     value, error = spectrum(model, component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
     return _Known(value[:wanted], error[:wanted]), beyond
 
 
-def _below(asked: _Asked) -> int:
+def _below(asked: _Asked, most: int) -> int:
     """Return how many modes there are below eight times what is of interest."""
     try:
         below = min((REACH * asked.resolved) ** 2, HIGHEST)
         return count_component(asked.model, asked.component, below)
     except SolveError:  # more than can be walked
-        return LARGEST
+        return most
 
 
 # --- damping in proportion ----------------------------------------------------------------------
@@ -337,17 +341,29 @@ def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> E
 
 
 def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Poles:
-    """Find the rates below a radius between undamped modes; of a whole chain all there are."""
+    """Find the rates below a radius between undamped modes; of a whole chain all there are.
+
+    Those before the place where overdamped ones accumulate, and fewer where rounding hides some.
+    """
     chain = asked.model.chain.only(asked.component)
     spans = [chain.between(*span) for span in chain.spans]
+    there_are = [_how_many(span, rates) for span in spans]
+    edge = 0.99 * MARGIN * horizon(chain, rates)
     radius = 1.5 * float(np.sqrt(np.abs(eigenvalue).max(initial=1.0)))
     if np.isfinite(beyond):
         radius = float(np.sqrt(np.abs(eigenvalue[-1])) + np.sqrt(beyond)) / 2
-    there_are = [_how_many(span, rates) for span in spans]
-    for _ in range(WIDER):
-        found = [_roots(asked, span, rates, radius) for span in spans]
+    grows = not np.isfinite(beyond)
+    for attempt in range(ATTEMPTS):
+        radius = min(radius, edge)
+        try:
+            found = [_roots(asked, span, rates, radius) for span in spans]
+        except SolveError:
+            if attempt == ATTEMPTS - 1:
+                raise
+            radius, grows = radius / 2, False
+            continue
         whole = [_count(one) >= most for one, most in zip(found, there_are)]
-        if np.isfinite(beyond) or all(whole):
+        if not grows or all(whole) or attempt >= WIDER or radius == edge:
             break
         radius *= 2
     value = np.concatenate([one.value for one in found])

@@ -519,8 +519,9 @@ class Model:
             implicit scheme of second order, unconditionally stable, whose steps are solved along
             the chain in scattering form (see csrc/march.h). ``"auto"``: modal where it can be.
         modes : int, optional
-            Of each component, that the modal method sums; where left out all of a chain's (at most
-            1000), and of continuous spans those below eight times what force and times resolve.
+            Of each component, that the modal method sums; where left out all of a chain's with at
+            most 1000 unknowns, and else those below eight times what force and times resolve, 64 at
+            least and 1000 at most. Where damping is not proportional, 200 is the most of both.
         step : float, optional
             Of the direct method [s], at most; a whole number of them lies between two times.
         tolerance : float, optional
