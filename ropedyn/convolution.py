@@ -12,7 +12,7 @@ from .force import Chirp, Force, Samples, Sum
 from .pair import Pairs, pairs
 from .piece import Piece, pieces, sine
 from .recurrence import straight_lines
-from .swept import chirping, is_steady, while_it_lasts
+from .swept import chirping, while_it_lasts
 from .truncation import left_out
 
 __all__ = ["convolve", "left_out", "release"]
@@ -91,16 +91,15 @@ def _chirp(modes: Pairs, rest: Real, force: Chirp, time: Real, order: int) -> Re
     begin, end = float(time[0]), force.duration
     if begin >= end:
         return np.zeros((len(rest), len(time)))
-    now = chirping(force, begin)
-    span = min(end, float(time[-1])) - begin
-    if is_steady(now, span):
+    now = chirping(force, begin, min(end, float(time[-1])))
+    if now.is_steady:
         turns = [sine(begin, now.frequency, now.amplitude, now.phase), Piece(end)]
         return _sines(modes, rest, turns, time, order)
     last = np.searchsorted(time, end)
     value = np.zeros((len(rest), len(time)))
-    value[:, :last], *state = while_it_lasts(modes, rest, now, time[:last] - begin, span, order)
+    value[:, :last], q, v = while_it_lasts(modes, rest, now, time[:last] - begin, order)
     if last < len(time):
-        terms = _motion(modes, Piece(end), *state, time[-1] - end or span)
+        terms = _motion(modes, Piece(end), q, v, time[-1] - end or now.span)
         value[:, last:] = evaluate(terms.rate, _seen(modes, terms, order), time[last:] - end)
     return value
 

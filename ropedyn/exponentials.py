@@ -66,7 +66,7 @@ def invert(poles: Complex, numerator: Numerator, span: float) -> Exponentials:
     """
     apart = ~_close(poles, span).any(axis=(1, 2))
     parts = [_residues(poles, numerator, np.flatnonzero(apart))]
-    for k in np.flatnonzero(~apart):
+    for k in np.flatnonzero(~apart).tolist():
         parts.extend(_circled(poles[k], numerator, k, span))
     rate, weight, mode = (np.concatenate(each) for each in zip(*parts))
     return Exponentials(rate, weight, mode)
@@ -75,6 +75,8 @@ def invert(poles: Complex, numerator: Numerator, span: float) -> Exponentials:
 def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:
     """Return Re sum_j coefficient[r, j] e^(rate_j t), shape (r, t); not finite if it overflows."""
     acts = coefficient.any(axis=0)
+    if not acts.any():
+        return np.zeros((len(coefficient), len(time)))
     rate, where = np.unique(rate[acts], return_inverse=True)
     merged = np.zeros((len(rate), len(coefficient)), dtype=complex)
     np.add.at(merged, where, coefficient[:, acts].T)
@@ -106,7 +108,7 @@ def _on_grid(rate: Complex, coefficient: Complex, time: Real) -> Real:
 
 def _anywhere(rate: Complex, coefficient: Complex, time: Real) -> Real:
     out = np.empty((len(coefficient), len(time)))
-    step = max(1, SLICE // max(1, len(rate)))
+    step = max(1, SLICE // len(rate))
     for first in range(0, len(time), step):
         now = slice(first, first + step)
         power = np.exp(np.multiply.outer(rate, time[now]))

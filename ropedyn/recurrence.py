@@ -63,11 +63,11 @@ def _walk(modes: Pairs, grid: Real, sample: Real) -> Real:
 def changes(sigma: Real, square: Real, h: Real) -> Real:
     """Return how steps of each length change q and v of each mode, shape (h, 8, k).
 
-    With S, the motion after a blow of 1, and its first and second integrals P and R,
+    With S, the motion after a blow of 1, its first and second integrals P and R, and a force from f
+    to f + d,
 
-        q: -square P q + S v + P f + R d/h,   v: -square S q - (2 sigma S + square P) v + S f + P d/h
-
-    for a force from f to f + d.
+        q: -square P q + S v + P f + R d/h
+        v: -square S q - (2 sigma S + square P) v + S f + P d/h
     """
     S, P, R = _integrals(sigma, square, h)
     rise = 1 / h[:, None]
@@ -82,10 +82,10 @@ def _integrals(sigma: Real, square: Real, h: Real) -> tuple[Real, Real, Real]:
     result = np.empty((3, len(h), len(sigma)))
     for octave in _octaves(h):
         short = size * h[octave].max() <= SHORT
-        at = np.ix_(range(3), octave, np.flatnonzero(short))
-        result[at] = _series(sigma[short], square[short], h[octave])
-        at = np.ix_(range(3), octave, np.flatnonzero(~short))
-        result[at] = _inverted(sigma[~short], square[~short], h[octave])
+        for use, found in ((short, _series), (~short, _inverted)):
+            at = np.ix_(octave, np.flatnonzero(use))
+            for whole, part in zip(result, found(sigma[use], square[use], h[octave])):
+                whole[at] = part
     return result[0], result[1], result[2]
 
 

@@ -33,6 +33,13 @@ class Chirping(NamedTuple):
     """[rad/s]."""
     growth: float
     """[rad/s^2]."""
+    span: float
+    """How long it is asked for [s]."""
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether it is a sine, up to rounding."""
+        return abs(self.growth) * self.span**2 < STEADY
 
     def value(self, t: Real, order: int) -> Real:
         """Return it at times [s], `order` times differentiated."""
@@ -47,25 +54,20 @@ class Chirping(NamedTuple):
         return np.asarray(self.amplitude * wave)
 
 
-def chirping(force: Chirp, begin: float) -> Chirping:
-    """Return a chirp as it is from a time on."""
+def chirping(force: Chirp, begin: float, end: float) -> Chirping:
+    """Return a chirp as it is between two times."""
     rate = (force.stop - force.start) / force.duration
     angle = 2 * math.pi * (force.start + rate * begin / 2) * begin + force.phase
     w = 2 * math.pi * (force.start + rate * begin)
-    return Chirping(force.amplitude, angle, w, 2 * math.pi * rate)
-
-
-def is_steady(force: Chirping, span: float) -> bool:
-    """Say whether it is a sine, up to rounding."""
-    return abs(force.growth) * span**2 < STEADY
+    return Chirping(force.amplitude, angle, w, 2 * math.pi * rate, end - begin)
 
 
 def while_it_lasts(
-    modes: Pairs, rest: Real, force: Chirping, t: Real, span: float, order: int
+    modes: Pairs, rest: Real, force: Chirping, t: Real, order: int
 ) -> tuple[Real, Real, Real]:
     """Return the responses at times since the motion began, and q and q' at the end."""
     value = rest * force.value(t, order)
-    terms = invert(rates(modes.sigma, modes.square), _one, span)
+    terms = invert(rates(modes.sigma, modes.square), _one, force.span)
     seen = modes
     for k in range(order):
         seen, direct = seen.derivative()
@@ -74,41 +76,39 @@ def while_it_lasts(
     step = max(1, SLICE // max(1, len(terms.rate)))
     for first in range(0, len(t), step):
         now = slice(first, first + step)
-        wave = follow(terms.rate, force, t[now], span)
+        wave = follow(terms.rate, force, t[now])
         value[:, now] += weight.real @ wave.real - weight.imag @ wave.imag
-    return value, *_state(terms, force, span, len(modes.sigma))
+    return value, *_state(terms, force, len(modes.sigma))
 
 
 def _one(s: Complex, k: Indices) -> Complex:
     return np.ones(len(k), dtype=complex)
 
 
-def _state(terms: Exponentials, force: Chirping, span: float, modes: int) -> tuple[Real, Real]:
-    part = terms.weight * follow(terms.rate, force, np.array([span]), span)[:, 0]
-    q, v = (
-        np.bincount(terms.mode, each.real, modes).astype(np.float64)
-        for each in (part, part * terms.rate)
-    )
+def _state(terms: Exponentials, force: Chirping, modes: int) -> tuple[Real, Real]:
+    part = terms.weight * follow(terms.rate, force, np.array([force.span]))[:, 0]
+    state = [part.real, (part * terms.rate).real]
+    q, v = (np.bincount(terms.mode, each, modes).astype(np.float64) for each in state)
     return q, v
 
 
-def follow(rate: Complex, force: Chirping, t: Real, span: float) -> Complex:
+def follow(rate: Complex, force: Chirping, t: Real) -> Complex:
     """Return the integral of e^(rate (t - s)) force(s) from 0 to t, shape (j, t)."""
-    one = _follow_turning(rate, force, t, span)
+    one = _follow_turning(rate, force, t)
     turns = rate.imag != 0
     other = one.copy()
-    other[turns] = _follow_turning(np.conj(rate[turns]), force, t, span)
+    other[turns] = _follow_turning(np.conj(rate[turns]), force, t)
     return force.amplitude * (one - np.conj(other)) / 2j
 
 
-def _follow_turning(rate: Complex, force: Chirping, t: Real, span: float) -> Complex:
+def _follow_turning(rate: Complex, force: Chirping, t: Real) -> Complex:
     """Return the same under e^(i angle)."""
     if force.growth < 0:
         w, c = -force.frequency, -force.growth
         mirrored = force._replace(phase=-force.phase, frequency=w, growth=c)
-        return np.conj(_follow_turning(np.conj(rate), mirrored, t, span))
+        return np.conj(_follow_turning(np.conj(rate), mirrored, t))
     turning = np.empty((len(rate), len(t)), dtype=complex)
-    change = (np.abs(1j * force.frequency - rate) + force.growth * span) * span
+    change = (np.abs(1j * force.frequency - rate) + force.growth * force.span) * force.span
     smooth = change < SMOOTH
     turning[smooth] = _by_gauss(rate[smooth, None], force, t)
     turning[~smooth] = _by_faddeeva(rate[~smooth, None], force, t)
@@ -116,7 +116,7 @@ def _follow_turning(rate: Complex, force: Chirping, t: Real, span: float) -> Com
 
 
 def _by_gauss(s: Complex, force: Chirping, t: Real) -> Complex:
-    total = np.zeros((len(s), len(t)), dtype=complex)
+    total = np.zeros((len(s), len(t)), dtype=np.complex128)
     for x, weight in zip((NODES + 1) / 2, WEIGHTS / 2) if len(s) else ():
         angle = (force.frequency + force.growth * x * t / 2) * x * t
         total += weight * np.exp(s * ((1 - x) * t) + 1j * angle)
@@ -141,9 +141,9 @@ def _by_faddeeva(s: Complex, force: Chirping, t: Real) -> Complex:
         passed = (z0.real < 0) & (z.real >= 0)
         late = s * t - 0.5j * apart**2 / force.growth
         turning[passed] += 2 * np.exp(late[passed])
-    return math.sqrt(math.pi) / 2 / kappa * turning
+    return np.asarray(math.sqrt(math.pi) / 2 / kappa * turning)
 
 
 def _signed(z: Complex) -> Complex:
     sign = np.where(z.real < 0, -1.0, 1.0)
-    return np.asarray(sign * wofz(1j * sign * z))
+    return np.asarray(sign * wofz(1j * sign * z), dtype=np.complex128)

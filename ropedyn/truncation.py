@@ -27,7 +27,7 @@ BLOW = Change(math.inf, math.inf)
 
 
 def left_out(
-    force: Force, time: Real, bound: Real, beyond: float, order: int = 0, ratio: float = 0.0
+    force: Force, time: Real, bound: Real, beyond: float, order: int = 0, *, ratio: float = 0.0
 ) -> Real:
     """Bound what modes above an angular frequency add to their static response, as `bound`.
 
@@ -54,18 +54,18 @@ def left_out(
     ratio : float
         Largest damping ratio of them.
     """
-    if not np.any(bound):
-        return np.zeros_like(bound)
-    reach = _reach(force, float(time[0]), float(time[-1]), beyond, order, ratio)
-    return np.asarray(np.where(np.equal(bound, 0), 0.0, np.maximum(bound, 1e-300) * reach))
+    bound = np.asarray(bound, dtype=np.float64)
+    reach = _reach(force, (float(time[0]), float(time[-1])), beyond, order, ratio)
+    return np.multiply(bound, reach, out=np.zeros_like(bound), where=bound != 0)
 
 
 def _reach(
-    force: Force, begin: float, end: float, beyond: float, order: int, ratio: float
+    force: Force, span: tuple[float, float], beyond: float, order: int, ratio: float
 ) -> float:
     """Return the bound for a static response of 1."""
     if isinstance(force, Sum):
-        return sum(_reach(one, begin, end, beyond, order, ratio) for one in force.forces)
+        return sum(_reach(one, span, beyond, order, ratio) for one in force.forces)
+    begin, end = span
     lag = (2 * ratio + math.sqrt(1 + 4 * ratio**2)) / beyond
     changes = [_change(force, begin, end, k) for k in range(order + 2)]
     if any(change.jump > 0 for change in changes[:order]):
@@ -119,7 +119,7 @@ def _change_of_sine(force: Sine, begin: float, end: float, order: int) -> Change
 
 
 def _change_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Change:
-    """The n-th derivative is not beyond the moments of the frequency; no closer than that."""
+    """Bound the derivatives by the largest frequency and its growth."""
     if begin >= force.duration or force.amplitude == 0:
         return STILL
     last = min(end, force.duration)

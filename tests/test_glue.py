@@ -44,6 +44,14 @@ FORCE = np.ones((NODES, WIDTH))
 SHAPES = np.ones((2, NODES, WIDTH))
 MOTIONS = np.ones((2, 2))
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
+# changes of two lengths, eight modes, one response, three steps
+STEPPED = (
+    np.full((2, 8, 8), 0.1),
+    np.ones((1, 2, 8)),
+    np.array([0, 1, 0], np.int32),
+    np.ones(4),
+    np.ones((2, 8)),
+)
 
 # every entry point that takes a chain
 ENTRIES = {
@@ -92,6 +100,7 @@ SPANS = {
 OTHERS = {
     "section": lambda _: _core.section(1.0, 1.0, 1.0, 0.1, 0.1),
     "invert": lambda _: _core.invert(MATRIX),
+    "recurrence": lambda _: _core.recurrence(*STEPPED),
 }
 
 
@@ -386,6 +395,41 @@ REFUSED = {
         lambda: _core.triple(CHAIN, len(CHAIN.length), FACTOR.T[:2].copy()),
         ValueError,
         f"got {len(CHAIN.length)}",
+    ),
+    "modes that do not fill the lanes": (
+        lambda: _core.recurrence(STEPPED[0][:, :, 1:], STEPPED[1][:, :, 1:], *STEPPED[2:]),
+        ValueError,
+        "change must have a multiple of 8 modes, got 7",
+    ),
+    "step of a length there is not": (
+        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2] + 1, *STEPPED[3:]),
+        ValueError,
+        r"length\[1\] must be from 0 to 1, got 2",
+    ),
+    "step of a length below 0": (
+        lambda: _core.recurrence(*STEPPED[:2], STEPPED[2] - 1, *STEPPED[3:]),
+        ValueError,
+        r"length\[0\] must be from 0 to 1, got -1",
+    ),
+    "samples too few": (
+        lambda: _core.recurrence(*STEPPED[:3], STEPPED[3][1:], STEPPED[4]),
+        ValueError,
+        "force must have 4 entries along axis 0, got 3",
+    ),
+    "state of other modes": (
+        lambda: _core.recurrence(*STEPPED[:4], STEPPED[4][:, 1:]),
+        ValueError,
+        "state must have 8 entries along axis 1, got 7",
+    ),
+    "seen of other modes": (
+        lambda: _core.recurrence(STEPPED[0], STEPPED[1][:, :, 1:], *STEPPED[2:]),
+        ValueError,
+        "seen must have 8 entries along axis 2, got 7",
+    ),
+    "changes of seven parts": (
+        lambda: _core.recurrence(STEPPED[0][:, 1:], *STEPPED[1:]),
+        ValueError,
+        "change must have 8 entries along axis 1, got 7",
     ),
     "matrix that is not square": (lambda: _core.invert(np.ones((2, 3))), ValueError, "square"),
     "matrix of three axes": (lambda: _core.invert(np.ones((2, 2, 2))), ValueError, ""),
