@@ -94,5 +94,10 @@ PyObject *py_carried(PyObject *module, PyObject *arguments);
 PyObject *py_carried_slopes(PyObject *module, PyObject *arguments);
 PyObject *py_tip(PyObject *module, PyObject *arguments);
 PyObject *py_recurrence(PyObject *module, PyObject *arguments);
+PyObject *py_march_factor(PyObject *module, PyObject *arguments);
+PyObject *py_march(PyObject *module, PyObject *arguments);
+PyObject *py_march_stage(PyObject *module, PyObject *arguments);
+PyObject *py_march_laws(PyObject *module, PyObject *arguments);
+PyObject *py_march_finish(PyObject *module, PyObject *arguments);
 
 #endif

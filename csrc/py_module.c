@@ -44,6 +44,18 @@ static PyMethodDef methods[] = {
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (width, f)"},
     {"sensitivity", py_sensitivity, METH_VARARGS,
      "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},
+    {"march_factor", py_march_factor, METH_VARARGS,
+     "march_factor(chain, beside, law, theta, extra) -> plan"},
+    {"march", py_march, METH_VARARGS,
+     "march(chain, beside, law, plan, g, h, state, drive, force, moved, speed, extra, response, "
+     "energies) -> read, energy, taken, steps made, residual"},
+    {"march_stage", py_march_stage, METH_VARARGS,
+     "march_stage(chain, beside, law, plan, g, h, state, stage, drive, force, moved, speed) -> "
+     "increments of the laws' points, per force, where they were"},
+    {"march_laws", py_march_laws, METH_VARARGS,
+     "march_laws(law, theta, increment, compliance, start, force) -> force, residual"},
+    {"march_finish", py_march_finish, METH_VARARGS,
+     "march_finish(chain, beside, law, plan, g, h, state, stage, force)"},
     {NULL, NULL, 0, NULL},
 };
 

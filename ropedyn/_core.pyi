@@ -8,6 +8,11 @@ from .chain import Chain
 _Real = NDArray[np.float64]
 _Ports = tuple[NDArray[np.int32], _Real, _Real | None]
 _Complex = NDArray[np.complex128]
+_Integers = NDArray[np.int32]
+_Plan = NDArray[np.uint8]
+_Beside = tuple[_Real, float, _Real, _Real, float, float]
+_Law = tuple[_Integers, _Real, _Integers, _Real]
+_State = tuple[_Real, _Real, _Real, _Real, _Real]
 
 def section(
     axial: float, torsion: float, bending: float, coupling: float, slope: float, /
@@ -52,3 +57,59 @@ def sensitivity(chain: Chain, shape: _Real, eigenvalue: _Real, /) -> tuple[_Real
 def recurrence(
     change: _Real, seen: _Real, length: NDArray[np.int32], force: _Real, state: _Real, /
 ) -> tuple[_Real, _Real]: ...
+def march_factor(
+    chain: Chain, beside: _Beside, law: _Law, theta: float, extra: float, /
+) -> _Plan: ...
+def march(
+    chain: Chain,
+    beside: _Beside,
+    law: _Law,
+    plan: _Plan,
+    g: float,
+    h: float,
+    state: _State,
+    drive: _Ports,
+    force: _Real,
+    moved: _Integers,
+    speed: _Real,
+    extra: _Real | None,
+    response: _Ports,
+    energies: bool,
+    /,
+) -> tuple[_Real, _Real, _Real, int, float]: ...
+def march_stage(
+    chain: Chain,
+    beside: _Beside,
+    law: _Law,
+    plan: _Plan,
+    g: float,
+    h: float,
+    state: _State,
+    stage: int,
+    drive: _Ports,
+    force: _Real,
+    moved: _Integers,
+    speed: _Real,
+    /,
+) -> tuple[_Real, _Real, _Real]: ...
+def march_laws(
+    law: tuple[_Integers, _Real],
+    theta: float,
+    increment: _Real,
+    compliance: _Real,
+    start: _Real,
+    force: _Real,
+    /,
+) -> tuple[_Real, float]: ...
+def march_finish(
+    chain: Chain,
+    beside: _Beside,
+    law: _Law,
+    plan: _Plan,
+    g: float,
+    h: float,
+    state: _State,
+    stage: int,
+    force: _Real,
+    /,
+) -> None: ...

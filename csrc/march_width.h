@@ -1,0 +1,340 @@
+/* The kernels of a march for the width RD_WIDTH: included by one source file per width. */
+
+#include "march_plan.h"
+
+#include <math.h>
+
+#define NAME_(verb, w) verb##_##w
+#define NAME(verb, w) NAME_(verb, w)
+
+enum { W = RD_WIDTH, WW = W * W };
+#define UNROLL _Pragma("GCC unroll 16")
+
+/* y = M x and y = M^T x */
+static inline void times(const double *restrict M, const double *restrict x, double *restrict y)
+{
+    UNROLL for (int i = 0; i < W; i++) {
+        double sum = M[i * W] * x[0];
+        UNROLL for (int j = 1; j < W; j++)
+            sum += M[i * W + j] * x[j];
+        y[i] = sum;
+    }
+}
+
+static inline void times_transposed(const double *restrict M, const double *restrict x,
+                                    double *restrict y)
+{
+    UNROLL for (int i = 0; i < W; i++) {
+        double sum = M[i] * x[0];
+        UNROLL for (int j = 1; j < W; j++)
+            sum += M[j * W + i] * x[j];
+        y[i] = sum;
+    }
+}
+
+static inline double form(const double *M, const double *x)
+{
+    double y[W], sum = 0;
+    times(M, x, y);
+    UNROLL for (int i = 0; i < W; i++)
+        sum += x[i] * y[i];
+    return sum;
+}
+
+/* C = A B and C = A B^T */
+static void multiply(const double *A, const double *B, double *C)
+{
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++) {
+            double sum = 0;
+            UNROLL for (int k = 0; k < W; k++)
+                sum += A[i * W + k] * B[k * W + j];
+            C[i * W + j] = sum;
+        }
+}
+
+static void multiply_transposed(const double *A, const double *B, double *C)
+{
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < W; j++) {
+            double sum = 0;
+            UNROLL for (int k = 0; k < W; k++)
+                sum += A[i * W + k] * B[j * W + k];
+            C[i * W + j] = sum;
+        }
+}
+
+static void symmetrise(double *M)
+{
+    UNROLL for (int i = 0; i < W; i++)
+        UNROLL for (int j = 0; j < i; j++) {
+            const double mean = (M[i * W + j] + M[j * W + i]) / 2;
+            M[i * W + j] = mean;
+            M[j * W + i] = mean;
+        }
+}
+
+/* X = M^-1 with exchange of rows, M destroyed; its determinant */
+static double invert(double *M, double *X)
+{
+    double det = 1;
+    UNROLL for (int i = 0; i < WW; i++)
+        X[i] = i % (W + 1) == 0;
+    UNROLL for (int k = 0; k < W; k++) {
+        int p = k;
+        UNROLL for (int i = k + 1; i < W; i++)
+            p = fabs(M[i * W + k]) > fabs(M[p * W + k]) ? i : p;
+        UNROLL for (int j = 0; j < W && p != k; j++) {
+            const double m = M[k * W + j], x = X[k * W + j];
+            M[k * W + j] = M[p * W + j];
+            M[p * W + j] = m;
+            X[k * W + j] = X[p * W + j];
+            X[p * W + j] = x;
+        }
+        const double pivot = M[k * W + k];
+        det *= p == k ? pivot : -pivot;
+        UNROLL for (int j = 0; j < W; j++) {
+            M[k * W + j] /= pivot;
+            X[k * W + j] /= pivot;
+        }
+        UNROLL for (int i = 0; i < W; i++) {
+            const double factor = M[i * W + k];
+            UNROLL for (int j = 0; j < W && i != k; j++) {
+                M[i * W + j] -= factor * M[k * W + j];
+                X[i * W + j] -= factor * X[k * W + j];
+            }
+        }
+    }
+    return det;
+}
+
+/* Z -= Z_i Z_i^T/Z_ii and with it E -= E_i Z_i^T/Z_ii, E W += E_i E_i^T/Z_ii, E_i being E e_i */
+static void hold(int i, double *E, double *EW, double *Z)
+{
+    double e[W], z[W];
+    const double most = Z[i * W + i];
+    if (!(most > 0)) /* held already, as by the end on the left */
+        return;
+    UNROLL for (int j = 0; j < W; j++) {
+        e[j] = E[j * W + i];
+        z[j] = Z[j * W + i];
+    }
+    UNROLL for (int a = 0; a < W; a++)
+        UNROLL for (int b = 0; b < W; b++) {
+            E[a * W + b] -= e[a] * (z[b] / most);
+            EW[a * W + b] += e[a] * e[b] / most;
+            Z[a * W + b] = a == i || b == i ? 0 : Z[a * W + b] - z[a] * z[b] / most;
+        }
+}
+
+/* E, E W, H and J of a node and U of the next */
+static enum rd_status map_node(const double *joint, const uint8_t *held, double *U, double *map)
+{
+    const double *A = joint + RD_JOINT_A * WW, *B = joint + RD_JOINT_B * WW;
+    const double *T = joint + RD_JOINT_W * WW;
+    double *E = map + RD_MAP_E * WW, *EW = map + RD_MAP_EW * WW, *J = map + RD_MAP_J * WW;
+    double M[WW], Z[WW];
+    UNROLL for (int i = 0; i < WW; i++)
+        map[RD_MAP_U * WW + i] = U[i];
+    multiply(T, U, M);
+    UNROLL for (int i = 0; i < W; i++)
+        M[i * (W + 1)] += 1;
+    const double det = invert(M, E);
+    if (!(det > 0) || !isfinite(det))
+        return det < 0 ? RD_FAST_GROWTH : RD_SINGULAR;
+    multiply(E, T, EW);
+    multiply(U, E, Z);
+    symmetrise(EW);
+    symmetrise(Z);
+    UNROLL for (int i = 0; i < W; i++)
+        if (held[i])
+            hold(i, E, EW, Z);
+    multiply_transposed(B, E, map + RD_MAP_H * WW);
+    multiply(B, Z, J);
+    multiply_transposed(J, B, U);
+    UNROLL for (int i = 0; i < WW; i++)
+        U[i] += A[i];
+    symmetrise(U);
+    return RD_OK;
+}
+
+static enum rd_status factor(struct rd_march *march)
+{
+    const struct rd_chain *chain = march->chain;
+    double U[WW] = {0};
+    UNROLL for (int i = 0; i < W; i++)
+        U[i * (W + 1)] = !chain->held[chain->term[0] * W + i];
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const double *joint = rd_joint_of(march, k);
+        const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        for (size_t i = from; i < from + nodes; i++) {
+            const enum rd_status status = map_node(joint, chain->held + chain->term[k] * W, U,
+                                                   march->map + i * RD_MAP_BLOCKS * WW);
+            if (status != RD_OK)
+                return status;
+        }
+    }
+    return RD_OK;
+}
+
+/* p = load + M v/theta - K u - what the elements and strings put on the nodes, at star */
+static void rest(struct rd_march *march)
+{
+    const struct rd_chain *chain = march->chain;
+    const int iz = (int)(march->iz % W);
+    double before[W] = {0}, pulled = 0;
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const double *joint = rd_joint_of(march, k), *number = rd_joint_number(march, k);
+        const double tension = number[RD_JOINT_STRING] + march->number->extra;
+        const double string = number[RD_JOINT_REACH] * tension;
+        const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        for (size_t n = from; n < from + nodes; n++) {
+            const double *u = march->star.u + n * W, *f = march->star.f + n * W;
+            const double *load = march->load + n * W;
+            double *p = march->p + n * W, inert[W], lost[W], carried[W];
+            times(joint + RD_JOINT_MASS * WW, march->star.v + n * W, inert);
+            times(joint + RD_JOINT_REST * WW, u, lost);
+            if (n + 1 == chain->nodes) {
+                UNROLL for (int i = 0; i < W; i++)
+                    p[i] = load[i] + inert[i] - lost[i] - before[i];
+                p[iz] -= pulled;
+                return;
+            }
+            times_transposed(joint + RD_JOINT_D * WW, f, carried);
+            const double pull = string * (u[W + iz] - u[iz]);
+            UNROLL for (int i = 0; i < W; i++) {
+                p[i] = load[i] + inert[i] - lost[i] + ((f[i] - before[i]) + carried[i]);
+                before[i] = f[i];
+            }
+            p[iz] += pull - pulled;
+            pulled = pull;
+        }
+    }
+}
+
+static void forward(struct rd_march *march, const double *p, bool moved)
+{
+    const size_t nodes = march->chain->nodes;
+    double c[W] = {0};
+    for (size_t n = 0; n < nodes; n++) {
+        const double *map = march->map + n * RD_MAP_BLOCKS * WW;
+        double *x = march->s + n * W, *kept = march->c + n * W;
+        double own[W], back[W], on[W], pushed[W];
+        UNROLL for (int i = 0; moved && i < W; i++)
+            c[i] += (march->kick + n * W)[i];
+        UNROLL for (int i = 0; i < W; i++)
+            kept[i] = c[i];
+        times(map + RD_MAP_E * WW, p + n * W, own);
+        times(map + RD_MAP_EW * WW, c, back);
+        times(map + RD_MAP_H * WW, c, on);
+        times(map + RD_MAP_J * WW, p + n * W, pushed);
+        UNROLL for (int i = 0; i < W; i++) {
+            x[i] = own[i] - back[i];
+            c[i] = on[i] + pushed[i];
+        }
+    }
+}
+
+/* u (nodes, width) and the change of the carried forces f under the loads p, held coordinates at
+   their shifts where they are moved */
+static void solve(struct rd_march *march, const double *p, bool moved, double *u, double *f)
+{
+    const struct rd_chain *chain = march->chain;
+    const int iz = (int)(march->iz % W);
+    double right[W] = {0};
+    forward(march, p, moved);
+    for (size_t k = chain->stretches; k-- > 0;) {
+        const double *number = rd_joint_number(march, k);
+        const double string = number[RD_JOINT_STIFF], share = 1 / (1 + number[RD_JOINT_RATE]);
+        const uint8_t *held = chain->held + chain->term[k] * W;
+        const size_t from = (size_t)chain->first[k];
+        for (size_t n = from + rd_stretch_nodes(chain, k); n-- > from;) {
+            const double *map = march->map + n * RD_MAP_BLOCKS * WW;
+            const double *c = march->c + n * W, *rest_of = march->s + n * W;
+            double *x = u + n * W, *pull = f + n * W, s[W];
+            times_transposed(map + RD_MAP_H * WW, right, s);
+            UNROLL for (int i = 0; i < W; i++)
+                s[i] += rest_of[i];
+            times(map + RD_MAP_U * WW, s, x);
+            UNROLL for (int i = 0; i < W; i++)
+                x[i] = held[i] ? 0 : x[i] + c[i];
+            UNROLL for (int i = 0; moved && i < W; i++)
+            {
+                x[i] += (march->shift + n * W)[i];
+                s[i] += (march->shift + n * W)[i];
+            }
+            if (n + 1 < chain->nodes) {
+                UNROLL for (int i = 0; i < W; i++)
+                    pull[i] = right[i] - x[W + i];
+                pull[iz] -= string * (x[W + iz] - x[iz]);
+                UNROLL for (int i = 0; i < W; i++)
+                    pull[i] *= share;
+            }
+            UNROLL for (int i = 0; i < W; i++)
+                right[i] = s[i];
+        }
+    }
+}
+
+/* twice the kinetic and the strain energy at the start of a step */
+static void energy(const struct rd_march *march, double *sum)
+{
+    const struct rd_chain *chain = march->chain;
+    const int iz = (int)(march->iz % W);
+    double kinetic = 0, strain = 0;
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const double *joint = rd_joint_of(march, k), *number = rd_joint_number(march, k);
+        const double tension = number[RD_JOINT_STRING] + march->number->base;
+        const double string = number[RD_JOINT_REACH] * tension;
+        const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        for (size_t n = from; n < from + nodes; n++) {
+            const double *u = march->start.u + n * W;
+            kinetic += form(joint + RD_JOINT_MASS * WW, march->start.v + n * W);
+            strain += form(joint + RD_JOINT_SPRING * WW, u);
+            if (n + 1 == chain->nodes)
+                break;
+            const double open = u[W + iz] - u[iz];
+            strain += form(joint + RD_JOINT_G * WW, march->start.f + n * W) +
+                      form(joint + RD_JOINT_Q * WW, u) + string * open * open;
+        }
+    }
+    sum[RD_KINETIC] = kinetic;
+    sum[RD_STRAIN] = strain;
+}
+
+/* theta times the power that the chain's dampers take at the stage, in lean */
+static double dissipate(const struct rd_march *march)
+{
+    const struct rd_chain *chain = march->chain;
+    const int iz = (int)(march->iz % W);
+    const double sprung = march->beside->spring_rate / march->number->theta;
+    double sum = 0;
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const double *joint = rd_joint_of(march, k), *number = rd_joint_number(march, k);
+        const double string = number[RD_JOINT_REACH] * number[RD_JOINT_DAMPED];
+        const double rate = number[RD_JOINT_RATE];
+        const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        for (size_t n = from; n < from + nodes; n++) {
+            const double *u = march->lean.u + n * W;
+            sum += form(joint + RD_JOINT_DRAG * WW, u);
+            if (sprung != 0)
+                sum += sprung * form(joint + RD_JOINT_SPRING * WW, u);
+            if (n + 1 == chain->nodes)
+                break;
+            const double open = u[W + iz] - u[iz];
+            sum += string * open * open;
+            if (rate != 0)
+                sum += rate * (form(joint + RD_JOINT_G * WW, march->lean.f + n * W) +
+                               form(joint + RD_JOINT_Q * WW, u));
+        }
+    }
+    return sum;
+}
+
+const struct rd_march_kernel NAME(rd_march_kernel, RD_WIDTH) = {
+    .factor = factor,
+    .rest = rest,
+    .solve = solve,
+    .energy = energy,
+    .dissipate = dissipate,
+};
