@@ -8,6 +8,8 @@
 #include "status.h"
 #include "workspace.h"
 
+#include <stdbool.h>
+
 /* Two equal implicit stages at t + g h and t + (1 - g) h: with theta = g h and k of y' = k
 
        Y_1 = y_0 + theta k_1,  Y_2 = y_0 + (1 - 2g) h k_1 + theta k_2,  y_1 = y_0 + h/2 (k_1 + k_2)
@@ -74,6 +76,7 @@ struct rd_steps {
     const double *force; /* (count, 2, drives) at the stage times */
     const double *speed; /* (count, 2, moved): u += h/2 (both) */
     const double *extra; /* (count, 2) tension added to every string, or NULL: as factored */
+    bool refined;        /* each stage solved twice: see march_stage.c */
     double *read;        /* (count, 3, responses) displacement, velocity, acceleration */
     double *energy;      /* (count, RD_ENERGIES) or NULL */
     double *taken;       /* (count, laws) or NULL  [J] by each law during the step */

@@ -49,9 +49,7 @@ static double reaction(const struct rd_march *march, size_t node, size_t i)
         if (march->carrier[k] != (int32_t)node)
             continue;
         const struct rd_resonator one = rd_resonator_of(march, k);
-        const double foot = rd_resonator_foot(march, &one, k, star->u) - star->y[k];
-        const double more = rd_resonator_foot(march, &one, k, lean->u) - lean->y[k];
-        force += one.row[i] * (one.k * foot + (one.k + one.c) * more);
+        force -= one.row[i] * rd_resonator_force(march, &one, k);
     }
     return force;
 }

@@ -127,6 +127,7 @@ static void hinge(size_t i, double t, double r, struct joint *joint)
         add_dyad(w, -1 / resists, q, q, Q);
         return;
     }
+    joint->number[RD_JOINT_OPEN] = 1;
     for (size_t j = 0; j < w; j++)
         D[j * w + i] = -(double)(i == j);
 }

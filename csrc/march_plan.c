@@ -57,7 +57,7 @@ enum rd_status rd_march_prepare(const struct rd_chain *chain, const struct rd_be
     march->map = take(workspace, n, RD_MAP_BLOCKS * w * w);
     march->carrier = rd_take(workspace, chain->attached, sizeof *march->carrier);
     struct rd_scaled *const motions[] = {&march->start, &march->first, &march->later,
-                                         &march->second};
+                                         &march->second, &march->correction};
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++)
         *motions[i] = take_scaled(chain, workspace);
     double **const nodal[] = {&march->load,  &march->p, &march->kick,

@@ -31,6 +31,7 @@ enum rd_joint_number {
     RD_JOINT_DAMPED, /* drag/theta [N] */
     RD_JOINT_STIFF,  /* of the stage: all tension times reach */
     RD_JOINT_RATE,   /* gamma/theta */
+    RD_JOINT_OPEN,   /* 1: a free hinge of an element that nothing turns back */
     RD_JOINT_NUMBERS
 };
 
@@ -61,26 +62,28 @@ struct rd_march {
     const struct rd_laws *laws;
     size_t iz; /* z among the coordinates, or width */
     struct rd_march_numbers *number;
-    double *joint;           /* (stretches, joint_size) */
-    double *map;             /* (nodes, RD_MAP_BLOCKS, width, width) */
-    int32_t *carrier;        /* (attached) node that carries a resonator, -1: none */
-    struct rd_scaled start;  /* of the step */
-    struct rd_scaled first;  /* changes of the first stage */
-    struct rd_scaled later;  /* that the second stage sets out from */
-    struct rd_scaled second; /* changes of the second stage */
-    struct rd_scaled star;   /* of the stage at hand: start or later */
-    struct rd_scaled lean;   /* of the stage at hand: first or second */
-    double *load;            /* (nodes, width) from outside; zero between stages */
-    double *p;               /* (nodes, width) */
-    double *shift;           /* (nodes, width) of held coordinates that move */
-    double *kick;            /* (nodes, width) in c, with them */
-    double *c;               /* (nodes, width) */
-    double *s;               /* (nodes, width) */
-    double *column;          /* (laws, 2 nodes - 1, width) u and f per force of each law */
-    double *compliance;      /* (laws, laws) */
-    double *alone;           /* (laws) increment of each law's point without the laws */
-    double *force;           /* (laws) */
-    double *law_work;        /* (laws, laws + 4) */
+    double *joint;               /* (stretches, joint_size) */
+    double *map;                 /* (nodes, RD_MAP_BLOCKS, width, width) */
+    int32_t *carrier;            /* (attached) node that carries a resonator, -1: none */
+    struct rd_scaled start;      /* of the step */
+    struct rd_scaled first;      /* changes of the first stage */
+    struct rd_scaled later;      /* that the second stage sets out from */
+    struct rd_scaled second;     /* changes of the second stage */
+    struct rd_scaled star;       /* of the stage at hand: start or later */
+    struct rd_scaled lean;       /* of the stage at hand: first or second */
+    double *load;                /* (nodes, width) from outside; zero between stages */
+    double *p;                   /* (nodes, width) */
+    double *shift;               /* (nodes, width) of held coordinates that move */
+    double *kick;                /* (nodes, width) in c, with them */
+    double *c;                   /* (nodes, width) */
+    double *s;                   /* (nodes, width) */
+    struct rd_scaled correction; /* of lean */
+    bool refined;   /* whether each stage is solved twice, the second time what the first left */
+    double *column; /* (laws, 2 nodes - 1, width) u and f per force of each law */
+    double *compliance; /* (laws, laws) */
+    double *alone;      /* (laws) increment of each law's point without the laws */
+    double *force;      /* (laws) */
+    double *law_work;   /* (laws, laws + 4) */
 };
 
 static inline size_t rd_joint_size(const struct rd_march *march)
@@ -179,6 +182,9 @@ void rd_resonator_add(const struct rd_march *march, size_t k, double *N);
 void rd_resonator_load(struct rd_march *march, size_t k);
 void rd_resonator_follow(struct rd_march *march, size_t k);
 
+/* p += its force on the foot at the stage in lean */
+void rd_resonator_pull(struct rd_march *march, size_t k);
+
 /* its numbers at the stage, and how far its foot is moved by u (nodes, width) [m] */
 struct rd_resonator {
     double m, k, c;           /* m/theta^2, k, c/theta [N/m] */
@@ -186,6 +192,7 @@ struct rd_resonator {
     double row[RD_WIDTH_MAX]; /* foot per scaled motion of the node [m] */
 };
 struct rd_resonator rd_resonator_of(const struct rd_march *march, size_t k);
+double rd_resonator_force(const struct rd_march *march, const struct rd_resonator *one, size_t k);
 double rd_resonator_foot(const struct rd_march *march, const struct rd_resonator *resonator,
                          size_t k, const double *u);
 
@@ -194,6 +201,7 @@ struct rd_march_kernel {
     enum rd_status (*factor)(struct rd_march *march);
     void (*rest)(struct rd_march *march);
     void (*solve)(struct rd_march *march, const double *p, bool moved, double *u, double *f);
+    void (*residual)(struct rd_march *march);
     void (*energy)(const struct rd_march *march, double *energy);
     double (*dissipate)(const struct rd_march *march);
 };

@@ -67,3 +67,20 @@ void rd_resonator_follow(struct rd_march *march, size_t k)
     const double kappa = one.k + one.c, foot = rd_resonator_foot(march, &one, k, march->lean.u);
     march->lean.y[k] = (own_rest(march, &one, k) + kappa * foot) / (one.m + one.drag + kappa);
 }
+
+/* k (y - q) + (k + c/theta) (dy - dq) */
+double rd_resonator_force(const struct rd_march *march, const struct rd_resonator *one, size_t k)
+{
+    const double longer = march->star.y[k] - rd_resonator_foot(march, one, k, march->star.u);
+    const double more = march->lean.y[k] - rd_resonator_foot(march, one, k, march->lean.u);
+    return one->k * longer + (one->k + one->c) * more;
+}
+
+void rd_resonator_pull(struct rd_march *march, size_t k)
+{
+    const size_t w = march->chain->width;
+    const struct rd_resonator one = rd_resonator_of(march, k);
+    const double force = rd_resonator_force(march, &one, k);
+    for (size_t i = 0; i < w; i++)
+        march->p[(size_t)march->carrier[k] * w + i] += force * one.row[i];
+}

@@ -82,6 +82,7 @@ size_t rd_march_run(struct rd_march *march, const struct rd_push *push,
                     enum rd_status *status)
 {
     struct rd_push now = *push;
+    march->refined = steps->refined;
     *status = RD_OK;
     for (size_t step = 0; step < steps->count; step++) {
         double tension[2];

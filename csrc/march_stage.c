@@ -89,6 +89,26 @@ static void move_held(struct rd_march *march, const struct rd_push *push)
     }
 }
 
+/* lean += what its residuals, from the triples themselves, ask for: the rounding of the maps is the same
+   in every step and would add up */
+static void correct(struct rd_march *march)
+{
+    const struct rd_chain *chain = march->chain;
+    const struct rd_march_kernel *kernel = rd_march_kernel_of(march);
+    const size_t n = chain->nodes * chain->width;
+    const struct rd_scaled *lean = &march->lean, *more = &march->correction;
+    kernel->residual(march);
+    for (size_t k = 0; k < chain->attached; k++)
+        if (march->carrier[k] >= 0) {
+            rd_resonator_follow(march, k);
+            rd_resonator_pull(march, k);
+        }
+    memset(march->shift, 0, n * sizeof *march->shift);
+    kernel->solve(march, march->p, true, more->u, more->f);
+    advance(n, lean->u, 1, more->u, lean->u);
+    advance(n - chain->width, lean->f, 1, more->f, lean->f);
+}
+
 void rd_march_lean(struct rd_march *march, const struct rd_push *push)
 {
     const struct rd_chain *chain = march->chain;
@@ -101,6 +121,8 @@ void rd_march_lean(struct rd_march *march, const struct rd_push *push)
     if (push->moved > 0)
         move_held(march, push);
     kernel->solve(march, march->p, push->moved > 0, march->lean.u, march->lean.f);
+    if (march->refined)
+        correct(march);
     for (size_t k = 0; k < points->count; k++)
         march->alone[k] = rd_march_read(march, points, k, march->lean.u);
 }

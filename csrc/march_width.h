@@ -276,6 +276,77 @@ static void solve(struct rd_march *march, const double *p, bool moved, double *u
     }
 }
 
+/* What lean leaves of a stage: p of each node's equilibrium, t = u_b - F u_a - G f of each element's
+   compatibility, as loads and kick of a further solve. With -t, t' = t + k t_z e_z beside a string k:
+   p -= B^T t' - k t_z e_z on the left, c += t - A t' on the right. */
+static void residual(struct rd_march *march)
+{
+    const struct rd_chain *chain = march->chain;
+    const int iz = (int)(march->iz % W);
+    const double damped = 1 + march->beside->spring_rate / march->number->theta;
+    double before[W] = {0}, pulled = 0, kick[W] = {0};
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const double *joint = rd_joint_of(march, k), *number = rd_joint_number(march, k);
+        const double *A = joint + RD_JOINT_A * WW, *B = joint + RD_JOINT_B * WW;
+        const double tension = number[RD_JOINT_STRING] + march->number->extra;
+        const double string = number[RD_JOINT_REACH] * tension, stiff = number[RD_JOINT_STIFF];
+        const double r = 1 + number[RD_JOINT_RATE];
+        const uint8_t *held = chain->held + chain->term[k] * W;
+        const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        for (size_t n = from; n < from + nodes; n++) {
+            const double *u = march->star.u + n * W, *f = march->star.f + n * W;
+            const double *d = march->lean.u + n * W, *g = march->lean.f + n * W;
+            const double *v = march->star.v + n * W, *load = march->load + n * W;
+            double *p = march->p + n * W, *c = march->kick + n * W;
+            double faster[W], sprung[W], inert[W], drag[W], spring[W];
+            UNROLL for (int i = 0; i < W; i++) {
+                c[i] = kick[i];
+                faster[i] = d[i] - v[i];
+                sprung[i] = u[i] + damped * d[i];
+            }
+            times(joint + RD_JOINT_MASS * WW, faster, inert);
+            times(joint + RD_JOINT_DRAG * WW, d, drag);
+            times(joint + RD_JOINT_SPRING * WW, sprung, spring);
+            UNROLL for (int i = 0; i < W; i++)
+                p[i] = held[i] ? 0 : load[i] - inert[i] - drag[i] - spring[i];
+            if (n + 1 == chain->nodes) {
+                UNROLL for (int i = 0; i < W; i++)
+                    p[i] -= held[i] ? 0 : before[i] + (i == iz ? pulled : 0);
+                return;
+            }
+            double force[W], carried[W], bent[W], lost[W], t[W], turned[W], soft[W];
+            UNROLL for (int i = 0; i < W; i++) {
+                force[i] = f[i] + r * g[i];
+                bent[i] = u[i] + r * d[i];
+            }
+            times_transposed(joint + RD_JOINT_D * WW, force, carried);
+            times(joint + RD_JOINT_Q * WW, bent, lost);
+            times(joint + RD_JOINT_D * WW, d, turned);
+            times(joint + RD_JOINT_G * WW, g, soft);
+            const double pull =
+                string * (u[W + iz] - u[iz]) + stiff * (d[W + iz] - d[iz]);
+            UNROLL for (int i = 0; i < W; i++) {
+                p[i] += held[i] ? 0
+                                : (force[i] - before[i]) + carried[i] - lost[i] +
+                                      (i == iz ? pull - pulled : 0);
+                before[i] = force[i];
+                t[i] = number[RD_JOINT_OPEN] != 0 ? 0 : turned[i] + soft[i] - (d[W + i] - d[i]);
+            }
+            pulled = pull;
+            const double beside = stiff * t[iz];
+            UNROLL for (int i = 0; i < W; i++)
+                kick[i] = t[i];
+            t[iz] += beside;
+            times_transposed(B, t, turned);
+            times(A, t, soft);
+            UNROLL for (int i = 0; i < W; i++) {
+                kick[i] -= soft[i];
+                p[i] -= held[i] ? 0 : turned[i] - (i == iz ? beside : 0);
+            }
+        }
+    }
+}
+
 /* twice the kinetic and the strain energy at the start of a step */
 static void energy(const struct rd_march *march, double *sum)
 {
@@ -335,6 +406,7 @@ const struct rd_march_kernel NAME(rd_march_kernel, RD_WIDTH) = {
     .factor = factor,
     .rest = rest,
     .solve = solve,
+    .residual = residual,
     .energy = energy,
     .dissipate = dissipate,
 };

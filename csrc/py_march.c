@@ -91,11 +91,12 @@ PyObject *py_march(PyObject *module, PyObject *arguments)
     struct rd_steps steps = {0};
     PyObject *object[5], *drive, *moved, *number[3], *response;
     PyObject *read = NULL, *energy = NULL, *taken = NULL, *result = NULL;
-    int energies;
-    if (!PyArg_ParseTuple(arguments, "OOOOddOOOOOOOp", object, object + 1, object + 2, object + 3,
+    int energies, refined;
+    if (!PyArg_ParseTuple(arguments, "OOOOddOOOOOOOpp", object, object + 1, object + 2, object + 3,
                           &steps.g, &steps.h, object + 4, &drive, number, &moved, number + 1,
-                          number + 2, &response, &energies))
+                          number + 2, &response, &energies, &refined))
         return NULL;
+    steps.refined = refined;
     if (open_march(module, object, steps.g, steps.h, &march) < 0 ||
         py_push_parse(drive, moved, &march) < 0 ||
         py_ports_parse(response, &march.parsed.chain, "response", &march.responses) < 0 ||
@@ -143,6 +144,7 @@ PyObject *py_march_stage(PyObject *module, PyObject *arguments)
     start = py_new(NPY_DOUBLE, 1, square);
     if (alone == NULL || compliance == NULL || start == NULL)
         goto done;
+    march.march.refined = true;
     rd_march_load(&march.march, &march.motion);
     rd_march_begin(&march.march, g, stage != 0, &march.push);
     rd_march_lean(&march.march, &march.push);

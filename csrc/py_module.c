@@ -48,7 +48,7 @@ static PyMethodDef methods[] = {
      "march_factor(chain, beside, law, theta, extra) -> plan"},
     {"march", py_march, METH_VARARGS,
      "march(chain, beside, law, plan, g, h, state, drive, force, moved, speed, extra, response, "
-     "energies) -> read, energy, taken, steps made, residual"},
+     "energies, refined) -> read, energy, taken, steps made, residual"},
     {"march_stage", py_march_stage, METH_VARARGS,
      "march_stage(chain, beside, law, plan, g, h, state, stage, drive, force, moved, speed) -> "
      "increments of the laws' points, per force, where they were"},

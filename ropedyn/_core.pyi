@@ -75,6 +75,7 @@ def march(
     extra: _Real | None,
     response: _Ports,
     energies: bool,
+    refined: bool,
     /,
 ) -> tuple[_Real, _Real, _Real, int, float]: ...
 def march_stage(
