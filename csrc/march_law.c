@@ -173,7 +173,7 @@ double rd_laws_solve(const struct rd_laws *laws, double theta, const double *lea
     const size_t m = laws->ports.count;
     double left = sweep(laws, theta, lean, C, start, force);
     if (m < 2)
-        return 0;
+        return m == 0 || isfinite(force[0]) ? 0 : INFINITY;
     double *kept = work, best = left;
     for (int i = 0; i < NEWTON && left > ENOUGH; i++) {
         memcpy(kept, force, m * sizeof *kept);

@@ -115,15 +115,16 @@ static void fill_columns(struct rd_march *march)
 
 enum rd_status rd_march_tighten(struct rd_march *march, double extra)
 {
+    enum rd_status status = RD_OK;
     march->number->extra = extra;
-    for (size_t k = 0; k < march->chain->stretches; k++) {
-        const enum rd_status status = rd_joint_tighten(march, k);
-        if (status != RD_OK)
-            return status;
-    }
-    const enum rd_status status = rd_march_kernel_of(march)->factor(march);
+    for (size_t k = 0; status == RD_OK && k < march->chain->stretches; k++)
+        status = rd_joint_tighten(march, k);
+    if (status == RD_OK)
+        status = rd_march_kernel_of(march)->factor(march);
     if (status == RD_OK)
         fill_columns(march);
+    else
+        march->number->extra = NAN; /* no tension has these factors */
     return status;
 }
 

@@ -81,6 +81,8 @@ enum rd_status rd_march_settle(struct rd_march *march, const struct rd_push *pus
             number->made = made;
             return RD_OK;
         }
+        if (!isfinite(gap))
+            break;
         if (gap > 0)
             low = tension;
         else
