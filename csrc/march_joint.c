@@ -205,13 +205,15 @@ enum rd_status rd_joint_tighten(const struct rd_march *march, size_t stretch)
     const double tension = number[RD_JOINT_STRING] + march->number->extra + number[RD_JOINT_DAMPED];
     const double k = number[RD_JOINT_REACH] * tension;
     joint.number[RD_JOINT_STIFF] = k;
+    joint.number[RD_JOINT_TURNED] = 0;
     if (stretch + 1 == march->chain->stretches)
         return RD_OK;
     if (k != 0) {
         double a[RD_WIDTH_MAX], b[RD_WIDTH_MAX];
         const double whole = 1 + k * A[iz * (w + 1)];
-        if (!(whole > 0))
-            return RD_FAST_GROWTH;
+        if (whole == 0 || !isfinite(whole))
+            return RD_SINGULAR;
+        joint.number[RD_JOINT_TURNED] = whole < 0;
         column_of(w, A, iz, a);
         memcpy(b, B + iz * w, w * sizeof *b);
         add_dyad(w, -k / whole, a, a, A);

@@ -31,6 +31,7 @@ enum rd_joint_number {
     RD_JOINT_DAMPED, /* drag/theta [N] */
     RD_JOINT_STIFF,  /* of the stage: all tension times reach */
     RD_JOINT_RATE,   /* gamma/theta */
+    RD_JOINT_TURNED, /* 1: 1 + k A_zz is negative beside the string */
     RD_JOINT_OPEN,   /* 1: a free hinge of an element that nothing turns back */
     RD_JOINT_NUMBERS
 };

@@ -113,7 +113,7 @@ static void hold(int i, double *E, double *EW, double *Z)
 {
     double e[W], z[W];
     const double most = Z[i * W + i];
-    if (!(most > 0)) /* held already, as by the end on the left */
+    if (most == 0) /* held already, as by the end on the left */
         return;
     UNROLL for (int j = 0; j < W; j++) {
         e[j] = E[j * W + i];
@@ -128,7 +128,8 @@ static void hold(int i, double *E, double *EW, double *Z)
 }
 
 /* E, E W, H and J of a node and U of the next */
-static enum rd_status map_node(const double *joint, const uint8_t *held, double *U, double *map)
+static enum rd_status map_node(const double *joint, const uint8_t *held, double *U, double *map,
+                               bool *turned)
 {
     const double *A = joint + RD_JOINT_A * WW, *B = joint + RD_JOINT_B * WW;
     const double *T = joint + RD_JOINT_W * WW;
@@ -140,8 +141,9 @@ static enum rd_status map_node(const double *joint, const uint8_t *held, double 
     UNROLL for (int i = 0; i < W; i++)
         M[i * (W + 1)] += 1;
     const double det = invert(M, E);
-    if (!(det > 0) || !isfinite(det))
-        return det < 0 ? RD_FAST_GROWTH : RD_SINGULAR;
+    if (det == 0 || !isfinite(det))
+        return RD_SINGULAR;
+    *turned |= det < 0;
     multiply(E, T, EW);
     multiply(U, E, Z);
     symmetrise(EW);
@@ -158,23 +160,74 @@ static enum rd_status map_node(const double *joint, const uint8_t *held, double 
     return RD_OK;
 }
 
+/* negative eigenvalues of a symmetric matrix, by its largest pivots on the diagonal */
+static int negative(const double *S)
+{
+    double M[WW];
+    int left[W], count = 0;
+    for (int i = 0; i < WW; i++)
+        M[i] = S[i];
+    for (int i = 0; i < W; i++)
+        left[i] = i;
+    for (int n = W; n > 0; n--) {
+        int p = 0;
+        for (int i = 1; i < n; i++)
+            p = fabs(M[left[i] * (W + 1)]) > fabs(M[left[p] * (W + 1)]) ? i : p;
+        const int k = left[p];
+        const double pivot = M[k * (W + 1)];
+        left[p] = left[n - 1];
+        count += pivot < 0;
+        for (int i = 0; i < n - 1 && pivot != 0; i++)
+            for (int j = 0; j < n - 1; j++)
+                M[left[i] * W + left[j]] -= M[left[i] * W + k] * M[k * W + left[j]] / pivot;
+    }
+    return count;
+}
+
+/* Negative eigenvalues of the stage's matrix. The left part up to a node, ended by a unit stiffness,
+   has U at the node, and Z = U E with the node and what ends it now: neg(Z) - neg(U) more of them; of a
+   next node that a string turns there is one before all others. */
+static long growing(const struct rd_march *march)
+{
+    const struct rd_chain *chain = march->chain;
+    long count = 0;
+    for (size_t k = 0; k < chain->stretches; k++) {
+        const bool turned = rd_joint_number(march, k)[RD_JOINT_TURNED] != 0;
+        const uint8_t *held = chain->held + chain->term[k] * W;
+        const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        for (size_t i = from; i < from + nodes; i++) {
+            const double *map = march->map + i * RD_MAP_BLOCKS * WW;
+            double Z[WW];
+            multiply(map + RD_MAP_U * WW, map + RD_MAP_E * WW, Z);
+            symmetrise(Z);
+            UNROLL for (int j = 0; j < WW; j++)
+                Z[j] = held[j / W] || held[j % W] ? 0 : Z[j];
+            count += negative(Z) - negative(map + RD_MAP_U * WW) + turned;
+        }
+    }
+    return count;
+}
+
 static enum rd_status factor(struct rd_march *march)
 {
     const struct rd_chain *chain = march->chain;
+    bool turned = false;
     double U[WW] = {0};
     UNROLL for (int i = 0; i < W; i++)
         U[i * (W + 1)] = !chain->held[chain->term[0] * W + i];
     for (size_t k = 0; k < chain->stretches; k++) {
         const double *joint = rd_joint_of(march, k);
+        const uint8_t *held = chain->held + chain->term[k] * W;
         const size_t from = (size_t)chain->first[k], nodes = rd_stretch_nodes(chain, k);
+        turned |= rd_joint_number(march, k)[RD_JOINT_TURNED] != 0;
         for (size_t i = from; i < from + nodes; i++) {
-            const enum rd_status status = map_node(joint, chain->held + chain->term[k] * W, U,
-                                                   march->map + i * RD_MAP_BLOCKS * WW);
+            double *map = march->map + i * RD_MAP_BLOCKS * WW;
+            const enum rd_status status = map_node(joint, held, U, map, &turned);
             if (status != RD_OK)
                 return status;
         }
     }
-    return RD_OK;
+    return turned && growing(march) != 0 ? RD_FAST_GROWTH : RD_OK;
 }
 
 /* p = load + M v/theta - K u - what the elements and strings put on the nodes, at star */

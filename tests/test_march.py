@@ -21,9 +21,10 @@ def g_of(rho):
 
 @dataclasses.dataclass
 class March:
-    """A chain through time."""
+    """A chain through time; with prepared False only its description."""
 
     chain: object
+    prepared: bool = True
     rho: float = 1.0
     h: float = 1e-3
     rate: float = 0.0
@@ -65,7 +66,11 @@ class March:
             np.zeros(a),
             np.zeros(a),
         )
-        self.plan = _core.march_factor(chain, self.beside, self.law, self.theta, self.extra)
+        if self.prepared:
+            self.factor()
+
+    def factor(self):
+        self.plan = _core.march_factor(self.chain, self.beside, self.law, self.theta, self.extra)
 
     def rows(self, places):
         """Ports at nodes: (node, coordinate index)."""
