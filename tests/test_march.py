@@ -230,6 +230,34 @@ def lowest(model):
     return (2 * math.pi * modes[0]) ** 2 if modes else 1.0
 
 
+def test_compression_is_refused_where_it_grows_by_more_than_a_step():
+    """Exactly where the matrix of a stage is not positive definite."""
+    refused = 0
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        width = int(random.integers(2, 5))
+        scene = scene_of(random, width).replace(tension=0.0)
+        model = scene.compile(elements=int(random.integers(8, 16)), element="rigid")
+        push = scene.rope.bending_stiffness * log_uniform(random, 1, 3000)
+        march = March(
+            plain(model.chain.only(WIDTHS[width])),
+            prepared=False,
+            h=log_uniform(random, 1e-5, 1e1),
+            string=-push,
+        )
+        M, K, C, free = matrices(march)
+        A = (M / march.theta**2 + C / march.theta + K)[np.ix_(free, free)]
+        scale = 1 / np.sqrt(np.abs(np.diag(A)))
+        least = np.linalg.eigvalsh(A * np.outer(scale, scale))[0]
+        if least > 0:
+            march.factor()
+            continue
+        refused += 1
+        with pytest.raises(rd.SolveError, match="shorter steps"):
+            march.factor()
+    assert 10 < refused < 50
+
+
 def bending(
     parts=(), ends=("clamped", "pinned"), tension=10.0, element="rigid", elements=8, **more
 ):
