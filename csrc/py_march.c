@@ -10,7 +10,7 @@ PyObject *py_march_factor(PyObject *module, PyObject *arguments)
     double theta, extra;
     if (!PyArg_ParseTuple(arguments, "OOOdd", object, object + 1, object + 2, &theta, &extra))
         return NULL;
-    if (py_march_parse(object, &march) < 0)
+    if (py_march_parse(object, "march_factor", &march) < 0)
         goto done;
     rd_march_prepare(&march.parsed.chain, &march.beside, &march.laws, &march.march,
                      &march.workspace);
@@ -39,10 +39,10 @@ done:
 }
 
 /* chain, beside, law, plan, g, h, state: up to a march that can go on */
-static int open_march(PyObject *module, PyObject *const *object, double g, double h,
-                      struct py_march *march)
+static int open_march(PyObject *module, const char *entry, PyObject *const *object, double g,
+                      double h, struct py_march *march)
 {
-    if (py_march_parse(object, march) < 0 || py_march_open(object[3], march) < 0)
+    if (py_march_parse(object, entry, march) < 0 || py_march_open(object[3], march) < 0)
         return -1;
     const enum rd_status status = rd_march_prepare(&march->parsed.chain, &march->beside,
                                                    &march->laws, &march->march, &march->workspace);
@@ -97,7 +97,7 @@ PyObject *py_march(PyObject *module, PyObject *arguments)
                           number + 2, &response, &energies, &refined))
         return NULL;
     steps.refined = refined;
-    if (open_march(module, object, steps.g, steps.h, &march) < 0 ||
+    if (open_march(module, "march", object, steps.g, steps.h, &march) < 0 ||
         py_push_parse(drive, moved, &march) < 0 ||
         py_ports_parse(response, &march.parsed.chain, "response", &march.responses) < 0 ||
         parse_steps(number, energies, &march, &steps, &read, &energy, &taken) < 0)
@@ -121,6 +121,15 @@ done:
     return result;
 }
 
+/* one at a time, with forces from outside, a stage does not find its own tension */
+static int check_stage(int stage, const struct py_march *march)
+{
+    if ((stage == 0 || stage == 1) && march->beside.stretching == 0)
+        return 0;
+    PyErr_SetString(PyExc_ValueError, "stage must be 0 or 1 and stretching 0");
+    return -1;
+}
+
 PyObject *py_march_stage(PyObject *module, PyObject *arguments)
 {
     struct py_march march = {0};
@@ -131,7 +140,8 @@ PyObject *py_march_stage(PyObject *module, PyObject *arguments)
     if (!PyArg_ParseTuple(arguments, "OOOOddOiOOOO", object, object + 1, object + 2, object + 3, &g,
                           &h, object + 4, &stage, &drive, &force, &moved, &speed))
         return NULL;
-    if (open_march(module, object, g, h, &march) < 0 || py_push_parse(drive, moved, &march) < 0)
+    if (open_march(module, "march_stage", object, g, h, &march) < 0 ||
+        check_stage(stage, &march) < 0 || py_push_parse(drive, moved, &march) < 0)
         goto done;
     const npy_intp d = (npy_intp)march.push.drives->count, k = (npy_intp)march.push.moved;
     const npy_intp square[] = {(npy_intp)march.laws.ports.count, (npy_intp)march.laws.ports.count};
@@ -144,9 +154,16 @@ PyObject *py_march_stage(PyObject *module, PyObject *arguments)
     start = py_new(NPY_DOUBLE, 1, square);
     if (alone == NULL || compliance == NULL || start == NULL)
         goto done;
+    const double base = march.march.number->base;
+    const enum rd_status status =
+        march.march.number->extra == base ? RD_OK : rd_march_tighten(&march.march, base);
+    if (status != RD_OK) {
+        py_raise(module, status);
+        goto done;
+    }
     march.march.refined = true;
     rd_march_load(&march.march, &march.motion);
-    rd_march_begin(&march.march, g, stage != 0, &march.push);
+    rd_march_begin(&march.march, g, stage, &march.push);
     rd_march_lean(&march.march, &march.push);
     rd_march_clear(&march.march, &march.push);
     rd_march_points(&march.march, PyArray_DATA((PyArrayObject *)alone),
@@ -170,7 +187,8 @@ PyObject *py_march_finish(PyObject *module, PyObject *arguments)
     if (!PyArg_ParseTuple(arguments, "OOOOddOiO", object, object + 1, object + 2, object + 3, &g,
                           &h, object + 4, &stage, &force))
         return NULL;
-    if (open_march(module, object, g, h, &march) < 0)
+    if (open_march(module, "march_finish", object, g, h, &march) < 0 ||
+        check_stage(stage, &march) < 0)
         goto done;
     const npy_intp m = (npy_intp)march.laws.ports.count;
     const double *given = py_march_keep(&march, force, 1, &m, "force");
@@ -179,10 +197,11 @@ PyObject *py_march_finish(PyObject *module, PyObject *arguments)
     for (npy_intp k = 0; k < m; k++)
         march.march.force[k] = given[k];
     rd_march_load(&march.march, &march.motion);
-    rd_march_choose(&march.march, stage != 0);
+    rd_march_choose(&march.march, stage);
     rd_march_add_laws(&march.march);
-    rd_march_take(&march.march, g, stage != 0);
-    rd_march_unload(&march.march, &march.motion);
+    rd_march_take(&march.march, g, stage);
+    if (stage == 1)
+        rd_march_unload(&march.march, &march.motion);
     result = Py_NewRef(Py_None);
 done:
     py_march_release(&march);

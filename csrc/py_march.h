@@ -6,7 +6,7 @@
 
 #include "march_plan.h"
 
-enum { PY_MARCH_KEPT = 14 };
+enum { PY_MARCH_KEPT = 16 };
 
 /* a march, what it views and the references that keep it alive */
 struct py_march {
@@ -26,7 +26,7 @@ struct py_march {
 int py_law_numbers_parse(PyObject *object, struct py_march *march);
 
 /* chain, beside, law (node, row, kind, value); then the arrays of the march in the plan, a uint8 array of exactly their size */
-int py_march_parse(PyObject *const *object, struct py_march *march);
+int py_march_parse(PyObject *const *object, const char *entry, struct py_march *march);
 int py_march_open(PyObject *plan, struct py_march *march);
 
 /* g, h of the plan's theta; (u, v, f, y, w), writable */

@@ -99,10 +99,10 @@ static int parse_laws(PyObject *object, const struct rd_chain *chain, struct py_
     return parse_kinds(kind, value, march);
 }
 
-int py_march_parse(PyObject *const *object, struct py_march *march)
+int py_march_parse(PyObject *const *object, const char *entry, struct py_march *march)
 {
     if (py_chain_parse(object[0], &march->parsed) < 0 ||
-        py_chain_is_lumped(&march->parsed, "march") < 0 || parse_beside(object[1], march) < 0)
+        py_chain_is_lumped(&march->parsed, entry) < 0 || parse_beside(object[1], march) < 0)
         return -1;
     return parse_laws(object[2], &march->parsed.chain, march);
 }
