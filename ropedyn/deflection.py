@@ -162,7 +162,7 @@ def _band(
     model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
-    u, force = _core.mixed_deflection(chain, _nodal(chain, x, component, loads))
+    u, force = _core.mixed_deflection(chain, nodal(chain, x, component, loads))
     on_nodes = _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
     return u[kept], on_nodes, Work(factorisations=1)
 
@@ -203,7 +203,7 @@ def _lapack(
     model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
-    u, _ = _core.deflection(chain, _nodal(chain, x, component, loads))
+    u, _ = _core.deflection(chain, nodal(chain, x, component, loads))
     return u[kept], _held_up(chain, u)[kept], Work(factorisations=1)
 
 
@@ -235,7 +235,7 @@ def checked_loads(model: Model, load: Any, name: str = "load") -> dict[Point, fl
     return loads
 
 
-def _nodal(
+def nodal(
     chain: Chain,
     x: NDArray[np.float64],
     component: tuple[str, ...],

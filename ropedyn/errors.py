@@ -1,5 +1,12 @@
 """The errors of ropedyn: one tree."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .history import History
+
 
 class RopedynError(Exception):
     """Whatever ropedyn refuses."""
@@ -10,4 +17,12 @@ class SceneError(RopedynError, ValueError):
 
 
 class SolveError(RopedynError, ArithmeticError):
-    """What the numbers refused; the message names the frequency, the mode or the step."""
+    """What the numbers refused; the message names the frequency, the mode or the step.
+
+    Attributes
+    ----------
+    history : History or None
+        What `Model.transient` had computed before a step that does not converge.
+    """
+
+    history: History | None = None

@@ -21,6 +21,21 @@ class Force(Protocol):
     def value(self, time: Real) -> Real:
         """Return it at times [s], of the time's shape; from the right where it jumps."""
 
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s], of the time's shape; from the right at `breaks`."""
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """When it jumps or bends [s], the times of samples apart."""
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """Impulses at one instant: when [s] and how much [N s, N m s]."""
+
+    @property
+    def highest(self) -> float:
+        """Frequency that steps must resolve to see it at all [Hz]; 0 of what only breaks."""
+
 
 @dataclass(frozen=True)
 class Sine:
@@ -63,6 +78,26 @@ class Sine:
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
         return np.asarray(self.amplitude * np.sin(2 * np.pi * self.frequency * time + self.phase))
+
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s]."""
+        omega = 2 * np.pi * self.frequency
+        return np.asarray(self.amplitude * omega * np.cos(omega * time + self.phase))
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """None."""
+        return ()
+
+    @property
+    def highest(self) -> float:
+        """Its frequency."""
+        return self.frequency
 
 
 @dataclass(frozen=True)
@@ -119,6 +154,29 @@ class Chirp:
         acts = (time >= 0) & (time < self.duration)
         return np.where(acts, self.amplitude * np.sin(angle), 0.0)
 
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s]."""
+        rate = (self.stop - self.start) / self.duration
+        omega = 2 * np.pi * (self.start + rate * time)
+        angle = 2 * np.pi * (self.start + rate * time / 2) * time + self.phase
+        acts = (time >= 0) & (time < self.duration)
+        return np.where(acts, self.amplitude * omega * np.cos(angle), 0.0)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Its end."""
+        return (self.duration,)
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """None."""
+        return ()
+
+    @property
+    def highest(self) -> float:
+        """The higher of its frequencies."""
+        return max(self.start, self.stop)
+
 
 @dataclass(frozen=True)
 class Step:
@@ -157,6 +215,25 @@ class Step:
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
         return np.where(time >= self.time, self.amplitude, 0.0)
+
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s]."""
+        return np.zeros_like(time)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Its time."""
+        return (self.time,)
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """None."""
+        return ()
+
+    @property
+    def highest(self) -> float:
+        """None."""
+        return 0.0
 
 
 @dataclass(frozen=True)
@@ -214,6 +291,30 @@ class Impulse:
         acts = (since >= 0) & (since < self.duration)
         return np.where(acts, self.amplitude * np.sin(np.pi * since / self.duration), 0.0)
 
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s]."""
+        if self.duration == 0:
+            return np.zeros_like(time)
+        since = time - self.time
+        acts = (since >= 0) & (since < self.duration)
+        slope = self.amplitude * np.pi / self.duration * np.cos(np.pi * since / self.duration)
+        return np.where(acts, slope, 0.0)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Where it begins and ends."""
+        return (self.time, self.time + self.duration)
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """Itself, at an instant."""
+        return ((self.time, self.impulse),) if self.duration == 0 else ()
+
+    @property
+    def highest(self) -> float:
+        """None."""
+        return 0.0
+
 
 @dataclass(frozen=True, eq=False)
 class Samples:
@@ -232,6 +333,27 @@ class Samples:
         """Return it at times [s]."""
         return np.interp(time, self.time, self.sample)
 
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s]."""
+        slope = np.diff(self.sample) / np.diff(self.time)
+        at = np.searchsorted(self.time, time, side="right") - 1
+        return np.asarray(slope[np.clip(at, 0, len(slope) - 1)])
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """None but its samples."""
+        return ()
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """None."""
+        return ()
+
+    @property
+    def highest(self) -> float:
+        """None."""
+        return 0.0
+
 
 @dataclass(frozen=True)
 class Sum:
@@ -242,6 +364,25 @@ class Sum:
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
         return np.sum([force.value(time) for force in self.forces], axis=0)
+
+    def rate(self, time: Real) -> Real:
+        """Return its derivative at times [s]."""
+        return np.sum([force.rate(time) for force in self.forces], axis=0)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Those of each."""
+        return tuple(at for force in self.forces for at in force.breaks)
+
+    @property
+    def blows(self) -> tuple[tuple[float, float], ...]:
+        """Those of each."""
+        return tuple(blow for force in self.forces for blow in force.blows)
+
+    @property
+    def highest(self) -> float:
+        """The highest of each."""
+        return max(force.highest for force in self.forces)
 
 
 KINDS = (Sine, Chirp, Step, Impulse)

@@ -1,0 +1,276 @@
+"""A chain as it is marched through time: plain lumps, and what stands beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from .beside import Beside, plain, pulsation_of
+from .chain import ATTACHED, TENSED, Chain
+from .damping import INERTIA, factors
+from .deflection import nodal
+from .errors import SceneError, SolveError
+from .force import Force
+from .model import Model
+from .point_law import Call, Laws, Standing, laws_of, standing_laws
+from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
+from .reading import Reading, reading
+from .transient import Run
+from .unit import END
+
+Real = NDArray[np.float64]
+
+
+class State(NamedTuple):
+    """A motion, changed in place."""
+
+    u: Real
+    """(nodes, width) displacement."""
+    v: Real
+    """(nodes, width) velocity."""
+    f: Real
+    """(nodes - 1, width) elastic force on the right ends of elements."""
+    y: Real
+    """(attached,) displacement of the masses of resonators."""
+    w: Real
+    """(attached,) their velocity."""
+
+    def copy(self) -> State:
+        """Return one of its own."""
+        return State(*(array.copy() for array in self))
+
+
+@dataclass(frozen=True, eq=False)
+class Lumps:
+    """The chain of coordinates that move together, and what acts on it.
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        Of every node.
+    chain : Chain
+        Without correction of its lumps; its damping is all that is in proportion to velocity.
+    x : ndarray, shape (nodes,)
+        Where nodes stand [m].
+    kept : ndarray of int
+        Those that the model has.
+    beside : Beside
+    laws : Laws
+    calls : tuple of Call
+        Those among them that Python knows.
+    drives : Ports
+        Of the forces.
+    forces : tuple of Force
+        One for each.
+    moved : ndarray of int32, shape (moved, 2)
+        Node and coordinate of ends whose motion is given.
+    motions : tuple of Force
+        One for each.
+    reading : Reading
+        What is watched.
+    number : ndarray of int
+        Which of the responses of the run each is.
+    pulsation : callable or None
+        What is added to the tension at times [s].
+    start : State
+        Where the motion begins.
+    released : bool
+        Whether loads on coordinates without inertia are let go.
+    """
+
+    coordinates: tuple[str, ...]
+    chain: Chain
+    x: Real
+    kept: NDArray[np.intp]
+    beside: Beside
+    laws: Laws
+    calls: tuple[Call, ...]
+    drives: Ports
+    forces: tuple[Force, ...]
+    moved: NDArray[np.int32]
+    motions: tuple[Force, ...]
+    reading: Reading
+    number: NDArray[np.intp]
+    pulsation: Callable[[Real], Real] | None
+    start: State
+    released: bool
+
+    @property
+    def massless(self) -> NDArray[np.bool_]:
+        """Which free coordinates have no inertia, shape (nodes, width)."""
+        return _massless(self.chain)
+
+    @property
+    def is_bare(self) -> NDArray[np.bool_]:
+        """Whether each force acts on a coordinate without inertia, shape (drives,)."""
+        node, row = self.drives.node, self.drives.row != 0
+        none = self.massless
+        return np.asarray((row & np.stack([none[node], none[node + 1]], axis=1)).any(axis=(1, 2)))
+
+
+def lumped_chains(run: Run) -> list[Lumps]:
+    """Return the chains that are pushed in a run, with what is asked of each."""
+    model = run.model
+    found = []
+    for component in model.components:
+        laws = standing_laws(model, component)
+        drives = [k for k, d in enumerate(run.drives) if _driven(d) in component]
+        loads = {p: load for p, load in run.loads.items() if p[0] in component}
+        if drives or loads or any(one.law.kind == "call" for one in laws):
+            found.append(_lumps(run, component, laws, drives, loads))
+            _refuse_blows(found[-1])
+    return found
+
+
+def _refuse_blows(lumps: Lumps) -> None:
+    """Refuse blows at an instant where no inertia takes them."""
+    for force, bare in zip(lumps.forces, lumps.is_bare):
+        if force.blows and bare:
+            raise SceneError(
+                "force must not be an Impulse at an instant where the coordinate has no mass: give "
+                "it a duration"
+            )
+    if any(motion.blows for motion in lumps.motions):
+        raise SceneError(
+            "force must not be an Impulse at an instant where the motion of an end is given"
+        )
+
+
+def _driven(drive: Any) -> str:
+    return str(drive[2]) if drive[0] == END else moving(drive)
+
+
+def _lumps(
+    run: Run,
+    component: tuple[str, ...],
+    laws_there: list[Standing],
+    driving: list[int],
+    loads: dict[Point, float],
+) -> Lumps:
+    model = run.model
+    pushed = [k for k in driving if run.drives[k][0] != END]
+    ends = [k for k in driving if run.drives[k][0] == END]
+    watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
+    points = [run.drives[k] for k in pushed]
+    asked = [run.responses[k] for k in watched]
+    whole, x = _cut(model, component, points, asked)
+    chain, beside = plain(model, component, whole)
+    laws, calls = laws_of(chain, x, component, laws_there)
+    start = _start(whole, component, nodal(whole, x, component, loads), beside)
+    pulsation = pulsation_of(model, component)
+    bare = nodal(chain, x, component, loads) != 0
+    drives = ports(chain, x, component, points)._replace(force=None)
+    return Lumps(
+        coordinates=component,
+        chain=chain,
+        x=x,
+        kept=np.flatnonzero(np.isin(x, model.x)),
+        beside=beside,
+        laws=laws,
+        calls=calls,
+        drives=drives,
+        forces=tuple(run.forces[k] for k in pushed),
+        moved=_moved(chain, component, [run.drives[k] for k in ends]),
+        motions=tuple(run.forces[k] for k in ends),
+        reading=reading(chain, x, component, asked, beside=beside, pulsation=pulsation),
+        number=np.array(watched, dtype=np.intp),
+        pulsation=pulsation,
+        start=start,
+        released=bool((bare & _massless(chain)).any()),
+    )
+
+
+def _cut(
+    model: Model, component: tuple[str, ...], drives: list[Point], responses: list[Point]
+) -> tuple[Chain, Real]:
+    """Return the component's chain, with nodes where forces act and are asked for."""
+    chain, x = model.chain.only(component), model.x
+    inside = [p for p in (*drives, *filter(is_force, responses)) if locate(x, p[1])[1] is not None]
+    if chain.kind != TENSED:
+        if inside:
+            raise SceneError(
+                f'element must be "tensed" where {inside[0]} lies between nodes and is driven or '
+                f"an internal force, got {model.element!r}"
+            )
+    elif stops(chain, x):
+        most = np.sqrt(np.abs(chain.tension) * chain.flexibility[:, 2, 2]) * chain.length
+        raise SceneError(
+            "elements must be more, or rigid, so that the compression bends none by itself: they "
+            f"must be shorter than sqrt(B/|T|), got {most.max():.3g} of it"
+        )
+    return cut(chain, x, [p[1] for p in inside])
+
+
+def _massless(chain: Chain) -> NDArray[np.bool_]:
+    none = (np.einsum("tii->ti", chain.mass) == 0) & (chain.held == 0)
+    return np.asarray(none[chain.term_of])
+
+
+def _moved(chain: Chain, component: tuple[str, ...], ends: list[Any]) -> NDArray[np.int32]:
+    places = [((chain.nodes - 1) * number, component.index(c)) for _, number, c in ends]
+    return np.array(places, dtype=np.int32).reshape(-1, 2)
+
+
+def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside) -> State:
+    """Return the rest under loads on nodes, about the mean tension and without laws."""
+    u, f = np.zeros_like(load), np.zeros_like(load[1:])
+    if load.any():
+        try:
+            u, f = _core.mixed_deflection(chain.at_rest, load)
+        except SolveError as error:
+            raise SolveError(
+                f"({', '.join(component)}): there is no rest under the loads of start: a rigid "
+                "motion is free or the compression is critical"
+            ) from error
+        if "z" in component:
+            z, each = component.index("z"), chain.element_of
+            f[:, z] -= beside.string[each] / chain.length[each] * np.diff(u[:, z])
+    y = _feet(chain, u)
+    return State(u, np.zeros_like(u), f, y, np.zeros_like(y))
+
+
+def _feet(chain: Chain, u: Real) -> Real:
+    """Return how far the feet of resonators are moved."""
+    if chain.attached_row is None or chain.attached_term is None:
+        return np.zeros(0)
+    node = [int(np.flatnonzero(chain.term_of == term)[0]) for term in chain.attached_term]
+    return np.asarray(np.einsum("kc,kc->k", chain.attached_row[:, 0], u[node]))
+
+
+def refuse(model: Model) -> None:
+    """Refuse what the direct method does not take, by name and with what to do."""
+    scene = model.scene
+    if model.element == "continuous":
+        raise SceneError(
+            'elements must be given where the method is "direct", such as compile(elements=64): '
+            "continuous spans have no steps"
+        )
+    for one in scene.dampings:
+        term = one.term()
+        if np.any(tuple(term.loss.values())) or np.any(term.ratio):
+            raise SceneError(
+                'damping must be in proportion to velocity where the method is "direct", such as '
+                f"StiffnessDamping, got {one}"
+            )
+    if not model.separable:
+        raise SceneError(
+            'element must be "rigid" where sections and tension are damped apart and the method '
+            f'is "direct", got {model.element!r} with {scene.damping}'
+        )
+    kinds = model.chain.carried
+    if "broken wire" in kinds:
+        raise SceneError(
+            'parts must not have a broken wire where the method is "direct": its inertia is spread '
+            "along it; a Resonator of its first frequency comes near it"
+        )
+    share = factors(scene.dampings, np.array(1.0)).imag
+    if ATTACHED[0] in kinds and share[INERTIA] != 0:
+        raise SceneError(
+            "damping must not be in proportion to mass where a resonator stands and the method is "
+            f'"direct", got {scene.damping}: say ViscousDamping'
+        )
