@@ -66,6 +66,11 @@ class Stride:
     energy: Real
     error: BaseException | None = None
 
+    def then(self, other: Stride) -> Stride:
+        """Return it and the steps after it."""
+        read = np.concatenate([self.read, other.read])
+        return Stride(read, np.concatenate([self.energy, other.energy]), other.error)
+
 
 class Motion:
     """The motion of one chain.
@@ -74,11 +79,21 @@ class Motion:
     ----------
     lumps : Lumps
         The chain and what acts on it.
+
+    Attributes
+    ----------
+    state : State
+        Now.
+    late : float
+        How long ago the step should have begun that is next [s]: what follows jumps takes time.
+    stages, factorisations : int
+        What was solved so far.
     """
 
     def __init__(self, lumps: Lumps) -> None:
         self.lumps = lumps
         self.state = lumps.start.copy()
+        self.late = 0.0
         self.stages = 0
         self.factorisations = 0
         self._plans: OrderedDict[tuple[float, float], NDArray[np.uint8]] = OrderedDict()
@@ -118,6 +133,10 @@ class Motion:
             speed[..., k] = rate + (np.diff(where) / h - rate.mean(axis=1))[:, None]
         extra = None if lumps.pulsation is None else lumps.pulsation(stages)
         return Push(force, speed, extra)
+
+    def stride(self, time: Real, h: float, g: float, edges: tuple[float, float]) -> Stride:
+        """Take steps under the forces of their times; see `push`."""
+        return self.advance(self.push(time, h, g, *edges), time, h, g)
 
     def advance(self, push: Push, time: Real, h: float, g: float) -> Stride:
         """Take steps from the state, which is then where they lead."""

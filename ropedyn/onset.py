@@ -14,8 +14,8 @@ from .timeline import Timeline
 
 Real = NDArray[np.float64]
 
-SHORT = 1e-7
-"""Of a step: how long blows last, ends jump and what has no inertia follows."""
+SHORT = 1e-4
+"""Of a step: how long blows last, ends jump and what has no inertia follows; less is rounding."""
 
 PROBE = 1e-6
 """Of a step: how far is looked ahead for what holds at one time."""
@@ -76,6 +76,7 @@ class Onset:
         stride = self.motion.advance(push, self._times(STEPS, e), e, FORGETS)
         if stride.error is not None:
             raise stride.error
+        self.motion.late = STEPS * e
         return stride
 
     def probe(self) -> Stride:
@@ -94,11 +95,12 @@ class Onset:
         for k, motion in enumerate((state.u, state.v)):
             pair = np.stack([motion[rows.node], motion[rows.node + 1]], axis=1)
             read[0, k, moves] = np.einsum("rsc,rsc->r", rows.row, pair)[moves]
+        read[0, 0, moves] -= self.motion.late * read[0, 1, moves]
         values = self.motion.lumps.reading.values(read, np.array([self.time]), order)
         return np.asarray(values[0], dtype=np.float64)
 
     def _times(self, steps: int, h: float) -> Real:
-        return self.time + h * np.arange(steps + 1)
+        return np.asarray(self.time + h * np.arange(steps + 1), dtype=np.float64)
 
     def _push(self, steps: int, h: float, g: float) -> Push:
         """Return the forces of this time, kept for some steps."""

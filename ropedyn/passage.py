@@ -123,8 +123,15 @@ class Walk:
         after = line.breaks[i] and block.time[0] == line.mark[i]
         before = j > i and line.breaks[j]
         near = 2 * line.near
-        push = motion.push(block.time, block.h, self.g, near * after, near * before)
-        return motion.advance(push, block.time, block.h, self.g)
+        edges = (near * after, near * before)
+        if motion.late == 0:
+            return motion.stride(block.time, block.h, self.g, edges)
+        time, late, motion.late = block.time.copy(), motion.late, 0.0
+        time[0] += late
+        first = motion.stride(time[:2], block.h - late, self.g, edges)
+        if first.error is not None or block.steps == 1:
+            return first
+        return first.then(motion.stride(time[1:], block.h, self.g, (0.0, edges[1])))
 
     def _record(self, block: Block, strides: list[Stride]) -> None:
         """Keep what holds at the times that were asked for."""
@@ -158,7 +165,7 @@ class Walk:
             at = [self.run.model.coordinates.index(c) for c in motion.lumps.coordinates]
             most = np.abs([state.u, state.v]).max(axis=1)
             passage.largest[:, at] = np.maximum(passage.largest[:, at], most)
-            passage.last[:, at] = state.u[motion.lumps.kept]
+            passage.last[:, at] = (state.u - motion.late * state.v)[motion.lumps.kept]
         if line.seen[mark] >= 0:
             passage.snapshot[line.seen[mark]] = passage.last
             passage.seen = int(line.seen[mark]) + 1
