@@ -31,6 +31,8 @@ class Beside(NamedTuple):
     """(distinct,) that times its damping [N s]."""
     stretching: float
     """EA/L [N/m]."""
+    mass_rate: float
+    """Damping of the masses of resonators, of the mass [1/s]."""
 
 
 def plain(model: Model, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:
@@ -58,6 +60,7 @@ def plain(model: Model, component: tuple[str, ...], chain: Chain) -> tuple[Chain
         string=string.copy(),
         string_drag=share[TENSION] * string,
         stretching=_stretching(model, component),
+        mass_rate=float(share[INERTIA]),
     )
 
 

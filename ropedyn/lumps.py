@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .beside import Beside, plain, pulsation_of
-from .chain import ATTACHED, TENSED, Chain
-from .damping import INERTIA, factors
+from .chain import TENSED, Chain
 from .deflection import nodal
 from .errors import SceneError, SolveError
 from .force import Force
@@ -267,10 +266,4 @@ def refuse(model: Model) -> None:
         raise SceneError(
             'parts must not have a broken wire where the method is "direct": its inertia is spread '
             "along it; a Resonator of its first frequency comes near it"
-        )
-    share = factors(scene.dampings, np.array(1.0)).imag
-    if ATTACHED[0] in kinds and share[INERTIA] != 0:
-        raise SceneError(
-            "damping must not be in proportion to mass where a resonator stands and the method is "
-            f'"direct", got {scene.damping}: say ViscousDamping'
         )

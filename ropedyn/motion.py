@@ -79,6 +79,8 @@ class Motion:
     ----------
     lumps : Lumps
         The chain and what acts on it.
+    refined : bool
+        Whether stages are solved twice, so that energy does not drift by rounding.
 
     Attributes
     ----------
@@ -90,8 +92,9 @@ class Motion:
         What was solved so far.
     """
 
-    def __init__(self, lumps: Lumps) -> None:
+    def __init__(self, lumps: Lumps, *, refined: bool) -> None:
         self.lumps = lumps
+        self.refined = refined
         self.state = lumps.start.copy()
         self.late = 0.0
         self.stages = 0
@@ -175,6 +178,7 @@ class Motion:
             push.extra,
             lumps.reading.ports,
             True,
+            self.refined,
         )
         if push.extra is not None:
             self.factorisations += 2 * done

@@ -59,7 +59,7 @@ class Stage(NamedTuple):
         full[self.calls] = given
         if len(self.calls) < len(full):
             full, residual = _core.march_laws(
-                self.lumps.laws, self.theta, self.x, self.C, self.q, full
+                self.lumps.laws[2:], self.theta, self.x, self.C, self.q, full
             )
             if not residual <= LEAST:
                 raise SolveError(

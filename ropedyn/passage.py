@@ -18,6 +18,9 @@ Real = NDArray[np.float64]
 BLOCK = 4096
 """Steps of one call of the core: a look for Ctrl-C."""
 
+FINE = 1e-8
+"""Tolerance below which rounding counts."""
+
 
 @dataclass(eq=False)
 class Passage:
@@ -82,7 +85,8 @@ class Walk:
     ) -> None:
         width, nodes = len(run.model.coordinates), len(run.model.x)
         self.run, self.line, self.g, self.share = run, line, g, share
-        self.motions = [Motion(lumps) for lumps in chains]
+        refined = run.spectral_radius == 1 and (run.step is not None or _is_fine(run.tolerance))
+        self.motions = [Motion(lumps, refined=refined) for lumps in chains]
         self.now = np.zeros((len(chains), len(ENERGIES)))
         self.passage = Passage(
             value=np.zeros((len(run.responses), len(run.time))),
@@ -188,3 +192,7 @@ class Walk:
         if n >= 0:
             self.passage.value[motion.lumps.number, n] = what.values(self.run.order)
             self.passage.energy[k, n] = self.now[k]
+
+
+def _is_fine(tolerance: float | None) -> bool:
+    return tolerance is not None and tolerance < FINE
