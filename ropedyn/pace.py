@@ -165,7 +165,7 @@ def _worst(run: Run, fine: Passage, coarse: Passage, error: Real) -> float:
     size = np.maximum(np.abs(fine.value).max(axis=1), _floor(run, fine))
     most = error.max(axis=1)
     relative = np.divide(most, size, out=np.zeros_like(most), where=most > 0)
-    scale = np.abs(fine.last).max(axis=0)
+    scale = fine.largest[0]
     apart = np.abs(fine.last - coarse.last).max(axis=0)
     shape = np.divide(apart, scale, out=np.zeros_like(apart), where=apart > 0)
     return max(float(relative.max()), FAR if shape.max() > RESOLVED else 0.0)

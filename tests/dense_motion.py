@@ -5,15 +5,9 @@ import scipy.linalg as la
 
 
 class Dense:
-    """The matrices of a chain over its free coordinates; those without inertia are condensed.
+    """The matrices of a chain over its free coordinates; those without inertia are condensed."""
 
-    Attributes
-    ----------
-    size : int
-        Free coordinates.
-    """
-
-    def __init__(self, model, coordinates=None):
+    def __init__(self, model):
         self.model = model
         self.K = model.stiffness().toarray()
         self.size = len(self.K)
@@ -43,7 +37,7 @@ class Dense:
         return la.solve(self.K, load)
 
     def motion(self, time, *, u=None, v=None, load=None, omega=0.0, phase=np.pi / 2):
-        """Return motion from u and v under load sin(omega t + phase), shape (t, size), and velocity."""
+        """Return motion and velocity from u, v under load sin(omega t + phase), (t, size)."""
         r, m = np.flatnonzero(self.moves), np.flatnonzero(~self.moves)
         p = np.zeros(self.size) if load is None else load
         follow = -la.solve(self.K[np.ix_(m, m)], self.K[np.ix_(m, r)]) if len(m) else None
