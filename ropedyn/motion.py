@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -20,7 +21,7 @@ Real = NDArray[np.float64]
 KEEPS = 0.25
 """The stage of the scheme that keeps energy."""
 
-FORGETS = 1 - np.sqrt(0.5)
+FORGETS = 1 - math.sqrt(0.5)
 """The stage of the scheme that lets what has no inertia follow at once."""
 
 PLANS = 4
@@ -34,7 +35,7 @@ def stage_of(spectral_radius: float) -> float:
 
     (1 - rho) g^2 - 2 g + 1/2 = 0, see csrc/march.h; 1/4 for rho = 1.
     """
-    return 1 / (2 * (1 + np.sqrt((1 + spectral_radius) / 2)))
+    return 1 / (2 * (1 + math.sqrt((1 + spectral_radius) / 2)))
 
 
 class Push(NamedTuple):

@@ -1,0 +1,304 @@
+"""Motion that is not linear, against closed forms: one mass on a string of two elements."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+from scipy.special import ellipj
+
+import ropedyn as rd
+
+LENGTH, DENSITY, TENSION = 1.0, 0.1, 100.0
+MASS, STIFFNESS = DENSITY * LENGTH / 2, 4 * TENSION / LENGTH
+OMEGA = math.sqrt(STIFFNESS / MASS)
+PERIOD = 2 * math.pi / OMEGA
+AMPLITUDE = 0.01
+TIME = np.linspace(0.0, 3 * PERIOD, 31)
+MIDDLE = ("z", LENGTH / 2)
+
+
+def mass_on_a_string(*parts, tension=TENSION, **rope):
+    scene = rd.Scene(rd.Rope(LENGTH, DENSITY, **rope), tension=tension, parts=parts)
+    return scene.compile(elements=2)
+
+
+def released(model, time=TIME, **asked):
+    """Let the mass go from its amplitude."""
+    start = {MIDDLE: STIFFNESS * AMPLITUDE}
+    return model.transient(time, start=start, response=MIDDLE, method="direct", **asked)
+
+
+def error(history, exact):
+    return np.abs(history.value[0] - exact).max() / np.abs(exact).max()
+
+
+def kept(history):
+    """What the balance says must stay."""
+    e = history.energy
+    return e["kinetic"] + e["strain"] - e["input"] + e["dissipated"] + e.get("laws", 0.0)
+
+
+# --- stretching ---------------------------------------------------------------------------------
+
+
+def duffing(time, cubic):
+    """m x'' + k x + cubic x^3 = 0 from rest at the amplitude; Nayfeh and Mook 1979, 2.2."""
+    stiff = STIFFNESS + cubic * AMPLITUDE**2
+    return AMPLITUDE * ellipj(math.sqrt(stiff / MASS) * time, cubic * AMPLITUDE**2 / (2 * stiff))[1]
+
+
+AXIAL = 2e6
+# EA/2L times the sum of z^2/(L/2) over both halves is added to the tension
+CUBIC = 8 * AXIAL / LENGTH**3
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_stretching_mass_on_a_string_is_duffings(tolerance):
+    tension = rd.Tension(TENSION, stretching=True)
+    history = released(
+        mass_on_a_string(tension=tension, axial_stiffness=AXIAL), tolerance=tolerance
+    )
+    assert error(history, duffing(TIME, CUBIC)) < tolerance
+    assert np.isinf(history.mesh_error).all()
+    assert history.step_error.max() <= tolerance * AMPLITUDE
+
+
+def test_stretching_keeps_energy():
+    tension = rd.Tension(TENSION, stretching=True)
+    history = released(mass_on_a_string(tension=tension, axial_stiffness=AXIAL), step=PERIOD / 50)
+    assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
+
+
+def test_law_in_python_is_duffings_too():
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -CUBIC * u**3)
+    assert error(released(mass_on_a_string(law), tolerance=2e-3), duffing(TIME, CUBIC)) < 2e-3
+
+
+# --- dashpots -----------------------------------------------------------------------------------
+
+
+def turning_points(c, count):
+    """Amplitudes of x'' + c x' |x'| + w^2 x = 0.
+
+    With y = v^2 it is linear in x, dy/dx + 2 s c y = -2 w^2 x, s the sign of v: from rest at -a to
+    rest at b, (1 - 2 c b) e^(2 c b) = (1 + 2 c a) e^(-2 c a).
+    """
+    found = [AMPLITUDE]
+    for _ in range(count):
+        want = (1 + 2 * c * found[-1]) * math.exp(-2 * c * found[-1])
+        found.append(brentq(_gap, 0.0, found[-1], (c, want)))
+    return np.array(found)
+
+
+def _gap(b, c, want):
+    return (1 - 2 * c * b) * math.exp(2 * c * b) - want
+
+
+def test_quadratic_dashpot_takes_amplitude_as_its_first_integral_says():
+    damping = 5.0
+    fine = np.linspace(0.0, 3 * PERIOD, 3001)
+    history = released(
+        mass_on_a_string(rd.Dashpot(LENGTH / 2, damping, exponent=2.0)), fine, tolerance=1e-6
+    )
+    x = history.value[0]
+    turns = np.flatnonzero((x[1:-1] - x[:-2]) * (x[2:] - x[1:-1]) < 0) + 1
+    # a parabola through three times about each turn
+    before, at, after = np.abs(x[turns - 1]), np.abs(x[turns]), np.abs(x[turns + 1])
+    peak = at + (after - before) ** 2 / (8 * (2 * at - before - after))
+    exact = turning_points(damping / MASS, len(turns))[1:]
+    assert len(turns) >= 5
+    assert peak == pytest.approx(exact, rel=1e-5)
+    assert history.energy["dissipated"][-1] > 0
+    assert "laws" not in history.energy
+
+
+def coulomb(time, friction):
+    """The mass between sticking points, half a period at a time; it loses 4 F/k a period."""
+    found, shift = [], friction / STIFFNESS
+    for t in time:
+        x, left = AMPLITUDE, t
+        while abs(x) > shift and left > PERIOD / 2:
+            x, left = 2 * math.copysign(shift, x) - x, left - PERIOD / 2
+        centre = math.copysign(shift, x)
+        found.append(x if abs(x) <= shift else centre + (x - centre) * math.cos(OMEGA * left))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.5])
+def test_friction_takes_the_same_each_period_and_sticks(radius):
+    friction = 0.53
+    history = released(
+        mass_on_a_string(rd.Dashpot(LENGTH / 2, friction, exponent=0.0)),
+        tolerance=1e-4,
+        spectral_radius=radius,
+    )
+    exact = coulomb(TIME, friction)
+    assert error(history, exact) < 1e-4
+    assert exact[-1] == exact[-3] != 0  # it sticks
+    assert history.value[0, -1] == pytest.approx(history.value[0, -3], rel=1e-12)
+
+
+def test_friction_holds_what_is_pushed_too_little():
+    model = mass_on_a_string(rd.Dashpot(LENGTH / 2, 1.0, exponent=0.0))
+    history = model.transient(
+        TIME, drive=MIDDLE, force=rd.Sine(0.999, 20.0), method="direct", step=PERIOD / 40
+    )
+    assert np.abs(history.value).max() < 1e-15 * AMPLITUDE
+
+
+# --- stops --------------------------------------------------------------------------------------
+
+
+def bouncing(time, stop):
+    """The mass let go above a stop at its rest: half a period of contact each time."""
+    together = math.sqrt((STIFFNESS + stop) / MASS)
+    speed, contact = AMPLITUDE * OMEGA, math.pi / together
+    left = time % (PERIOD / 2 + contact)
+    free, pressed = left < PERIOD / 4, left < PERIOD / 4 + contact
+    return np.where(
+        free,
+        AMPLITUDE * np.cos(OMEGA * left),
+        np.where(
+            pressed,
+            -speed / together * np.sin(together * (left - PERIOD / 4)),
+            speed / OMEGA * np.sin(OMEGA * (left - PERIOD / 4 - contact)),
+        ),
+    )
+
+
+def test_stop_bounces_for_half_a_period_of_contact():
+    stop = 5e3
+    history = released(mass_on_a_string(rd.Stop(LENGTH / 2, stop, side=-1)), tolerance=3e-4)
+    assert error(history, bouncing(TIME, stop)) < 3e-4
+    # it gives back what it takes
+    assert history.energy["laws"].max() > 0.3 * kept(history)[0]
+    assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
+
+
+def test_stop_beyond_a_gap_that_is_not_reached_does_nothing():
+    free, stopped = (
+        released(mass_on_a_string(*parts), step=PERIOD / 100)
+        for parts in ((), [rd.Stop(LENGTH / 2, 1e5, gap=1.01 * AMPLITUDE)])
+    )
+    # solved with and without a law: the last digits differ
+    assert np.abs(free.value - stopped.value).max() < 1e-13 * AMPLITUDE
+    assert not stopped.energy["laws"].any()
+
+
+# --- laws in Python -----------------------------------------------------------------------------
+
+
+def pushed(*parts, time=TIME, **asked):
+    return mass_on_a_string(*parts).transient(
+        time,
+        drive=MIDDLE,
+        force=rd.Impulse(0.01, time=TIME[1], duration=PERIOD / 7),
+        method="direct",
+        **{"step": PERIOD / 60, **asked},
+    )
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
+@pytest.mark.parametrize(
+    ("law", "part"),
+    [
+        (lambda t, u, v: -300.0 * u, rd.Spring(LENGTH / 2, 300.0)),
+        (lambda t, u, v: -3.0 * v, rd.Dashpot(LENGTH / 2, 3.0)),
+        (
+            lambda t, u, v: -5.0 * v * abs(v),
+            rd.Dashpot(LENGTH / 2, 5.0, exponent=2.0),
+        ),
+    ],
+)
+def test_law_in_python_is_the_part_it_says(law, part, quantity):
+    python = pushed(rd.NodeForce(LENGTH / 2, law), quantity=quantity)
+    own = pushed(part, quantity=quantity)
+    # Newton's method ends within 1e-12 of the forces
+    assert np.abs(python.value - own.value).max() < 1e-9 * np.abs(own.value).max()
+    assert np.ptp(kept(python)) < 1e-12 * python.energy["input"].max()
+
+
+def test_laws_of_both_kinds_act_together():
+    parts = [
+        rd.NodeForce(LENGTH / 2, lambda t, u, v: -300.0 * u),
+        rd.Dashpot(LENGTH / 2, 5.0, exponent=2.0),
+    ]
+    own = pushed(rd.Spring(LENGTH / 2, 300.0), parts[1])
+    both = pushed(*parts)
+    assert np.abs(both.value - own.value).max() < 1e-9 * np.abs(own.value).max()
+    assert both.energy["dissipated"][-1] == pytest.approx(own.energy["dissipated"][-1], rel=1e-9)
+
+
+def test_law_of_time_alone_is_a_force():
+    force = rd.Sine(1.0, 30.0)
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: float(force.value(np.array(t))))
+    asked = {"response": MIDDLE, "method": "direct", "step": PERIOD / 60}
+    python = mass_on_a_string(law).transient(TIME, **asked)
+    own = mass_on_a_string().transient(TIME, drive=MIDDLE, force=force, **asked)
+    assert np.abs(python.value - own.value).max() < 1e-12 * np.abs(own.value).max()
+    assert -python.energy["laws"] == pytest.approx(own.energy["input"], rel=1e-9, abs=1e-15)
+
+
+def wrong(value):
+    """A law that is well for a while."""
+    return rd.NodeForce(LENGTH / 2, lambda t, u, v: -u if t < TIME[5] else value)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, None, "1"])
+def test_law_that_returns_no_number_is_named(value):
+    with pytest.raises(rd.SolveError, match=r"parts\[0\].law\(t=0.0\d+, u=.*must return") as caught:
+        pushed(wrong(value))
+    history = caught.value.history
+    assert history is not None
+    assert len(history.time) == 6
+    assert "must return" in history.stopped
+
+
+def fail(t, u, v):
+    if t > TIME[5]:
+        raise ZeroDivisionError("no")
+    return 0.0
+
+
+def test_law_that_raises_is_named_and_nothing_is_lost():
+    law = rd.NodeForce(LENGTH / 2, fail)
+    with pytest.raises(ZeroDivisionError, match="no") as caught:
+        pushed(law)
+    assert any("parts[0].law(t=0.0" in note for note in caught.value.__notes__)
+    part, whole = pushed(law, partial=True), pushed()
+    assert part.stopped == "ZeroDivisionError: no"
+    assert len(part.time) == 6
+    assert np.abs(part.value - whole.value[:, :6]).max() < 1e-13 * np.abs(whole.value).max()
+
+
+def test_law_that_jumps_does_not_converge_and_says_when():
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -math.copysign(1.0, v))
+    with pytest.raises(rd.SolveError, match=r"parts\[0\] does not converge at t = .* residual"):
+        pushed(law)
+
+
+# --- tension that pulsates ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_pulsating_tension_is_mathieus(tolerance):
+    tension = rd.Tension(TENSION, amplitude=30.0, frequency=1.9 / PERIOD, phase=0.3)
+    history = released(mass_on_a_string(tension=tension), tolerance=tolerance)
+
+    def rhs(t, y):
+        now = TENSION + float(tension.pulsation(np.array(t)))
+        return [y[1], -4 / LENGTH * now * y[0] / MASS]
+
+    exact = solve_ivp(rhs, (0, TIME[-1]), [AMPLITUDE, 0], "DOP853", TIME, rtol=1e-12, atol=1e-16).y[
+        0
+    ]
+    assert error(history, exact) < tolerance
+
+
+def test_work_of_pulsation_is_input():
+    tension = rd.Tension(TENSION, amplitude=30.0, frequency=1.9 / PERIOD)
+    history = released(mass_on_a_string(tension=tension), step=PERIOD / 50)
+    assert np.ptp(history.energy["input"]) > 0.1 * history.energy["strain"][0]
+    assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
