@@ -123,7 +123,17 @@ def lumped_chains(run: Run) -> list[Lumps]:
         if drives or loads or any(one.law.kind == "call" for one in laws):
             found.append(_lumps(run, component, laws, drives, loads))
             _refuse_blows(found[-1])
+            _refuse_calls(found[-1])
     return found
+
+
+def _refuse_calls(lumps: Lumps) -> None:
+    """Refuse laws in Python beside a tension that changes."""
+    if lumps.calls and (lumps.pulsation is not None or lumps.beside.stretching != 0):
+        raise SceneError(
+            f"parts[{lumps.calls[0].part}] must not be a NodeForce where the tension pulsates or "
+            "is stretching: dashpots and stops may stand there"
+        )
 
 
 def _refuse_blows(lumps: Lumps) -> None:

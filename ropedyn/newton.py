@@ -26,6 +26,9 @@ ENOUGH = 1e-12
 LEAST = 1e-9
 """The residual must be smaller where rounding lets it fall no more."""
 
+LEAST_SHARE = 1e-3
+"""Of a Newton step that is halved."""
+
 STEP = 1e-7
 """Of numerical derivatives, of what moves."""
 
@@ -84,8 +87,10 @@ def solve_stage(stage: Stage, guess: Real) -> tuple[Real, Real]:
     SolveError
         If a law returns no finite number, or Newton's method does not converge.
     """
+    if len(stage.x) == 1:
+        return _solve_alone(stage, float(guess[0]))
     given = guess.copy()
-    best = math.inf
+    best, worst = math.inf, math.inf
     moved, full = stage.increment(given)
     wanted = _forces(stage, moved)
     for _ in range(MOST):
@@ -96,11 +101,43 @@ def solve_stage(stage: Stage, guess: Real) -> tuple[Real, Real]:
             return full, moved / stage.theta
         best = min(best, worst)
         given, moved, full, wanted = _improved(stage, given, moved, wanted)
+    raise _does_not_converge(stage, worst)
+
+
+def _does_not_converge(stage: Stage, residual: float) -> SolveError:
     parts = ", ".join(f"parts[{one.part}]" for one in stage.lumps.calls)
-    raise SolveError(
+    return SolveError(
         f"the law of {parts} does not converge at t = {stage.time!r} s: the residual is "
-        f"{worst:.3g} of the forces; laws without jumps do, in steps that are short enough"
+        f"{residual:.3g} of the forces; laws without jumps do, in steps that are short enough"
     )
+
+
+def _solve_alone(stage: Stage, force: float) -> tuple[Real, Real]:
+    """Return the force of the only law and its point's velocity; slopes are those of secants."""
+    one, x, C = stage.lumps.calls[0], float(stage.x[0]), float(stage.C[0, 0])
+    moved = x + C * force
+    wanted = _force(stage, one, moved)
+    slope, best, worst = math.nan, math.inf, math.inf
+    for _ in range(MOST):
+        gap, size = wanted - force, abs(force) + abs(wanted)
+        worst = abs(gap) / size if size > 0 else 0.0
+        if worst <= ENOUGH or (worst <= LEAST and worst >= best / 2):
+            return np.array([force]), np.array([moved / stage.theta])
+        best = min(best, worst)
+        if math.isnan(slope):
+            slope = float(_slopes(stage, np.array([moved]), np.array([wanted]))[0])
+        change = gap / (1 - slope * C) if slope * C != 1 else gap
+        least, before, was = abs(change) * LEAST_SHARE, moved, wanted
+        while True:
+            moved = x + C * (force + change)
+            wanted = _force(stage, one, moved)
+            if abs(wanted - force - change) < abs(gap) or abs(change) < least:
+                break
+            change /= 2
+        force += change
+        if moved != before:
+            slope = (wanted - was) / (moved - before)
+    raise _does_not_converge(stage, worst)
 
 
 def _improved(
@@ -121,7 +158,7 @@ def _improved(
         tried = given + share * change
         moved, full = stage.increment(tried)
         wanted = _forces(stage, moved)
-        if float(np.abs(wanted - tried).max()) < size or share < 1e-3:
+        if float(np.abs(wanted - tried).max()) < size or share < LEAST_SHARE:
             return tried, moved, full, wanted
         share /= 2
 
@@ -134,17 +171,18 @@ def _forces(stage: Stage, moved: Real) -> Real:
 def _force(stage: Stage, one: Call, moved: float) -> float:
     """Return what a law says where its point has moved."""
     u, v = float(stage.q[one.law]) + moved, moved / stage.theta
-    where = f"parts[{one.part}].law(t={stage.time!r}, u={u!r}, v={v!r})"
     try:
         value = one.call(stage.time, u, v)
     except Exception as error:
-        error.add_note(f"raised by {where}")
+        error.add_note(f"raised by parts[{one.part}].law(t={stage.time!r}, u={u!r}, v={v!r})")
         raise
+    if type(value) is float and math.isfinite(value):
+        return value
+    where = f"parts[{one.part}].law(t={stage.time!r}, u={u!r}, v={v!r})"
     try:
-        number = check.number(value, where, "N")
+        return check.number(value, where, "N")
     except (TypeError, ValueError) as error:
         raise SolveError(str(error).replace("must be", "must return")) from error
-    return number
 
 
 def _slopes(stage: Stage, moved: Real, wanted: Real) -> Real:

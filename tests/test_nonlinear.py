@@ -248,7 +248,9 @@ def wrong(value):
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, None, "1"])
 def test_law_that_returns_no_number_is_named(value):
-    with pytest.raises(rd.SolveError, match=r"parts\[0\].law\(t=0.0\d+, u=.*must return") as caught:
+    with pytest.raises(
+        rd.SolveError, match=r"parts\[0\].law\(t=0\.0\d+, u=.*must return"
+    ) as caught:
         pushed(wrong(value))
     history = caught.value.history
     assert history is not None
@@ -277,6 +279,14 @@ def test_law_that_jumps_does_not_converge_and_says_when():
     law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -math.copysign(1.0, v))
     with pytest.raises(rd.SolveError, match=r"parts\[0\] does not converge at t = .* residual"):
         pushed(law)
+
+
+@pytest.mark.parametrize("tension", [{"amplitude": 1.0, "frequency": 9.0}, {"stretching": True}])
+def test_law_in_python_is_refused_where_the_tension_changes(tension):
+    law = rd.NodeForce(LENGTH / 2, fail)
+    model = mass_on_a_string(law, tension=rd.Tension(TENSION, **tension), axial_stiffness=AXIAL)
+    with pytest.raises(rd.SceneError, match=r"parts\[0\] must not be a NodeForce"):
+        released(model)
 
 
 # --- tension that pulsates ----------------------------------------------------------------------

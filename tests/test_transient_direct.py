@@ -114,10 +114,10 @@ def test_step_inside_a_step_is_met():
         TIME, drive=("z", 0.5), force=rd.Step(1.0, time=begin), method="direct", tolerance=1e-6
     )
     dense = Dense(model)
-    since = np.concatenate([[begin], TIME[TIME > begin]])
+    since = np.concatenate([[begin], TIME[begin < TIME]])
     exact, _ = dense.motion(since, load=dense.load(("z", 0.5)))
     value = np.zeros(len(TIME))
-    value[TIME > begin] = exact[1:, dense.at("z", 0.5)]
+    value[begin < TIME] = exact[1:, dense.at("z", 0.5)]
     assert np.abs(late.value[0] - value).max() <= 1e-6 * np.abs(value).max()
 
 
