@@ -53,11 +53,14 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
         return np.sum(parts, axis=0)
     modes = pairs(expansion, drive)
     rest = expansion.rest[drive][:, None]
-    if isinstance(force, Chirp):
-        return checked(_chirp(modes, rest, force, time, order), time)
-    if isinstance(force, Samples):
-        return checked(straight_lines(modes, rest, force, time, order), time)
-    return checked(_sines(modes, rest, pieces(force, float(time[0])), time, order), time)
+    with np.errstate(all="ignore"):  # numbers that are not finite are refused at the end
+        if isinstance(force, Chirp):
+            value = _chirp(modes, rest, force, time, order)
+        elif isinstance(force, Samples):
+            value = straight_lines(modes, rest, force, time, order)
+        else:
+            value = _sines(modes, rest, pieces(force, float(time[0])), time, order)
+    return checked(value, time)
 
 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
@@ -73,8 +76,10 @@ def release(expansion: Expansion, drive: int, load: float, time: Real, order: in
     if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():
         raise SceneError("start must be None where the rope has no rest under a load")
     rest = load * np.divide(1.0, modes.square, out=np.zeros_like(modes.square), where=~growing)
-    terms = _motion(modes, Piece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
-    return checked(evaluate(terms.rate, _seen(modes, terms, order), time - time[0]), time)
+    with np.errstate(all="ignore"):  # as above
+        terms = _motion(modes, Piece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
+        value = evaluate(terms.rate, _seen(modes, terms, order), time - time[0])
+    return checked(value, time)
 
 
 def checked(value: Real, time: Real) -> Real:
@@ -151,8 +156,7 @@ def _seen(modes: Pairs, terms: Exponentials, order: int) -> Complex:
 
 def _state(terms: Exponentials, modes: int, time: float) -> tuple[Real, Real]:
     """Return q and q' of each mode at a time."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        part = terms.weight * np.exp(terms.rate * time)
-        state = [part.real, (part * terms.rate).real]
+    part = terms.weight * np.exp(terms.rate * time)
+    state = [part.real, (part * terms.rate).real]
     q, v = (np.bincount(terms.mode, each, modes).astype(np.float64) for each in state)
     return q, v

@@ -20,6 +20,8 @@ SLICE = 1 << 16
 """Exponentials at once where times are not a grid."""
 DIGITS = 38.0
 """Of circles, as a natural logarithm."""
+MOST = 4096
+"""Nodes of a circle, that numbers near the end of their range end somewhere."""
 CLOSE = 0.5
 """Poles nearer than this part of what time and decay can tell apart go into one circle."""
 
@@ -80,10 +82,9 @@ def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:
     rate, where = np.unique(rate[acts], return_inverse=True)
     merged = np.zeros((len(rate), len(coefficient)), dtype=complex)
     np.add.at(merged, where, coefficient[:, acts].T)
-    with np.errstate(over="ignore", invalid="ignore"):
-        if is_uniform(time):
-            return _on_grid(rate, merged.T, time)
-        return _anywhere(rate, merged.T, time)
+    if is_uniform(time):
+        return _on_grid(rate, merged.T, time)
+    return _anywhere(rate, merged.T, time)
 
 
 def is_uniform(time: Real) -> bool:
@@ -204,11 +205,13 @@ def _circle(poles: Complex, inside: NDArray[np.bool_], span: float) -> tuple[flo
     inner, outer = _ring(poles, inside)
     center = poles[inside].mean()
     width = float(_width(2 * center, span))
-    radius = math.sqrt(max(inner, width / 4) * min(outer, 4 * width))
+    low, high = max(inner, min(width, outer) / 4), min(outer, 4 * max(width, inner))
+    radius = math.sqrt(low) * math.sqrt(high)
     ratio = max(inner / radius, radius / outer)
     nodes = 2 * math.ceil(DIGITS / math.log(1 / ratio) / 2) if ratio > 0 else 2
     decay = max(-center.real, 0)
     slow = math.log(decay / radius) if decay > radius else 0.0
-    while max(slow * nodes, math.lgamma(nodes + 1) - nodes * math.log(radius * span)) < DIGITS:
+    turn = math.log(radius * span)
+    while max(slow * nodes, math.lgamma(nodes + 1) - nodes * turn) < DIGITS and nodes < MOST:
         nodes += 2
     return radius, nodes

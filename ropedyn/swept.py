@@ -136,11 +136,10 @@ def _by_faddeeva(s: Complex, force: Chirping, t: Real) -> Complex:
     apart = force.frequency + 1j * s
     z0, z = kappa * apart / force.growth, kappa * (t + apart / force.growth)
     angle = (force.frequency + force.growth * t / 2) * t
-    with np.errstate(over="ignore", invalid="ignore"):
-        turning = np.exp(s * t) * _signed(z0) - np.exp(1j * angle) * _signed(z)
-        passed = (z0.real < 0) & (z.real >= 0)
-        late = s * t - 0.5j * apart**2 / force.growth
-        turning[passed] += 2 * np.exp(late[passed])
+    turning = np.exp(s * t) * _signed(z0) - np.exp(1j * angle) * _signed(z)
+    passed = (z0.real < 0) & (z.real >= 0)
+    late = s * t - 0.5j * apart**2 / force.growth
+    turning[passed] += 2 * np.exp(late[passed])
     return np.asarray(math.sqrt(math.pi) / 2 / kappa * turning)
 
 
