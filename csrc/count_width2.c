@@ -1,5 +1,6 @@
 /* The count for chains of width 2. */
-#if defined(__GNUC__) && !defined(__clang__)
+#include "fast.h"
+#if RD_FAST
 #pragma GCC optimize("O3") /* two thirds of the time of -O2 */
 #endif
 #define RD_WAVE_WIDTH 2

@@ -2,18 +2,9 @@
 #ifndef RD_LANES_H
 #define RD_LANES_H
 
-#include <stdint.h> /* __GLIBC__ is known only after a header of the library */
+#include "fast.h"
 
 enum { RD_LANES = 8 };
-
-/* one copy of a function per instruction set, chosen when the library is loaded; one for all where it
-   is not optimised */
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&   \
-    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define RD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define RD_CLONES
-#endif
 
 #define RD_INLINE static inline __attribute__((always_inline))
 

@@ -1,5 +1,6 @@
 /* Inverse iteration for chains of width 1. */
-#if defined(__GNUC__) && !defined(__clang__)
+#include "fast.h"
+#if RD_FAST
 #pragma GCC optimize("O3") /* two thirds of the time of -O2 */
 #endif
 #define RD_WAVE_WIDTH 1

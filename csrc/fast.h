@@ -1,0 +1,22 @@
+/* What gcc may spend for speed. Builds that are not optimised, sanitizers and RD_ONE_COPY, which the
+   C tests set, are to be compiled soon: the code is the same, and so are its bits. */
+#ifndef RD_FAST_H
+#define RD_FAST_H
+
+#include <stdint.h> /* __GLIBC__ is known only after a header of the library */
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&                           \
+    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__) && !defined(RD_ONE_COPY)
+#define RD_FAST 1
+#else
+#define RD_FAST 0
+#endif
+
+/* one copy of a function per instruction set, chosen when the library is loaded */
+#if RD_FAST && defined(__x86_64__) && defined(__GLIBC__)
+#define RD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define RD_CLONES
+#endif
+
+#endif
