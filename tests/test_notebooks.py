@@ -1,5 +1,6 @@
 """Every notebook runs from a fresh kernel."""
 
+import re
 from pathlib import Path
 
 import nbformat
@@ -17,6 +18,9 @@ def test_there_are_notebooks():
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the kernel's own libraries
 def test_notebook_runs(path, tmp_path):
     notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        # how often something is timed for a median decides no number but that
+        cell.source = re.sub(r"repeat=\d+", "repeat=1", cell.source)
     client = NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}})
     client.execute()
     outputs = [o for cell in notebook.cells if cell.cell_type == "code" for o in cell.outputs]
