@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+import pytest
 from claims import claim  # noqa: F401 - a fixture
 from hypothesis import settings
 
@@ -30,6 +31,11 @@ LAID = rd.Rope(
     polar_inertia=1e-6,
 )
 """A rope with every coordinate, all of them coupled, with stiffness and inertia in each."""
+
+
+def slow(*values):
+    """Return parameters that are part of the large sample alone."""
+    return [pytest.param(value, marks=pytest.mark.slow) for value in values]
 
 
 def reference(name):

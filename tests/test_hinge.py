@@ -7,7 +7,7 @@ import exact_mixed
 import mpmath
 import numpy as np
 import pytest
-from conftest import EPS
+from conftest import EPS, slow
 from mpmath import mpf
 
 import ropedyn as rd
@@ -132,7 +132,7 @@ WIDE = rd.Rope(
 )
 
 
-@pytest.mark.parametrize("damping", [None, 1e-4], ids=["undamped", "damped"])
+@pytest.mark.parametrize("damping", [*slow(None), 1e-4], ids=["undamped", "damped"])
 @pytest.mark.parametrize("stiffness", [0.0, 2.0])
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("rope", [ROPE, WIDE], ids=["plane", "laid"])

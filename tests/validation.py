@@ -38,7 +38,7 @@ class Recorder:
 
     def __init__(self):
         self.claims = {}
-        self.slow = set()
+        self.in_ci = set()
         self.worst = {}
 
     @pytest.hookimpl(tryfirst=True)
@@ -48,8 +48,13 @@ class Recorder:
             if claim:
                 name = item.nodeid.partition("[")[0]
                 self.claims[name] = claim
-                if item.get_closest_marker("slow"):
-                    self.slow.add(name)
+                if not item.get_closest_marker("slow"):
+                    self.in_ci.add(name)
+
+    @property
+    def slow(self):
+        """Claims of large samples alone."""
+        return self.claims.keys() - self.in_ci
 
     def pytest_runtest_logreport(self, report):
         for key, value in report.user_properties:
