@@ -97,13 +97,8 @@ TRANSIENT = {"transient": True}
 """Metadata of a field that no file keeps: it has a default."""
 
 
-class Answer:
-    """Base of the answers: frozen dataclasses whose array fields are declared with `axes`."""
-
-    kinds: ClassVar[dict[str, type[Answer]]] = {}
-
-    def __init_subclass__(cls) -> None:
-        Answer.kinds[cls.__name__] = cls
+class Frozen:
+    """Base of dataclasses whose arrays are read-only: made, unpickled or copied."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -111,6 +106,16 @@ class Answer:
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
         freeze(self)
+
+
+class Answer(Frozen):
+    """Base of the answers: frozen dataclasses whose array fields are declared with `axes`."""
+
+    kinds: ClassVar[dict[str, type[Answer]]] = {}
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        Answer.kinds[cls.__name__] = cls
 
     def table(self) -> Table:
         """Return the answer as a table."""

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import check, eigen, harmonic
-from .answer import freeze
+from .answer import Frozen
 from .change import OF_FRF, OF_MODES, Change, change_of_frf, change_of_modes
 from .errors import SceneError
 from .frf import FRF
@@ -104,7 +104,7 @@ class ModesQuestion:
 
 
 @dataclass(frozen=True, eq=False)
-class FRFQuestion:
+class FRFQuestion(Frozen):
     """Which frequency response; made by `frf`.
 
     Attributes
@@ -122,16 +122,12 @@ class FRFQuestion:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequency", check.frequencies(self.frequency))
-        freeze(self)
+        super().__post_init__()
         object.__setattr__(self, "drive", _points(self.drive, "drive", forces=False))
         if self.response is not None:
             response = _points(self.response, "response", forces=True)
             object.__setattr__(self, "response", response)
         check.one_of(self.quantity, "quantity", QUANTITIES)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
 
     def __str__(self) -> str:
         f = self.frequency

@@ -18,11 +18,12 @@ from .carried import Carried
 from .chain import Chain
 from .characteristic import Complex, Rates, Real
 from .compile import check_points, finer
-from .damped_modes import DampedMesh, DampedModes, DampedVectors
+from .damped_modes import DampedModes
 from .damped_roots import Damped, damped_roots
 from .damping import having
 from .eigen import check_asked, fractions, largest, lowest, points_for, within
 from .errors import SceneError, SolveError
+from .free_motion import Mesh, Vectors
 from .modal_rates import solve_modal
 from .model import Model
 from .residue import motions
@@ -102,9 +103,9 @@ def solve_damped(
     seconds = time.perf_counter() - start
     value = answer.value
     x, finest = model.x, 1
-    mesh: DampedMesh | Callable[[], DampedMesh] = partial(_mesh, model, answer)
+    mesh: Mesh | Callable[[], Mesh] = partial(_mesh, model, answer)
     if model.element == "continuous":
-        mesh = DampedMesh(np.zeros(len(value)))
+        mesh = Mesh(np.zeros(len(value)))
         finest = points or points_for(model, np.square(np.abs(value)))
         x = within(model.x, finest)
     return DampedModes(
@@ -187,7 +188,7 @@ def _solve(model: Model, part: Part, limit: float) -> Damped:
 # --- what follows from the shapes ---------------------------------------------------------------
 
 
-def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
+def _vectors(model: Model, answer: _Found, points: int) -> Vectors[np.complex128]:
     """Shapes at `points` parts of each element, energies with as many as the waves need."""
     value, which, at = answer.value, answer.which, answer.at
     more, fine = 1, model
@@ -212,7 +213,7 @@ def _vectors(model: Model, answer: _Found, points: int) -> DampedVectors:
     everywhere = np.maximum(np.abs(largest(shape, own)), carried.motion)
     # where a mode has its nodes at all points, that elsewhere
     size = np.where(np.abs(size) < UNSEEN * everywhere, everywhere, size)
-    return DampedVectors(
+    return Vectors(
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=mass / size**2,
         shape=shape[:, ::more] / size[:, None, None],
@@ -260,7 +261,7 @@ def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
 # --- against continuous spans -------------------------------------------------------------------
 
 
-def _mesh(model: Model, answer: _Found) -> DampedMesh:
+def _mesh(model: Model, answer: _Found) -> Mesh:
     """Return the distance to the modes of continuous spans, matched so that all are near."""
     from scipy.optimize import linear_sum_assignment
 
@@ -275,4 +276,4 @@ def _mesh(model: Model, answer: _Found) -> DampedMesh:
             apart = np.abs(answer.value[mine][:, None] - true.value[None, :])
             row, column = linear_sum_assignment(apart)
             distance[mine[row]] = apart[row, column] + true.error[column]
-    return DampedMesh(distance / (2 * math.pi))
+    return Mesh(distance / (2 * math.pi))

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .answer import Answer, Cost, axes, freeze, nested
-from .chain import CARRIED
+from .answer import Cost, axes, nested
+from .free_motion import FreeMotion, Mesh, Vectors
 from .table import Table
 
 if TYPE_CHECKING:
@@ -19,40 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class DampedVectors:
-    """What follows from the shapes of damped modes; see `DampedModes`."""
-
-    family: NDArray[np.str_] = field(metadata=axes("mode"))
-    modal_mass: NDArray[np.complex128] = field(metadata=axes("mode", unit="kg or kg m^2"))
-    shape: NDArray[np.complex128] = field(
-        metadata=axes("mode", "node", "coordinate", unit="m or rad")
-    )
-    energy: dict[str, NDArray[np.float64]] = field(metadata=axes("mode", keyed=True))
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
-
-
-@dataclass(frozen=True, eq=False)
-class DampedMesh:
-    """What continuous spans say about the damped modes of a chain; see `DampedModes`."""
-
-    mesh_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
-
-
-@dataclass(frozen=True, eq=False)
-class DampedModes(Answer):
+class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
     """Rates s of free motion Re(shape e^(s t)) of a damped model, those of the least |s| first.
 
     Of each conjugate pair the one with Im s > 0 is given (with a loss factor, whose stiffness is
@@ -114,12 +80,10 @@ class DampedModes(Answer):
     eigenvalue: NDArray[np.complex128] = field(metadata=axes("mode", unit="rad/s"))
     rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
-    source: DampedVectors | Callable[[], DampedVectors] = field(
-        repr=False, metadata=nested(DampedVectors, "vectors")
+    source: Vectors[np.complex128] | Callable[[], Vectors[np.complex128]] = field(
+        repr=False, metadata=nested(Vectors, "vectors")
     )
-    mesh_source: DampedMesh | Callable[[], DampedMesh] = field(
-        repr=False, metadata=nested(DampedMesh, "mesh")
-    )
+    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
 
     @property
     def frequency(self) -> NDArray[np.float64]:
@@ -142,41 +106,6 @@ class DampedModes(Answer):
         """Decay rate of each mode [1/s], shape (k,)."""
         return 0.0 - self.eigenvalue.real
 
-    @cached_property
-    def vectors(self) -> DampedVectors:
-        """What follows from the shapes."""
-        return self.source if isinstance(self.source, DampedVectors) else self.source()
-
-    @cached_property
-    def mesh(self) -> DampedMesh:
-        """What the continuous spans of the same scene say."""
-        return self.mesh_source if isinstance(self.mesh_source, DampedMesh) else self.mesh_source()
-
-    @property
-    def mesh_error(self) -> NDArray[np.float64]:
-        """Error of each s/2 pi that the elements cause [Hz], shape (k,)."""
-        return self.mesh.mesh_error
-
-    @property
-    def family(self) -> NDArray[np.str_]:
-        """Family of each mode, shape (k,)."""
-        return self.vectors.family
-
-    @property
-    def modal_mass(self) -> NDArray[np.complex128]:
-        """Modal mass, shape (k,)."""
-        return self.vectors.modal_mass
-
-    @property
-    def shape(self) -> NDArray[np.complex128]:
-        """Shapes, shape (k, nodes, coordinates)."""
-        return self.vectors.shape
-
-    @property
-    def energy(self) -> dict[str, NDArray[np.float64]]:
-        """Fractions of strain and of kinetic energy, each shape (k,)."""
-        return self.vectors.energy
-
     def table(self) -> Table:
         """Return one row for each mode."""
         columns: dict[str, Any] = {
@@ -189,12 +118,7 @@ class DampedModes(Answer):
             "rounding error [Hz]": self.rounding_error,
             "family": self.family,
         }
-        moving = (*self.coordinates, *CARRIED.values())
-        kinds = {"kinetic": tuple(k for k in moving if k in self.energy)}
-        kinds["strain"] = tuple(k for k in self.energy if k not in moving)
-        for kind, names in kinds.items():
-            columns |= {f"{kind} {name} [%]": 100 * self.energy[name] for name in names}
-        return Table.of("damped modes", columns)
+        return Table.of("damped modes", columns | self._shares)
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot the real parts of the shapes of one coordinate, the first one by default."""

@@ -20,7 +20,7 @@ from .compile import check_points, divided, finer, stations_of
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
 from .model import MOST_POINTS, MOST_STEPS, Model
-from .modes import Mesh, Modes, Vectors
+from .modes import Modes, UndampedMesh, UndampedVectors
 from .sensitivity import Shapes, clusters_of
 from .unit import FAMILY
 
@@ -94,14 +94,14 @@ def solve_modes(
             f"number must be at most {existing}, the modes this model has, got {number}"
         )
     eigenvalue, error, order = _merged(found, number)
-    later: Callable[[], Vectors] = partial(_later, model, solver, number, limit)
+    later: Callable[[], UndampedVectors] = partial(_later, model, solver, number, limit)
     frequency = np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi)
     which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
-    mesh: Mesh | Callable[[], Mesh]
+    mesh: UndampedMesh | Callable[[], UndampedMesh]
     mesh = partial(mesh_of_modes, model.scene, model.components, which, eigenvalue)
     x = model.x
     if model.element == "continuous":
-        mesh = Mesh(mesh_error=np.zeros_like(frequency), limit=frequency)
+        mesh = UndampedMesh(mesh_error=np.zeros_like(frequency), limit=frequency)
         points = points or points_for(model, eigenvalue)
         x = within(model.x, points)
         later = partial(_later_within, model, number, limit, eigenvalue, points)
@@ -354,7 +354,7 @@ SOLVERS = {"sweep": _sweep, "lapack": _lapack}
 # --- what follows from the shapes -------------------------------------------------------------
 
 
-def _later(model: Model, solver: str, number: int | None, limit: float) -> Vectors:
+def _later(model: Model, solver: str, number: int | None, limit: float) -> UndampedVectors:
     """Solve once more, with shapes."""
     found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
     eigenvalue, _, order = _merged(found, number)
@@ -389,7 +389,7 @@ def points_for(model: Model, eigenvalue: Real) -> int:
 
 def _later_within(
     model: Model, number: int | None, limit: float, eigenvalue: Real, points: int
-) -> Vectors:
+) -> UndampedVectors:
     """Solve continuous spans once more, with shapes inside them.
 
     Energies want elements below their own resonance, and a mode may have its nodes at all points,
@@ -465,7 +465,7 @@ def _shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = No
 
 def _vectors(
     model: Model, found: Sequence[Found], eigenvalue: Real, order: NDArray[np.intp]
-) -> Vectors:
+) -> UndampedVectors:
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
     motion = _motion(model, found)[order]
@@ -479,7 +479,7 @@ def _vectors(
     dragged /= size**2
     omega, all_carried = np.sqrt(np.maximum(eigenvalue, 0.0)), carried.sum(axis=0)
     energies = _Energies(strain, kinetic, dragged, all_carried)
-    return Vectors(
+    return UndampedVectors(
         damping_ratio=_damping_ratio(model, omega, energies),
         family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
         modal_mass=kinetic.sum(axis=1) + all_carried[:, 1],

@@ -5,28 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .answer import Cost, axes, freeze, nested
+from .answer import Cost, Frozen, axes, nested
 from .curves import Curves
 from .port import Point
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
+class Mesh(Frozen):
     """What continuous spans say about the response of a chain; see `FRF`."""
 
     mesh_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)

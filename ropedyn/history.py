@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .answer import Answer, Cost, axes, freeze, nested
+from .answer import Answer, Cost, Frozen, axes, nested
 from .port import Point
 from .table import Table
 from .unit import label
@@ -22,32 +22,18 @@ Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
+class Balance(Frozen):
     """Where the energy is; see `History`."""
 
     energy: dict[str, Real] = field(metadata=axes("time", unit="J", keyed=True))
 
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
-
 
 @dataclass(frozen=True, eq=False)
-class Deviation:
+class Deviation(Frozen):
     """How far the values are from those without steps and without elements; see `History`."""
 
     step_error: Real = field(metadata=axes("response", "time"))
     mesh_error: Real = field(metadata=axes("response", "time"))
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ Complex = NDArray[np.complex128]
 
 def mesh_of_modes(
     scene: Scene, components: tuple[tuple[str, ...], ...], which: NDArray[np.intp], eigenvalue: Real
-) -> modes.Mesh:
+) -> modes.UndampedMesh:
     """Compare the modes of a chain with those of continuous spans.
 
     Parameters
@@ -38,21 +38,21 @@ def mesh_of_modes(
 
     Returns
     -------
-    Mesh
+    UndampedMesh
         Infinite errors where the continuous spans have no answer.
     """
     error, limit = np.full(len(eigenvalue), np.inf), np.full(len(eigenvalue), np.nan)
     try:
         continuous = scene.compile()
     except SceneError:
-        return modes.Mesh(mesh_error=error, limit=limit)
+        return modes.UndampedMesh(mesh_error=error, limit=limit)
     for k, component in enumerate(components):
         mine = np.flatnonzero(which == k)
         true, uncertain = _lowest(continuous, component, len(mine))
         mine = mine[: len(true)]
         error[mine] = distance(eigenvalue[mine], true, uncertain)
         limit[mine] = np.maximum(in_hertz(true), 0.0)
-    return modes.Mesh(mesh_error=error, limit=limit)
+    return modes.UndampedMesh(mesh_error=error, limit=limit)
 
 
 def _lowest(model: Model, component: tuple[str, ...], number: int) -> tuple[Real, Real]:

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .characteristic import Complex, Real
-from .damped_modes import DampedMesh, DampedModes, DampedVectors
+from .damped_modes import DampedModes
 from .damping import having, ratios
 from .eigen import solve_modes
 from .errors import SceneError, SolveError
+from .free_motion import Mesh, Vectors
 from .model import Model
 from .modes import Modes
 
@@ -100,10 +101,10 @@ def _answer(
     )
 
 
-def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> DampedVectors:
+def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> Vectors[np.complex128]:
     """Shapes without damping; D' is m (2 s + 2 zeta omega)."""
     share = np.divide(decay, value, out=np.zeros_like(value), where=value != 0)
-    return DampedVectors(
+    return Vectors(
         family=undamped.family[mode],
         modal_mass=undamped.modal_mass[mode] * (1 + share),
         shape=undamped.shape[mode].astype(np.complex128),
@@ -111,5 +112,5 @@ def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> Dampe
     )
 
 
-def _mesh(undamped: Modes, mode: Index, scale: Real) -> DampedMesh:
-    return DampedMesh(undamped.mesh_error[mode] * scale)
+def _mesh(undamped: Modes, mode: Index, scale: Real) -> Mesh:
+    return Mesh(undamped.mesh_error[mode] * scale)

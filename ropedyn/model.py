@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
+from typing import TYPE_CHECKING, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core, check
-from .answer import freeze
+from .answer import Frozen
 from .chain import Chain
 from .choice import Choice
 from .damping import having, separable
@@ -77,7 +77,7 @@ class NodeTerms(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
+class Model(Frozen):
     """A chain of nodes and elements, or of continuous spans; plain data that pickles.
 
     Made by `Scene.compile`.
@@ -110,10 +110,6 @@ class Model:
     chain: Chain
     unknowns: tuple[int, ...]
     choice: Choice | None = None
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
 
     @property
     def size(self) -> int:

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .answer import TRANSIENT, Answer, Cost, axes, freeze, nested
-from .chain import CARRIED
+from .answer import TRANSIENT, Cost, axes, nested
 from .errors import SceneError
+from .free_motion import FreeMotion, Mesh, Vectors
 from .table import Table
 
 if TYPE_CHECKING:
@@ -24,40 +24,21 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Vectors:
-    """What follows from the shapes of modes; see `Modes`."""
+class UndampedVectors(Vectors[np.float64]):
+    """What follows from the shapes of undamped modes; see `Modes`."""
 
     damping_ratio: NDArray[np.float64] = field(metadata=axes("mode"))
-    family: NDArray[np.str_] = field(metadata=axes("mode"))
-    modal_mass: NDArray[np.float64] = field(metadata=axes("mode", unit="kg or kg m^2"))
-    shape: NDArray[np.float64] = field(metadata=axes("mode", "node", "coordinate", unit="m or rad"))
-    energy: dict[str, NDArray[np.float64]] = field(metadata=axes("mode", keyed=True))
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
-    """What continuous spans say about the modes of a chain; see `Modes`."""
+class UndampedMesh(Mesh):
+    """What continuous spans say about the undamped modes of a chain; see `Modes`."""
 
-    mesh_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
     limit: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
 
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        freeze(self)
-
 
 @dataclass(frozen=True, eq=False)
-class Modes(Answer):
+class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     """Natural frequencies and shapes of an undamped model, lowest first.
 
     What follows from the shapes (`shape`, `energy`, `family`, `modal_mass`, `damping_ratio`) is
@@ -120,24 +101,13 @@ class Modes(Answer):
     growth: NDArray[np.float64] = field(metadata=axes("mode", unit="1/s"))
     rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
-    source: Vectors | Callable[[], Vectors] = field(repr=False, metadata=nested(Vectors, "vectors"))
-    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
+    source: UndampedVectors | Callable[[], UndampedVectors] = field(
+        repr=False, metadata=nested(UndampedVectors, "vectors")
+    )
+    mesh_source: UndampedMesh | Callable[[], UndampedMesh] = field(
+        repr=False, metadata=nested(UndampedMesh, "mesh")
+    )
     solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
-
-    @cached_property
-    def vectors(self) -> Vectors:
-        """What follows from the shapes."""
-        return self.source if isinstance(self.source, Vectors) else self.source()
-
-    @cached_property
-    def mesh(self) -> Mesh:
-        """What the continuous spans of the same scene say."""
-        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
-
-    @property
-    def mesh_error(self) -> NDArray[np.float64]:
-        """Error of each frequency that the elements cause [Hz], shape (k,)."""
-        return self.mesh.mesh_error
 
     @property
     def limit(self) -> NDArray[np.float64]:
@@ -148,26 +118,6 @@ class Modes(Answer):
     def damping_ratio(self) -> NDArray[np.float64]:
         """Damping ratio of each mode, shape (k,)."""
         return self.vectors.damping_ratio
-
-    @property
-    def family(self) -> NDArray[np.str_]:
-        """Family of each mode, shape (k,)."""
-        return self.vectors.family
-
-    @property
-    def modal_mass(self) -> NDArray[np.float64]:
-        """Modal mass, shape (k,)."""
-        return self.vectors.modal_mass
-
-    @property
-    def shape(self) -> NDArray[np.float64]:
-        """Shapes, shape (k, nodes, coordinates)."""
-        return self.vectors.shape
-
-    @property
-    def energy(self) -> dict[str, NDArray[np.float64]]:
-        """Fractions of strain and of kinetic energy, each shape (k,)."""
-        return self.vectors.energy
 
     @cached_property
     def sensitivity(self) -> Sensitivity:
@@ -289,12 +239,7 @@ class Modes(Answer):
         }
         if (self.growth > 0).any():
             columns["growth [1/s]"] = self.growth
-        moving = (*self.coordinates, *CARRIED.values())
-        kinds = {"kinetic": tuple(k for k in moving if k in self.energy)}
-        kinds["strain"] = tuple(k for k in self.energy if k not in moving)
-        for kind, names in kinds.items():
-            columns |= {f"{kind} {name} [%]": 100 * self.energy[name] for name in names}
-        return Table.of("natural frequencies", columns)
+        return Table.of("natural frequencies", columns | self._shares)
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot the shapes of one coordinate along the rope, the first one by default."""
