@@ -29,7 +29,7 @@ class Carried(NamedTuple):
     ----------
     energy : ndarray, shape (kinds, k, 3)
         Of each kind in `ATTACHED`: twice the strain energy, what they add to the modal mass, and
-        losses, which are not filled.
+        losses, of undamped modes alone.
     motion : ndarray, shape (k,)
         The largest of any.
     """

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from . import _core, check, damping
 from .answer import Cost, Work
+from .carried import Carried
 from .chain import CARRIED, CHANNELS, Chain
 from .compile import check_points, divided, finer, stations_of
 from .errors import SceneError, SolveError
@@ -469,7 +470,7 @@ def _vectors(
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
     motion = _motion(model, found)[order]
-    carried = _carried(model.chain, shape, motion, eigenvalue)
+    carried = Carried.real(model.chain, shape, motion, eigenvalue).of(model.chain)
     own = kinetic.argmax(axis=1)
     size, most = largest(shape, own), np.abs(motion).max(axis=1, initial=0.0)
     # where the rope stands still, what it carries is what moves
@@ -504,16 +505,6 @@ def _motion(model: Model, found: Sequence[Found]) -> Real:
             motion[:, moved] = part.motion
         motions.append(motion)
     return np.concatenate(motions)
-
-
-def _carried(chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> Real:
-    """Return energies of the structures of each kind in `Chain.carried`, shape (kinds, k, 3)."""
-    each = np.zeros((len(chain.carried), len(shape), 3))
-    for k, kind in enumerate(chain.carried):
-        these = chain.carries(kind)
-        part = np.ascontiguousarray(motion[:, these])
-        each[k] = _core.carried(chain.carrying(these), shape, part, eigenvalue)
-    return each
 
 
 def _spread(model: Model, found: Sequence[Found]) -> Real:
