@@ -255,6 +255,16 @@ MODELS = {
 }
 
 
+def is_limit_of_differences(model, modes, path, step):
+    """Hold derivatives of eigenvalues against differences over a relative step."""
+    slope = modes.derivative(path, of="eigenvalue")
+    expected = difference(model, path, len(modes.eigenvalue), step)
+    # 1e-13 of the eigenvalue over the step, and what the sixth order leaves
+    floor = 3e-13 * modes.eigenvalue.max() / abs(step * value_of(model.scene, path))
+    allowed = QUOTIENT * np.abs(expected).max() + floor
+    np.testing.assert_allclose(slope, expected, rtol=0, atol=allowed)
+
+
 @functools.cache
 def everything(kind):
     """The model of EVERYTHING and its modes."""
@@ -266,13 +276,7 @@ def everything(kind):
 @pytest.mark.parametrize("path", SMOOTH + PLACES)
 def test_derivative_is_what_differences_tend_to(kind, path):
     model, modes = everything(kind)
-    slope = modes.derivative(path, of="eigenvalue")
-    step = 1e-3 if path in PLACES else 3e-3
-    expected = difference(model, path, 4, step)
-    # 1e-13 of the eigenvalue over the step, and what the sixth order leaves
-    floor = 3e-13 * modes.eigenvalue.max() / abs(step * value_of(EVERYTHING, path))
-    allowed = QUOTIENT * np.abs(expected).max() + floor
-    np.testing.assert_allclose(slope, expected, rtol=0, atol=allowed)
+    is_limit_of_differences(model, modes, path, 1e-3 if path in PLACES else 3e-3)
 
 
 @pytest.mark.parametrize("path", ["tension", "linear_density", "length", "parts[0].x"])

@@ -17,8 +17,8 @@ from test_sensitivity import (
     difference,
     error,
     implicit,
+    is_limit_of_differences,
     near,
-    value_of,
 )
 
 import ropedyn as rd
@@ -151,13 +151,7 @@ def carrying(kind):
 @pytest.mark.parametrize("path", SMOOTH + PLACES)
 def test_derivative_of_what_carries_is_what_differences_tend_to(kind, path):
     model, modes = carrying(kind)
-    slope = modes.derivative(path, of="eigenvalue")
-    step = 1e-3 if path in PLACES else 3e-3
-    expected = difference(model, path, 6, step)
-    # 1e-13 of the eigenvalue over the step, and what the sixth order leaves
-    floor = 3e-13 * modes.eigenvalue.max() / abs(step * value_of(CARRYING, path))
-    allowed = QUOTIENT * np.abs(expected).max() + floor
-    np.testing.assert_allclose(slope, expected, rtol=0, atol=allowed)
+    is_limit_of_differences(model, modes, path, 1e-3 if path in PLACES else 3e-3)
 
 
 @pytest.mark.parametrize("kind", MODELS)

@@ -11,11 +11,10 @@ from test_sensitivity import (
     EXACT,
     LENGTH,
     MODELS,
-    QUOTIENT,
     TENSION,
-    difference,
     error,
     implicit,
+    is_limit_of_differences,
     near,
     value_of,
 )
@@ -138,13 +137,7 @@ def hanging(kind):
 @pytest.mark.parametrize("path", SMOOTH + PLACES)
 def test_derivative_under_gravity_is_what_differences_tend_to(kind, path):
     model, modes = hanging(kind)
-    slope = modes.derivative(path, of="eigenvalue")
-    step = 1e-3 if path in PLACES else 3e-3
-    expected = difference(model, path, 4, step)
-    # 1e-13 of the eigenvalue over the step, and what the sixth order leaves
-    floor = 3e-13 * modes.eigenvalue.max() / abs(step * value_of(HANGING, path))
-    allowed = QUOTIENT * np.abs(expected).max() + floor
-    np.testing.assert_allclose(slope, expected, rtol=0, atol=allowed)
+    is_limit_of_differences(model, modes, path, 1e-3 if path in PLACES else 3e-3)
 
 
 # --- limits, scaling, damage ------------------------------------------------------------------

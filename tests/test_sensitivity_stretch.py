@@ -12,13 +12,11 @@ from test_sensitivity import (
     EXACT,
     LENGTH,
     MODELS,
-    QUOTIENT,
     TENSION,
-    difference,
     error,
     implicit,
+    is_limit_of_differences,
     near,
-    value_of,
 )
 
 import ropedyn as rd
@@ -81,14 +79,8 @@ def worn(kind):
 @pytest.mark.parametrize("path", SMOOTH + PLACES)
 def test_derivative_of_a_changed_rope_is_what_differences_tend_to(kind, path):
     model, modes = worn(kind)
-    slope = modes.derivative(path, of="eigenvalue")
     # shorter than for a uniform rope: modes 4 and 5 repel each other, 6 % apart
-    step = 1e-3 if path in PLACES else 1.5e-3
-    expected = difference(model, path, 4, step)
-    # 1e-13 of the eigenvalue over the step, and what the sixth order leaves
-    floor = 3e-13 * modes.eigenvalue.max() / abs(step * value_of(WORN, path))
-    allowed = QUOTIENT * np.abs(expected).max() + floor
-    np.testing.assert_allclose(slope, expected, rtol=0, atol=allowed)
+    is_limit_of_differences(model, modes, path, 1e-3 if path in PLACES else 1.5e-3)
 
 
 def mass_of_an_end(omega, T, mu, L, m):
