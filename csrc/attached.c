@@ -1,6 +1,7 @@
 /* Structures that nodes carry, condensed to their foot. */
 #include "attached.h"
 
+#include "complex_step.h"
 #include "krylov.h"
 
 #include <math.h>
@@ -8,9 +9,6 @@
 
 /* in place of an exact zero of e: what is divided by it is multiplied by it elsewhere */
 static const double NO_GAP = 1e-20;
-
-/* of a complex step: its square is nothing beside 1, so derivatives are exact */
-static const double STEP = 0x1p-200;
 
 /* w e y^2 - 2 w y v^T u + u^T diag(rest) u, u being the motion of the foot */
 static double _Complex form_of(const struct rd_foot *foot, const double *moved, double y)
@@ -104,10 +102,10 @@ static double highest_of_wire(const double *value)
 /* by a step in the modulus E (1 + 2 i z) */
 static double stiffer_wire(const double *value, double lambda, const double *moved, double y)
 {
-    const double stepped[RD_ATTACHED_VALUES] = {value[0], value[1], value[2], STEP / 2};
+    const double stepped[RD_ATTACHED_VALUES] = {value[0], value[1], value[2], RD_COMPLEX_STEP / 2};
     struct rd_foot foot;
     fill_wire(stepped, -lambda, I, &foot);
-    return cimag(form_of(&foot, moved, y)) / STEP;
+    return cimag(form_of(&foot, moved, y)) / RD_COMPLEX_STEP;
 }
 
 const struct rd_attached rd_attached_of[RD_ATTACHED_KINDS] = {
@@ -189,17 +187,17 @@ static void add_energy(const struct rd_chain *chain, size_t k, double lambda, co
     double value[RD_ATTACHED_VALUES], moved[2];
     struct rd_foot foot;
     move_foot(chain, k, u, moved);
-    rd_attached_fill(chain, k, CMPLX(-lambda, -STEP), 0, &foot);
+    rd_attached_fill(chain, k, CMPLX(-lambda, -RD_COMPLEX_STEP), 0, &foot);
     const double _Complex form = form_of(&foot, moved, y);
-    const double kinetic = -cimag(form) / STEP;
+    const double kinetic = -cimag(form) / RD_COMPLEX_STEP;
     energy[RD_CARRIED_KINETIC] += kinetic;
     energy[RD_CARRIED_STRAIN] += creal(form) + lambda * kinetic;
     if (!(lambda > 0))
         return;
     memcpy(value, given, sizeof value);
-    value[RD_ATTACHED_VALUES - 1] *= STEP;
+    value[RD_ATTACHED_VALUES - 1] *= RD_COMPLEX_STEP;
     kind->fill(value, -lambda, CMPLX(0, sqrt(lambda)), &foot);
-    energy[RD_CARRIED_LOST] += cimag(form_of(&foot, moved, y)) / STEP;
+    energy[RD_CARRIED_LOST] += cimag(form_of(&foot, moved, y)) / RD_COMPLEX_STEP;
 }
 
 void rd_attached_energy(const struct rd_chain *chain, double lambda, const double *shape,
@@ -223,8 +221,8 @@ static void fill_slope(const struct rd_chain *chain, size_t k, double lambda, co
     double moved[2];
     struct rd_foot foot;
     move_foot(chain, k, u, moved);
-    rd_attached_fill(chain, k, CMPLX(-lambda, -STEP), 0, &foot);
-    number[RD_CARRIED_OF_MASS] = -cimag(form_of(&foot, moved, y)) / STEP;
+    rd_attached_fill(chain, k, CMPLX(-lambda, -RD_COMPLEX_STEP), 0, &foot);
+    number[RD_CARRIED_OF_MASS] = -cimag(form_of(&foot, moved, y)) / RD_COMPLEX_STEP;
     number[RD_CARRIED_OF_STIFFNESS] =
         kind->stiffer(chain->attached_value + k * RD_ATTACHED_VALUES, lambda, moved, y);
     for (size_t i = 0; i < 2 * chain->width; i++) {
@@ -253,7 +251,7 @@ void rd_attached_slopes(const struct rd_chain *chain, double lambda, const doubl
 void rd_attached_inertia(const struct rd_chain *chain, size_t term, double *M)
 {
     double _Complex D[RD_WIDTH_MAX * RD_WIDTH_MAX] = {0};
-    rd_attached_add(chain, term, CMPLX(0, STEP), 0, D);
+    rd_attached_add(chain, term, CMPLX(0, RD_COMPLEX_STEP), 0, D);
     for (size_t i = 0; i < chain->width * chain->width; i++)
-        M[i] += cimag(D[i]) / STEP;
+        M[i] += cimag(D[i]) / RD_COMPLEX_STEP;
 }

@@ -3,11 +3,9 @@
 #define RD_FOOT_H
 
 #include "attached.h"
+#include "complex_step.h"
 #include "real_lanes.h"
 #include "walk.h"
-
-/* of a complex step: its square is nothing beside 1, so derivatives are exact */
-#define FOOT_STEP 0x1p-200
 
 /* rd_foot (attached.h), v by the motion of the node, and d/dlambda of each */
 struct foot {
@@ -19,7 +17,7 @@ struct foot {
 RD_INLINE void foot_set(double _Complex value, int lane, lanes *x, lanes *dx)
 {
     (*x)[lane] = creal(value);
-    (*dx)[lane] = cimag(value) / FOOT_STEP;
+    (*dx)[lane] = cimag(value) / RD_COMPLEX_STEP;
 }
 
 RD_INLINE void foot_load(const struct rd_chain *chain, size_t k, lanes lambda, struct foot *foot)
@@ -27,7 +25,7 @@ RD_INLINE void foot_load(const struct rd_chain *chain, size_t k, lanes lambda, s
     for (int lane = 0; lane < RD_LANES; lane++) {
         struct rd_foot one;
         double _Complex v[RD_WIDTH_MAX];
-        rd_attached_fill(chain, k, CMPLX(-lambda[lane], -FOOT_STEP), 0, &one);
+        rd_attached_fill(chain, k, CMPLX(-lambda[lane], -RD_COMPLEX_STEP), 0, &one);
         rd_attached_row(chain, k, one.lever, v);
         foot_set(one.weight, lane, &foot->w, &foot->dw);
         foot_set(one.gap, lane, &foot->e, &foot->de);

@@ -10,6 +10,7 @@
 #ifndef RD_PIECE_H
 #define RD_PIECE_H
 
+#include "complex_step.h"
 #include "real_lanes.h"
 #include "walk.h"
 
@@ -28,9 +29,6 @@ struct piece {
     lanes D[W][W], G[W][W], Q[W][W];
 };
 
-/* of a complex step: its square is nothing beside 1, so derivatives are exact */
-#define SLICE_STEP 0x1p-200
-
 RD_INLINE double largest(lanes x)
 {
     double most = 0;
@@ -45,7 +43,7 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
 {
     const struct rd_chain *chain = walk->chain;
     const size_t e = (size_t)leg->element;
-    const cv inertia = c_make(-lambda, l_fill(change ? -SLICE_STEP : 0));
+    const cv inertia = c_make(-lambda, l_fill(change ? -RD_COMPLEX_STEP : 0));
     struct rate_matrix rate;
     rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, c_zero(), &rate);
     cv D[W][W], G[W][W], Q[W][W];
@@ -58,9 +56,9 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
             piece->G[i][j] = G[i][j].re;
             piece->Q[i][j] = Q[i][j].re;
             if (change) {
-                change->D[i][j] = D[i][j].im / SLICE_STEP;
-                change->G[i][j] = G[i][j].im / SLICE_STEP;
-                change->Q[i][j] = Q[i][j].im / SLICE_STEP;
+                change->D[i][j] = D[i][j].im / RD_COMPLEX_STEP;
+                change->G[i][j] = G[i][j].im / RD_COMPLEX_STEP;
+                change->Q[i][j] = Q[i][j].im / RD_COMPLEX_STEP;
             }
         }
 }

@@ -1,6 +1,7 @@
 /* How the form of continuous elements changes with their numbers. */
 #include "sensitivity_span.h"
 
+#include "complex_step.h"
 #include "dense.h"
 
 #include <math.h>
@@ -10,18 +11,15 @@
 
 enum { W = RD_WIDTH_MAX };
 
-/* size of an imaginary step: its square is nothing beside 1, so derivatives are exact */
-static const double STEP = 0x1p-200;
-
 /* The mixed form P = f^T F u_a + (f^T G f - u_a^T Q u_a)/2 of an element has u_b = dP/df and
    f_a = dP/du_a; Pi = 2 (f^T u_b - P) is stationary in f, so that dPi/dp = -2 dP/dp at fixed f. A
-   number gets a lane in which it is stepped by i STEP scale. */
+   number gets a lane in which it is stepped by i RD_COMPLEX_STEP scale. */
 static struct rate_matrix *next(struct rd_wave_slopes *slopes, struct rate_matrix *rate,
                                 size_t property, double scale, int *lane)
 {
     const size_t k = slopes->count++;
     slopes->at[k] = property;
-    slopes->step[k] = -2 / (STEP * scale);
+    slopes->step[k] = -2 / (RD_COMPLEX_STEP * scale);
     *lane = (int)(k % RD_LANES);
     return rate + k / RD_LANES;
 }
@@ -36,7 +34,7 @@ static void step_section(struct rd_wave_slopes *slopes, struct rate_matrix *rate
     const double scale = sqrt(S[c * (RD_CHANNELS + 1)]) * sqrt(S[d * (RD_CHANNELS + 1)]);
     int lane;
     struct rate_matrix *in = next(slopes, rate, rd_property_of(c, d), scale, &lane);
-    in->S[i][j].im[lane] = in->S[j][i].im[lane] = STEP * scale;
+    in->S[i][j].im[lane] = in->S[j][i].im[lane] = RD_COMPLEX_STEP * scale;
     in->elastic[i][j] = in->elastic[j][i] = 1;
 }
 
@@ -58,9 +56,9 @@ static void step_tension(struct rd_wave_slopes *slopes, struct rate_matrix *rate
     const double scale = string ? chain->tension[slopes->element] : 1;
     struct rate_matrix *in = next(slopes, rate, RD_OF_TENSION, scale, &lane);
     if (string)
-        in->S[z][z].im[lane] = -STEP * in->S[z][z].re[lane];
+        in->S[z][z].im[lane] = -RD_COMPLEX_STEP * in->S[z][z].re[lane];
     else
-        in->q[chain->width - 1].im[lane] = STEP;
+        in->q[chain->width - 1].im[lane] = RD_COMPLEX_STEP;
 }
 
 /* lambda p stands in q = -lambda p */
@@ -68,7 +66,7 @@ static void step_inertia(struct rd_wave_slopes *slopes, struct rate_matrix *rate
 {
     int lane;
     struct rate_matrix *in = next(slopes, rate, RD_OF_INERTIA + i, -1, &lane);
-    in->q[i].im[lane] = -STEP;
+    in->q[i].im[lane] = -RD_COMPLEX_STEP;
 }
 
 static void step_sag(struct rd_wave_slopes *slopes, struct rate_matrix *rate)
@@ -77,7 +75,7 @@ static void step_sag(struct rd_wave_slopes *slopes, struct rate_matrix *rate)
     if (!rate->hangs)
         return;
     struct rate_matrix *in = next(slopes, rate, RD_OF_SAG, 1, &lane);
-    in->sag.im[lane] = STEP;
+    in->sag.im[lane] = RD_COMPLEX_STEP;
 }
 
 static void step_all(struct rd_wave_slopes *slopes, struct rate_matrix *rate)
