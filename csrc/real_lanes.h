@@ -22,6 +22,14 @@ RD_INLINE cv c_invert(cv a)
     return (cv){a.re * s, -a.im * s};
 }
 
+RD_INLINE lanes lanes_load(const double *x)
+{
+    lanes y;
+    for (int k = 0; k < RD_LANES; k++)
+        y[k] = x[k];
+    return y;
+}
+
 RD_INLINE lanes not_negative(lanes x)
 {
     return l_select(x > 0.0, x, l_fill(0.0));
