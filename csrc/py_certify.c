@@ -96,6 +96,28 @@ static int solve(PyObject *module, const struct rd_walk *walk, struct rd_certifi
     return status == RD_OK ? 0 : -1;
 }
 
+/* the arrays that are filled; 0, or -1 and an exception where one has no memory */
+static int arrays_make(const struct rd_chain *chain, npy_intp wanted, npy_intp shaped,
+                       PyObject **array, double **data)
+{
+    static const int dimensions[ARRAYS] = {1, 1, 1, 2, 3, 2};
+    const npy_intp size[ARRAYS][3] = {
+        [LAMBDA] = {wanted},
+        [ERROR] = {wanted},
+        [CERTIFIED] = {wanted},
+        [BRACKET] = {4, wanted},
+        [SHAPE] = {shaped, (npy_intp)chain->nodes, (npy_intp)chain->width},
+        [MOTION] = {shaped, (npy_intp)chain->attached},
+    };
+    for (int k = 0; k < ARRAYS; k++) {
+        array[k] = py_new(NPY_DOUBLE, dimensions[k], size[k]);
+        if (array[k] == NULL)
+            return -1;
+        data[k] = PyArray_DATA((PyArrayObject *)array[k]);
+    }
+    return 0;
+}
+
 PyObject *py_certify(PyObject *module, PyObject *arguments)
 {
     struct py_chain parsed = {0};
@@ -113,24 +135,9 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
     }
     if (py_chain_view(object, &parsed) < 0)
         goto done;
-    const npy_intp nodes = (npy_intp)parsed.chain.nodes;
-    const npy_intp width = (npy_intp)parsed.chain.width;
     double *data[ARRAYS] = {NULL};
-    for (int k = 0; k < ARRAYS; k++) {
-        const npy_intp lines[] = {wanted};
-        const npy_intp brackets[] = {4, wanted};
-        const npy_intp shapes[] = {shaped ? wanted : 0, nodes, width};
-        const npy_intp motions[] = {shaped ? wanted : 0, (npy_intp)parsed.chain.attached};
-        const int dimensions = k == SHAPE ? 3 : k == BRACKET || k == MOTION ? 2 : 1;
-        array[k] = py_new(NPY_DOUBLE, dimensions,
-                          k == SHAPE     ? shapes
-                          : k == BRACKET ? brackets
-                          : k == MOTION  ? motions
-                                         : lines);
-        if (array[k] == NULL)
-            goto done;
-        data[k] = PyArray_DATA((PyArrayObject *)array[k]);
-    }
+    if (arrays_make(&parsed.chain, wanted, shaped ? wanted : 0, array, data) < 0)
+        goto done;
     if (prepare(module, &parsed.chain, &workspace, &walk) < 0)
         goto done;
     struct rd_certified modes = {

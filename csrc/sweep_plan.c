@@ -94,72 +94,70 @@ static uint8_t trait_of(const struct rd_chain *chain, size_t t)
     return (uint8_t)trait;
 }
 
+/* the element coefficients of a block are kept where few elements differ */
+static void coefficients_take(struct sweep *s, struct rd_workspace *workspace)
+{
+    const struct rd_chain *chain = s->chain;
+    if (chain->distinct > DISTINCT_MOST || chain->inertia)
+        return;
+    s->coefficients = take_lanes(workspace, chain->distinct * s->coefs, sizeof *s->coefficients);
+    if (s->kernel->walk_plain)
+        s->plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *s->plain);
+}
+
+/* all arrays but those of runs and taps */
+static void arrays_take(struct sweep *s, size_t frequencies, struct rd_workspace *workspace)
+{
+    const struct rd_chain *chain = s->chain;
+    const size_t w = chain->width, left = 2 * (s->sym + s->carried * w);
+    s->rank = rd_take(workspace, s->carried, sizeof *s->rank);
+    s->record = take_lanes(workspace, s->records * left, sizeof *s->record);
+    s->rows = take_lanes(workspace, 2 * s->carried * w, sizeof *s->rows);
+    s->table = take_lanes(workspace, levels_most(chain) * s->coefs, sizeof *s->table);
+    s->triple = take_lanes(workspace, 2 * s->coefs, sizeof *s->triple);
+    s->value = take_lanes(workspace, s->carried, sizeof *s->value);
+    s->error = take_lanes(workspace, s->carried, sizeof *s->error);
+    s->weight = take_lanes(workspace, s->carried, sizeof *s->weight);
+    coefficients_take(s, workspace);
+    s->foot = take_lanes(workspace, chain->attached, sizeof *s->foot);
+    s->trait = rd_take(workspace, chain->terms, sizeof *s->trait);
+    s->order = rd_take(workspace, frequencies, sizeof *s->order);
+}
+
 struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factors *factors,
                             const struct rd_ports *drives, const struct rd_ports *responses,
                             struct rd_workspace *workspace)
 {
-    const size_t w = chain->width, sym = w * (w + 1) / 2, coefs = w * w + 2 * sym;
+    const size_t w = chain->width, sym = w * (w + 1) / 2;
     const int swapped = drives->count < responses->count;
     const struct rd_ports *carry = swapped ? drives : responses;
     const struct rd_ports *meet = swapped ? responses : drives;
-    struct sweep *s = take_lanes(workspace, 1, sizeof *s);
-    struct taps carried, meeting;
-    rd_taps_find(carry, chain, &carried, workspace);
-    rd_taps_find(meet, chain, &meeting, workspace);
-    struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
-    size_t *rank = rd_take(workspace, carry->count, sizeof *rank);
-    const size_t records = meeting.tap ? rd_taps_nodes(&meeting) : meeting.count;
-    cv *record = take_lanes(workspace, records * 2 * (sym + carry->count * w), sizeof *record);
-    cv *rows = take_lanes(workspace, 2 * carry->count * w, sizeof *rows);
-    cv *table = take_lanes(workspace, levels_most(chain) * coefs, sizeof *table);
-    cv *triple = take_lanes(workspace, 2 * coefs, sizeof *triple);
-    cv *value = take_lanes(workspace, carry->count, sizeof *value);
-    lanes *error = take_lanes(workspace, carry->count, sizeof *error);
-    lanes *heavy = take_lanes(workspace, carry->count, sizeof *heavy);
-    cv *coefficients = NULL;
-    if (chain->distinct <= DISTINCT_MOST && !chain->inertia)
-        coefficients = take_lanes(workspace, chain->distinct * coefs, sizeof *coefficients);
-    cv *plain = NULL;
-    if (chain->distinct <= DISTINCT_MOST && !chain->inertia && kernels[w - 1]->walk_plain)
-        plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *plain);
-    struct sweep_foot *foot = take_lanes(workspace, chain->attached, sizeof *foot);
-    uint8_t *trait = rd_take(workspace, chain->terms, sizeof *trait);
-    size_t *order = rd_take(workspace, factors->count, sizeof *order);
-    if (!rd_workspace_fits(workspace))
-        return NULL;
-    *s = (struct sweep){
+    struct sweep plan = {
         .chain = chain,
         .kernel = kernels[w - 1],
-        .coefs = coefs,
+        .coefs = w * w + 2 * sym,
         .sym = sym,
         .carried = carry->count,
         .swapped = swapped,
-        .minors = has_minors(chain, kernels[w - 1]),
-        .shear = has_minors(chain, kernels[w - 1]) ? largest_shear(chain) : 0.0,
-        .carry = carried,
-        .meet = meeting,
-        .rank = rank,
-        .records = records,
-        .record = record,
-        .rows = rows,
-        .table = table,
-        .triple = triple,
-        .coefficients = coefficients,
-        .plain = plain,
-        .value = value,
-        .error = error,
-        .weight = heavy,
-        .foot = foot,
-        .trait = trait,
-        .order = order,
         .failed = factors->count,
     };
+    struct sweep *s = take_lanes(workspace, 1, sizeof *s);
+    rd_taps_find(carry, chain, &plan.carry, workspace);
+    rd_taps_find(meet, chain, &plan.meet, workspace);
+    plan.records = plan.meet.tap ? rd_taps_nodes(&plan.meet) : plan.meet.count;
+    struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
+    arrays_take(&plan, factors->count, workspace);
+    if (!rd_workspace_fits(workspace))
+        return NULL;
+    *s = plan;
+    s->minors = has_minors(chain, s->kernel);
+    s->shear = s->minors ? largest_shear(chain) : 0.0;
     rd_runs_find(chain, run, &s->runs);
-    rd_taps_rank(&s->carry, s->carried, rank);
+    rd_taps_rank(&s->carry, s->carried, s->rank);
     for (size_t t = 0; t < chain->terms; t++)
-        trait[t] = trait_of(chain, t);
+        s->trait[t] = trait_of(chain, t);
     for (size_t b = 0; b < 2; b++)
-        s->walk[b] =
-            (struct sweep_walk){chain, &s->block, &s->way[b], trait, coefficients, plain, foot};
+        s->walk[b] = (struct sweep_walk){chain,           &s->block, &s->way[b], s->trait,
+                                         s->coefficients, s->plain,  s->foot};
     return s;
 }
