@@ -58,7 +58,8 @@ void rd_search_learn(struct rd_search *search, double lambda, double count)
     }
 }
 
-void rd_search_count(struct rd_search *search, const double *lambda, double *count)
+/* counts RD_LANES lambda and tightens all brackets */
+static void count_all(struct rd_search *search, const double *lambda, double *count)
 {
     rd_count(search->walk, LANES, lambda, count);
     search->counts += LANES;
@@ -109,7 +110,7 @@ enum rd_status rd_search_top(struct rd_search *search, double upper, size_t *bel
     for (int pass = 0; pass < HIGHER; pass++) {
         for (size_t k = 0; k < LANES; k++, at *= step)
             lambda[k] = fmin(fmin(at, 1e300), upper);
-        rd_search_count(search, lambda, count);
+        count_all(search, lambda, count);
         if (search->lost)
             return RD_SHORT_WAVES;
         if (count[LANES - 1] >= (double)search->wanted || lambda[LANES - 1] >= fmin(upper, 1e300))
@@ -141,7 +142,7 @@ void rd_search_cut(struct rd_search *search, size_t n, const size_t *index)
                                      (double)c / (double)(cuts + 1));
     for (; lane < LANES; lane++)
         lambda[lane] = lambda[lane - 1];
-    rd_search_count(search, lambda, count);
+    count_all(search, lambda, count);
 }
 
 static bool is_open(const struct rd_search *search, size_t i, double narrow)

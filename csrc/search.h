@@ -27,9 +27,6 @@ void rd_search_begin(const struct rd_walk *walk, size_t wanted, double *bracket,
 /* Tightens the brackets by the count at one lambda; NaN says nothing. */
 void rd_search_learn(struct rd_search *search, double lambda, double count);
 
-/* Counts RD_LANES lambda and tightens all brackets. */
-void rd_search_count(struct rd_search *search, const double *lambda, double *count);
-
 /* Finds a lambda <= -nearest with nothing below: K - lambda M is positive definite there, so that every mode above
    has x^T M x > 0. RD_UNSTABLE_MASSLESS: there is none, RD_SHORT_WAVES: there was what could
    not be counted. */
