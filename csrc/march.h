@@ -18,7 +18,8 @@
    is damped more and more (Alexander 1977). State is motion and the elastic forces of the elements,
    which are carried along: from displacements they would lose digits as n^4.
 
-   A stage seeks D, what the motion changes by. With S^ = S_T + rate of the strings, r = 1 + rate/theta,
+   A stage seeks D, what the motion changes by. With S^ = S_T + drag/theta of the strings and
+   r = 1 + rate/theta,
 
        (M/theta^2 + C/theta + K (1 + rate/theta)) D + elements (F, G/r, r Q) beside S^ on D = p
 
@@ -36,9 +37,9 @@
        s = H^T s' + E (p - W c),   u = U s + c           backward
 
    Where a coordinate is held, Z and E lose it: Z -= Z_i Z_i^T/Z_ii. A string k between the nodes,
-   a = A e_z, b = (B - I)^T e_z, x = k/(1 + k A_zz), makes it A - x a a^T, B - x a b^T, W + x b b^T; a
-   hinge of compliance t at the left end with P = W + I, b = B e_i, q = P e_i, x = 1/(P_ii + 1/t)
-   makes it A + x b b^T, B - x b q^T, P - x q q^T, free ones included. */
+   a = A e_z, b = (B - I)^T e_z, x = k/(1 + k A_zz), makes it A - x a a^T, B - x a b^T,
+   W + x b b^T; a hinge of compliance t at the left end with P = W + I, b = B e_i, q = P e_i,
+   x = 1/(P_ii + 1/t) makes it A + x b b^T, B - x b q^T, P - x q q^T, free ones included. */
 
 /* what acts beside the chain's own elements, dashpots and springs */
 struct rd_beside {

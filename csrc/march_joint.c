@@ -71,8 +71,8 @@ static enum rd_status fill_triple(const struct rd_march *march, size_t e, struct
     return status;
 }
 
-/* A = K G, B - I = D - A - A D, W = Q + D + D^T + D^T D - F^T A F of the stage: G/r and r Q. Nothing is
-   taken from the unit matrix, so that small elements keep their digits. */
+/* A = K G, B - I = D - A - A D, W = Q + D + D^T + D^T D - F^T A F of the stage: G/r and r Q.
+   Nothing is taken from the unit matrix, so that small elements keep their digits. */
 static enum rd_status scatter(double r, struct joint *joint)
 {
     const size_t w = joint->w, ww = w * w;
@@ -100,8 +100,8 @@ static enum rd_status scatter(double r, struct joint *joint)
     return RD_OK;
 }
 
-/* the hinge in coordinate i of compliance t: of the stage's matrices by P = W + I, of the element's by
-   Q, at whose left end a free one without tension leaves no force */
+/* the hinge in coordinate i of compliance t: of the stage's matrices by P = W + I, of the
+   element's by Q, at whose left end a free one without tension leaves no force */
 static void hinge(size_t i, double t, double r, struct joint *joint)
 {
     const size_t w = joint->w;

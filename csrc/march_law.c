@@ -27,7 +27,7 @@ static double convex_root(double a, double b, double p, double y)
     return t;
 }
 
-/* |x| + C c (|x|/theta)^p = |lean|; below p = 1 for y, the force: theta (y/c)^(1/p) + C y = |lean| */
+/* |x| + C c (|x|/theta)^p = |lean|; below p = 1 for the force y: theta (y/c)^(1/p) + C y = |lean| */
 static double power_force(const double *value, double theta, double lean, double C)
 {
     const double c = value[0], p = value[1], most = fabs(lean);
@@ -45,8 +45,8 @@ static double power_force(const double *value, double theta, double lean, double
     return -copysign(force, lean);
 }
 
-/* With y = side x from the start, contact at y > y0 = gap - side start: none, at once both (a dashpot
-   begins with a jump), or F = k (y - y0) + c y/theta */
+/* With y = side x from the start, contact at y > y0 = gap - side start: none, at once both (a
+   dashpot begins with a jump), or F = k (y - y0) + c y/theta */
 static double stop_force(const double *value, double theta, double lean, double C, double start)
 {
     const double k = value[0], side = value[2], c = value[3] / theta;
@@ -135,9 +135,9 @@ static bool eliminate(size_t n, double *A, double *x)
     return true;
 }
 
-/* Force j alone is S_j(lean_j + sum C_jk f_k, k not j), with the slope S_j' in -1/C_jj ... 0, here by
-   a difference: Newton's method on f - S(f) with the matrix I - S' (C - diag C). The largest change
-   of x, relative, before the step; -1 where it is singular. */
+/* Force j alone is S_j(lean_j + sum C_jk f_k, k not j), with the slope S_j' in -1/C_jj ... 0, here
+   by a difference: Newton's method on f - S(f) with the matrix I - S' (C - diag C). The largest
+   change of x, relative, before the step; -1 where it is singular. */
 static double newton(const struct rd_laws *laws, double theta, const double *lean, const double *C,
                      const double *start, double *force, double *work)
 {

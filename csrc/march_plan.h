@@ -111,8 +111,8 @@ enum rd_status rd_march_prepare(const struct rd_chain *chain, const struct rd_be
                                 struct rd_workspace *workspace);
 
 /* Everything that depends on theta [s] and on the tension `extra` [N]. RD_CRITICAL_ELEMENT,
-   RD_NOT_POSITIVE_DEFINITE of an element, RD_SINGULAR, RD_FAST_GROWTH: compression makes motion grow by
-   more than 1/theta. */
+   RD_NOT_POSITIVE_DEFINITE of an element, RD_SINGULAR, RD_FAST_GROWTH: compression makes motion
+   grow by more than 1/theta. */
 enum rd_status rd_march_factor(struct rd_march *march, double theta, double extra);
 
 /* the same at another tension */
@@ -145,14 +145,14 @@ void rd_march_take(struct rd_march *march, double g, int stage);
 /* takes the loads away */
 void rd_march_clear(struct rd_march *march, const struct rd_push *push);
 
-/* The stage as it is, in lean: with the forces of the laws, and where motion stretches the rope with
-   the tension that this makes, beside `extra` [N] from outside. RD_NO_CONVERGENCE with the relative
-   residual that is left. */
+/* The stage as it is, in lean: with the forces of the laws, and where motion stretches the rope
+   with the tension that this makes, beside `extra` [N] from outside. RD_NO_CONVERGENCE with the
+   relative residual that is left. */
 enum rd_status rd_march_settle(struct rd_march *march, const struct rd_push *push, double extra,
                                double *residual);
 
-/* energy (RD_ENERGIES) += input and dissipation of a stage that rd_march_take is to take next; taken
-   (laws) likewise. extra [N]: tension from outside, whose work is input. */
+/* energy (RD_ENERGIES) += input and dissipation of a stage that rd_march_take is to take next;
+   taken (laws) likewise. extra [N]: tension from outside, whose work is input. */
 void rd_march_account(const struct rd_march *march, double g, const struct rd_push *push,
                       double extra, double *energy, double *taken);
 
@@ -177,8 +177,8 @@ double rd_march_lengthening(const struct rd_march *march, const double *u, const
 enum rd_status rd_joint_fill(const struct rd_march *march, size_t stretch);
 enum rd_status rd_joint_tighten(const struct rd_march *march, size_t stretch);
 
-/* A resonator's mass on its spring: what it adds to the node term, and at a stage to the load; its own
-   change when the node's is known. */
+/* A resonator's mass on its spring: what it adds to the node term, and at a stage to the load; its
+   own change when the node's is known. */
 void rd_resonator_add(const struct rd_march *march, size_t k, double *N);
 void rd_resonator_load(struct rd_march *march, size_t k);
 void rd_resonator_follow(struct rd_march *march, size_t k);

@@ -2,7 +2,7 @@
 #include "march_plan.h"
 
 /* A mass m on a spring k and a dashpot c to its foot q = row u, all at the stage with
-   kappa = k + c/theta, m' = m/theta^2 + alpha m/theta and its own rest rho = m/theta^2 w - k (y - q):
+   kappa = k + c/theta, m' = m/theta^2 + alpha m/theta and rho = m/theta^2 w - k (y - q):
 
        (m' + kappa) dy - kappa dq = rho
        force on the foot -kappa (dq - dy) - k (q - y)

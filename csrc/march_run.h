@@ -5,8 +5,8 @@
 #include "march_plan.h"
 
 /* Steps from the start of the march, which is then where they lead; how many were made. *status is
-   RD_OK after all of them, else what stopped the next one: RD_NO_CONVERGENCE with steps->residual, or as
-   rd_march_tighten. push has the places; its numbers are taken from the steps. */
+   RD_OK after all of them, else what stopped the next one: RD_NO_CONVERGENCE with steps->residual,
+   or as rd_march_tighten. push has the places; its numbers are taken from the steps. */
 size_t rd_march_run(struct rd_march *march, const struct rd_push *push,
                     const struct rd_ports *responses, struct rd_steps *steps,
                     enum rd_status *status);

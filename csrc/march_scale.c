@@ -54,9 +54,9 @@ static void add_nodes(const struct rd_march *march, struct means *means)
     }
 }
 
-/* Receptance of a long rope on what its inertia is at 1/theta, of the whole at rest at most: 1/sqrt(N/G)
-   of a rod or a string; of a bent one with h = T/2B and r^2 = h^2 + N/(B l), a^2 = r + h,
-   k^2 = N/(B l (r + h)): 1/(B k (k^2 + a^2)) of z, 1/(B a) of beta. */
+/* Receptance of a long rope on what its inertia is at 1/theta, of the whole at rest at most:
+   1/sqrt(N/G) of a rod or a string; of a bent one with h = T/2B, r^2 = h^2 + N/(B l),
+   a^2 = r + h, k^2 = N/(B l (r + h)): 1/(B k (k^2 + a^2)) of z, 1/(B a) of beta. */
 void rd_march_scale(const struct rd_march *march, double *z)
 {
     const struct rd_chain *chain = march->chain;

@@ -50,8 +50,8 @@ static enum rd_status try_tension(struct rd_march *march, const struct rd_push *
     return *residual <= LAW_ENOUGH ? RD_OK : RD_NO_CONVERGENCE;
 }
 
-/* EA/L times the mean of the lengthening at both ends of the motion u, u + 2 d of which the stage is the
-   middle: at g = 1/4 the work of this tension is exactly the change of EA/2L lengthening^2 */
+/* EA/L times the mean of the lengthening at both ends of the motion u, u + 2 d of which the stage
+   is the middle: at g = 1/4 its work is exactly the change of EA/2L lengthening^2 */
 static double made_by(const struct rd_march *march)
 {
     const double *u = march->star.u, *d = march->lean.u;

@@ -89,8 +89,8 @@ static void move_held(struct rd_march *march, const struct rd_push *push)
     }
 }
 
-/* lean += what its residuals, from the triples themselves, ask for: the rounding of the maps is the same
-   in every step and would add up */
+/* lean += what its residuals, from the triples themselves, ask for: the rounding of the maps is
+   the same in every step and would add up */
 static void correct(struct rd_march *march)
 {
     const struct rd_chain *chain = march->chain;

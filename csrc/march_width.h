@@ -184,9 +184,9 @@ static int negative(const double *S)
     return count;
 }
 
-/* Negative eigenvalues of the stage's matrix. The left part up to a node, ended by a unit stiffness,
-   has U at the node, and Z = U E with the node and what ends it now: neg(Z) - neg(U) more of them; of a
-   next node that a string turns there is one before all others. */
+/* Negative eigenvalues of the stage's matrix. The left part up to a node, ended by a unit
+   stiffness, has U at the node, and Z = U E with the node and what ends it now: neg(Z) - neg(U)
+   more of them; of a next node that a string turns there is one before all others. */
 static long growing(const struct rd_march *march)
 {
     const struct rd_chain *chain = march->chain;
@@ -329,9 +329,9 @@ static void solve(struct rd_march *march, const double *p, bool moved, double *u
     }
 }
 
-/* What lean leaves of a stage: p of each node's equilibrium, t = u_b - F u_a - G f of each element's
-   compatibility, as loads and kick of a further solve. With -t, t' = t + k t_z e_z beside a string k:
-   p -= B^T t' - k t_z e_z on the left, c += t - A t' on the right. */
+/* What lean leaves of a stage: p of each node's equilibrium, t = F u_a + G f - u_b of each
+   element's compatibility, as loads and kick of a further solve. With t' = t + k t_z e_z beside a
+   string k: p -= B^T t' - k t_z e_z on the left, c += t - A t' on the right. */
 static void residual(struct rd_march *march)
 {
     const struct rd_chain *chain = march->chain;

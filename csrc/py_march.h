@@ -25,7 +25,8 @@ struct py_march {
 /* laws without their places, from (kind, value) */
 int py_law_numbers_parse(PyObject *object, struct py_march *march);
 
-/* chain, beside, law (node, row, kind, value); then the arrays of the march in the plan, a uint8 array of exactly their size */
+/* chain, beside, law (node, row, kind, value); then the arrays of the march in the plan, a uint8
+   array of exactly their size */
 int py_march_parse(PyObject *const *object, const char *entry, struct py_march *march);
 int py_march_open(PyObject *plan, struct py_march *march);
 

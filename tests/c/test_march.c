@@ -274,8 +274,8 @@ static void the_same_steps_twice(void)
     }
 }
 
-/* compression that grows by more than a step, nothing that holds a massless string, a broken wire, and
-   numbers that are none */
+/* compression that grows by more than a step, nothing that holds a massless string, a broken wire,
+   and numbers that are none */
 static void what_cannot_be_marched_is_named(void)
 {
     struct recipe recipe = cantilever;
