@@ -298,6 +298,15 @@ def test_difference_chain_marches():
     assert max(pushed(March(chain, h=5e-3))) < 1e-11
 
 
+@pytest.mark.parametrize("bent", [{}, {"bending_stiffness": 1.0}])
+def test_hanging_rope_marches_without_mass_along_it(bent):
+    rope = rd.Rope(1.0, 0.1, axial_stiffness=1e4, **bent)
+    model = rd.Scene(rope, tension=10.0, gravity=rd.Gravity()).compile(elements=12)
+    march = March(plain(model.chain), h=5e-3)
+    assert not march.chain.mass[:, 0].any()
+    assert max(pushed(march)) < 1e-12
+
+
 @pytest.mark.parametrize("stiffness", [0.0, 1e-3, 5.0, 1e5])
 @pytest.mark.parametrize(
     ("element", "tension"), [("rigid", 0.0), ("rigid", 10.0), ("tensed", 10.0)]
