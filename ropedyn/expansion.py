@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from . import contour, damping, tip
 from .chain import Chain
 from .characteristic import Rates, horizon
-from .damped_roots import MARGIN, Damped, damped_roots, most_roots
+from .damped_roots import Damped, damped_roots, most_roots
 from .damping import DASHPOT, INERTIA
 from .eigen import HIGHEST, count_component, spectrum
 from .errors import SceneError, SolveError
@@ -33,11 +33,14 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
 
-LARGEST = 1000
-"""Unknowns of a chain all of whose modes are summed where no number is given; modes at most."""
+LARGEST, MANY = 1000, 400
+"""Unknowns of a chain all of whose modes are summed where no number is given; modes of others."""
 
 SEARCHED = 200
 """The same where damping is not proportional: each of those is searched for."""
+
+EDGE = 0.8
+"""Of the rate before which overdamped modes accumulate: so far they are few."""
 
 WIDER, ATTEMPTS = 2, 4
 """Times the radius is doubled in which all damped modes are looked for; tries with less."""
@@ -106,8 +109,8 @@ def expand(
         As in `Model.frf`.
     modes : int, optional
         Of each component; where left out all of a chain with at most 1000 unknowns, and else those
-        below eight times the highest angular frequency, 64 at least and 1000 at most (200 where
-        damping is not proportional).
+        below eight times the highest angular frequency, 64 at least and 400 at most. Where damping
+        is not proportional 200 is the most of both.
     resolved : float
         Highest angular frequency that is of interest [rad/s].
     bound : bool
@@ -229,19 +232,19 @@ def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
     elif finite is not None and chain.free <= most:
         wanted = finite
     else:
-        wanted = min(max(_below(asked, most), LEAST), most)
+        wanted = min(max(_below(asked), LEAST), MANY, most)
     value, error = spectrum(model, component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
     return _Known(value[:wanted], error[:wanted]), beyond
 
 
-def _below(asked: _Asked, most: int) -> int:
+def _below(asked: _Asked) -> int:
     """Return how many modes there are below eight times what is of interest."""
     try:
         below = min((REACH * asked.resolved) ** 2, HIGHEST)
         return count_component(asked.model, asked.component, below)
     except SolveError:  # more than can be walked
-        return most
+        return MANY
 
 
 # --- damping in proportion ----------------------------------------------------------------------
@@ -348,7 +351,7 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Pol
     chain = asked.model.chain.only(asked.component)
     spans = [chain.between(*span) for span in chain.spans]
     there_are = [_how_many(span, rates) for span in spans]
-    edge = 0.99 * MARGIN * horizon(chain, rates)
+    edge = EDGE * horizon(chain, rates)
     radius = 1.5 * float(np.sqrt(np.abs(eigenvalue).max(initial=1.0)))
     if np.isfinite(beyond):
         radius = float(np.sqrt(np.abs(eigenvalue[-1])) + np.sqrt(beyond)) / 2

@@ -517,7 +517,7 @@ class Model(Frozen):
         modes : int, optional
             Of each component, that the modal method sums; where left out all of a chain's with at
             most 1000 unknowns, and else those below eight times what force and times resolve, 64 at
-            least and 1000 at most. Where damping is not proportional, 200 is the most of both.
+            least and 400 at most. Where damping is not proportional, 200 is the most of both.
         step : float, optional
             Of the direct method [s], at most; a whole number of them lies between two times.
         tolerance : float, optional
