@@ -1,9 +1,12 @@
 """How many steps: so many that their error is within the tolerance.
 
-A run is marched with steps h and with steps h/m. The scheme is of second order, so that the error
-of the finer one is their distance over m^2 - 1 (Richardson 1911); it tells how much finer the steps
-must be, and the run with those is checked against the last one in the same way. What the errors of
-all steps amount to at any time is seen as a whole, whether they add up or die away.
+A run is marched with steps h and with steps h/m. Where errors fall as h^p, that of the finer one is
+their distance over m^p - 1 (Richardson 1911); it tells how much finer the steps must be, and the run
+with those is checked against the last one in the same way. p is 2 of smooth motion that the steps
+resolve, less where laws bend or fast motion is only just resolved: what two distances say, and 1 as
+long as there is one. Runs far apart prove little: the last two must agree themselves, as two do of
+which one has twice the steps of the other. What the errors of all steps amount to at any time is
+seen as a whole, whether they add up or die away.
 """
 
 from __future__ import annotations
@@ -40,8 +43,14 @@ PER_BREAK = 8
 MOST_STEPS = 100_000_000
 """Of a run that is within a tolerance."""
 
-MARGIN = 1.1
-"""Steps are finer by this factor than the estimate says."""
+AGREE = 1 / 3
+"""Of the distance of two runs, at least, is the error of the finer one."""
+
+AIM = 2.5
+"""Error of the last but one run, of the tolerance: twice its steps are enough."""
+
+ORDERS = (0.5, 2.0)
+"""Powers of the step that errors fall with: friction and contact have less than smooth motion."""
 
 FAR = 0.05
 """Where the error is larger than this, it says little about how fine steps must be."""
@@ -104,71 +113,108 @@ def within(run: Run, chains: list[Lumps], g: float) -> Pace:
     line = steps_of(run, chains)
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
     work = np.zeros(2, dtype=np.intp)
+    trend = Trend()
     factor, begin = 1, 0.0
-    last: tuple[int, Passage] | None = None
-    trend: list[tuple[int, float]] = []
     while True:
         fine = line.finer(factor)
-        end = begin + (0.9 * (1 - begin) if last else 0.05)
+        end = begin + (0.9 * (1 - begin) if trend.last else 0.05)
         passage = Walk(run, chains, fine, g, (begin, end)).through()
         begin = end
         work += (passage.stages, passage.factorisations)
-        error = np.full(passage.value.shape, np.inf)
-        growth = 2.0
-        if isinstance(passage.error, SolveError) and 4 * fine.steps <= MOST_STEPS // 100:
-            growth, last = 4.0, None
-        elif passage.error is not None:
+        if isinstance(passage.error, SolveError) and fine.steps <= MOST_STEPS // 100:
+            trend = Trend()
+            factor *= 4
+            continue
+        if passage.error is not None:
+            error = np.full(passage.value.shape, np.inf)
             break
-        elif last is not None:
-            error = _distance(passage, last[1], factor / last[0], _order(trend))
-            worst = _worst(run, passage, last[1], error)
-            trend.append((factor, worst))
-            if worst <= tolerance:
-                break
-            growth = _growth(worst, tolerance, _order(trend))
-        if passage.error is None:
-            last = (factor, passage)
+        error, worst = trend.add(run, factor, passage)
+        if worst <= tolerance:
+            break
+        growth = _growth(trend.error, worst, tolerance)
         if growth * fine.steps > MOST_STEPS:
             passage.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with {fine.steps} "
-                f"the error is {trend[-1][1] if trend else math.inf:.3g}"
+                f"the error is {worst:.3g}"
             )
             break
-        factor *= math.ceil(growth)
+        factor *= growth
     run.progress(1.0)
     return Pace(passage, error, int(work[0]), int(work[1]))
 
 
-def _distance(fine: Passage, coarse: Passage, ratio: float, order: float) -> Real:
-    """Return the error of the finer one."""
-    return np.asarray(np.abs(fine.value - coarse.value) / (ratio**order - 1))
+class Trend:
+    """How the distances between runs with finer and finer steps fall.
+
+    Attributes
+    ----------
+    last : tuple of int and Passage, or None
+        How fine the last run was, and what it left.
+    error : float
+        Of the last run, relative to what is largest, as far as two runs can tell.
+    """
+
+    def __init__(self) -> None:
+        self.last: tuple[int, Passage] | None = None
+        self.error = math.inf
+        self._before: tuple[float, float] | None = None
+
+    def add(self, run: Run, factor: int, passage: Passage) -> tuple[Real, float]:
+        """Return the error of a finer run, and the largest relative to what is largest."""
+        if self.last is None:
+            self.last = (factor, passage)
+            return np.full(passage.value.shape, np.inf), np.inf
+        ratio, coarse = factor / self.last[0], self.last[1]
+        self.last = (factor, passage)
+        apart = np.abs(passage.value - coarse.value)
+        distance = _worst(run, passage, apart)
+        order, guess = 1.0, 2.0
+        if self._before is not None:
+            order = guess = _order(*self._before, ratio, distance)
+        self._before = (ratio, distance)
+        self.error = distance / (ratio**guess - 1)
+        share = max(1 / (ratio**order - 1), AGREE)
+        resolved = _is_resolved(passage, coarse)
+        return apart * share, max(distance * share, 0.0 if resolved else FAR)
 
 
-def _order(trend: list[tuple[int, float]]) -> float:
-    """Return with which power of the step errors fell last, 1 to 2: laws that bend have less."""
-    if len(trend) < 2:
-        return 2.0
-    (coarse, large), (fine, small) = trend[-2:]
-    if not 0 < small < large < math.inf:
-        return 1.0
-    return min(max(math.log(large / small) / math.log(fine / coarse), 1.0), 2.0)
+def _order(ratio: float, distance: float, next_ratio: float, next_distance: float) -> float:
+    """Return p of errors C h^p from the distances of three runs, within `ORDERS`."""
+    low, high = ORDERS
+
+    def fall(p: float) -> float:
+        return ratio**-p * (1 - next_ratio**-p) / (1 - ratio**-p)
+
+    if next_distance >= fall(low) * distance:
+        return low
+    if next_distance <= fall(high) * distance:
+        return high
+    for _ in range(20):
+        middle = (low + high) / 2
+        falls = next_distance < fall(middle) * distance
+        low, high = (middle, high) if falls else (low, middle)
+    return low
 
 
-def _growth(worst: float, tolerance: float, order: float) -> float:
+def _growth(error: float, worst: float, tolerance: float) -> int:
     """Return how much finer steps must be."""
-    wanted = MARGIN * (worst / tolerance) ** (1 / order)
-    return min(max(wanted, 2.0), 8.0 if worst > FAR else 64.0)
+    if not math.isfinite(error):
+        return 2
+    wanted = math.ceil(math.sqrt(error / (AIM * tolerance)))
+    return min(max(wanted, 2), 8 if worst > FAR else 64)
 
 
-def _worst(run: Run, fine: Passage, coarse: Passage, error: Real) -> float:
-    """Return the largest error of any response, relative to its largest value."""
-    size = np.maximum(np.abs(fine.value).max(axis=1), _floor(run, fine))
-    most = error.max(axis=1)
-    relative = np.divide(most, size, out=np.zeros_like(most), where=most > 0)
-    scale = fine.largest[0]
+def _worst(run: Run, passage: Passage, apart: Real) -> float:
+    """Return the largest distance of any response, relative to its largest value."""
+    size = np.maximum(np.abs(passage.value).max(axis=1), _floor(run, passage))
+    most = apart.max(axis=1)
+    return float(np.divide(most, size, out=np.zeros_like(most), where=most > 0).max())
+
+
+def _is_resolved(fine: Passage, coarse: Passage) -> bool:
+    """Whether both saw the same motion of the whole rope, however coarsely."""
     apart = np.abs(fine.last - coarse.last).max(axis=0)
-    shape = np.divide(apart, scale, out=np.zeros_like(apart), where=apart > 0)
-    return max(float(relative.max()), FAR if shape.max() > RESOLVED else 0.0)
+    return bool((apart <= RESOLVED * fine.largest[0]).all())
 
 
 def _floor(run: Run, passage: Passage) -> Real:
