@@ -40,7 +40,8 @@ class Cost:
     elements, unknowns : int
         Of the chain, and of what was solved of it.
     sweeps : int
-        Walks from one end of the rope to the other, at one frequency each.
+        Walks from one end of the rope to the other, at one frequency each; of steps through time,
+        their stages.
     factorisations : int
         Of matrices: of the solvers that have some.
     redone : float

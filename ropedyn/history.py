@@ -62,7 +62,8 @@ class History(Answer):
         the direct method, infinite where there is no bound.
     step_error : ndarray, shape (responses, t)
         Estimated absolute error that the steps of the direct method cause: by Richardson's
-        extrapolation from a run with half the steps' length. 0 of the modal method, which is exact.
+        extrapolation from a run with half the steps' length, within a tolerance from the last two
+        runs. 0 of the modal method, which is exact.
     mesh_error : ndarray, shape (responses, t)
         Absolute error that the elements cause: the distance to the motion of the continuous spans
         of the same scene and the error of that. 0 for continuous spans, infinite where they have no
@@ -70,7 +71,8 @@ class History(Answer):
     energy : dict of ndarray, shape (t,)
         "kinetic" and "strain", what the forces put in since t = 0 ("input") and what dampers took
         ("dissipated") [J]: kinetic + strain - input + dissipated stays what it was at the first
-        time, but for what numerical damping takes.
+        time, but for what numerical damping takes. Work of a tension that pulsates is input. Where
+        stops or a `NodeForce` act, what they took since then is "laws" and belongs to the sum.
     snapshot_time : ndarray, shape (s,)
         When the whole rope was looked at [s].
     x : ndarray, shape (nodes,)

@@ -507,7 +507,8 @@ class Model(Frozen):
             Of the responses.
         start : mapping from points to float, or Deflection, optional
             Static loads [N, N m] under which the rope rests before it is let go at the first time:
-            pluck and release. At rest without load where left out.
+            pluck and release. The rest is that at the mean tension and does not feel what is not
+            linear, a `Stop` or friction. At rest without load where left out.
         method : {"auto", "modal", "direct"}
             ``"modal"``: linear scenes, the sum over modes, each integrated exactly however far
             apart the times are, with the static motion of the modes that are left out; complex
@@ -521,12 +522,14 @@ class Model(Frozen):
         step : float, optional
             Of the direct method [s], at most; a whole number of them lies between two times.
         tolerance : float, optional
-            Of the direct method, instead of `step`: the steps are chosen so that the error they
-            cause is estimated within this part of the largest value of each response; 1e-4 where
-            both are left out.
+            Of the direct method, instead of `step`: the whole run is made again with finer steps
+            until two runs say that the error of the last one is within this part of the largest
+            value of each response; 1e-4 where both are left out.
         spectral_radius : float
             Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
-            motion, less takes it from the frequencies that the steps do not resolve.
+            motion (with a given `step` to the last digits, for which each stage is solved twice),
+            less takes it from the frequencies that the steps do not resolve. Less than 1 is also
+            for velocities at a `Stop` or where friction holds: with 1 they alternate.
         snapshots : array_like, optional
             When the displacement of the whole rope is kept [s].
         progress : None, True or callable
@@ -547,7 +550,16 @@ class Model(Frozen):
             If a value has no meaning, such as times that do not increase or a force that is not
             finite, or the method does not take the scene.
         SolveError
-            If a step does not converge; the message says when, and how far it was off.
+            If a step does not converge; the message says when, and how far it was off. Its
+            `history` is what was computed before, as with `partial`.
+
+        Notes
+        -----
+        A law of a `NodeForce` that raises ends the run; its exception says for which part and when.
+
+        The direct method lumps all inertia of a chain at its nodes, without the correction that
+        makes the frequencies of tensed elements fourth order. What has no inertia follows forces at
+        once: rotations of a rope without rotary inertia, and points between nodes that are driven.
 
         Examples
         --------
