@@ -385,6 +385,13 @@ class Sum:
         return max(force.highest for force in self.forces)
 
 
+def is_sampled(force: Force) -> bool:
+    """Whether it bends at every time that is asked for."""
+    if isinstance(force, Sum):
+        return any(map(is_sampled, force.forces))
+    return isinstance(force, Samples)
+
+
 KINDS = (Sine, Chirp, Step, Impulse)
 """What users give beside arrays."""
 

@@ -24,7 +24,7 @@ KEEPS = 0.25
 FORGETS = 1 - math.sqrt(0.5)
 """The stage of the scheme that lets what has no inertia follow at once."""
 
-PLANS = 4
+PLANS = 8
 """Factorisations that are kept: of so many lengths of steps."""
 
 KINETIC, STRAIN, INPUT, DISSIPATED, LAWS = ENERGIES = range(5)
@@ -142,13 +142,15 @@ class Motion:
         """Take steps under the forces of their times; see `push`."""
         return self.advance(self.push(time, h, g, *edges), time, h, g)
 
-    def advance(self, push: Push, time: Real, h: float, g: float) -> Stride:
+    def advance(
+        self, push: Push, time: Real, h: float, g: float, *, refined: bool = False
+    ) -> Stride:
         """Take steps from the state, which is then where they lead."""
         self.stages += 2 * len(push.force)
         if self.lumps.calls:
             return self._call(push, time, h, g)
-        lumps = self.lumps
-        return self._march(push, time, h, g, lumps.drives)
+        refined = refined or self.refined
+        return self._march(push, time, h, g, drive=self.lumps.drives, refined=refined)
 
     def probe(self, push: Push, time: Real, h: float) -> Stride:
         """Return what a step reads and where energy is before it, without taking it."""
@@ -161,7 +163,9 @@ class Motion:
             stride.energy[0, KINETIC] += change
         return stride
 
-    def _march(self, push: Push, time: Real, h: float, g: float, drive: Ports) -> Stride:
+    def _march(
+        self, push: Push, time: Real, h: float, g: float, *, drive: Ports, refined: bool
+    ) -> Stride:
         lumps = self.lumps
         plan = self.plan(g * h)
         read, energy, taken, done, residual = _core.march(
@@ -179,7 +183,7 @@ class Motion:
             push.extra,
             lumps.reading.ports,
             True,
-            self.refined,
+            refined,
         )
         if push.extra is not None:
             self.factorisations += 2 * done
@@ -261,7 +265,8 @@ class Motion:
         node = np.concatenate([lumps.drives.node, lumps.laws.node[calls]])
         row = np.concatenate([lumps.drives.row, lumps.laws.row[calls]])
         force = np.concatenate([push.force, given[None]], axis=2)
-        stride = self._march(push._replace(force=force), np.zeros(1), h, g, Ports(node, row, None))
+        drives, push = Ports(node, row, None), push._replace(force=force)
+        stride = self._march(push, np.zeros(1), h, g, drive=drives, refined=True)
         if stride.error is not None:
             raise stride.error
         return stride

@@ -73,7 +73,7 @@ class Onset:
         push = self._push(STEPS, e, FORGETS)
         push.force[0] += self.blow / e
         push.speed[0] += self.ends.jump / e
-        stride = self.motion.advance(push, self._times(STEPS, e), e, FORGETS)
+        stride = self.motion.advance(push, self._times(STEPS, e), e, FORGETS, refined=True)
         if stride.error is not None:
             raise stride.error
         self.motion.late = STEPS * e
@@ -119,14 +119,13 @@ def onset(motion: Motion, line: Timeline, mark: int) -> Onset:
     force = _change(lumps.forces, before, after)
     ends = _change(lumps.motions, before, after)
     blow = np.array([_blow(one, line, mark) for one in lumps.forces])
-    follows = bool(lumps.massless.any())
-    jumps = blow.any() or ends.jump.any() or (lumps.is_bare & (force.jump != 0)).any()
-    if follows:
-        jumps = jumps or ends.bend.any()
-    if mark == 0:
-        jumps = jumps or lumps.released
-        jumps = jumps or (follows and lumps.pulsation is not None and not motion.rests)
-    return Onset(motion, after, float(line.h[mark]), force, ends, blow, bool(jumps))
+    bare = lumps.is_bare & ((force.jump != 0) | force.bend)
+    jumps = bool(blow.any() or ends.jump.any() or bare.any())
+    if lumps.massless.any():
+        turned = mark == 0 and lumps.pulsation is not None and not motion.rests
+        jumps = jumps or bool(ends.bend.any()) or turned
+    jumps = jumps or (mark == 0 and lumps.released)
+    return Onset(motion, after, float(line.h[mark]), force, ends, blow, jumps)
 
 
 def _blow(force: Force, line: Timeline, mark: int) -> float:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SolveError
+from .force import is_sampled
 from .lumps import Lumps
 from .passage import Passage, Walk
 from .port import is_force, moving
@@ -86,8 +87,9 @@ def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
     """Return the steps that are asked for, or those that a tolerance begins with."""
     functions = [f for lumps in chains for f in (*lumps.forces, *lumps.motions)]
     breaks = [at for f in functions for at in f.breaks]
+    stops = [*breaks, *_corners(run, chains)]
     if run.step is not None:
-        return timeline(run.time, run.snapshots, breaks, _constant(run.step))
+        return timeline(run.time, run.snapshots, stops, _constant(run.step))
     highest = max((f.highest for f in functions), default=0.0)
     tension = run.model.scene.tension
     if isinstance(tension, Tension):
@@ -101,7 +103,18 @@ def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
         at = np.searchsorted(edges, (begin + end) / 2) - 1
         return np.minimum(np.diff(edges)[at] / PER_BREAK, most)
 
-    return timeline(run.time, run.snapshots, breaks, between)
+    return timeline(run.time, run.snapshots, stops, between)
+
+
+def _corners(run: Run, chains: list[Lumps]) -> list[float]:
+    """Return the times at which velocities jump of what follows samples without inertia."""
+    if run.order == 0:
+        return []
+    for lumps in chains:
+        bare = [force for force, is_bare in zip(lumps.forces, lumps.is_bare) if is_bare]
+        if lumps.massless.any() and any(map(is_sampled, (*bare, *lumps.motions))):
+            return run.time[1:-1].tolist()
+    return []
 
 
 def _constant(step: float) -> Callable[[Real, Real], Real]:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from .chain import Chain
 from .model import Model
-from .part import Law, standing
+from .node import Law
+from .part import standing
 from .port import locate, ports
 
 Real = NDArray[np.float64]
