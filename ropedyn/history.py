@@ -71,8 +71,9 @@ class History(Answer):
     energy : dict of ndarray, shape (t,)
         "kinetic" and "strain", what the forces put in since t = 0 ("input") and what dampers took
         ("dissipated") [J]: kinetic + strain - input + dissipated stays what it was at the first
-        time, but for what numerical damping takes. Work of a tension that pulsates is input. Where
-        stops or a `NodeForce` act, what they took since then is "laws" and belongs to the sum.
+        time, but for what numerical damping takes. Work of a tension that pulsates is input; of an
+        end that jumps, what stays of it. Where stops or a `NodeForce` act, what they took since
+        then is "laws" and belongs to the sum.
     snapshot_time : ndarray, shape (s,)
         When the whole rope was looked at [s].
     x : ndarray, shape (nodes,)

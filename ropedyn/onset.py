@@ -67,7 +67,15 @@ class Onset:
     blow: Real
     jumps: bool
 
-    def settle(self) -> Stride:
+    def happen(self) -> Real:
+        """Let it happen; return the energies of what led there, shape (.., 5)."""
+        if self.jumps:
+            energy = self._settle().energy
+        for place, rate in zip(self.motion.lumps.moved, self.ends.rate):
+            self.motion.state.v[tuple(place)] = rate
+        return self.probe().energy if self.ends.bend.any() or not self.jumps else energy
+
+    def _settle(self) -> Stride:
         """Let blows, jumps of ends and what has no inertia happen within three short steps."""
         e = SHORT * self.h
         push = self._push(STEPS, e, FORGETS)

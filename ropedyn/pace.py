@@ -1,16 +1,17 @@
 """How many steps: so many that their error is within the tolerance.
 
 A run is marched with steps h and with steps h/m. Where errors fall as h^p, that of the finer one is
-their distance over m^p - 1 (Richardson 1911); it tells how much finer the steps must be, and the run
-with those is checked against the last one in the same way. p is 2 of smooth motion that the steps
-resolve, less where laws bend or fast motion is only just resolved: what two distances say, and 1 as
-long as there is one. Runs far apart prove little: the last two must agree themselves, as two do of
-which one has twice the steps of the other. What the errors of all steps amount to at any time is
-seen as a whole, whether they add up or die away.
+their distance over m^p - 1 (Richardson 1911). It tells how much finer the steps must be, and the
+run with those is checked against the last one in the same way. p is 2 of smooth motion that the
+steps resolve, less where laws bend or fast motion is only just resolved: what two distances say,
+and 1 as long as there is one. Runs far apart prove little: the last two must agree themselves, as
+two do of which one has twice the steps of the other. What the errors of all steps amount to at any
+time is seen as a whole, whether they add up or die away.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -107,14 +108,13 @@ def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
 
 
 def _corners(run: Run, chains: list[Lumps]) -> list[float]:
-    """Return the times at which velocities jump of what follows samples without inertia."""
-    if run.order == 0:
-        return []
-    for lumps in chains:
-        bare = [force for force, is_bare in zip(lumps.forces, lumps.is_bare) if is_bare]
-        if lumps.massless.any() and any(map(is_sampled, (*bare, *lumps.motions))):
-            return run.time[1:-1].tolist()
-    return []
+    """Return the times at which velocities jump of what follows samples at once."""
+    followed = [
+        force
+        for lumps in chains
+        for force in (*lumps.motions, *itertools.compress(lumps.forces, lumps.is_bare))
+    ]
+    return run.time[1:-1].tolist() if run.order and any(map(is_sampled, followed)) else []
 
 
 def _constant(step: float) -> Callable[[Real, Real], Real]:

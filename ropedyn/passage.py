@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .lumps import Lumps
 from .motion import DISSIPATED, ENERGIES, INPUT, Motion, Stride
-from .onset import onset
+from .onset import Onset, onset
 from .timeline import Block, Timeline
 from .transient import Run
 
@@ -180,18 +180,25 @@ class Walk:
         what = onset(motion, line, mark)
         if mark == 0 and not motion.rests:
             self.now[k] = what.probe().energy[0] * [1, 1, 0, 0, 0]
-        if what.jumps:
-            before = self.now[k, :INPUT].sum()
-            energy = what.settle().energy
-            taken = energy[:, INPUT:].sum(axis=0)
-            self.now[k, :INPUT] = energy[-1, :INPUT]
-            self.now[k, INPUT:] += taken
-            # what follows at once has lost the rest
-            lost = before + taken @ [1, -1, -1] - self.now[k, :INPUT].sum()
-            self.now[k, DISSIPATED] += lost
+        if what.jumps or what.ends.bend.any():
+            self._follow(k, what)
         if n >= 0:
             self.passage.value[motion.lumps.number, n] = what.values(self.run.order)
             self.passage.energy[k, n] = self.now[k]
+
+    def _follow(self, k: int, what: Onset) -> None:
+        """Let a chain follow at once, and say what that does to its energy."""
+        now, before = self.now[k], self.now[k, :INPUT].sum()
+        energy = what.happen()
+        now[:INPUT] = energy[-1, :INPUT]
+        if what.ends.jump.any() or what.ends.bend.any():
+            # what it takes to move an end at once has no limit: only what stays counts
+            now[INPUT] += now[:INPUT].sum() - before
+            return
+        now[INPUT:] += energy[:, INPUT:].sum(axis=0)
+        # what has no inertia loses the rest
+        lost = before + energy[:, INPUT:].sum(axis=0) @ [1, -1, -1] - now[:INPUT].sum()
+        now[DISSIPATED] += lost
 
 
 def _is_fine(tolerance: float | None) -> bool:

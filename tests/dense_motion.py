@@ -59,7 +59,12 @@ class Dense:
         y[:n] = 0.0 if u is None else u[r]
         y[n : 2 * n] = 0.0 if v is None else v[r]
         y[2 * n :] = np.sin(omega * time[0] + phase), np.cos(omega * time[0] + phase)
-        states = np.array([la.expm(A * (t - time[0])) @ y for t in time])
+        states = [y]
+        for step in np.diff(time):
+            if len(states) == 1 or abs(step - last) > 1e-12 * last:
+                last, forward = step, la.expm(A * step)
+            states.append(forward @ states[-1])
+        states = np.array(states)
         motion, velocity = np.zeros((len(time), self.size)), np.zeros((len(time), self.size))
         motion[:, r], velocity[:, r] = states[:, :n], states[:, n : 2 * n]
         if len(m):
