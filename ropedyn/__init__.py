@@ -21,6 +21,7 @@ from .force import Chirp, Impulse, Sine, Step
 from .frf import FRF
 from .gravity import Gravity
 from .history import History
+from .measured import Measured
 from .model import Model
 from .modes import Modes
 from .node_force import NodeForce
@@ -28,8 +29,10 @@ from .part import Dashpot, Hinge, PointMass, Spring, Support
 from .peaks import Peaks
 from .resonance import Resonances
 from .resonator import Resonator
+from .ringdown import RingDown
 from .rope import Rope
 from .scene import Scene
+from .spectrum import Spectrum
 from .stop import Stop
 from .stretch import AddedMass, LocalChange
 from .table import Table
@@ -59,6 +62,7 @@ __all__ = [
     "Impulse",
     "LocalChange",
     "LossFactor",
+    "Measured",
     "ModalDamping",
     "Model",
     "Modes",
@@ -68,12 +72,14 @@ __all__ = [
     "RayleighDamping",
     "Resonances",
     "Resonator",
+    "RingDown",
     "Rope",
     "RopedynError",
     "Scene",
     "SceneError",
     "Sine",
     "SolveError",
+    "Spectrum",
     "Spring",
     "Step",
     "StiffnessDamping",

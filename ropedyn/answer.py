@@ -170,6 +170,8 @@ class Answer(Frozen):
             if "axes" not in item.metadata:
                 attributes[PREFIX + item.name] = json.dumps(_plain(value))
                 continue
+            if value is None:
+                continue
             names, unit = item.metadata["axes"], {"units": item.metadata["unit"]}
             if item.metadata["keyed"]:
                 for key, array in value.items():
@@ -280,7 +282,7 @@ def _rebuilt(kind: type[Any], dataset: Any) -> Any:
             start = item.name + "."
             names = [name for name in dataset.variables if name.startswith(start)]
             arguments[item.name] = {n[len(start) :]: _array(dataset[n]) for n in names}
-        else:
+        elif item.name in dataset.variables or item.default is not None:
             arguments[item.name] = _array(dataset[item.name])
     return kind(**arguments)
 

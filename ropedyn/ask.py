@@ -123,9 +123,9 @@ class FRFQuestion(Frozen):
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequency", check.frequencies(self.frequency))
         super().__post_init__()
-        object.__setattr__(self, "drive", _points(self.drive, "drive", forces=False))
+        object.__setattr__(self, "drive", check.points(self.drive, "drive", forces=False))
         if self.response is not None:
-            response = _points(self.response, "response", forces=True)
+            response = check.points(self.response, "response", forces=True)
             object.__setattr__(self, "response", response)
         check.one_of(self.quantity, "quantity", QUANTITIES)
 
@@ -257,18 +257,3 @@ def frf(
     receptance of 2 lines, 10 to 20 Hz, driven in z at 0.500 m
     """
     return FRFQuestion(frequency, drive, response, quantity)  # type: ignore[arg-type]
-
-
-def _points(value: Any, name: str, *, forces: bool) -> Any:
-    """Return a point, or several, of a rope that is not known yet."""
-    if isinstance(value, (tuple, list)) and len(value) > 0 and not isinstance(value[0], str):
-        return tuple(_point(one, f"{name}[{k}]", forces=forces) for k, one in enumerate(value))
-    return _point(value, name, forces=forces)
-
-
-def _point(value: Any, name: str, *, forces: bool) -> Any:
-    """Return a response, or a drive, which may be an end."""
-    if not forces and check.is_end(value):
-        return check.end(value, name, check.COORDINATES)
-    wires = check.MOST_WIRES if forces else None
-    return check.point(value, name, check.COORDINATES, None, forces=forces, wires=wires)

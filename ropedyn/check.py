@@ -207,6 +207,24 @@ def is_end(value: Any) -> bool:
     return isinstance(value, (tuple, list)) and len(value) > 0 and value[0] == END
 
 
+def points(value: Any, name: str, *, forces: bool) -> Any:
+    """Return a point, or a tuple of several, of a rope that is not known yet.
+
+    With `forces` internal forces and tips of wires are allowed, without it motion of an end.
+    """
+    if isinstance(value, (tuple, list)) and len(value) > 0 and not isinstance(value[0], str):
+        return tuple(_anywhere(one, f"{name}[{k}]", forces) for k, one in enumerate(value))
+    return _anywhere(value, name, forces)
+
+
+def _anywhere(value: Any, name: str, forces: bool) -> Any:
+    """Return a response, or a drive, which may be an end."""
+    if not forces and is_end(value):
+        return end(value, name, COORDINATES)
+    wires = MOST_WIRES if forces else None
+    return point(value, name, COORDINATES, None, forces=forces, wires=wires)
+
+
 def path(value: Any) -> Path:
     """Return the path of a file."""
     instance(value, "path", (str, os.PathLike), "the path of a file")

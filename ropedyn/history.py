@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .answer import Answer, Cost, Frozen, axes, nested
 from .port import Point
@@ -17,6 +17,10 @@ from .unit import label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from .measured import Measured
+    from .ringdown import RingDown
+    from .spectrum import Spectrum
 
 Real = NDArray[np.float64]
 
@@ -148,6 +152,181 @@ class History(Answer):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Plot the responses over time."""
-        from .plotting import plot_history
+        from .plotting_time import plot_history
 
         return plot_history(self, ax)
+
+    def plot_snapshots(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
+        """Plot one coordinate along the rope, a line for each snapshot.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's where left out.
+        coordinate : str, optional
+            z where there is one, else the first.
+
+        Raises
+        ------
+        SceneError
+            If there are no snapshots, or no such coordinate.
+        """
+        from .plotting_time import plot_snapshots
+
+        return plot_snapshots(self, ax, coordinate)
+
+    def spectrum(self, *, window: str = "hann") -> Spectrum:
+        """Return the amplitudes of the responses over frequency.
+
+        Parameters
+        ----------
+        window : str
+            That weights the times; one that scipy.signal knows. What is neither 0 at both ends of
+            the record nor repeats itself after it leaks to other frequencies, less with "hann"
+            than with "boxcar" (no weights).
+
+        Returns
+        -------
+        Spectrum
+
+        Raises
+        ------
+        SceneError
+            If the times have not equal steps, to 1e-6 of one, or the window is unknown.
+
+        References
+        ----------
+        F. J. Harris, On the use of windows for harmonic analysis with the discrete Fourier
+        transform, Proceedings of the IEEE 66 (1978) 51-83.
+        """
+        from .spectrum import spectrum
+
+        return spectrum(self, window)
+
+    def amplitude(
+        self, frequency: ArrayLike, *, last: float | None = None
+    ) -> NDArray[np.complex128]:
+        """Fit steady motion at one or several frequencies.
+
+        By least squares together with what stands still and what drifts steadily. Motion is
+        Re(value exp(+i omega t)), t from 0, as in `Model.frf`; a force `Sine` of amplitude A is
+        then -i A, so the receptance is the amplitude over -i A.
+
+        Parameters
+        ----------
+        frequency : float or array_like, shape (k,)
+            [Hz]; several, such as a frequency and its multiples, are fitted together.
+        last : float, optional
+            How much of the end of the record is taken [s]; all of it where left out.
+
+        Returns
+        -------
+        ndarray of complex, shape (responses,) or (responses, k)
+            Unit of the responses.
+
+        Raises
+        ------
+        TypeError
+            If something is not a number.
+        SceneError
+            If a frequency is not below half the rate of the times, or `last` is too short.
+        """
+        from .spectrum import amplitude
+
+        return amplitude(self, frequency, last)
+
+    def damping(
+        self,
+        near: ArrayLike | None = None,
+        *,
+        response: int = 0,
+        since: float | None = None,
+    ) -> RingDown:
+        """Estimate frequencies and damping ratios from the decay of free motion.
+
+        About each frequency the record is shifted to 0 Hz, low-passed and thinned, which leaves
+        decaying modes what they are; the matrix pencil finds their rates, least squares refine
+        them, and the noise that is left tells their standard errors. Modes close by are fitted
+        together. Exact, to rounding, of sums of decaying modes.
+
+        Parameters
+        ----------
+        near : float or array_like, shape (k,), optional
+            Where modes are looked for [Hz], to a quarter of it; the strongest line of the spectrum
+            where left out.
+        response : int
+            Of which response.
+        since : float, optional
+            From when on motion is free [s]; where left out since the force last changed (a blow at
+            an instant is not seen).
+
+        Returns
+        -------
+        RingDown
+
+        Raises
+        ------
+        TypeError
+            If something is not a number.
+        SceneError
+            If times have not equal steps, the record of free motion is too short, or `near` is not
+            below half the rate of the times.
+        SolveError
+            If nothing moves there.
+
+        References
+        ----------
+        Y. Hua, T. K. Sarkar, Matrix pencil method for estimating parameters of exponentially
+        damped/undamped sinusoids in noise, IEEE Transactions on Acoustics, Speech, and Signal
+        Processing 38 (1990) 814-824.
+        """
+        from .ringdown import ring_down
+
+        return ring_down(self, near, response, since)
+
+    def frf(
+        self,
+        *,
+        drive: int = 0,
+        segments: int = 1,
+        window: str | None = None,
+        band: ArrayLike | None = None,
+    ) -> Measured:
+        """Estimate the responses per force, as a measurement does: H1 = S_fx / S_ff.
+
+        One segment: the ratio of the Fourier transforms of the whole record. That is exact, but
+        for what lies above half the rate of the times, if motion starts from rest and has decayed
+        at the end, as after a blow or a chirp. Several segments, each half over the next, are
+        averaged, as for noise; then there is a coherence.
+
+        Parameters
+        ----------
+        drive : int
+            To which drive; others must be at rest.
+        segments : int
+            How many.
+        window : str, optional
+            That weights each segment; "boxcar" of one and "hann" of several where left out.
+        band : pair of float, optional
+            Lowest and highest frequency [Hz]; where left out all where the force is not less than
+            1e-3 of its largest line.
+
+        Returns
+        -------
+        Measured
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If times have not equal steps, nothing drives at the times, or something else does.
+
+        References
+        ----------
+        J. S. Bendat, A. G. Piersol, Random Data: Analysis and Measurement Procedures (2010),
+        section 9.2.
+        """
+        from .measured import measured
+
+        return measured(self, drive, segments, window, band)

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from made_history import decaying, made
 
 import ropedyn as rd
 
@@ -38,6 +39,8 @@ MODEL = SCENE.compile(elements=10, element="rigid")
 GRID = np.linspace(5.0, 150.0, 300)
 FREE = SCENE.replace(ends=("free", "free")).compile(elements=10, element="rigid")
 BUCKLED = SCENE.replace(tension=-300.0).compile(elements=10, element="rigid")
+TIME = np.linspace(0.0, 1.0, 200)
+HISTORY = made(TIME, decaying(TIME, (20.0, 0.01, 1.0)), force=rd.Sine(3.0, 20.0).value(TIME))
 
 ANSWERS = {
     "modes": MODEL.modes(5),
@@ -63,6 +66,11 @@ ANSWERS = {
     "effects and refusals": rd.effect_cost(
         SCENE, rd.ask.frf(GRID[:3], drive=("z", 0.31)), elements=8, repeat=1
     ),
+    "history": HISTORY,
+    "spectrum": HISTORY.spectrum(),
+    "ring-down": HISTORY.damping([20.0], since=0.0),
+    "measured": HISTORY.frf(),
+    "measured with coherence": HISTORY.frf(segments=3),
     "no resonances": MODEL.frf([1.0, 2.0], drive=("z", 0.31)).peaks()[0],
 }
 PAIR = {name: ANSWERS[name] for name in ("modes", "frf", "deflection", "comparison", "peaks")}
@@ -358,6 +366,12 @@ def test_xarray_holds_every_array(name):
         ("accuracy", "element", ("row",), ""),
         ("effects", "seconds_without", ("row",), "s"),
         ("effects", "change.largest [Hz]", ("row",), ""),
+        ("history", "value", ("response", "time"), ""),
+        ("history", "energy.kinetic", ("time",), "J"),
+        ("history", "snapshot", ("snapshot", "node", "coordinate"), "m or rad"),
+        ("spectrum", "value", ("response", "frequency"), ""),
+        ("ring-down", "frequency_std", ("mode",), "Hz"),
+        ("measured with coherence", "coherence", ("response", "frequency"), ""),
     ],
 )
 def test_xarray_names_axes_and_units(name, variable, axes, unit):
@@ -432,7 +446,7 @@ def foreign(frequency=(1.0,), drop=(), **changes):
 FOREIGN = {
     "nothing of ropedyn": xr.Dataset({"frequency": ("peak", [1.0])}),
     "no mark": foreign(drop=["Peaks"]),
-    "unknown kind": foreign(Peaks="Spectrum"),
+    "unknown kind": foreign(Peaks="Waterfall"),
     "the base": foreign(Peaks="Answer"),
     "a number as kind": foreign(Peaks=3),
     "numbers as kind": foreign(Peaks=[1, 2]),

@@ -1,0 +1,326 @@
+"""Frequencies and damping from the decay of free motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .answer import Answer, axes
+from .errors import SceneError, SolveError
+from .spectrum import time_step
+from .table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .history import History
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LEAST = 16
+"""Times that a record of free motion must have."""
+MOST = 12
+"""Modes that are fitted together."""
+STOP_BAND = 100.0
+"""Of the low-pass [dB]."""
+WIDEST = 250
+"""Half the pass band, at most, times the length of the record."""
+ROWS = 150
+"""Of the matrix whose column space tells the rates, at most."""
+PARTS = (1, 2, 4, 8)
+"""Of the record, its first ones, from which modes are estimated."""
+ROUNDS = 30
+"""Of refinement, at most."""
+EXACT = 1e-26
+"""What is left of the energy, at most, where more modes would fit rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class RingDown(Answer):
+    """Modes that decay in one response.
+
+    Attributes
+    ----------
+    label : str
+        Of the response.
+    since : float
+        From when on motion was free [s].
+    frequency, frequency_std : ndarray, shape (k,)
+        Undamped natural frequency |s|/2 pi and its standard error [Hz].
+    damping_ratio, damping_ratio_std : ndarray, shape (k,)
+        -Re s/|s|, negative where the motion grows, and its standard error.
+    amplitude : ndarray of complex, shape (k,)
+        Motion is Re(amplitude exp(s (t - since))).
+    residual : ndarray, shape (k,)
+        Rms of what no mode explains, over the rms of the record, near each frequency.
+    """
+
+    label: str
+    since: float
+    frequency: Real = field(metadata=axes("mode", unit="Hz"))
+    frequency_std: Real = field(metadata=axes("mode", unit="Hz"))
+    damping_ratio: Real = field(metadata=axes("mode"))
+    damping_ratio_std: Real = field(metadata=axes("mode"))
+    amplitude: Complex = field(metadata=axes("mode"))
+    residual: Real = field(metadata=axes("mode"))
+
+    def table(self) -> Table:
+        """Return one row for each mode."""
+        columns = {
+            "frequency [Hz]": self.frequency,
+            "std of frequency [Hz]": self.frequency_std,
+            "damping ratio": self.damping_ratio,
+            "std of damping ratio": self.damping_ratio_std,
+            "amplitude": np.abs(self.amplitude),
+            "residual": self.residual,
+        }
+        return Table.of(f"ring-down of {self.label}", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot damping ratios over frequency, with standard errors."""
+        from .plotting_time import plot_ring_down
+
+        return plot_ring_down(self, ax)
+
+
+class Band(NamedTuple):
+    """A record near one frequency: y_j = sum of taps_m x_(q j + m) e^(-i shift (q j + m) step).
+
+    A mode e^(s t) stays one: e^((s - i shift) t) times what the taps make of it.
+    """
+
+    y: Complex
+    step: float
+    """Between the times of y [s]."""
+    shift: float
+    """[rad/s]."""
+    taps: Real
+    fine: float
+    """Between the times of the record [s]."""
+
+
+class Modes(NamedTuple):
+    """Modes in a band: y_j = sum_k size_k e^(rate_k j step)."""
+
+    rate: Complex
+    """[1/s], less i times the shift."""
+    size: Complex
+    variance: Real
+    """Of each rate: E |error|^2 [1/s^2]."""
+    residual: float
+
+
+def ring_down(history: History, near: Any, response: int, since: float | None) -> RingDown:
+    """Estimate modes of free motion; see `History.damping`."""
+    check.count(response, "response", least=0, most=len(history.response) - 1)
+    step = time_step(history.time)
+    first = _first_free(history, since)
+    x = history.value[response, first:]
+    if len(x) < LEAST:
+        raise SceneError(
+            f"since must leave {LEAST} times of free motion at least, got {len(x)} from "
+            f"{float(history.time[min(first, len(history.time) - 1)])!r} s on"
+        )
+    if not x.any():
+        raise SolveError(f"nothing moves in response {response} since {history.time[first]:g} s")
+    frequencies = _strongest(x, step) if near is None else _checked_near(near, step)
+    rows = [_mode_near(_band(x, step, f), f) for f in frequencies.tolist()]
+    rate, size, variance, residual = (np.array(column) for column in zip(*rows))
+    modulus = np.abs(rate)
+    std = np.sqrt(variance / 2)
+    return RingDown(
+        label=history.labels[response],
+        since=float(history.time[first]),
+        frequency=modulus / (2 * np.pi),
+        frequency_std=std / (2 * np.pi),
+        damping_ratio=-rate.real / modulus,
+        damping_ratio_std=std * rate.imag / modulus**2,
+        amplitude=size,
+        residual=residual,
+    )
+
+
+def _first_free(history: History, since: float | None) -> int:
+    """Return the first time from which on no force changes."""
+    if since is not None:
+        wanted = check.number(since, "since", "s")
+        return int(np.searchsorted(history.time, wanted))
+    changes = np.flatnonzero((np.diff(history.force, axis=1) != 0).any(axis=0))
+    return int(changes[-1]) + 1 if len(changes) else 0
+
+
+def _checked_near(near: Any, step: float) -> Real:
+    f = check.numbers(near, "near", "Hz", sign="positive")
+    if f.max() >= 0.5 / step:
+        raise SceneError(
+            f"near must be below half the rate of the times, {0.5 / step:g} Hz, got {f.max():g}"
+        )
+    return f
+
+
+def _strongest(x: Real, step: float) -> Real:
+    """Return the frequency of the largest line that is not the lowest [Hz]."""
+    lines = np.abs(np.fft.rfft(np.hanning(len(x)) * (x - x.mean())))
+    k = 1 + int(lines[1:-1].argmax())
+    return np.array([k / (len(x) * step)])
+
+
+def _band(x: Real, step: float, f: float) -> Band:
+    """Shift a frequency to 0, low-pass and thin.
+
+    What stands still and the same mode at -f are beyond the edge of the stop band. The nearer the
+    edge, the fewer other modes are within and the longer the filter, which costs as much of the
+    record.
+    """
+    from scipy.signal import firwin, kaiserord, oaconvolve
+
+    n = len(x)
+    width = min(f / 4, WIDEST / (n * step))
+    for edge in (2 * width, 3 * width, 3.8 * width):
+        length, beta = kaiserord(STOP_BAND, min(0.999, 2 * (edge - width) * step))
+        if length <= n // 8:
+            break
+    if length <= n // 3 and 4 * edge * step < 1:
+        taps = firwin(length, (width + edge) / 2, window=("kaiser", beta), fs=1 / step)
+        q, shift = int(1 / (2 * edge * step)), 2 * np.pi * f
+    else:
+        # too few periods or too few times of each: the record as it is, a mean of neighbours
+        q = max(1, min(n // 400, int(1 / (8 * f * step))))
+        taps, shift = np.full(q, 1 / q), 0.0
+    turned = x * np.exp(-1j * shift * step * np.arange(n))
+    y = oaconvolve(turned, taps[::-1], mode="valid")[::q]
+    return Band(y, q * step, shift, taps, step)
+
+
+def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
+    """Return rate [1/s], amplitude, variance of the rate and residual of the mode near f."""
+    found = _modes(band)
+    rate = found.rate + 1j * band.shift
+    # the mode that is largest at f: a/(i omega - s)
+    swing = np.abs(found.size) / np.abs(2j * np.pi * f - rate)
+    swing[rate.imag <= 0] = 0.0
+    k = int(swing.argmax())
+    if not swing[k] > 0:
+        raise SolveError(f"no mode is found near {f:g} Hz")
+    gain = band.taps @ np.exp(found.rate[k] * band.fine * np.arange(len(band.taps)))
+    # of a real record half the mode is at -f
+    return rate[k], 2 * found.size[k] / gain, float(found.variance[k]), found.residual
+
+
+def _modes(band: Band) -> Modes:
+    """Return as many modes as explain the record best, by Schwarz's criterion.
+
+    What decays soon drowns in the noise of a long record: parts of it are looked at too.
+    """
+    y, noise = band.y, _correlation(band)
+    # as many samples would tell as much if their noise were independent
+    samples = len(y) / (1 + 2 * float((noise[1:] ** 2).sum()))
+    best, least = np.zeros(0, np.complex128), 0.0
+    for part in PARTS:
+        if (n := len(y) // part) < LEAST:
+            break
+        log = _chosen(y[:n], samples / part)
+        if len(log) and (criterion := _criterion(y, log, samples)) < least:
+            best, least = log, criterion
+        if part == 1 and _left(y, log)[1] < EXACT:
+            break
+    if not len(best):
+        raise SolveError("no mode is told from noise")
+    return _refined(band, noise, best)
+
+
+def _chosen(y: Complex, samples: float) -> Complex:
+    """Return logarithms of the ratios of as many modes as explain y best."""
+    space = _column_space(y)
+    best, least = np.zeros(0, np.complex128), 0.0
+    for number in range(1, min(MOST, int(samples / 4)) + 1):
+        log = _logarithms(space[:, :number], len(y))
+        if len(log) and (criterion := _criterion(y, log, samples)) < least:
+            best, least = log, criterion
+        if _left(y, log)[1] < EXACT:
+            break
+    return best
+
+
+def _criterion(y: Complex, log: Complex, samples: float) -> float:
+    """Return Schwarz's criterion, 0 of no modes: rate and amplitude are two complex numbers."""
+    left = max(_left(y, log)[1], np.finfo(float).tiny)
+    return float(2 * samples * np.log(left) + 4 * len(log) * np.log(2 * samples))
+
+
+def _correlation(band: Band) -> Real:
+    """Return the correlation of white noise in the band, at the lags of y."""
+    from scipy.signal import correlate
+
+    q = round(band.step / band.fine)
+    full = correlate(band.taps, band.taps)[len(band.taps) - 1 :: q]
+    noise = np.zeros(len(band.y))
+    noise[: len(full)] = full[: len(noise)] / full[0]
+    return noise
+
+
+def _column_space(y: Complex) -> Complex:
+    """Return what spans the windows of y, the strongest first: of modes, as many as there are."""
+    from scipy.linalg import hankel, qr, svd
+
+    rows = min(len(y) // 2, ROWS)
+    windows = hankel(y[:rows], y[rows - 1 :])
+    triangle = qr(windows.conj().T, mode="r")[0][:rows]
+    return np.asarray(svd(triangle.conj().T, full_matrices=False)[0])
+
+
+def _logarithms(space: Complex, n: int) -> Complex:
+    """Return rate times step of each mode: the logarithm of what shifts the space by one time."""
+    shift = np.linalg.lstsq(space[:-1], space[1:], rcond=None)[0]
+    ratio = np.linalg.eigvals(shift)
+    # what is gone at once, or overflows, is none
+    return np.asarray(np.log(ratio[(np.abs(ratio) > 1e-3) & (np.abs(ratio) ** n < 1e6)]))
+
+
+def _left(y: Complex, log: Complex) -> tuple[Complex, float]:
+    """Return the amplitudes of least squares, and the share of the energy that they leave."""
+    powers = np.exp(np.outer(np.arange(len(y)), log))
+    size: Complex = np.linalg.lstsq(powers, y, rcond=None)[0]
+    left = y - powers @ size
+    return size, float(np.vdot(left, left).real / np.vdot(y, y).real)
+
+
+def _refined(band: Band, noise: Real, log: Complex) -> Modes:
+    """Return the modes of least squares, by Gauss and Newton, with the variance of their rates."""
+    from scipy.linalg import matmul_toeplitz
+
+    y, j, modes = band.y, np.arange(len(band.y)), len(log)
+    whole = float(np.vdot(y, y).real)
+    size, energy = _left(y, log)[0], np.inf
+    for _ in range(ROUNDS):
+        with np.errstate(over="ignore", invalid="ignore"):
+            powers = np.exp(np.outer(j, log))
+            left = y - powers @ size
+            now = float(np.vdot(left, left).real)
+        if not now < energy:
+            break
+        kept = (log, size, left)
+        slopes = np.hstack([powers, j[:, None] * powers * size])
+        scale = np.linalg.norm(slopes, axis=0)
+        scale[scale == 0] = 1.0
+        inverse = np.linalg.pinv(slopes / scale) / scale[:, None]
+        step = inverse @ left
+        # a step that gains nothing, or where rounding is left, is the last
+        energy = now * (1 - 1e-9) if now > EXACT * whole else 0.0
+        log, size = log + step[modes:], size + step[:modes]
+    log, size, left = kept
+    spread = matmul_toeplitz(noise, inverse.conj().T)
+    free = len(y) - float(np.einsum("jk,jk->", slopes, spread.conj()).real)
+    variance = np.einsum("kj,jk->k", inverse, spread).real[modes:]
+    rest = float(np.vdot(left, left).real)
+    return Modes(
+        rate=log / band.step,
+        size=size,
+        variance=variance * rest / free / band.step**2,
+        residual=float(np.sqrt(rest / whole)),
+    )
