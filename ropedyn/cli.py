@@ -3,29 +3,30 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from . import ask, study2015
 from .accuracy import accuracy_cost
-from .answer import Answer
-from .atomic import replacing
-from .chain import KINDS
-from .check import shown
+from .cli_options import (
+    compile_options,
+    compiled,
+    drive,
+    numbers,
+    output_options,
+    point,
+    show,
+    spaced,
+    whole_numbers,
+)
+from .cli_time import time_commands
 from .compare import compare
 from .effect import effect_cost
 from .errors import RopedynError, SceneError, SolveError
-from .model import Model
 from .peaks import Peaks
-from .port import Point
 from .scene import Scene
-from .unit import WIRE
 
 STUDY_FOLDER = Path("ropedyn-study")
 
@@ -78,6 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     _scene_command(commands, "compare", _compare, "calculated against measured peaks")
     _accuracy_command(commands)
     _effects_command(commands)
+    time_commands(commands)
     return parser
 
 
@@ -86,7 +88,7 @@ def _scene_command(
 ) -> None:
     parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    _compile_options(parser)
+    compile_options(parser)
     if name in ("modes", "compare"):
         parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
     if name == "modes":
@@ -95,7 +97,7 @@ def _scene_command(
         _frf_options(parser, required=True)
     if name == "compare":
         parser.add_argument("--peaks", required=True, help="measured peaks, comma list [Hz]")
-    _output_options(parser)
+    output_options(parser)
     parser.set_defaults(run=run)
 
 
@@ -111,7 +113,7 @@ def _accuracy_command(commands: Any) -> None:
     parser.add_argument("--element", default="rigid,tensed,continuous", help="kinds (%(default)s)")
     parser.add_argument("--solver", default="sweep,lapack", help="comma list (%(default)s)")
     _question_options(parser)
-    _output_options(parser)
+    output_options(parser)
     parser.set_defaults(run=_accuracy)
 
 
@@ -123,17 +125,10 @@ def _effects_command(commands: Any) -> None:
         "--modes or --below is given) or, with --frequency and --drive, a frequency response.",
     )
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    _compile_options(parser)
+    compile_options(parser)
     _question_options(parser)
-    _output_options(parser)
+    output_options(parser)
     parser.set_defaults(run=_effects)
-
-
-def _compile_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--elements", type=int, help="over the rope; without it spans are continuous"
-    )
-    parser.add_argument("--element", choices=KINDS, help="kind (tensed where --elements is given)")
 
 
 def _question_options(parser: argparse.ArgumentParser) -> None:
@@ -148,15 +143,10 @@ def _frf_options(parser: Any, *, required: bool, beside: Any = None) -> None:
         "--frequency", required=required, help="start:stop:lines or a comma list [Hz]"
     )
     beside = beside or parser
-    beside.add_argument("--drive", required=required, help="coordinate@position [m], such as z@0.5")
+    beside.add_argument(
+        "--drive", required=required, help="coordinate@position [m], such as z@0.5, or end:0:z"
+    )
     beside.add_argument("--response", action="append", help="as --drive; may be repeated")
-
-
-def _output_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--plot", type=Path, metavar="FILE", help="write a figure")
-    form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="print the table as JSON")
-    form.add_argument("--csv", action="store_true", help="print the table as CSV")
 
 
 def _study(options: argparse.Namespace) -> None:
@@ -169,29 +159,29 @@ def _study(options: argparse.Namespace) -> None:
 
 
 def _modes(options: argparse.Namespace) -> None:
-    model = _model(options)
+    model = compiled(options)
     if options.damped:
-        _show(options, model.modes(options.modes, damped=True))
+        show(options, model.modes(options.modes, damped=True))
     else:
-        _show(options, model.modes(options.modes))
+        show(options, model.modes(options.modes))
 
 
 def _frf(options: argparse.Namespace) -> None:
-    _show(options, _asked_frf(options).of(_model(options)))
+    show(options, _asked_frf(options).of(compiled(options)))
 
 
 def _accuracy(options: argparse.Namespace) -> None:
     scene = Scene.load(options.scene)
-    elements = options.elements and _whole_numbers(options.elements, "--elements")
+    elements = options.elements and whole_numbers(options.elements, "--elements")
     element, solver = options.element.split(","), options.solver.split(",")
     cost = accuracy_cost(scene, _asked(options), elements=elements, element=element, solver=solver)
-    _show(options, cost)
+    show(options, cost)
 
 
 def _effects(options: argparse.Namespace) -> None:
     scene = Scene.load(options.scene)
     how = {"elements": options.elements, "element": options.element}
-    _show(options, effect_cost(scene, _asked(options), **how))
+    show(options, effect_cost(scene, _asked(options), **how))
 
 
 def _asked(options: argparse.Namespace) -> ask.Question:
@@ -209,70 +199,12 @@ def _asked(options: argparse.Namespace) -> ask.Question:
 
 def _asked_frf(options: argparse.Namespace) -> ask.FRFQuestion:
     return ask.frf(
-        _frequencies(options.frequency),
-        drive=_point(options.drive, "--drive"),
-        response=options.response and [_point(text, "--response") for text in options.response],
+        spaced(options.frequency, "--frequency", "Hz"),
+        drive=drive(options.drive, "--drive"),
+        response=options.response and [point(text, "--response") for text in options.response],
     )
 
 
 def _compare(options: argparse.Namespace) -> None:
-    peaks = Peaks(_numbers(options.peaks, "--peaks"))
-    _show(options, compare(_model(options).modes(options.modes), peaks))
-
-
-def _model(options: argparse.Namespace) -> Model:
-    return Scene.load(options.scene).compile(elements=options.elements, element=options.element)
-
-
-def _show(options: argparse.Namespace, answer: Answer) -> None:
-    table = answer.table()
-    if options.json:
-        print(json.dumps({"title": table.title, "rows": table.to_records()}, indent=1))
-    elif options.csv:
-        print(table.to_csv(), end="")
-    else:
-        print(table)
-    if options.plot is not None:
-        figure = answer.plot().get_figure(root=True)
-        assert figure is not None
-        with replacing(options.plot) as draft:
-            figure.savefig(draft, dpi=120)
-
-
-def _numbers(text: str, option: str) -> list[float]:
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise SceneError(f"{option} must be a comma list of numbers, got {shown(text)}") from None
-
-
-def _whole_numbers(text: str, option: str) -> list[int]:
-    try:
-        return [int(part) for part in text.split(",")]
-    except ValueError:
-        raise SceneError(
-            f"{option} must be a comma list of whole numbers, got {shown(text)}"
-        ) from None
-
-
-def _frequencies(text: str) -> NDArray[np.float64] | list[float]:
-    if ":" not in text:
-        return _numbers(text, "--frequency")
-    parts = text.split(":")
-    try:
-        start, stop, lines = float(parts[0]), float(parts[1]), int(parts[2])
-        if len(parts) == 3 and 1 <= lines <= 10_000_000 and np.isfinite([start, stop]).all():
-            return np.linspace(start, stop, lines)
-    except (ValueError, IndexError):
-        pass
-    raise SceneError(f"--frequency must be start:stop:lines [Hz], got {shown(text)}")
-
-
-def _point(text: str, option: str) -> Point:
-    coordinate, at, position = text.partition("@")
-    try:
-        if at:
-            return coordinate, int(position) if coordinate == WIRE else float(position)
-    except ValueError:
-        pass
-    raise SceneError(f"{option} must be coordinate@position [m] such as z@0.5, got {shown(text)}")
+    peaks = Peaks(numbers(options.peaks, "--peaks"))
+    show(options, compare(compiled(options).modes(options.modes), peaks))

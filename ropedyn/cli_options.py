@@ -1,0 +1,115 @@
+"""What several commands share: options, and how texts become numbers and points."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .answer import Answer
+from .atomic import replacing
+from .chain import KINDS
+from .check import shown
+from .errors import SceneError
+from .model import Model
+from .port import Point
+from .scene import Scene
+from .unit import END, WIRE
+
+
+def compile_options(parser: argparse.ArgumentParser) -> None:
+    """Add what chooses elements."""
+    parser.add_argument(
+        "--elements", type=int, help="over the rope; without it spans are continuous"
+    )
+    parser.add_argument("--element", choices=KINDS, help="kind (tensed where --elements is given)")
+
+
+def output_options(parser: argparse.ArgumentParser) -> None:
+    """Add what chooses the form of an answer."""
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="write a figure")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print the table as JSON")
+    form.add_argument("--csv", action="store_true", help="print the table as CSV")
+
+
+def compiled(options: argparse.Namespace) -> Model:
+    """Return the model of the scene."""
+    return Scene.load(options.scene).compile(elements=options.elements, element=options.element)
+
+
+def show(options: argparse.Namespace, answer: Answer) -> None:
+    """Print an answer, and draw it where that is asked."""
+    table = answer.table()
+    if options.json:
+        print(json.dumps({"title": table.title, "rows": table.to_records()}, indent=1))
+    elif options.csv:
+        print(table.to_csv(), end="")
+    else:
+        print(table)
+    if options.plot is not None:
+        figure = answer.plot().get_figure(root=True)
+        assert figure is not None
+        with replacing(options.plot) as draft:
+            figure.savefig(draft, dpi=120)
+
+
+def numbers(text: str, option: str) -> list[float]:
+    """Return the numbers of a comma list."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise SceneError(f"{option} must be a comma list of numbers, got {shown(text)}") from None
+
+
+def whole_numbers(text: str, option: str) -> list[int]:
+    """Return the whole numbers of a comma list."""
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise SceneError(
+            f"{option} must be a comma list of whole numbers, got {shown(text)}"
+        ) from None
+
+
+def spaced(text: str, option: str, unit: str) -> NDArray[np.float64] | list[float]:
+    """Return equally spaced numbers from ``start:stop:count``, or those of a comma list."""
+    if ":" not in text:
+        return numbers(text, option)
+    parts = text.split(":")
+    try:
+        start, stop, count = float(parts[0]), float(parts[1]), int(parts[2])
+        if len(parts) == 3 and 1 <= count <= 10_000_000 and np.isfinite([start, stop]).all():
+            return np.linspace(start, stop, count)
+    except (ValueError, IndexError):
+        pass
+    raise SceneError(f"{option} must be start:stop:count [{unit}], got {shown(text)}")
+
+
+def point(text: str, option: str) -> Point:
+    """Return a point from ``coordinate@position``."""
+    coordinate, at, position = text.partition("@")
+    try:
+        if at:
+            return coordinate, int(position) if coordinate == WIRE else float(position)
+    except ValueError:
+        pass
+    raise SceneError(f"{option} must be coordinate@position [m] such as z@0.5, got {shown(text)}")
+
+
+def drive(text: str, option: str) -> Any:
+    """Return what is driven: a point, or from ``end:number:coordinate`` an end that is moved."""
+    kind, *rest = text.split(":")
+    if kind != END:
+        return point(text, option)
+    try:
+        number, coordinate = rest
+        return END, int(number), coordinate
+    except ValueError:
+        raise SceneError(
+            f"{option} must be {END}:number:coordinate such as {END}:0:z, got {shown(text)}"
+        ) from None

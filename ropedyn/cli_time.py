@@ -1,0 +1,209 @@
+"""Commands about motion over time and its stability."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .check import shown
+from .cli_options import compile_options, compiled, drive, output_options, point, show, spaced
+from .errors import SceneError
+from .force import Chirp, Impulse, Sine, Step
+from .transient import METHODS
+from .unit import MOTIONS
+
+Real = NDArray[np.float64]
+
+FORCES: dict[str, tuple[str, int, Callable[..., Any]]] = {
+    "sine": ("AMPLITUDE:FREQUENCY[:PHASE]", 2, lambda a, f, p=0.0: Sine(a, f, phase=p)),
+    "step": ("AMPLITUDE[:TIME]", 1, lambda a, t=0.0: Step(a, time=t)),
+    "impulse": (
+        "IMPULSE[:DURATION[:TIME]]",
+        1,
+        lambda i, d=0.0, t=0.0: Impulse(i, duration=d, time=t),
+    ),
+    "chirp": ("AMPLITUDE:START:STOP:DURATION", 4, Chirp),
+}
+"""Of each kind what follows it, how much of that must be there, and what it makes."""
+
+FORCE_HELP = (
+    " or ".join(f"{kind}:{what}" for kind, (what, *_) in FORCES.items())
+    + " [N, N s, Hz, rad, s], or a CSV file whose last column is the force, a line for each of the "
+    "times; one for each --drive"
+)
+
+
+def time_commands(commands: Any) -> None:
+    """Add the commands."""
+    _transient_command(commands)
+    _floquet_command(commands)
+    _stability_command(commands)
+
+
+def _transient_command(commands: Any) -> None:
+    parser = commands.add_parser(
+        "transient",
+        help="motion over time",
+        description="Motion over time, driven by forces or moved ends, or let go from a load.",
+    )
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    compile_options(parser)
+    parser.add_argument("--time", required=True, help="start:stop:count or a comma list [s]")
+    parser.add_argument(
+        "--drive",
+        action="append",
+        default=[],
+        help="coordinate@position [m], such as z@0.5, or an end that is moved, such as end:0:z; "
+        "may be repeated",
+    )
+    parser.add_argument("--force", action="append", default=[], help=FORCE_HELP)
+    parser.add_argument(
+        "--response", action="append", help="coordinate@position [m]; may be repeated"
+    )
+    parser.add_argument(
+        "--quantity", choices=MOTIONS, default="displacement", help="of responses (%(default)s)"
+    )
+    parser.add_argument(
+        "--start",
+        action="append",
+        default=[],
+        metavar="POINT=LOAD",
+        help="load that is let go [N, N m], such as z@0.5=10; may be repeated",
+    )
+    parser.add_argument("--method", choices=METHODS, default="auto", help="(%(default)s)")
+    parser.add_argument("--step", type=float, help="of the direct method, at most [s]")
+    parser.add_argument("--tolerance", type=float, help="instead: of the error that steps cause")
+    _progress_option(parser)
+    output_options(parser)
+    parser.set_defaults(run=_transient)
+
+
+def _floquet_command(commands: Any) -> None:
+    parser = commands.add_parser(
+        "floquet",
+        help="growth of free motion under the pulsating tension of the scene",
+        description="Growth of free motion under the pulsating tension of the scene.",
+    )
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    compile_options(parser)
+    _modes_option(parser)
+    output_options(parser)
+    parser.set_defaults(run=_floquet)
+
+
+def _stability_command(commands: Any) -> None:
+    parser = commands.add_parser(
+        "stability",
+        help="frequencies and amplitudes of the tension at which motion grows",
+        description="Frequencies and amplitudes of the tension at which motion grows.",
+    )
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    compile_options(parser)
+    what = "of the tension, start:stop:count or a comma list"
+    parser.add_argument("--frequency", required=True, help=f"{what} [Hz]")
+    parser.add_argument("--amplitude", required=True, help=f"{what} [N]")
+    _modes_option(parser)
+    _progress_option(parser)
+    output_options(parser)
+    parser.set_defaults(run=_stability)
+
+
+def _modes_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--modes", type=int, default=4, help="with transverse motion, the lowest (%(default)s)"
+    )
+
+
+def _progress_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--progress", action="store_true", help="say on stderr how far it is")
+
+
+def _transient(options: argparse.Namespace) -> None:
+    time = np.asarray(spaced(options.time, "--time", "s"), dtype=np.float64)
+    if len(options.drive) != len(options.force):
+        raise SceneError(
+            f"--force must be given once for each of {len(options.drive)} --drive, got "
+            f"{len(options.force)}"
+        )
+    history = compiled(options).transient(
+        time,
+        drive=[drive(text, "--drive") for text in options.drive] or None,
+        force=[_force(text, time) for text in options.force] or None,
+        response=options.response and [point(text, "--response") for text in options.response],
+        quantity=options.quantity,
+        start=dict(_load(text) for text in options.start) or None,
+        method=options.method,
+        step=options.step,
+        tolerance=options.tolerance,
+        progress=options.progress,
+    )
+    show(options, history)
+
+
+def _floquet(options: argparse.Namespace) -> None:
+    show(options, compiled(options).floquet(modes=options.modes))
+
+
+def _stability(options: argparse.Namespace) -> None:
+    chart = compiled(options).stability_map(
+        spaced(options.frequency, "--frequency", "Hz"),
+        spaced(options.amplitude, "--amplitude", "N"),
+        modes=options.modes,
+        progress=options.progress,
+    )
+    show(options, chart)
+
+
+def _force(text: str, time: Real) -> Any:
+    """Return a force from its kind and numbers, or its samples from a file."""
+    kind, *rest = text.split(":")
+    if kind not in FORCES:
+        return _samples(text, time)
+    what, least, make = FORCES[kind]
+    most = what.count(":") + 1
+    try:
+        values = [float(part) for part in rest]
+    except ValueError:
+        values = []
+    if not least <= len(values) <= most:
+        raise SceneError(f"--force must be {kind}:{what}, got {shown(text)}")
+    return make(*values)
+
+
+def _samples(path: str, time: Real) -> Real:
+    """Return the last column of a file: a line for each time, and maybe one that names columns."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = [line.split(",")[-1].strip() for line in file if line.strip()]
+    except FileNotFoundError:
+        kinds = ", ".join(FORCES)
+        raise SceneError(
+            f"--force must be one of {kinds} with its numbers, or a file, got {shown(path)}"
+        ) from None
+    named = len(lines) == len(time) + 1
+    try:
+        values = np.array([float(line) for line in lines[named:]])
+    except ValueError as error:
+        raise SceneError(f"--force must be a file of numbers, got {shown(path)}: {error}") from None
+    if len(values) != len(time):
+        raise SceneError(
+            f"--force must be a file with a line for each of {len(time)} times, got "
+            f"{len(values)} in {shown(path)}"
+        )
+    return values
+
+
+def _load(text: str) -> tuple[Any, float]:
+    """Return a point and its load from ``coordinate@position=load``."""
+    where, _, load = text.partition("=")
+    try:
+        value = float(load)
+    except ValueError:
+        raise SceneError(
+            f"--start must be point=load [N, N m] such as z@0.5=10, got {shown(text)}"
+        ) from None
+    return point(where, "--start"), value
