@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from . import check
 from .answer import Answer, axes
 from .errors import SceneError, SolveError
+from .pencil import decaying
 from .spectrum import time_step
 from .table import Table
 
@@ -24,20 +25,10 @@ Complex = NDArray[np.complex128]
 
 LEAST = 16
 """Times that a record of free motion must have."""
-MOST = 12
-"""Modes that are fitted together."""
 STOP_BAND = 100.0
 """Of the low-pass [dB]."""
 WIDEST = 250
 """Half the pass band, at most, times the length of the record."""
-ROWS = 150
-"""Of the matrix whose column space tells the rates, at most."""
-PARTS = (1, 2, 4, 8)
-"""Of the record, its first ones, from which modes are estimated."""
-ROUNDS = 30
-"""Of refinement, at most."""
-EXACT = 1e-26
-"""What is left of the energy, at most, where more modes would fit rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,17 +93,6 @@ class Band(NamedTuple):
     taps: Real
     fine: float
     """Between the times of the record [s]."""
-
-
-class Modes(NamedTuple):
-    """Modes in a band: y_j = sum_k size_k e^(rate_k j step)."""
-
-    rate: Complex
-    """[1/s], less i times the shift."""
-    size: Complex
-    variance: Real
-    """Of each rate: E |error|^2 [1/s^2]."""
-    residual: float
 
 
 def ring_down(history: History, near: Any, response: int, since: float | None) -> RingDown:
@@ -199,58 +179,18 @@ def _band(x: Real, step: float, f: float) -> Band:
 
 def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     """Return rate [1/s], amplitude, variance of the rate and residual of the mode near f."""
-    found = _modes(band)
-    rate = found.rate + 1j * band.shift
+    found = decaying(band.y, _correlation(band))
+    rate = found.log / band.step + 1j * band.shift
     # the mode that is largest at f: a/(i omega - s)
     swing = np.abs(found.size) / np.abs(2j * np.pi * f - rate)
     swing[rate.imag <= 0] = 0.0
     k = int(swing.argmax())
     if not swing[k] > 0:
         raise SolveError(f"no mode is found near {f:g} Hz")
-    gain = band.taps @ np.exp(found.rate[k] * band.fine * np.arange(len(band.taps)))
+    gain = band.taps @ np.exp((rate[k] - 1j * band.shift) * band.fine * np.arange(len(band.taps)))
     # of a real record half the mode is at -f
-    return rate[k], 2 * found.size[k] / gain, float(found.variance[k]), found.residual
-
-
-def _modes(band: Band) -> Modes:
-    """Return as many modes as explain the record best, by Schwarz's criterion.
-
-    What decays soon drowns in the noise of a long record: parts of it are looked at too.
-    """
-    y, noise = band.y, _correlation(band)
-    # as many samples would tell as much if their noise were independent
-    samples = len(y) / (1 + 2 * float((noise[1:] ** 2).sum()))
-    best, least = np.zeros(0, np.complex128), 0.0
-    for part in PARTS:
-        if (n := len(y) // part) < LEAST:
-            break
-        log = _chosen(y[:n], samples / part)
-        if len(log) and (criterion := _criterion(y, log, samples)) < least:
-            best, least = log, criterion
-        if part == 1 and _left(y, log)[1] < EXACT:
-            break
-    if not len(best):
-        raise SolveError("no mode is told from noise")
-    return _refined(band, noise, best)
-
-
-def _chosen(y: Complex, samples: float) -> Complex:
-    """Return logarithms of the ratios of as many modes as explain y best."""
-    space = _column_space(y)
-    best, least = np.zeros(0, np.complex128), 0.0
-    for number in range(1, min(MOST, int(samples / 4)) + 1):
-        log = _logarithms(space[:, :number], len(y))
-        if len(log) and (criterion := _criterion(y, log, samples)) < least:
-            best, least = log, criterion
-        if _left(y, log)[1] < EXACT:
-            break
-    return best
-
-
-def _criterion(y: Complex, log: Complex, samples: float) -> float:
-    """Return Schwarz's criterion, 0 of no modes: rate and amplitude are two complex numbers."""
-    left = max(_left(y, log)[1], np.finfo(float).tiny)
-    return float(2 * samples * np.log(left) + 4 * len(log) * np.log(2 * samples))
+    variance = float(found.variance[k]) / band.step**2
+    return rate[k], 2 * found.size[k] / gain, variance, found.residual
 
 
 def _correlation(band: Band) -> Real:
@@ -262,65 +202,3 @@ def _correlation(band: Band) -> Real:
     noise = np.zeros(len(band.y))
     noise[: len(full)] = full[: len(noise)] / full[0]
     return noise
-
-
-def _column_space(y: Complex) -> Complex:
-    """Return what spans the windows of y, the strongest first: of modes, as many as there are."""
-    from scipy.linalg import hankel, qr, svd
-
-    rows = min(len(y) // 2, ROWS)
-    windows = hankel(y[:rows], y[rows - 1 :])
-    triangle = qr(windows.conj().T, mode="r")[0][:rows]
-    return np.asarray(svd(triangle.conj().T, full_matrices=False)[0])
-
-
-def _logarithms(space: Complex, n: int) -> Complex:
-    """Return rate times step of each mode: the logarithm of what shifts the space by one time."""
-    shift = np.linalg.lstsq(space[:-1], space[1:], rcond=None)[0]
-    ratio = np.linalg.eigvals(shift)
-    # what is gone at once, or overflows, is none
-    return np.asarray(np.log(ratio[(np.abs(ratio) > 1e-3) & (np.abs(ratio) ** n < 1e6)]))
-
-
-def _left(y: Complex, log: Complex) -> tuple[Complex, float]:
-    """Return the amplitudes of least squares, and the share of the energy that they leave."""
-    powers = np.exp(np.outer(np.arange(len(y)), log))
-    size: Complex = np.linalg.lstsq(powers, y, rcond=None)[0]
-    left = y - powers @ size
-    return size, float(np.vdot(left, left).real / np.vdot(y, y).real)
-
-
-def _refined(band: Band, noise: Real, log: Complex) -> Modes:
-    """Return the modes of least squares, by Gauss and Newton, with the variance of their rates."""
-    from scipy.linalg import matmul_toeplitz
-
-    y, j, modes = band.y, np.arange(len(band.y)), len(log)
-    whole = float(np.vdot(y, y).real)
-    size, energy = _left(y, log)[0], np.inf
-    for _ in range(ROUNDS):
-        with np.errstate(over="ignore", invalid="ignore"):
-            powers = np.exp(np.outer(j, log))
-            left = y - powers @ size
-            now = float(np.vdot(left, left).real)
-        if not now < energy:
-            break
-        kept = (log, size, left)
-        slopes = np.hstack([powers, j[:, None] * powers * size])
-        scale = np.linalg.norm(slopes, axis=0)
-        scale[scale == 0] = 1.0
-        inverse = np.linalg.pinv(slopes / scale) / scale[:, None]
-        step = inverse @ left
-        # a step that gains nothing, or where rounding is left, is the last
-        energy = now * (1 - 1e-9) if now > EXACT * whole else 0.0
-        log, size = log + step[modes:], size + step[:modes]
-    log, size, left = kept
-    spread = matmul_toeplitz(noise, inverse.conj().T)
-    free = len(y) - float(np.einsum("jk,jk->", slopes, spread.conj()).real)
-    variance = np.einsum("kj,jk->k", inverse, spread).real[modes:]
-    rest = float(np.vdot(left, left).real)
-    return Modes(
-        rate=log / band.step,
-        size=size,
-        variance=variance * rest / free / band.step**2,
-        residual=float(np.sqrt(rest / whole)),
-    )
