@@ -198,6 +198,19 @@ class History(Answer):
         ----------
         F. J. Harris, On the use of windows for harmonic analysis with the discrete Fourier
         transform, Proceedings of the IEEE 66 (1978) 51-83.
+
+        Examples
+        --------
+        A string that is let go swings at its natural frequencies, the first at 5 Hz:
+
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=64)
+        >>> time = np.linspace(0.0, 2.0, 401)[:-1]
+        >>> history = model.transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
+        >>> spectrum = history.spectrum()
+        >>> print(spectrum.frequency[spectrum.amplitude[0].argmax()])
+        5.0
         """
         from .spectrum import spectrum
 
@@ -230,6 +243,20 @@ class History(Answer):
             If something is not a number.
         SceneError
             If a frequency is not below half the rate of the times, or `last` is too short.
+
+        Examples
+        --------
+        What is left of a steady force when the transients have gone is the frequency response:
+
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ViscousDamping(2.0))
+        >>> model, time = scene.compile(elements=64), np.linspace(0.0, 4.0, 2001)
+        >>> drive = ("z", 0.5)
+        >>> history = model.transient(time, drive=drive, force=rd.Sine(3.0, 20.0))
+        >>> ratio = history.amplitude(20.0, last=1.0) / -3j / model.frf(20.0, drive=drive).value[0]
+        >>> print(abs(ratio).round(6))
+        [1.]
         """
         from .spectrum import amplitude
 
@@ -244,8 +271,9 @@ class History(Answer):
     ) -> RingDown:
         """Estimate frequencies and damping ratios from the decay of free motion.
 
-        About each frequency the record is shifted to 0 Hz, low-passed and thinned, which leaves
-        decaying modes what they are; the matrix pencil finds their rates, least squares refine
+        About each frequency the record is shifted to 0 Hz, low-passed and thinned (a record of less
+        than some 30 periods only low-passed), which leaves decaying modes what they are; the matrix
+        pencil finds their rates, least squares refine
         them, and the noise that is left tells their standard errors. Modes close by are fitted
         together. Exact, to rounding, of sums of decaying modes.
 
@@ -279,6 +307,16 @@ class History(Answer):
         Y. Hua, T. K. Sarkar, Matrix pencil method for estimating parameters of exponentially
         damped/undamped sinusoids in noise, IEEE Transactions on Acoustics, Speech, and Signal
         Processing 38 (1990) 814-824.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
+        >>> model, time = scene.compile(elements=64), np.linspace(0.0, 4.0, 2001)
+        >>> history = model.transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
+        >>> print(history.damping().damping_ratio.round(6))
+        [0.01]
         """
         from .ringdown import ring_down
 
@@ -326,6 +364,17 @@ class History(Answer):
         ----------
         J. S. Bendat, A. G. Piersol, Random Data: Analysis and Measurement Procedures (2010),
         section 9.2.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
+        >>> model, time = scene.compile(elements=64), np.arange(40_000) / 2000.0
+        >>> blow = rd.Impulse(0.01, duration=0.01)
+        >>> measured = model.transient(time, drive=("z", 0.5), force=blow).frf(band=(2.0, 20.0))
+        >>> measured.peaks()[0].frequency.round(2)
+        array([ 5.  , 14.99])
         """
         from .measured import measured
 

@@ -14,8 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import SolveError
-
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
@@ -59,8 +57,8 @@ class Trial(NamedTuple):
 NOTHING = Trial(np.zeros(0, np.complex128), 1.0, 0.0)
 
 
-def decaying(y: Complex, noise: Real) -> Modes:
-    """Return as many modes as explain the samples best.
+def decaying(y: Complex, noise: Real) -> Modes | None:
+    """Return as many modes as explain the samples best, None where noise explains them as well.
 
     What decays soon drowns in the noise of a long record: parts of it are looked at too.
 
@@ -70,11 +68,6 @@ def decaying(y: Complex, noise: Real) -> Modes:
         Samples.
     noise : ndarray, shape (n,)
         Correlation of their noise at each lag, 1 at none.
-
-    Raises
-    ------
-    SolveError
-        If no mode explains more than noise would.
     """
     # as many samples would tell as much if their noise were independent
     samples = len(y) / (1 + 2 * float((noise[1:] ** 2).sum()))
@@ -86,9 +79,7 @@ def decaying(y: Complex, noise: Real) -> Modes:
         best = min(best, found, key=_criterion)
         if part == 1 and found.left < EXACT:
             break
-    if not len(best.log):
-        raise SolveError("no mode is told from noise")
-    return _refined(y, best.log, noise)
+    return _refined(y, best.log, noise) if len(best.log) else None
 
 
 def _chosen(y: Complex, samples: float) -> Trial:

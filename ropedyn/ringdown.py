@@ -25,6 +25,8 @@ Complex = NDArray[np.complex128]
 
 LEAST = 16
 """Times that a record of free motion must have."""
+CREEP = 1e-6
+"""Motion whose phase turns less than by this part of its rate does not oscillate."""
 STOP_BAND = 100.0
 """Of the low-pass [dB]."""
 WIDEST = 250
@@ -151,28 +153,42 @@ def _strongest(x: Real, step: float) -> Real:
 
 
 def _band(x: Real, step: float, f: float) -> Band:
-    """Shift a frequency to 0, low-pass and thin.
-
-    What stands still and the same mode at -f are beyond the edge of the stop band. The nearer the
-    edge, the fewer other modes are within and the longer the filter, which costs as much of the
-    record.
-    """
-    from scipy.signal import firwin, kaiserord, oaconvolve
-
-    n = len(x)
+    """Keep what is near a frequency, or below thrice it where the record is short, and thin it."""
+    n, shift = len(x), 2 * np.pi * f
     width = min(f / 4, WIDEST / (n * step))
+    # what stands still, and the same mode at -f, are beyond the edge of the stop band; the nearer
+    # that, the fewer other modes are within, and the longer the filter: it costs as much record
     for edge in (2 * width, 3 * width, 3.8 * width):
-        length, beta = kaiserord(STOP_BAND, min(0.999, 2 * (edge - width) * step))
-        if length <= n // 8:
-            break
-    if length <= n // 3 and 4 * edge * step < 1:
-        taps = firwin(length, (width + edge) / 2, window=("kaiser", beta), fs=1 / step)
-        q, shift = int(1 / (2 * edge * step)), 2 * np.pi * f
-    else:
-        # too few periods or too few times of each: the record as it is, a mean of neighbours
-        q = max(1, min(n // 400, int(1 / (8 * f * step))))
-        taps, shift = np.full(q, 1 / q), 0.0
-    turned = x * np.exp(-1j * shift * step * np.arange(n))
+        if (found := _low_pass(width, edge, step, n // 8)) is not None:
+            return _shifted(x, step, shift, *found)
+    for lowest, edge, at in ((width, 3.8 * width, shift), (f, 3 * f, 0.0)):
+        if (found := _low_pass(lowest, edge, step, n // 3)) is not None:
+            return _shifted(x, step, at, *found)
+    # too few periods or too few times of each: the record as it is, a mean of neighbours
+    q = max(1, min(n // 400, int(1 / (8 * f * step))))
+    return _shifted(x, step, 0.0, np.full(q, 1 / q), q)
+
+
+def _low_pass(width: float, edge: float, step: float, most: int) -> tuple[Real, int] | None:
+    """Return the taps that pass `width` and stop at `edge` [Hz], and how they let it be thinned.
+
+    Nothing where they are more than `most`, or nothing can be thinned.
+    """
+    from scipy.signal import firwin, kaiserord
+
+    if 4 * edge * step >= 1:
+        return None
+    length, beta = kaiserord(STOP_BAND, 2 * (edge - width) * step)
+    if length > most:
+        return None
+    taps = firwin(length, (width + edge) / 2, window=("kaiser", beta), fs=1 / step)
+    return taps, int(1 / (2 * edge * step))
+
+
+def _shifted(x: Real, step: float, shift: float, taps: Real, q: int) -> Band:
+    from scipy.signal import oaconvolve
+
+    turned = x * np.exp(-1j * shift * step * np.arange(len(x)))
     y = oaconvolve(turned, taps[::-1], mode="valid")[::q]
     return Band(y, q * step, shift, taps, step)
 
@@ -180,13 +196,15 @@ def _band(x: Real, step: float, f: float) -> Band:
 def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     """Return rate [1/s], amplitude, variance of the rate and residual of the mode near f."""
     found = decaying(band.y, _correlation(band))
+    if found is None:
+        raise SolveError(f"no mode near {f:g} Hz is told from noise")
     rate = found.log / band.step + 1j * band.shift
     # the mode that is largest at f: a/(i omega - s)
     swing = np.abs(found.size) / np.abs(2j * np.pi * f - rate)
-    swing[rate.imag <= 0] = 0.0
+    swing[rate.imag <= CREEP * np.abs(rate)] = 0.0
     k = int(swing.argmax())
     if not swing[k] > 0:
-        raise SolveError(f"no mode is found near {f:g} Hz")
+        raise SolveError(f"nothing oscillates near {f:g} Hz")
     gain = band.taps @ np.exp((rate[k] - 1j * band.shift) * band.fine * np.arange(len(band.taps)))
     # of a real record half the mode is at -f
     variance = float(found.variance[k]) / band.step**2

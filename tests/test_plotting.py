@@ -5,9 +5,15 @@ import sys
 
 import numpy as np
 import pytest
+from made_history import decaying, made
 from matplotlib.figure import Figure
 
 import ropedyn as rd
+
+NAMES = ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy", "effects"]
+NAMES += ["history", "spectrum", "ring-down", "measured"]
+TIME = np.linspace(0.0, 1.0, 200)
+HISTORY = made(TIME, decaying(TIME, (20.0, 0.01, 1.0)), force=rd.Sine(3.0, 20.0).value(TIME))
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +44,15 @@ def answers(model):
             "largest change of frequency without the effect [Hz]",
             "",
         ),
+        "history": (HISTORY, "time [s]", "displacement"),
+        "spectrum": (HISTORY.spectrum(), "frequency [Hz]", "displacement, amplitude"),
+        "ring-down": (HISTORY.damping(since=0.0), "frequency [Hz]", "damping ratio [%]"),
+        "measured": (HISTORY.frf(), "frequency [Hz]", "receptance, amplitude"),
         "resonances": (frf.peaks()[0], "frequency [Hz]", "amplitude of z at 0.500 m [m/N]"),
     }
 
 
-@pytest.mark.parametrize(
-    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy", "effects"]
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_plot_returns_labelled_axes(model, name):
     answer, xlabel, ylabel = answers(model)[name]
     ax = answer.plot()
@@ -52,9 +60,7 @@ def test_plot_returns_labelled_axes(model, name):
     assert ax.get_title()
 
 
-@pytest.mark.parametrize(
-    "name", ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy", "effects"]
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_plot_draws_into_given_axes(model, name):
     ax = Figure().subplots()
     assert answers(model)[name][0].plot(ax) is ax
@@ -73,6 +79,26 @@ def test_modes_plot_another_coordinate(model):
     assert ax.get_ylabel() == "bending rotation [rad]"
     with pytest.raises(rd.SceneError, match="coordinate must be one of"):
         model.modes(2).plot(coordinate="x")
+
+
+def test_a_motion_over_time_is_plotted_with_its_units():
+    line = HISTORY.plot().lines[0]
+    assert line.get_xydata().tolist() == np.column_stack([TIME, HISTORY.value[0]]).tolist()
+    assert line.get_label() == "z at 0.100 m [m]"
+
+
+def test_snapshots_are_lines_along_the_rope():
+    ax = HISTORY.plot_snapshots(coordinate="beta")
+    assert ax.get_ylabel() == "bending rotation [rad]"
+    first, second = (line.get_xydata().tolist() for line in ax.lines[:2])
+    assert first == np.column_stack([HISTORY.x, HISTORY.snapshot[0, :, 1]]).tolist()
+    assert second == np.column_stack([HISTORY.x, HISTORY.snapshot[1, :, 1]]).tolist()
+    assert HISTORY.plot_snapshots(ax) is ax
+    with pytest.raises(rd.SceneError, match="coordinate must be one of"):
+        HISTORY.plot_snapshots(coordinate="x")
+    nothing = made(TIME, HISTORY.value, snapshot_time=[], snapshot=np.zeros((0, 3, 2)))
+    with pytest.raises(rd.SceneError, match="snapshots must have been asked for"):
+        nothing.plot_snapshots()
 
 
 def test_plotting_needs_no_pyplot():

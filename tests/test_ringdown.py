@@ -40,6 +40,12 @@ def test_few_periods_and_few_times_of_each_are_enough(rate, seconds):
     assert_found(made(time, decaying(time, MODES[0])).damping(20.0), MODES[:1])
 
 
+def test_modes_above_do_not_matter_where_the_record_is_short():
+    modes = [(5.0 * k, 0.01, 1 / k**2) for k in range(1, 40, 2)]
+    found = made(TIME, decaying(TIME, *modes)).damping(5.0)
+    assert_found(found, modes[:1], 1e-6)
+
+
 def test_the_strongest_line_is_looked_at_where_nothing_is_said():
     found = made(TIME, decaying(TIME, MODES[2], (40.3, 0.004, 0.5j))).damping()
     assert_found(found, [MODES[1]])
@@ -90,8 +96,13 @@ def test_standard_errors_are_those_of_many_noisy_records(noise):
 
 def test_noise_alone_has_no_mode():
     noise = np.random.default_rng(4).normal(size=len(TIME))
-    with pytest.raises(rd.SolveError, match="no mode is told from noise"):
+    with pytest.raises(rd.SolveError, match="no mode near 30 Hz is told from noise"):
         made(TIME, noise).damping(30.0)
+
+
+def test_what_creeps_back_does_not_oscillate():
+    with pytest.raises(rd.SolveError, match="nothing oscillates near 3 Hz"):
+        made(TIME, np.exp(-4.0 * TIME)).damping(3.0)
 
 
 def test_what_does_not_move_has_no_mode():
