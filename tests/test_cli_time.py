@@ -180,3 +180,38 @@ def test_frf_moves_an_end(scene_file, capsys):
     found = [row["|z at 0.500 m [m/m]|"] for row in printed(capsys)["rows"]]
     frf = model(scene_file).frf([5.0, 10.0], drive=("end", 0, "z"), response=("z", 0.5))
     assert found == np.abs(frf.value[0]).tolist()
+
+
+def test_floquet_prints_the_growth_of_the_model(pulsating_file, capsys):
+    assert main(["floquet", str(pulsating_file), "--modes", "2", "--json"]) == 0
+    table = model(pulsating_file).floquet(modes=2).table()
+    assert printed(capsys)["rows"] == table.to_records()
+
+
+def test_stability_prints_and_draws_where_motion_grows(pulsating_file, tmp_path, capsys):
+    figure = tmp_path / "figure.png"
+    options = ["--frequency", "20:40:9", "--amplitude", "0:40:3", "--modes", "2"]
+    assert main(["stability", str(pulsating_file), *options, "--json", "--plot", str(figure)]) == 0
+    chart = model(pulsating_file).stability_map(
+        np.linspace(20, 40, 9), np.linspace(0, 40, 3), modes=2
+    )
+    assert printed(capsys)["rows"] == chart.table().to_records()
+    assert figure.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["floquet", "{steady}"], "pulsat"),
+        (["floquet", "{pulsating}", "--modes", "0"], "modes must be"),
+        (["stability", "{pulsating}", "--frequency", "1:2", "--amplitude", "3"], "--frequency"),
+        (["stability", "{pulsating}", "--frequency", "1,2", "--amplitude", "x"], "--amplitude"),
+        (["stability", "{pulsating}", "--frequency", "2,1", "--amplitude", "3"], "frequency"),
+    ],
+)
+def test_stability_without_meaning_is_refused(
+    scene_file, pulsating_file, arguments, words, capsys
+):
+    given = [a.format(steady=scene_file, pulsating=pulsating_file) for a in arguments]
+    assert main(given) == 2
+    assert words in capsys.readouterr().err
