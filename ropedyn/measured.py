@@ -108,12 +108,14 @@ def _matrix(given: ArrayLike, name: str, shape: tuple[int, int], kind: Any) -> A
     """Return finite numbers, a row for each response."""
     what = f"finite numbers of shape {shape}, as response and frequency"
     try:
-        array = np.array(given, dtype=kind, ndmin=2)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} must be {what}, got {check.shown(given)}") from error
+        array = np.array(given, ndmin=2)
+    except ValueError as error:
+        raise SceneError(f"{name} must be {what}, got {check.shown(given)}") from error
+    if array.size and array.dtype.kind not in ("iufc" if kind == np.complex128 else "iuf"):
+        raise TypeError(f"{name} must be {what}, got {check.shown(given)}")
     if array.shape != shape or not np.isfinite(array).all():
         raise SceneError(f"{name} must be {what}, got {check.shown(given)} of {array.shape}")
-    return array
+    return array.astype(kind)
 
 
 def measured(

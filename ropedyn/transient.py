@@ -187,7 +187,8 @@ def _snapshots(given: Any, time: Real) -> Real:
     when = check.numbers(given, "snapshots", "s", sign="nonnegative")
     if (when < time[0]).any() or (when > time[-1]).any() or (np.diff(when) <= 0).any():
         raise SceneError(
-            f"snapshots must increase within time, {float(time[0])!r} to {float(time[-1])!r} s"
+            f"snapshots must increase within time, {float(time[0])!r} to {float(time[-1])!r} s, "
+            f"got {check.shown(given)}"
         )
     return when
 

@@ -209,9 +209,7 @@ def test_stability_prints_and_draws_where_motion_grows(pulsating_file, tmp_path,
         (["stability", "{pulsating}", "--frequency", "2,1", "--amplitude", "3"], "frequency"),
     ],
 )
-def test_stability_without_meaning_is_refused(
-    scene_file, pulsating_file, arguments, words, capsys
-):
+def test_stability_without_meaning_is_refused(scene_file, pulsating_file, arguments, words, capsys):
     given = [a.format(steady=scene_file, pulsating=pulsating_file) for a in arguments]
     assert main(given) == 2
     assert words in capsys.readouterr().err
