@@ -258,7 +258,7 @@ class History(Answer):
         >>> print(abs(ratio).round(6))
         [1.]
         """
-        from .spectrum import amplitude
+        from .steady import amplitude
 
         return amplitude(self, frequency, last)
 
@@ -376,6 +376,6 @@ class History(Answer):
         >>> measured.peaks()[0].frequency.round(2)
         array([ 5.  , 14.99])
         """
-        from .measured import measured
+        from .estimate import estimate
 
-        return measured(self, drive, segments, window, band)
+        return estimate(self, drive, segments, window, band)

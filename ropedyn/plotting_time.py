@@ -1,4 +1,4 @@
-"""Figures of motion over time, and of what is read from it."""
+"""Figures of motion over time."""
 
 from __future__ import annotations
 

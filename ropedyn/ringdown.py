@@ -27,6 +27,8 @@ LEAST = 16
 """Times that a record of free motion must have."""
 CREEP = 1e-6
 """Motion whose phase turns less than by this part of its rate does not oscillate."""
+VAGUE = 0.02
+"""A mode whose rate is not known to this part of it is none."""
 STOP_BAND = 100.0
 """Of the low-pass [dB]."""
 WIDEST = 250
@@ -199,16 +201,14 @@ def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     if found is None:
         raise SolveError(f"no mode near {f:g} Hz is told from noise")
     rate = found.log / band.step + 1j * band.shift
-    # the mode that is largest at f: a/(i omega - s)
-    swing = np.abs(found.size) / np.abs(2j * np.pi * f - rate)
-    swing[rate.imag <= CREEP * np.abs(rate)] = 0.0
-    k = int(swing.argmax())
-    if not swing[k] > 0:
+    variance = found.variance / band.step**2
+    told = (rate.imag > CREEP * np.abs(rate)) & (variance < (VAGUE * np.abs(rate)) ** 2)
+    if not told.any():
         raise SolveError(f"nothing oscillates near {f:g} Hz")
+    k = int(np.where(told, np.abs(rate - 2j * np.pi * f), np.inf).argmin())
     gain = band.taps @ np.exp((rate[k] - 1j * band.shift) * band.fine * np.arange(len(band.taps)))
     # of a real record half the mode is at -f
-    variance = float(found.variance[k]) / band.step**2
-    return rate[k], 2 * found.size[k] / gain, variance, found.residual
+    return rate[k], 2 * found.size[k] / gain, float(variance[k]), found.residual
 
 
 def _correlation(band: Band) -> Real:

@@ -46,6 +46,12 @@ def test_modes_above_do_not_matter_where_the_record_is_short():
     assert_found(found, modes[:1], 1e-6)
 
 
+def test_a_weak_mode_is_told_from_strong_ones_beside_it():
+    modes = [(40.0, 0.01, 1.0), (48.0, 0.01, 1e-3), (56.0, 0.01, 1.0)]
+    found = made(TIME, decaying(TIME, *modes)).damping(48.0)
+    assert_found(found, modes[1:2])
+
+
 def test_the_strongest_line_is_looked_at_where_nothing_is_said():
     found = made(TIME, decaying(TIME, MODES[2], (40.3, 0.004, 0.5j))).damping()
     assert_found(found, [MODES[1]])
