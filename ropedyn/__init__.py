@@ -17,6 +17,7 @@ from .deflection import Deflection
 from .effect import EffectCost, effect_cost
 from .end import End
 from .errors import RopedynError, SceneError, SolveError
+from .floquet import Floquet
 from .force import Chirp, Impulse, Sine, Step
 from .frf import FRF
 from .gravity import Gravity
@@ -33,6 +34,7 @@ from .ringdown import RingDown
 from .rope import Rope
 from .scene import Scene
 from .spectrum import Spectrum
+from .stability import StabilityMap
 from .stop import Stop
 from .stretch import AddedMass, LocalChange
 from .table import Table
@@ -56,6 +58,7 @@ __all__ = [
     "Deflection",
     "EffectCost",
     "End",
+    "Floquet",
     "Gravity",
     "Hinge",
     "History",
@@ -81,6 +84,7 @@ __all__ = [
     "SolveError",
     "Spectrum",
     "Spring",
+    "StabilityMap",
     "Step",
     "StiffnessDamping",
     "Stop",

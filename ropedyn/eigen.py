@@ -203,7 +203,7 @@ def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
     if model.element != "continuous":
         return
     for component in model.components:
-        steps = _steps(model.chain.undamped.only(component), min(eigenvalue, HIGHEST))
+        steps = pieces_of(model.chain.undamped.only(component), min(eigenvalue, HIGHEST))
         if steps > MOST_STEPS:
             raise SolveError(
                 f"below is too high: ({', '.join(component)}) has {steps} pieces shorter than its "
@@ -211,7 +211,7 @@ def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
             )
 
 
-def _steps(chain: Chain, eigenvalue: float) -> int:
+def pieces_of(chain: Chain, eigenvalue: float) -> int:
     """Return how many pieces shorter than its waves a component is walked in."""
     factor = np.array([[1.0], [1.0], [1.0], [-eigenvalue], [0.0]], dtype=np.complex128)
     return int(_core.steps(chain, factor))
@@ -379,7 +379,7 @@ def _most_pieces(model: Model, eigenvalue: Real) -> int:
 
 def _pieces(model: Model, element: Chain, eigenvalue: float) -> int:
     """Return how many pieces shorter than its waves an element has."""
-    return max((_steps(element.only(c), eigenvalue) for c in model.components), default=1)
+    return max((pieces_of(element.only(c), eigenvalue) for c in model.components), default=1)
 
 
 def points_for(model: Model, eigenvalue: Real) -> int:

@@ -25,9 +25,11 @@ if TYPE_CHECKING:
 
     from .damped_modes import DampedModes
     from .deflection import Deflection
+    from .floquet import Floquet
     from .frf import FRF
     from .history import History
     from .modes import Modes
+    from .stability import StabilityMap
 
 
 EXACT = ("tensed", "continuous")
@@ -591,6 +593,108 @@ class Model(Frozen):
             progress=progress,
             partial=partial,
         )
+
+    def floquet(self, modes: int | None = 4) -> Floquet:
+        """Find how free motion grows or decays under the tension that pulsates.
+
+        The lowest modes at the mean tension are coupled by the tension: exactly so for what they
+        span. Motion over one period is computed to rounding, and is exactly symplectic without
+        damping.
+
+        Parameters
+        ----------
+        modes : int, optional
+            With transverse motion, the lowest ones, at most 200. None: all of a chain.
+
+        Returns
+        -------
+        Floquet
+
+        Raises
+        ------
+        TypeError
+            If the number is not a whole one.
+        SceneError
+            If the tension does not pulsate, the scene has gravity, a damping that is not in
+            proportion to velocity or a part that is not linear, or the number has no meaning.
+        SolveError
+            If there are fewer modes, or the numbers overflow.
+
+        References
+        ----------
+        V. V. Bolotin, The Dynamic Stability of Elastic Systems (1964); A. H. Nayfeh, D. T. Mook,
+        Nonlinear Oscillations (1979), chapter 5.
+
+        Examples
+        --------
+        At twice its frequency a string's motion grows by about omega (amplitude/mean)/4:
+
+        >>> import ropedyn as rd
+        >>> tension = rd.Tension(1000.0, amplitude=20.0, frequency=100.0)
+        >>> floquet = rd.Scene(rd.Rope(1.0, 0.1), tension=tension).compile().floquet(modes=1)
+        >>> floquet.stable, floquet.growth.round(2)
+        (False, array([ 1.57, -1.57]))
+        """
+        self._refuse_nonlinear()
+        from .floquet import solve_floquet
+
+        return solve_floquet(self, modes)
+
+    def stability_map(
+        self,
+        frequency: ArrayLike,
+        amplitude: ArrayLike,
+        *,
+        modes: int | None = 4,
+        progress: Progress = None,
+    ) -> StabilityMap:
+        """Find at which frequencies and amplitudes of the tension motion grows.
+
+        The mean tension is that of the scene; how that pulsates itself does not matter.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (f,)
+            Of the tension [Hz], increasing.
+        amplitude : array_like, shape (a,)
+            Of the tension [N], increasing.
+        modes : int, optional
+            As in `floquet`.
+        progress : None, True or callable
+            True: a line on stderr; a callable takes the fraction that is done.
+
+        Returns
+        -------
+        StabilityMap
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            As `floquet` does, and if frequencies or amplitudes do not increase.
+        SolveError
+            As `floquet` does, and if a frequency is so low that a period takes too many steps.
+
+        References
+        ----------
+        As of `floquet`.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile()
+        >>> stability = model.stability_map([80.0, 100.0, 120.0], [0.0, 100.0], modes=1)
+        >>> stability.stable
+        array([[ True,  True,  True],
+               [ True, False,  True]])
+        >>> [tongue.label for tongue in stability.tongues]
+        ['2 f1']
+        """
+        self._refuse_nonlinear()
+        from .stability import solve_stability
+
+        return solve_stability(self, frequency, amplitude, modes=modes, progress=progress)
 
     def _refuse_matrices(self) -> None:
         if self.element == "continuous":
