@@ -14,7 +14,7 @@ Wanner, Geometric Numerical Integration (2006), section V.3.2.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -206,21 +206,33 @@ def exponent(
         If a period takes too many steps or motion grows out of all numbers in it.
     """
     largest = np.full(amplitude.shape, -np.inf)
-    order = np.argsort(frequency, kind="stable")
-    highest = float(amplitude.max(initial=0.0))
     for number, modes in enumerate(system.blocks):
-        block = system.only(modes)
-        each = max(TOGETHER // ((2 * len(modes)) ** 2 * amplitude.shape[1]), 1)
-        for first in range(0, len(order), each):
-            these = order[first : first + each]
-            steps = steps_for(block, float(frequency[these[0]]), highest, angle)
-            with np.errstate(over="ignore", invalid="ignore"):
-                matrix = monodromy(block, frequency[these], amplitude[these], steps)
-            size = np.abs(np.linalg.eigvals(finite(matrix))).max(axis=-1)
+        done = 0
+        for these, matrix in periods(system.only(modes), frequency, amplitude, angle):
+            size = np.abs(np.linalg.eigvals(matrix)).max(axis=-1)
             with np.errstate(divide="ignore"):
                 largest[these] = np.maximum(largest[these], np.log(size))
-            report((number + min(first + each, len(order)) / len(order)) / len(system.blocks))
+            done += len(these)
+            report((number + done / len(frequency)) / len(system.blocks))
     return largest
+
+
+def periods(
+    system: ModalSystem, frequency: Real, amplitude: Real, angle: float
+) -> Iterator[tuple[NDArray[np.intp], Real]]:
+    """Yield some of the frequencies, lowest first, and the motion over their periods.
+
+    As `exponent` takes them; the motion has the shape (some, a, 2k, 2k).
+    """
+    order = np.argsort(frequency, kind="stable")
+    highest = float(amplitude.max(initial=0.0))
+    each = max(TOGETHER // ((2 * len(system.eigenvalue)) ** 2 * amplitude.shape[1]), 1)
+    for first in range(0, len(order), each):
+        these = order[first : first + each]
+        steps = steps_for(system, float(frequency[these[0]]), highest, angle)
+        with np.errstate(over="ignore", invalid="ignore"):
+            matrix = monodromy(system, frequency[these], amplitude[these], steps)
+        yield these, finite(matrix)
 
 
 def finite(matrix: Real) -> Real:

@@ -40,16 +40,16 @@ class StabilityMap(Answer):
     growth : ndarray, shape (a, f)
         Of the motion that grows most [1/s]; negative where all motion decays.
     stable : ndarray of bool, shape (a, f)
-        Whether nothing grows by more than 1e-10 in a period, or 1e-6 where some undamped motion
-        keeps its size and rounding would be taken for growth.
+        Whether nothing grows, or by less than 1e-6 in a period where some undamped motion keeps
+        its size and rounding would be taken for growth.
     mode_frequency : ndarray, shape (k,)
         Of the modes that are summed, at the mean tension [Hz].
     eigenvalue, geometric, damping : ndarray, shape (k,), (k, k) and (k, k)
         Lambda, Gamma and C of their amplitudes, q'' + C q' + (Lambda + a(t) Gamma) q = 0.
     tongues : tuple of Tongue
         Where regions of instability begin at no amplitude: `modes`, `order`, `frequency` [Hz],
-        `kind` ("principal", "sum", "secondary") and `label`, such as "f1 + f2". Damping takes them
-        off the axis.
+        `spread` to either side [Hz/N], `kind` ("principal", "sum", "secondary") and `label`, such
+        as "f1 + f2". Damping takes them off the axis.
     cost : Cost
         What it cost.
     """

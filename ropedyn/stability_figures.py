@@ -32,18 +32,21 @@ def plot_floquet(floquet: Floquet, ax: Axes | None) -> Axes:
 
 
 def plot_stability(stability: StabilityMap, ax: Axes | None) -> Axes:
-    """Plot growth as colours over frequency and amplitude, with the feet of first-order tongues."""
+    """Plot growth as colours over frequency and amplitude.
+
+    Dashed: the boundaries of tongues of order 1 without damping, to first order in the amplitude.
+    """
     ax = new_axes(ax)
     f, a = stability.frequency, stability.amplitude
     shown = np.ma.masked_where(stability.stable, stability.growth)
     if shown.count():
         colours = ax.pcolormesh(f, a, shown, shading="nearest", cmap="Reds", vmin=0.0)
         ax.figure.colorbar(colours, ax=ax, label="growth [1/s]")
-    if min(len(f), len(a)) > 1 and shown.count() not in (0, shown.size):
-        ax.contour(f, a, stability.stable, levels=[0.5], colors="k", linewidths=0.6)
     for tongue in stability.tongues:
         if tongue.order == 1:
-            ax.axvline(tongue.frequency, color="0.6", linewidth=0.5, linestyle=":")
+            side = tongue.spread * a[-1]
+            wedge = tongue.frequency + np.array([-side, 0.0, side])
+            ax.plot(wedge, [a[-1], 0.0, a[-1]], color="0.4", linewidth=0.6, linestyle="--")
             ax.annotate(
                 tongue.label,
                 (tongue.frequency, 1.0),
@@ -54,5 +57,6 @@ def plot_stability(stability: StabilityMap, ax: Axes | None) -> Axes:
                 fontsize="x-small",
             )
     ax.set(xlabel="frequency of the tension [Hz]", ylabel="amplitude of the tension [N]")
+    ax.set(xlim=(f[0], f[-1]), ylim=(a[0], a[-1]) if len(a) > 1 else None)
     ax.set_title("where transverse motion grows", pad=38 if stability.tongues else None)
     return ax

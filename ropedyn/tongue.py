@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .modal_system import ModalSystem
-from .monodromy import exponent, rates
+from .monodromy import COARSE, exponent, periods, rates, scales
 
 Real = NDArray[np.float64]
 
@@ -24,17 +24,20 @@ NEUTRAL = 1e-6
 """Growth ln|multiplier| over a period that is seen where undamped motion keeps its size: two
 multipliers that meet on the unit circle are the root of 1e-16 off it by rounding."""
 
-DECAYING = 1e-10
-"""The same where motion decays by itself, and multipliers do not meet on the circle."""
-
-POINTS = 40
-"""To either side of a resonance that are looked at."""
-
 PARTS = 8
-"""Of a bracket that are looked at together."""
+"""Of an interval that are looked at together."""
 
 CLOSE = 1e-11
-"""Relative width of the last bracket."""
+"""Relative width of the last interval around a boundary."""
+
+LEAST = 1e-8
+"""Power of the relative pulsation of the stiffness that makes a tongue worth looking for."""
+
+LOCKED = 1e-9
+"""Of a turn that is whole [rad]."""
+
+HALF = 0.5
+"""Of the energy of a motion: it is that of two modes."""
 
 
 class Tongue(NamedTuple):
@@ -48,11 +51,15 @@ class Tongue(NamedTuple):
         n of n f = f_i + f_j.
     frequency : float
         Of the tension [Hz].
+    spread : float
+        How far each side of it goes per amplitude, |Gamma_ij|/(4 pi sqrt(omega_i omega_j)), without
+        damping and to first order [Hz/N]; 0 of orders above 1, which widen more slowly.
     """
 
     modes: tuple[int, int]
     order: int
     frequency: float
+    spread: float
 
     @property
     def kind(self) -> str:
@@ -65,11 +72,12 @@ class Tongue(NamedTuple):
     def label(self) -> str:
         """Such as "2 f1", "f1 + f2" or "(f1 + f2)/2"."""
         i, j = self.modes
-        if self.order == 1:
-            return f"2 f{i}" if i == j else f"f{i} + f{j}"
-        if i == j:
-            return f"f{i}" if self.order == 2 else f"2 f{i}/{self.order}"
-        return f"(f{i} + f{j})/{self.order}"
+        share = "" if self.order == 1 else f"/{self.order}"
+        if i != j:
+            return f"(f{i} + f{j}){share}" if share else f"f{i} + f{j}"
+        if self.order % 2:
+            return f"2 f{i}{share}"
+        return f"f{i}" if self.order == 2 else f"f{i}/{self.order // 2}"
 
 
 def tongues_of(system: ModalSystem, low: float, high: float) -> tuple[Tongue, ...]:
@@ -78,22 +86,29 @@ def tongues_of(system: ModalSystem, low: float, high: float) -> tuple[Tongue, ..
     Those of order 1 need the coupling of their modes, those of others some coupling.
     """
     found = []
-    for block in system.blocks:
-        for i, j in combinations_with_replacement(block.tolist(), 2):
-            if system.eigenvalue[i] <= 0:
-                continue
-            together = float(system.omega[i] + system.omega[j]) / (2 * math.pi)
-            for order in range(1, HIGHEST_ORDER + 1):
-                coupled = order > 1 or system.geometric[i, j] != 0
-                if coupled and low <= together / order <= high:
-                    found.append(Tongue((i + 1, j + 1), order, together / order))
-    return tuple(sorted(found, key=lambda one: one.frequency))
+    pairs = (p for block in system.blocks for p in combinations_with_replacement(block.tolist(), 2))
+    for i, j in pairs:
+        if system.eigenvalue[i] <= 0:
+            continue
+        together = float(system.omega[i] + system.omega[j]) / (2 * math.pi)
+        mean = math.sqrt(system.omega[i] * system.omega[j])
+        spread = float(abs(system.geometric[i, j])) / (4 * math.pi * mean)
+        orders = range(1 if spread else 2, HIGHEST_ORDER + 1)
+        found += [
+            Tongue((i + 1, j + 1), order, together / order, spread if order == 1 else 0.0)
+            for order in orders
+            if low <= together / order <= high
+        ]
+    return tuple(sorted(found, key=lambda one: (one.frequency, one.order)))
 
 
 def threshold(system: ModalSystem, frequency: Real) -> Real:
-    """Return the growth ln|multiplier| over a period that counts as growth, as frequency [Hz]."""
+    """Return the growth ln|multiplier| over a period that counts as growth, as frequency [Hz].
+
+    Where all motion decays by itself, multipliers do not meet on the circle, and any is growth.
+    """
     decay = -np.linalg.eigvals(rates(system)).real.max() / frequency
-    return np.where(decay > NEUTRAL, DECAYING, NEUTRAL)
+    return np.where(decay > NEUTRAL, 0.0, NEUTRAL)
 
 
 def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
@@ -113,19 +128,17 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
     ndarray
         [Hz], increasing.
     """
-    looked = _looked_at(system, frequency, amplitude)
+    looked = np.union1d(frequency, _near_resonances(system, frequency, amplitude))
     grows = _grows(system, looked, amplitude)
     at = np.flatnonzero(grows[1:] != grows[:-1])
-    low, high, rising = looked[at], looked[at + 1], grows[at + 1]
-    share = np.arange(1, PARTS) / PARTS
-    while len(at) and (high - low > CLOSE * high).any():
-        inside = low[:, None] + (high - low)[:, None] * share
-        known = _grows(system, inside.ravel(), amplitude).reshape(inside.shape)
-        edge = np.column_stack([low, inside, high])
-        # the first part with a change: as many as the same as its left end
-        first = (known == rising[:, None]).argmax(axis=1)
-        first = np.where((known == rising[:, None]).any(axis=1), first, PARTS - 1)
-        rows = np.arange(len(at))
+    low, high, after = looked[at], looked[at + 1], grows[at + 1]
+    while (high - low > CLOSE * high).any():
+        edge = np.linspace(low, high, PARTS + 1, axis=1)
+        known = _grows(system, edge[:, 1:-1].ravel(), amplitude).reshape(len(edge), -1)
+        known = np.column_stack([known, after])
+        # up to the first one that is as what comes after the change
+        first = (known == after[:, None]).argmax(axis=1)
+        rows = np.arange(len(edge))
         low, high = edge[rows, first], edge[rows, first + 1]
     return np.asarray((low + high) / 2)
 
@@ -135,25 +148,89 @@ def _grows(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np
     return np.asarray(growth[:, 0] > threshold(system, frequency))
 
 
-def _looked_at(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
-    """Return frequencies close enough for every tongue of first and second order.
+# --- resonances -------------------------------------------------------------------------------
 
-    A tongue of order 1 is 2 delta = amplitude |Gamma_ij|/sqrt(omega_i omega_j) wide, and moves by
-    what is of second order in the amplitude; those of higher orders are so wide at most.
+
+def _near_resonances(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
+    """Return frequencies in each tongue, as far as there are any, and beside it.
+
+    Tongues of order n are some e^n of their frequency wide, with e the relative pulsation of the
+    stiffness, and move by e^2. Where motion is damped there may be none.
     """
-    low, high = float(frequency.min()), float(frequency.max())
-    omega, coupling = system.omega, np.abs(system.geometric)
-    share = np.linspace(-1.0, 1.0, 2 * POINTS + 1)
-    points = [frequency]
-    for tongue in tongues_of(system, low / 2, 2 * high):
-        i, j = (one - 1 for one in tongue.modes)
-        mean = omega[i] * omega[j]
-        relative = amplitude * max(coupling[[i, j]].max(axis=0) / mean)
-        second = relative**2 * tongue.frequency
-        if tongue.order == 1:
-            first = amplitude * coupling[i, j] / math.sqrt(mean) / (4 * math.pi)
-            points.append(tongue.frequency + 1.5 * first * share)
-            second += 2 * first
-        points.append(tongue.frequency + 2 * second * share)
-    every = np.unique(np.concatenate(points))
-    return every[(every >= low) & (every <= high)]
+    low, high = float(frequency[0]), float(frequency[-1])
+    size = np.sqrt(np.abs(np.diag(system.geometric)))
+    with np.errstate(divide="ignore"):
+        e = math.sqrt(amplitude) * size / system.omega
+    points = [np.zeros(0)]
+    for number in system.blocks:
+        block = system.only(number)
+        pairs, edges = [], []
+        for tongue in tongues_of(system, low / 2, 2 * high):
+            i, j = (one - 1 for one in tongue.modes)
+            if i not in number or (e[i] * e[j]) ** tongue.order < LEAST:
+                continue
+            reach = 2 * (amplitude * tongue.spread + (e[i] * e[j]) ** 2 * tongue.frequency)
+            pairs.append(np.searchsorted(number, (i, j)))
+            edges.append((tongue.frequency - reach, tongue.frequency + reach))
+        if pairs:
+            window = np.clip(edges, low, high)
+            points.append(_closing_in(block, np.array(pairs), window, amplitude))
+    return np.concatenate(points)
+
+
+def _closing_in(
+    system: ModalSystem, pair: NDArray[np.intp], window: Real, amplitude: float
+) -> Real:
+    """Return the frequencies that a search for growth of pairs of modes in windows looked at.
+
+    The phases by which two modes turn in a period add up to whole turns at a resonance: that sum
+    is not lost where a tongue is narrow. In a tongue of one mode with itself it stays there, and
+    where there is damping growth is largest somewhere in it.
+    """
+    looked = [np.zeros(0)]
+    while len(pair):
+        edge = np.linspace(window[:, 0], window[:, 1], PARTS + 1, axis=1)
+        looked.append(edge.ravel())
+        turn, growth = _turns(system, np.repeat(pair, PARTS + 1, axis=0), edge.ravel(), amplitude)
+        turn, growth = turn.reshape(edge.shape), growth.reshape(edge.shape)
+        locked = np.abs(turn) < LOCKED
+        change = (turn[:, 1:] * turn[:, :-1] < 0) & (np.abs(np.diff(turn)) < np.pi)
+        largest = np.where(locked, growth, -np.inf).argmax(axis=1)
+        first, last = change.argmax(axis=1), change.argmax(axis=1) + 1
+        within = locked.any(axis=1)
+        first = np.where(within, np.maximum(largest - 1, 0), first)
+        last = np.where(within, np.minimum(largest + 1, PARTS), last)
+        rows = np.arange(len(edge))
+        window = np.stack([edge[rows, first], edge[rows, last]], axis=1)
+        grows = (growth > threshold(system, edge)).any(axis=1)
+        wide = window[:, 1] - window[:, 0] > NEUTRAL / PARTS * window[:, 1]
+        goes_on = ~grows & wide & (within | change.any(axis=1))
+        pair, window = pair[goes_on], window[goes_on]
+    return np.concatenate(looked)
+
+
+def _turns(
+    system: ModalSystem, pair: NDArray[np.intp], frequency: Real, amplitude: float
+) -> tuple[Real, Real]:
+    """Return by how much pairs of modes turn in a period [rad] beside whole turns; their growth.
+
+    Of each conjugate pair of motions one goes round as a mode without pulsation does: its q' is
+    ahead of q.
+    """
+    turn, growth = np.empty(len(frequency)), np.empty(len(frequency))
+    k = len(system.eigenvalue)
+    given = np.full((len(frequency), 1), amplitude)
+    for these, matrix in periods(system, frequency, given, COARSE):
+        value, vector = np.linalg.eig(matrix[:, 0])
+        q, v = vector[:, :k], vector[:, k:]
+        part = np.abs(q) ** 2 + np.abs(v) ** 2
+        sense = (q.conj() * v / scales(system)[:, None]).imag.sum(axis=1)
+        forward = sense >= -LOCKED * np.abs(sense).max(axis=1, keepdims=True)
+        rows = np.arange(len(these))
+        both = part[rows[:, None], pair[these]]
+        which = np.where(forward[:, None], both, 0.0).argmax(axis=2)
+        angle = np.angle(value[rows[:, None], which]).sum(axis=1)
+        turn[these] = np.angle(np.exp(1j * angle))
+        own = both.sum(axis=1) >= HALF
+        growth[these] = np.log(np.where(own, np.abs(value), np.finfo(float).tiny)).max(axis=1)
+    return turn, growth
