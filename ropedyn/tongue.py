@@ -30,14 +30,17 @@ PARTS = 8
 CLOSE = 1e-11
 """Relative width of the last interval around a boundary."""
 
+ROUGH = 1e-8
+"""The same of boundaries that are looked at again, with damping."""
+
 LEAST = 1e-8
 """Power of the relative pulsation of the stiffness that makes a tongue worth looking for."""
 
-LOCKED = 1e-9
-"""Of a turn that is whole [rad]."""
+PART = 0.05
+"""Of the energy of a motion: less is of another one."""
 
-HALF = 0.5
-"""Of the energy of a motion: it is that of two modes."""
+ZOOMS = 3
+"""Closer looks at where growth is largest."""
 
 
 class Tongue(NamedTuple):
@@ -128,11 +131,25 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
     ndarray
         [Hz], increasing.
     """
-    looked = np.union1d(frequency, _near_resonances(system, frequency, amplitude))
+    still = ModalSystem(system.eigenvalue, system.geometric, np.zeros_like(system.damping))
+    looked = np.union1d(frequency, _near_resonances(still, frequency, amplitude))
+    if system.damping.any():
+        edge, grows = _changes(still, looked, amplitude, close=ROUGH)
+        if len(edge):
+            begin = np.append([] if grows[0] else frequency[0], edge[grows])
+            end = np.append(edge[~grows], frequency[-1] if grows[-1] else [])
+            looked = np.union1d(frequency, _within(system, begin, end, amplitude))
+    return _changes(system, looked, amplitude)[0]
+
+
+def _changes(
+    system: ModalSystem, looked: Real, amplitude: float, close: float = CLOSE
+) -> tuple[Real, NDArray[np.bool_]]:
+    """Return where stability changes between given frequencies; whether motion grows beyond."""
     grows = _grows(system, looked, amplitude)
     at = np.flatnonzero(grows[1:] != grows[:-1])
     low, high, after = looked[at], looked[at + 1], grows[at + 1]
-    while (high - low > CLOSE * high).any():
+    while (high - low > close * high).any():
         edge = np.linspace(low, high, PARTS + 1, axis=1)
         known = _grows(system, edge[:, 1:-1].ravel(), amplitude).reshape(len(edge), -1)
         known = np.column_stack([known, after])
@@ -140,7 +157,33 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
         first = (known == after[:, None]).argmax(axis=1)
         rows = np.arange(len(edge))
         low, high = edge[rows, first], edge[rows, first + 1]
-    return np.asarray((low + high) / 2)
+    return (low + high) / 2, after
+
+
+def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Real:
+    """Return frequencies where damped motion grows, as far as it does, and beside them.
+
+    They lie in the tongues without damping, or not far from them where modes are damped unlike; at
+    the tip of a tongue, close to where growth is largest.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        With damping.
+    begin, end : ndarray
+        Of the tongues without it [Hz].
+    amplitude : float
+        [N].
+    """
+    middle, half = (begin + end) / 2, (end - begin) / 2
+    looked = []
+    for _ in range(ZOOMS):
+        point = middle[:, None] + half[:, None] * np.linspace(-2.0, 2.0, 4 * PARTS + 1)
+        looked.append(point.ravel())
+        growth = exponent(system, looked[-1], np.full((point.size, 1), amplitude))
+        largest = growth.reshape(point.shape).argmax(axis=1)
+        middle, half = point[np.arange(len(point)), largest], half / PARTS
+    return np.concatenate(looked)
 
 
 def _grows(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np.bool_]:
@@ -152,29 +195,26 @@ def _grows(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np
 
 
 def _near_resonances(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
-    """Return frequencies in each tongue, as far as there are any, and beside it.
+    """Return frequencies in each tongue without damping, as far as it is wide enough, and beside.
 
     Tongues of order n are some e^n of their frequency wide, with e the relative pulsation of the
-    stiffness, and move by e^2. Where motion is damped there may be none.
+    stiffness, and move by e^2.
     """
     low, high = float(frequency[0]), float(frequency[-1])
     size = np.sqrt(np.abs(np.diag(system.geometric)))
-    with np.errstate(divide="ignore"):
-        e = math.sqrt(amplitude) * size / system.omega
     points = [np.zeros(0)]
     for number in system.blocks:
-        block = system.only(number)
-        pairs, edges = [], []
+        pairs, windows = [], []
         for tongue in tongues_of(system, low / 2, 2 * high):
             i, j = (one - 1 for one in tongue.modes)
-            if i not in number or (e[i] * e[j]) ** tongue.order < LEAST:
-                continue
-            reach = 2 * (amplitude * tongue.spread + (e[i] * e[j]) ** 2 * tongue.frequency)
-            pairs.append(np.searchsorted(number, (i, j)))
-            edges.append((tongue.frequency - reach, tongue.frequency + reach))
+            e = amplitude * size[i] * size[j] / (system.omega[i] * system.omega[j])
+            if i in number and e**tongue.order > LEAST:
+                reach = 2 * (amplitude * tongue.spread + e**2 * tongue.frequency)
+                pairs.append(np.searchsorted(number, (i, j)))
+                windows.append((tongue.frequency - reach, tongue.frequency + reach))
         if pairs:
-            window = np.clip(edges, low, high)
-            points.append(_closing_in(block, np.array(pairs), window, amplitude))
+            window = np.clip(windows, low, high)
+            points.append(_closing_in(system.only(number), np.array(pairs), window, amplitude))
     return np.concatenate(points)
 
 
@@ -183,54 +223,43 @@ def _closing_in(
 ) -> Real:
     """Return the frequencies that a search for growth of pairs of modes in windows looked at.
 
-    The phases by which two modes turn in a period add up to whole turns at a resonance: that sum
-    is not lost where a tongue is narrow. In a tongue of one mode with itself it stays there, and
-    where there is damping growth is largest somewhere in it.
+    The phases by which two modes turn in a period add up to whole turns at a resonance: the sign of
+    what is left is not lost where a tongue is narrow.
     """
     looked = [np.zeros(0)]
     while len(pair):
         edge = np.linspace(window[:, 0], window[:, 1], PARTS + 1, axis=1)
         looked.append(edge.ravel())
-        turn, growth = _turns(system, np.repeat(pair, PARTS + 1, axis=0), edge.ravel(), amplitude)
-        turn, growth = turn.reshape(edge.shape), growth.reshape(edge.shape)
-        locked = np.abs(turn) < LOCKED
-        change = (turn[:, 1:] * turn[:, :-1] < 0) & (np.abs(np.diff(turn)) < np.pi)
-        largest = np.where(locked, growth, -np.inf).argmax(axis=1)
-        first, last = change.argmax(axis=1), change.argmax(axis=1) + 1
-        within = locked.any(axis=1)
-        first = np.where(within, np.maximum(largest - 1, 0), first)
-        last = np.where(within, np.minimum(largest + 1, PARTS), last)
-        rows = np.arange(len(edge))
-        window = np.stack([edge[rows, first], edge[rows, last]], axis=1)
-        grows = (growth > threshold(system, edge)).any(axis=1)
-        wide = window[:, 1] - window[:, 0] > NEUTRAL / PARTS * window[:, 1]
-        goes_on = ~grows & wide & (within | change.any(axis=1))
-        pair, window = pair[goes_on], window[goes_on]
+        turn, grows = _turns(system, np.repeat(pair, PARTS + 1, axis=0), edge.ravel(), amplitude)
+        turn, grows = turn.reshape(edge.shape), grows.reshape(edge.shape)
+        passes = (turn[:, 1:] * turn[:, :-1] < 0) & (np.abs(np.diff(turn)) < np.pi)
+        wide = np.diff(edge) > NEUTRAL / PARTS * edge[:, 1:]
+        which, at = np.nonzero(passes & wide & ~grows[:, 1:] & ~grows[:, :-1])
+        pair, window = pair[which], np.stack([edge[which, at], edge[which, at + 1]], axis=1)
     return np.concatenate(looked)
 
 
 def _turns(
     system: ModalSystem, pair: NDArray[np.intp], frequency: Real, amplitude: float
-) -> tuple[Real, Real]:
-    """Return by how much pairs of modes turn in a period [rad] beside whole turns; their growth.
+) -> tuple[Real, NDArray[np.bool_]]:
+    """Return by how much pairs of modes turn in a period beside whole turns [rad]; if they grow.
 
     Of each conjugate pair of motions one goes round as a mode without pulsation does: its q' is
     ahead of q.
     """
-    turn, growth = np.empty(len(frequency)), np.empty(len(frequency))
+    turn, grows = np.empty(len(frequency)), np.empty(len(frequency), dtype=np.bool_)
     k = len(system.eigenvalue)
     given = np.full((len(frequency), 1), amplitude)
     for these, matrix in periods(system, frequency, given, COARSE):
         value, vector = np.linalg.eig(matrix[:, 0])
         q, v = vector[:, :k], vector[:, k:]
         part = np.abs(q) ** 2 + np.abs(v) ** 2
-        sense = (q.conj() * v / scales(system)[:, None]).imag.sum(axis=1)
-        forward = sense >= -LOCKED * np.abs(sense).max(axis=1, keepdims=True)
+        forward = (q.conj() * v / scales(system)[:, None]).imag.sum(axis=1) > 0
         rows = np.arange(len(these))
         both = part[rows[:, None], pair[these]]
         which = np.where(forward[:, None], both, 0.0).argmax(axis=2)
         angle = np.angle(value[rows[:, None], which]).sum(axis=1)
         turn[these] = np.angle(np.exp(1j * angle))
-        own = both.sum(axis=1) >= HALF
-        growth[these] = np.log(np.where(own, np.abs(value), np.finfo(float).tiny)).max(axis=1)
-    return turn, growth
+        own = (both > PART).all(axis=1) & (np.abs(value) > 1 + NEUTRAL)
+        grows[these] = own.any(axis=1)
+    return turn, grows
