@@ -10,27 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .modal_system import ModalSystem
-from .monodromy import COARSE, exponent, periods, rates, scales
+from .monodromy import ANGLE, exponent, periods, rates, scales
 
 Real = NDArray[np.float64]
 
 HIGHEST_ORDER = 4
 """Of resonances that are looked for."""
 
-FINE = 0.6
-"""Of the highest mode in a step [rad]."""
-
 NEUTRAL = 1e-6
 """Growth ln|multiplier| over a period that is seen where undamped motion keeps its size: two
 multipliers that meet on the unit circle are the root of 1e-16 off it by rounding."""
 
 PARTS = 8
-"""Of an interval that are looked at together."""
+"""Of an interval near a resonance that are looked at together."""
 
-CLOSE = 1e-11
+SECTIONS = 4
+"""Of an interval around a boundary."""
+
+CLOSE = 1e-10
 """Relative width of the last interval around a boundary."""
 
-ROUGH = 1e-8
+ROUGH = 1e-6
 """The same of boundaries that are looked at again, with damping."""
 
 LEAST = 1e-8
@@ -138,7 +138,8 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
         if len(edge):
             begin = np.append([] if grows[0] else frequency[0], edge[grows])
             end = np.append(edge[~grows], frequency[-1] if grows[-1] else [])
-            looked = np.union1d(frequency, _within(system, begin, end, amplitude))
+            closer = _within(system, begin, end, amplitude)
+            looked = np.union1d(frequency, np.clip(closer, frequency[0], frequency[-1]))
     return _changes(system, looked, amplitude)[0]
 
 
@@ -150,7 +151,7 @@ def _changes(
     at = np.flatnonzero(grows[1:] != grows[:-1])
     low, high, after = looked[at], looked[at + 1], grows[at + 1]
     while (high - low > close * high).any():
-        edge = np.linspace(low, high, PARTS + 1, axis=1)
+        edge = np.linspace(low, high, SECTIONS + 1, axis=1)
         known = _grows(system, edge[:, 1:-1].ravel(), amplitude).reshape(len(edge), -1)
         known = np.column_stack([known, after])
         # up to the first one that is as what comes after the change
@@ -178,16 +179,16 @@ def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Re
     middle, half = (begin + end) / 2, (end - begin) / 2
     looked = []
     for _ in range(ZOOMS):
-        point = middle[:, None] + half[:, None] * np.linspace(-2.0, 2.0, 4 * PARTS + 1)
+        point = middle[:, None] + half[:, None] * np.linspace(-2.0, 2.0, 2 * PARTS + 1)
         looked.append(point.ravel())
         growth = exponent(system, looked[-1], np.full((point.size, 1), amplitude))
         largest = growth.reshape(point.shape).argmax(axis=1)
-        middle, half = point[np.arange(len(point)), largest], half / PARTS
+        middle, half = point[np.arange(len(point)), largest], half / PARTS * 2
     return np.concatenate(looked)
 
 
 def _grows(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np.bool_]:
-    growth = exponent(system, frequency, np.full((len(frequency), 1), amplitude), angle=FINE)
+    growth = exponent(system, frequency, np.full((len(frequency), 1), amplitude))
     return np.asarray(growth[:, 0] > threshold(system, frequency))
 
 
@@ -250,7 +251,7 @@ def _turns(
     turn, grows = np.empty(len(frequency)), np.empty(len(frequency), dtype=np.bool_)
     k = len(system.eigenvalue)
     given = np.full((len(frequency), 1), amplitude)
-    for these, matrix in periods(system, frequency, given, COARSE):
+    for these, matrix in periods(system, frequency, given, ANGLE):
         value, vector = np.linalg.eig(matrix[:, 0])
         q, v = vector[:, :k], vector[:, k:]
         part = np.abs(q) ** 2 + np.abs(v) ** 2
