@@ -119,11 +119,15 @@ def _refuse(model: Model) -> None:
     for one in having(scene.dampings, "loss"):
         raise SceneError(f"damping must be in proportion to velocity, got {one}")
     chain = model.chain.only(model.component_of("z"))
-    if "broken wire" in chain.carried and (chain.is_hysteretic or having(scene.dampings, "rate")):
+    if "broken wire" not in chain.carried:
+        return
+    if chain.is_hysteretic or having(scene.dampings, "rate"):
         raise SceneError(
             "a broken wire must be without damping where the tension pulsates, and so must be "
-            "stiffness and inertia beside it: they are not in proportion to velocity"
+            "stiffness and inertia beside it: the form of its own motion is not known"
         )
+    if model.element == "continuous" and "beta" not in model.coordinates:
+        raise SceneError("elements must be given where a string with a broken wire pulsates")
 
 
 def _cut(matrix: Real) -> Real:
@@ -183,6 +187,8 @@ class _Basis:
             own += _integral(chain, chain.inertia, weight, shape)
             dragged += _integral(chain, chain.drag, weight, shape)
         mass = own + carried.mass
+        if "broken wire" in chain.carried:
+            mass = np.diag(np.diag(mass))  # what is not known of wires makes modes orthogonal
         if weight is None:
             geometric = _of_elements(chain, shape)
         elif "beta" in component:
@@ -299,7 +305,7 @@ class _Carried:
 
     @classmethod
     def of(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> _Carried:
-        """Of resonators all; of wires what each mode has by itself, as modes are orthogonal."""
+        """Of resonators all; of wires the mass that each mode has of them."""
         count = len(shape)
         form = cls(*(np.zeros((count, count)) for _ in range(3)))
         if chain.attached_kind is None:
@@ -321,8 +327,7 @@ class _Carried:
         if wires.any():
             part = np.ascontiguousarray(motion[:, wires])
             energy = _core.carried(chain.carrying(wires), shape, part, eigenvalue)
-            np.fill_diagonal(form.mass, np.diag(form.mass) + energy[:, 1])
-            np.fill_diagonal(form.stiffness, np.diag(form.stiffness) + energy[:, 0])
+            form.mass[np.diag_indices(count)] += energy[:, 1]
         return form
 
 

