@@ -1,6 +1,6 @@
 """Where the motion of a rope grows while its tension pulsates: docs/stability.png.
 
-An Ince-Strutt chart. Colour: growth of the damped rope. Lines: where it begins, and dotted where it
+An Ince-Strutt chart. Colour: growth of the damped rope. Black: where it begins; blue: where it
 would without damping. Names: which modes grow, alone (2 f) or together (f + f).
 
 python docs/stability.py
@@ -29,7 +29,7 @@ SCENE = rd.Scene(
 
 FREQUENCY = np.linspace(80.0, 360.0, 561)  # of the tension [Hz]
 AMPLITUDE = np.linspace(0.0, 500.0, 101)  # of the tension [N]
-LEVELS = np.linspace(10.0, 500.0, 50)  # where boundaries are computed [N]
+LEVELS = np.linspace(20.0, 500.0, 25)  # where boundaries are computed [N]
 
 
 def mark_boundaries(ax: plt.Axes, scene: rd.Scene, style: str) -> None:
@@ -49,7 +49,7 @@ def main(path: Path) -> None:
         line.remove()
     mark_boundaries(ax, SCENE.replace(damping=None), "C0.")
     mark_boundaries(ax, SCENE, "k.")
-    ax.set_title("growth of a rope whose tension pulsates; blue: where it begins without damping")
+    ax.set_title("growth under a pulsating tension; blue: where it begins without damping", pad=32)
     figure.savefig(path, dpi=100)
 
 

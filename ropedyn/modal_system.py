@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
 from . import _core
 from .chain import ATTACHED, Chain
@@ -63,6 +62,8 @@ class ModalSystem:
     @cached_property
     def blocks(self) -> tuple[NDArray[np.intp], ...]:
         """Modes that tension or damping couple, those of each block in order."""
+        from scipy.sparse.csgraph import connected_components
+
         joined = (self.geometric != 0) | (self.damping != 0)
         count, label = connected_components(joined, directed=False)
         return tuple(np.flatnonzero(label == k) for k in range(count))

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from .stability import StabilityMap
 
 
+LABELS = 32
+"""Height of the names of tongues [pt]."""
+
+
 def plot_floquet(floquet: Floquet, ax: Axes | None) -> Axes:
     """Plot multipliers in the complex plane."""
     ax = new_axes(ax)
@@ -54,9 +58,10 @@ def plot_stability(stability: StabilityMap, ax: Axes | None) -> Axes:
                 textcoords="offset points",
                 xytext=(0, 3),
                 rotation=60,
+                rotation_mode="anchor",
                 fontsize="x-small",
             )
     ax.set(xlabel="frequency of the tension [Hz]", ylabel="amplitude of the tension [N]")
     ax.set(xlim=(f[0], f[-1]), ylim=(a[0], a[-1]) if len(a) > 1 else None)
-    ax.set_title("where transverse motion grows", pad=38 if stability.tongues else None)
+    ax.set_title("where transverse motion grows", pad=LABELS if stability.tongues else None)
     return ax
