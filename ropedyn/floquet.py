@@ -139,7 +139,7 @@ def solve_floquet(model: Model, modes: int | None) -> Floquet:
         value, off, part, made = _multipliers(
             system.only(block), tension.frequency, tension.amplitude
         )
-        begin = 2 * sum(map(len, multiplier)) // 2
+        begin = sum(map(len, multiplier))
         share[begin : begin + len(value), block] = part
         multiplier.append(value)
         error.append(off)
