@@ -156,20 +156,18 @@ def monodromy(system: ModalSystem, frequency: Real, amplitude: Real, steps: int)
     k = len(system.eigenvalue)
     step = 1 / (frequency * steps)
     drift = exponential(rates(system) * step[:, None, None] * DRIFT[: len(HALF), None, None, None])
-    pair = drift[0] @ drift[0]
+    between = [drift[min(j, len(SHARE) - j)] for j in range(1, len(SHARE))]
+    between.append(drift[0] @ drift[0])
     kick = -(system.geometric / scales(system))
     push = np.repeat(step[:, None] * amplitude, 2 * k, axis=1)[:, None, :]
-    state = np.tile(np.eye(2 * k), several)[None] + np.zeros((count, 1, 1))
+    state = drift[0] @ np.tile(np.eye(2 * k), several)
     other = np.empty_like(state)
-    state = drift[0] @ state
     for n in range(steps):
-        for j, share in enumerate(SHARE):
-            force = share * math.cos(2 * math.pi * (n + AT[j]) / steps)
+        if n == steps - 1:
+            between[-1] = drift[0]
+        for share, at, motion in zip(SHARE.tolist(), AT.tolist(), between):
+            force = share * math.cos(2 * math.pi * (n + at) / steps)
             state[:, k:] += (kick @ state[:, :k]) * (force * push)
-            last = j == len(SHARE) - 1
-            motion = pair if last else drift[min(j + 1, len(SHARE) - 1 - j)]
-            if last and n == steps - 1:
-                motion = drift[0]
             state, other = np.matmul(motion, state, out=other), state
     return state.reshape(count, 2 * k, several, 2 * k).swapaxes(1, 2)
 
