@@ -41,9 +41,8 @@ RD_INLINE double look(const double *seen, const double *state, size_t count)
     return all;
 }
 
-RD_CLONES void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t steps,
-                                  const int32_t *length, const double *force, double *state,
-                                  double *value)
+RD_CLONES static void walk(const struct rd_recurrence *recurrence, size_t steps,
+                           const int32_t *length, const double *force, double *state, double *value)
 {
     const size_t modes = recurrence->modes;
     assert(modes % RD_LANES == 0);
@@ -53,4 +52,11 @@ RD_CLONES void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t
         for (size_t r = 0; r < recurrence->responses; r++)
             value[r * steps + n] = look(recurrence->seen + 2 * r * modes, state, 2 * modes);
     }
+}
+
+/* copies of a function per instruction set must be static, or the extension exports them */
+void rd_recurrence_walk(const struct rd_recurrence *recurrence, size_t steps, const int32_t *length,
+                        const double *force, double *state, double *value)
+{
+    walk(recurrence, steps, length, force, state, value);
 }

@@ -32,7 +32,7 @@ STOPS = (Exception, KeyboardInterrupt)
 def march(run: Run) -> History:
     """Integrate step by step; see `Model.transient`."""
     refuse(run.model)
-    _refuse_responses(run)
+    refuse_responses(run)
     chains = lumped_chains(run)
     g = stage_of(run.spectral_radius)
     start = time.perf_counter()
@@ -49,7 +49,8 @@ def march(run: Run) -> History:
     return history
 
 
-def _refuse_responses(run: Run) -> None:
+def refuse_responses(run: Run) -> None:
+    """Refuse what a march does not read."""
     for response in run.responses:
         if response[0] == WIRE:
             raise SceneError('response must not be the tip of a wire where the method is "direct"')

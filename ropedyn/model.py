@@ -696,6 +696,86 @@ class Model(Frozen):
 
         return solve_stability(self, frequency, amplitude, modes=modes, progress=progress)
 
+    def stepped_sine(
+        self,
+        frequency: ArrayLike,
+        *,
+        drive: Any,
+        amplitude: float,
+        response: Point | Sequence[Point] | None = None,
+        quantity: str = "receptance",
+        method: str = "auto",
+        tolerance: float | None = None,
+        progress: Progress = None,
+    ) -> FRF:
+        """Find the frequency response by motion over time to the steady state.
+
+        At each frequency the drive is amplitude cos(omega t), and the motion is followed until it
+        repeats itself from period to period: as the 2015 study found its amplitude-frequency
+        characteristic. For linear scenes it is what `frf` computes directly; of others it is the
+        part of the motion that has the frequency of the drive, and depends on the amplitude and,
+        where a curve bends over, on where the frequency came from: frequencies are stepped through
+        in the order they are given, each from the motion at the one before.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (f,)
+            [Hz], each > 0, in any order.
+        drive : point
+            As in `transient`.
+        amplitude : float
+            [N, N m; m, rad of an end].
+        response : point or list of points, optional
+            As in `frf`.
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration, per amplitude.
+        method : {"auto", "modal", "direct"}
+            As in `transient`.
+        tolerance : float, optional
+            Relative change of the steady state from period to period and, of the direct method,
+            error of its steps; 1e-9 of the modal method where left out and 1e-3 of the direct one.
+        progress : None, True or callable
+            True: a line on stderr; a callable takes the fraction that is done.
+
+        Returns
+        -------
+        FRF
+            `rounding_error` is the estimated relative error of the steady state, and of the steps.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning, or the method does not take the scene.
+        SolveError
+            If there is no steady state: nothing is damped, or motion grows or does not repeat
+            itself.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> damping = rd.RayleighDamping(1.0, 0.0)
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping).compile(elements=8)
+        >>> lines, drive = [10.0, 15.8], ("z", 0.5)
+        >>> stepped = model.stepped_sine(lines, drive=drive, amplitude=1.0)
+        >>> bool(abs(stepped.value / model.frf(lines, drive=drive).value - 1).max() < 1e-8)
+        True
+        """
+        from .stepped_sine import solve_stepped_sine
+
+        return solve_stepped_sine(
+            self,
+            frequency,
+            drive=drive,
+            amplitude=amplitude,
+            response=response,
+            quantity=quantity,
+            method=method,
+            tolerance=tolerance,
+            progress=progress,
+        )
+
     def _refuse_matrices(self) -> None:
         if self.element == "continuous":
             raise SceneError(

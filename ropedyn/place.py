@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from . import check
+from .broken_wire import BrokenWire
 from .errors import SceneError
 from .model import Model
-from .part import BrokenWire
 from .port import Point
 
 

@@ -189,10 +189,10 @@ SPANS = {
 OTHERS = {
     "section": lambda _: _core.section(1.0, 1.0, 1.0, 0.1, 0.1),
     "invert": lambda _: _core.invert(MATRIX),
-    "recurrence": lambda _: _core.recurrence(*STEPPED),
     "march_laws": lambda _: _core.march_laws(
         LAW_NUMBERS, 1e-3, np.ones(2), MATRIX, np.zeros(2), np.zeros(2)
     ),
+    "recurrence": lambda _: _core.recurrence(*STEPPED),
 }
 
 
@@ -540,125 +540,125 @@ REFUSED = {
 LENGTHS = {"-1": -1.0, "beyond": 2.0, "nan": math.nan, "inf": math.inf}
 for name, s in LENGTHS.items():
     REFUSED |= {
-        "march beside of a list": (
-            lambda: _core.march_factor(MARCHED, list(BESIDE), LAW, 1e-3, 0.0),
-            TypeError,
-            "beside must be a tuple",
-        ),
-        "march beside too few elements": (
-            lambda: _core.march_factor(MARCHED, (PER_ELEMENT[1:], *BESIDE[1:]), LAW, 1e-3, 0.0),
-            ValueError,
-            "rate must have",
-        ),
-        "march with a string too short": (
-            lambda: _core.march_factor(
-                MARCHED, (*BESIDE[:2], PER_ELEMENT[1:], *BESIDE[3:]), LAW, 1e-3, 0.0
-            ),
-            ValueError,
-            "string must have",
-        ),
-        "march law of a list": (
-            lambda: _core.march_factor(MARCHED, BESIDE, list(LAW), 1e-3, 0.0),
-            TypeError,
-            "law must be a tuple",
-        ),
-        "march law of a kind there is not": (
-            lambda: _core.march_factor(MARCHED, BESIDE, (*LAW[:2], LAW[2] + 2, LAW[3]), 1e-3, 0.0),
-            ValueError,
-            r"law kind\[1\] must lie in 0 ... 2, got 3",
-        ),
-        "march law beyond the rope": (
-            lambda: _core.march_factor(MARCHED, BESIDE, (LAW[0] + 5, *LAW[1:]), 1e-3, 0.0),
-            ValueError,
-            r"law\[1\] must lie in 0 ... 7, got 9",
-        ),
-        "march law with too few numbers": (
-            lambda: _core.march_factor(MARCHED, BESIDE, (*LAW[:3], LAW[3][:, 1:]), 1e-3, 0.0),
-            ValueError,
-            "law value must have 4 entries along axis 1",
-        ),
-        "laws of a list": (
-            lambda: _core.march_laws(list(LAW_NUMBERS), 1e-3, ONE, MATRIX, ONE, ONE),
-            TypeError,
-            "law must be a tuple",
-        ),
-        "laws with too few increments": (
-            lambda: _core.march_laws(LAW_NUMBERS, 1e-3, ONE, MATRIX, ONE, ONE),
-            ValueError,
-            "increment must have 2 entries",
-        ),
-        "march of a broken wire": (
-            lambda: _core.march_factor(CHAIN, BESIDE, LAW, 1e-3, 0.0),
-            rd.SolveError,
-            "broken wire",
-        ),
-        "march of another plan": (
-            lambda: stepped(plan=PLAN[1:]),
-            ValueError,
-            "plan must be a contiguous writable array",
-        ),
-        "march of a plan that cannot be written": (
-            lambda: stepped(plan=still(PLAN.copy())),
-            ValueError,
-            "plan must be a contiguous writable array",
-        ),
-        "march of another step": (lambda: stepped(h=2e-3), ValueError, "theta = g h"),
-        "march of no step": (lambda: stepped(g=0.5, h=5e-4), ValueError, "theta = g h"),
-        "march of a state of lists": (
-            lambda: stepped(state=list(at_rest())),
-            TypeError,
-            "state must be a tuple of five arrays",
-        ),
-        "march of a state of numbers": (lambda: stepped(state=(0,) * 5), ValueError, "u must be"),
-        "march of a state of integers": (
-            lambda: stepped(state=(np.zeros((NODES, WIDTH), dtype=int), *at_rest()[1:])),
-            ValueError,
-            "u must be a contiguous writable array",
-        ),
-        "march of a state too short": (
-            lambda: stepped(state=(*at_rest()[:2], np.zeros((NODES, WIDTH)), *at_rest()[3:])),
-            ValueError,
-            "f must be a contiguous writable array",
-        ),
-        "march that moves what is free": (
-            lambda: stepped(moved=MOVED + 1),
-            ValueError,
-            r"moved\[0\] must be a held coordinate",
-        ),
-        "march that moves what is not there": (
-            lambda: stepped(moved=MOVED - 1),
-            ValueError,
-            r"moved\[0\] must be a held coordinate",
-        ),
-        "march with speeds for fewer steps": (
-            lambda: stepped(speed=THREE[1:]),
-            ValueError,
-            "speed must have 3 entries along axis 0",
-        ),
-        "march with tension for fewer steps": (
-            lambda: stepped(extra=TENSION[1:]),
-            ValueError,
-            "extra must have 3 entries along axis 0",
-        ),
-        "march to stage 2": (
-            lambda: _core.march_finish(
-                MARCHED, UNSTRETCHED, LAW, PLAN.copy(), G, H, at_rest(), 2, np.ones(2)
-            ),
-            ValueError,
-            "stage must be 0 or 1",
-        ),
-        "march by stages with stretching": (
-            lambda: _core.march_stage(
-                MARCHED, BESIDE, LAW, PLAN.copy(), G, H, at_rest(), 0, DRIVE, ONE, MOVED, ONE
-            ),
-            ValueError,
-            "stretching 0",
-        ),
+        f"shape at {name}": (lambda s=s: _core.shape(CHAIN, 0, s), ValueError, "s must"),
+        f"local at {name}": (lambda s=s: _core.local(CHAIN, 0, s, 0.0), ValueError, "s must"),
+        f"local from {name}": (lambda s=s: _core.local(CHAIN, 0, 0.0, s), ValueError, "p must"),
     }
 REFUSED |= {
-    f"shape at {name}": (lambda s=s: _core.shape(CHAIN, 0, s), ValueError, "s must"),
-    f"local at {name}": (lambda s=s: _core.local(CHAIN, 0, s, 0.0), ValueError, "s must"),
-    f"local from {name}": (lambda s=s: _core.local(CHAIN, 0, 0.0, s), ValueError, "p must"),
+    "march beside of a list": (
+        lambda: _core.march_factor(MARCHED, list(BESIDE), LAW, 1e-3, 0.0),
+        TypeError,
+        "beside must be a tuple",
+    ),
+    "march beside too few elements": (
+        lambda: _core.march_factor(MARCHED, (PER_ELEMENT[1:], *BESIDE[1:]), LAW, 1e-3, 0.0),
+        ValueError,
+        "rate must have",
+    ),
+    "march with a string too short": (
+        lambda: _core.march_factor(
+            MARCHED, (*BESIDE[:2], PER_ELEMENT[1:], *BESIDE[3:]), LAW, 1e-3, 0.0
+        ),
+        ValueError,
+        "string must have",
+    ),
+    "march law of a list": (
+        lambda: _core.march_factor(MARCHED, BESIDE, list(LAW), 1e-3, 0.0),
+        TypeError,
+        "law must be a tuple",
+    ),
+    "march law of a kind there is not": (
+        lambda: _core.march_factor(MARCHED, BESIDE, (*LAW[:2], LAW[2] + 2, LAW[3]), 1e-3, 0.0),
+        ValueError,
+        r"law kind\[1\] must lie in 0 ... 2, got 3",
+    ),
+    "march law beyond the rope": (
+        lambda: _core.march_factor(MARCHED, BESIDE, (LAW[0] + 5, *LAW[1:]), 1e-3, 0.0),
+        ValueError,
+        r"law\[1\] must lie in 0 ... 7, got 9",
+    ),
+    "march law with too few numbers": (
+        lambda: _core.march_factor(MARCHED, BESIDE, (*LAW[:3], LAW[3][:, 1:]), 1e-3, 0.0),
+        ValueError,
+        "law value must have 4 entries along axis 1",
+    ),
+    "laws of a list": (
+        lambda: _core.march_laws(list(LAW_NUMBERS), 1e-3, ONE, MATRIX, ONE, ONE),
+        TypeError,
+        "law must be a tuple",
+    ),
+    "laws with too few increments": (
+        lambda: _core.march_laws(LAW_NUMBERS, 1e-3, ONE, MATRIX, ONE, ONE),
+        ValueError,
+        "increment must have 2 entries",
+    ),
+    "march of a broken wire": (
+        lambda: _core.march_factor(CHAIN, BESIDE, LAW, 1e-3, 0.0),
+        rd.SolveError,
+        "broken wire",
+    ),
+    "march of another plan": (
+        lambda: stepped(plan=PLAN[1:]),
+        ValueError,
+        "plan must be a contiguous writable array",
+    ),
+    "march of a plan that cannot be written": (
+        lambda: stepped(plan=still(PLAN.copy())),
+        ValueError,
+        "plan must be a contiguous writable array",
+    ),
+    "march of another step": (lambda: stepped(h=2e-3), ValueError, "theta = g h"),
+    "march of no step": (lambda: stepped(g=0.5, h=5e-4), ValueError, "theta = g h"),
+    "march of a state of lists": (
+        lambda: stepped(state=list(at_rest())),
+        TypeError,
+        "state must be a tuple of five arrays",
+    ),
+    "march of a state of numbers": (lambda: stepped(state=(0,) * 5), ValueError, "u must be"),
+    "march of a state of integers": (
+        lambda: stepped(state=(np.zeros((NODES, WIDTH), dtype=int), *at_rest()[1:])),
+        ValueError,
+        "u must be a contiguous writable array",
+    ),
+    "march of a state too short": (
+        lambda: stepped(state=(*at_rest()[:2], np.zeros((NODES, WIDTH)), *at_rest()[3:])),
+        ValueError,
+        "f must be a contiguous writable array",
+    ),
+    "march that moves what is free": (
+        lambda: stepped(moved=MOVED + 1),
+        ValueError,
+        r"moved\[0\] must be a held coordinate",
+    ),
+    "march that moves what is not there": (
+        lambda: stepped(moved=MOVED - 1),
+        ValueError,
+        r"moved\[0\] must be a held coordinate",
+    ),
+    "march with speeds for fewer steps": (
+        lambda: stepped(speed=THREE[1:]),
+        ValueError,
+        "speed must have 3 entries along axis 0",
+    ),
+    "march with tension for fewer steps": (
+        lambda: stepped(extra=TENSION[1:]),
+        ValueError,
+        "extra must have 3 entries along axis 0",
+    ),
+    "march to stage 2": (
+        lambda: _core.march_finish(
+            MARCHED, UNSTRETCHED, LAW, PLAN.copy(), G, H, at_rest(), 2, np.ones(2)
+        ),
+        ValueError,
+        "stage must be 0 or 1",
+    ),
+    "march by stages with stretching": (
+        lambda: _core.march_stage(
+            MARCHED, BESIDE, LAW, PLAN.copy(), G, H, at_rest(), 0, DRIVE, ONE, MOVED, ONE
+        ),
+        ValueError,
+        "stretching 0",
+    ),
 }
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0).compile(elements=2, element="rigid").chain
 REFUSED |= {

@@ -1,0 +1,242 @@
+"""Frequency response by motion over time to the steady state, as the 2015 study found it."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .answer import Cost
+from .convolution import convolve
+from .errors import SceneError, SolveError
+from .expansion import Share, expand
+from .force import Sine
+from .frf import FRF, Mesh
+from .mesh_error import mesh_of_frf
+from .model import Model
+from .place import observed, points
+from .port import Point
+from .progress import reporter
+from .transient import METHODS, why_direct
+from .unit import QUANTITIES
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SAMPLES = 16
+"""Of a period that the modal method looks at."""
+
+REST = 100.0
+"""Of the tolerance, what may be left of free motion where it is estimated from the slowest rate."""
+
+LATER = 30
+"""Times the wait for the steady state is doubled."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """What is asked at each frequency.
+
+    Attributes
+    ----------
+    model : Model
+        That is driven.
+    frequency : ndarray, shape (f,)
+        In the order they are stepped through [Hz].
+    drive : point
+        What moves by, or is pushed with, amplitude cos(omega t).
+    amplitude : float
+        [N, N m; m, rad of an end].
+    responses : tuple of points
+        What is watched.
+    tolerance : float
+        Of the steady state, relative.
+    progress : callable
+        Takes the fraction that is done.
+    """
+
+    model: Model
+    frequency: Real
+    drive: Point
+    amplitude: float
+    responses: tuple[Point, ...]
+    tolerance: float
+    progress: Callable[[float], Any]
+
+
+class Steady(NamedTuple):
+    """The steady states."""
+
+    value: Complex
+    """(responses, f) per amplitude."""
+    error: Real
+    """(responses, f) estimated relative error."""
+    method: str
+    unknowns: int
+    sweeps: int = 0
+    factorisations: int = 0
+
+
+def solve_stepped_sine(
+    model: Model,
+    frequency: Any,
+    *,
+    drive: Any,
+    amplitude: float,
+    response: Any,
+    quantity: str,
+    method: str,
+    tolerance: float | None,
+    progress: Any,
+) -> FRF:
+    """Step a sine through frequencies; see `Model.stepped_sine`."""
+    check.one_of(method, "method", METHODS)
+    check.one_of(quantity, "quantity", QUANTITIES)
+    f = check.frequencies(frequency)
+    if not f.min() > 0:
+        raise SceneError(f"frequency must be > 0 [Hz], got {float(f.min())!r}: that is `static`")
+    drives, several = points(model, drive, "drive", forces=False, ends=True)
+    if several:
+        raise SceneError(f"drive must be one point, got {len(drives)}")
+    why = why_direct(model)
+    if method == "modal" and why:
+        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
+    is_direct = method == "direct" or (method == "auto" and bool(why))
+    given = check.optional(tolerance, "tolerance", sign="positive")
+    steps = Steps(
+        model=model,
+        frequency=f,
+        drive=drives[0],
+        amplitude=check.number(amplitude, "amplitude", "N", sign="positive"),
+        responses=observed(model, response, drives),
+        tolerance=given or (DIRECT if is_direct else MODAL),
+        progress=reporter(progress),
+    )
+    start = clock.perf_counter()
+    if is_direct:
+        from .stepped_direct import march_steadily
+
+        found = march_steadily(steps)
+    else:
+        found = _superpose_steadily(steps)
+    seconds = clock.perf_counter() - start
+    value = found.value * (2j * np.pi * f) ** QUANTITIES[quantity]
+    mesh: Mesh | Callable[[], Mesh]
+    mesh = partial(
+        mesh_of_frf, model.scene, f, drives, steps.responses, quantity=quantity, value=value
+    )
+    if why:
+        mesh = Mesh(np.full(value.shape, np.inf))
+    return FRF(
+        drive=drives,
+        response=steps.responses,
+        quantity=quantity,
+        frequency=f,
+        value=value,
+        rounding_error=found.error,
+        cost=Cost(
+            seconds,
+            found.method,
+            len(model.x) - 1,
+            found.unknowns,
+            sweeps=found.sweeps,
+            factorisations=found.factorisations,
+        ),
+        mesh_source=mesh,
+    )
+
+
+MODAL, DIRECT = 1e-9, 1e-3
+"""Tolerance of the steady state that each method keeps where none is given."""
+
+
+def amplitudes(value: Real, samples: int) -> Complex:
+    """Return the complex amplitudes over each of some periods, shape (responses, periods)."""
+    turn = np.exp(-2j * np.pi * np.arange(samples) / samples)
+    return np.asarray(2 / samples * (value.reshape(len(value), -1, samples) @ turn))
+
+
+# --- linear: modes ------------------------------------------------------------------------------
+
+
+def _superpose_steadily(steps: Steps) -> Steady:
+    model, f = steps.model, steps.frequency
+    resolved = 2 * math.pi * float(f.max())
+    shares = expand(model, [steps.drive], steps.responses, resolved=resolved)
+    value = np.zeros((len(steps.responses), len(f)), dtype=np.complex128)
+    error = np.zeros(value.shape)
+    slowest = min((_slowest(share) for share in shares), default=math.inf)
+    for k, one in enumerate(f):
+        value[:, k], error[:, k] = _steady(steps, shares, float(one), slowest)
+        left_out = _left_out(shares, 2 * math.pi * float(one), len(value))
+        size = np.abs(value[:, k])
+        error[:, k] += np.divide(left_out, size, out=np.zeros_like(size), where=size > 0)
+        steps.progress((k + 1) / len(f))
+    modes = sum(len(s.expansion.sigma) + len(s.expansion.p) for s in shares)
+    return Steady(value, error, "modal", modes)
+
+
+def _slowest(share: Share) -> float:
+    """Return the rate at which the slowest motion that drive and responses share decays [1/s]."""
+    e = share.expansion
+    seen = ((e.a != 0) | (e.b != 0)).any(axis=(0, 1))
+    over = np.sqrt(np.maximum(e.sigma**2 - e.square, 0.0))
+    # the slow rate of overdamped motion as the product over the fast one
+    fast = e.sigma + over
+    slow = np.where(over > 0, np.divide(e.square, fast, out=e.sigma.copy(), where=fast > 0), fast)
+    single = -e.p[(e.r != 0).any(axis=(0, 1))]
+    return float(min(slow[seen].min(initial=math.inf), single.min(initial=math.inf)))
+
+
+def _left_out(shares: tuple[Share, ...], omega: float, responses: int) -> Real:
+    """Return how far modes that are left out move beyond what is static, at most.
+
+    A mode's response is its static one over 1 - (omega/omega_k)^2 or less.
+    """
+    most = np.zeros(responses)
+    for share in shares:
+        e = share.expansion
+        if math.isfinite(e.beyond):
+            ratio = (omega / e.beyond) ** 2
+            most[share.response] += e.bound[0] * (ratio / (1 - ratio) if ratio < 1 else math.inf)
+    return most
+
+
+def _steady(
+    steps: Steps, shares: tuple[Share, ...], frequency: float, slowest: float
+) -> tuple[Complex, Real]:
+    """Return amplitudes per unit of the drive in the steady state, and their relative error."""
+    if not slowest > 0:
+        raise SolveError(
+            f"frequency {frequency!r} Hz has no steady state: motion that is not damped is excited "
+            "where it begins, and stays; `frf` needs none"
+        )
+    force = Sine(1.0, frequency, phase=math.pi / 2)
+    period = 1 / frequency
+    wait = math.log(REST / steps.tolerance) / slowest if math.isfinite(slowest) else 0.0
+    for _ in range(LATER):
+        first = math.ceil(wait / period) * period
+        looks = first + period * np.arange(2 * SAMPLES) / SAMPLES
+        time = np.append(0.0, looks) if first > 0 else looks
+        motion = np.zeros((len(steps.responses), len(time)))
+        for share in shares:
+            motion[share.response] += convolve(share.expansion, 0, force, time, 0)
+        found = amplitudes(motion[:, -2 * SAMPLES :], SAMPLES)
+        value = found[:, 1] * np.exp(-2j * np.pi * frequency * first)
+        change = np.abs(found[:, 1] - found[:, 0])
+        size = np.abs(value)
+        if (change <= steps.tolerance * size.max(initial=0.0)).all():
+            relative = np.divide(change, size, out=np.zeros_like(size), where=size > 0)
+            return value, relative + 16 * np.finfo(float).eps * frequency * (first + period)
+        wait = max(2 * wait, period)
+    raise SolveError(
+        f"frequency {frequency!r} Hz has no steady state after {first:g} s: its amplitude changes "
+        f"by {float((change / size.max()).max()):.1e} a period"
+    )

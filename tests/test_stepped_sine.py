@@ -1,0 +1,154 @@
+"""Steady states under a stepped sine: against the direct response, and a bent resonance."""
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+import ropedyn as rd
+
+DRIVE = rd.study2015.DRIVE
+RESPONSES = [("z", 0.50625), ("beta", 0.50625), ("alpha", 0.3375)]
+
+
+@pytest.fixture(scope="module")
+def study():
+    return rd.study2015.scene().compile(elements=8, element="difference")
+
+
+def away(stepped, direct):
+    return np.abs(stepped.value / direct.value - 1)
+
+
+@pytest.mark.claim(
+    "stepped sine over time against the direct response at the study's peaks and between",
+    reference="the sweep at each frequency",
+    accepted=1e-9,
+)
+def test_modal_steady_states_are_the_direct_response(study, claim):
+    peaks = study.frf(np.linspace(30, 250, 2001), drive=DRIVE).peaks()[0].frequency
+    lines = np.concatenate([np.linspace(30.0, 250.0, 12), peaks])
+    stepped = study.stepped_sine(lines, drive=DRIVE, amplitude=2.0, response=RESPONSES)
+    direct = study.frf(lines, drive=DRIVE, response=RESPONSES)
+    error = away(stepped, direct)
+    claim(error.max())
+    assert (error <= stepped.rounding_error + 1e-11).all()
+
+
+def test_marched_steady_states_are_the_direct_response_within_their_error(study):
+    lines = [69.4, 150.0]
+    options = {"drive": DRIVE, "response": RESPONSES}
+    stepped = study.stepped_sine(lines, amplitude=2.0, method="direct", tolerance=1e-4, **options)
+    error = away(stepped, study.frf(lines, **options))
+    assert (error <= stepped.rounding_error).all()
+    assert stepped.rounding_error.max() < 5e-4
+    assert stepped.cost.method == "direct"
+    assert stepped.cost.sweeps > 1000
+
+
+def test_quantities_and_moved_ends_are_those_of_the_direct_response():
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
+    scene = rd.Scene(rope, tension=100.0, damping=rd.RayleighDamping(20.0, 1e-5))
+    model = scene.compile(elements=12)
+    options = {"drive": ("end", 0, "z"), "response": ("z", 0.5), "quantity": "accelerance"}
+    stepped = model.stepped_sine([20.0, 16.0], amplitude=1e-3, **options)
+    # lumps with end correction in both
+    assert away(stepped, model.frf([20.0, 16.0], **options)).max() < 1e-8
+    assert stepped.labels == model.frf([20.0], **options).labels
+
+
+def test_modes_left_out_of_continuous_spans_are_in_the_error():
+    scene = rd.study2015.tensed_beam(2830.0, 1.54)
+    model = scene.replace(damping=rd.RayleighDamping(4.0, 1e-5)).compile()
+    lines = [64.0, 100.0, 300.0]
+    stepped = model.stepped_sine(lines, drive=("z", 0.5), amplitude=1.0)
+    error = away(stepped, model.frf(lines, drive=("z", 0.5)))
+    assert (error <= stepped.rounding_error).all()
+    assert stepped.rounding_error.max() < 1e-3
+
+
+# --- one mass on a string whose tension grows ---------------------------------------------------
+
+LENGTH, DENSITY, TENSION, STIFFNESS, DECAY, FORCE = 1.0, 0.1, 100.0, 1e5, 12.0, 2.0
+"""A string of two elements: m x'' + m DECAY x' + 4T/L x + 8 EA/L^3 x^3 = FORCE cos."""
+
+
+def hard(**change):
+    tension = rd.Tension(TENSION, stretching=True)
+    rope = rd.Rope(LENGTH, DENSITY, axial_stiffness=STIFFNESS)
+    scene = rd.Scene(rope, tension=tension, damping=rd.RayleighDamping(DECAY, 0.0), **change)
+    return scene.compile(elements=2)
+
+
+def balanced(frequency, guess, harmonics=7):
+    """Return the amplitude of the first harmonic of a periodic motion, near a guess."""
+    mass, samples = DENSITY * LENGTH / 2, 16 * harmonics
+    omega, turn = 2 * np.pi * frequency, 2 * np.pi * np.arange(samples) / samples
+    k = np.arange(1, harmonics + 1)
+    basis = np.concatenate([np.cos(np.outer(turn, k)), np.sin(np.outer(turn, k))], axis=1)
+    rate = omega * np.concatenate(
+        [-k * np.sin(np.outer(turn, k)), k * np.cos(np.outer(turn, k))], 1
+    )
+
+    def unbalanced(c):
+        x, v = basis @ c, rate @ c
+        a = -((omega * np.tile(k, 2)) ** 2 * basis) @ c
+        stiff = 4 * TENSION / LENGTH * x + 8 * STIFFNESS / LENGTH**3 * x**3
+        return 2 / samples * basis.T @ (mass * (a + DECAY * v) + stiff - FORCE * np.cos(turn))
+
+    start = np.zeros(2 * harmonics)
+    start[[0, harmonics]] = guess.real, -guess.imag
+    found = root(unbalanced, start, tol=1e-14)
+    assert np.abs(unbalanced(found.x)).max() < 1e-10
+    return found.x[0] - 1j * found.x[harmonics]
+
+
+def test_bent_resonance_is_that_of_harmonic_balance_and_jumps():
+    model = hard()
+    first = model.modes(1).frequency[0]
+    lines = first * np.linspace(1.0, 1.7, 8)
+    options = {"drive": ("z", LENGTH / 2), "amplitude": FORCE, "tolerance": 1e-4}
+    up = model.stepped_sine(lines, **options)
+    down = model.stepped_sine(lines[::-1], **options)
+    rising, falling = FORCE * up.value[0], FORCE * down.value[0, ::-1]
+    for f, one, error in zip(lines, rising, up.rounding_error[0]):
+        assert abs(balanced(f, one) / one - 1) <= error
+    for f, one, error in zip(lines, falling, down.rounding_error[0, ::-1]):
+        assert abs(balanced(f, one) / one - 1) <= error
+    # between the jump up and the jump down there are two motions
+    assert (np.abs(rising) > 2 * np.abs(falling)).any()
+    assert np.isclose(rising[0], falling[0], rtol=1e-3)
+    assert np.isclose(rising[-1], falling[-1], rtol=1e-3)
+    assert np.isinf(up.mesh_error).all()
+
+
+def test_small_amplitudes_are_linear():
+    model, linear = hard(), hard().scene.without("mean stretching").compile(elements=2)
+    lines = [30.0, 31.0]
+    small = model.stepped_sine(lines, drive=("z", 0.5), amplitude=1e-4, tolerance=1e-6)
+    assert away(small, linear.frf(lines, drive=("z", 0.5))).max() < 1e-6
+
+
+# --- what has no steady state -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["modal", "direct"])
+def test_undamped_motion_has_no_steady_state(method):
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=2)
+    with pytest.raises(rd.SolveError, match=r"10\.0 Hz has no steady state"):
+        model.stepped_sine([10.0], drive=("z", 0.5), amplitude=1.0, method=method)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"frequency": [0.0]}, "frequency must be > 0"),
+        ({"amplitude": 0.0}, "amplitude must be a finite number > 0"),
+        ({"drive": [("z", 0.5), ("z", 0.2)]}, "drive must be one point"),
+        ({"method": "modal"}, "method must be"),
+        ({"tolerance": -1.0}, "tolerance must be"),
+    ],
+)
+def test_what_has_no_meaning_is_refused(change, message):
+    given = {"frequency": [10.0], "drive": ("z", 0.5), "amplitude": 1.0} | change
+    with pytest.raises(rd.SceneError, match=message):
+        hard().stepped_sine(**given)
