@@ -59,9 +59,9 @@ class Dense:
         y[:n] = 0.0 if u is None else u[r]
         y[n : 2 * n] = 0.0 if v is None else v[r]
         y[2 * n :] = np.sin(omega * time[0] + phase), np.cos(omega * time[0] + phase)
-        states, last = [y], np.inf
+        states, last = [y], 0.0
         for step in np.diff(time):
-            if len(states) == 1 or abs(step - last) > 1e-12 * last:
+            if abs(step - last) > 1e-12 * step:
                 last, forward = step, la.expm(A * step)
             states.append(forward @ states[-1])
         states = np.array(states)
