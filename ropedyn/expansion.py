@@ -276,6 +276,8 @@ def _closed(
         p, r = np.array([-stiff / soften]), np.where(power == 0, rest / soften, 0.0)[:, :, None]
         rest = np.where(power == 0, 0.0, rest)
     bound = np.zeros(rest.shape)
+    if not np.isfinite(beyond) and _spurious(asked.model.chain.only(asked.component)):
+        beyond = float(eigenvalue.max(initial=0.0))
     if np.isfinite(beyond):
         bound = _bound(asked, lambda own: _apart(own, eigenvalue, circles)[1])
     lowest = float(np.sqrt(max(beyond, 0.0)))
@@ -340,7 +342,25 @@ def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> E
     bound = np.zeros(rest.shape)
     if np.isfinite(poles.radius):
         bound = _bound(asked, lambda own: _taken(own, rates, poles, circles)[1])
+    far = horizon(asked.model.chain.only(asked.component), rates)
+    if np.isfinite(far) and np.isfinite(poles.radius):
+        terms, rest = _relaxing(asked, terms, rest, far)
     return Expansion(*terms, rest, bound, poles.radius)
+
+
+def _relaxing(asked: _Asked, terms: Terms, rest: Real, far: float) -> tuple[Terms, Real]:
+    """Let what is left out follow forces as overdamped motion does that accumulates at a rate.
+
+    The higher the mode, the more g lambda outweighs inertia and tension: g = 1 + s/far.
+    """
+    sigma, square, a, b, p, r = terms
+    follows = np.logical_or.outer(
+        np.array([is_end(drive) for drive in asked.drives]),
+        np.array([is_force(point) for point in asked.responses]),
+    )
+    relaxing = np.where(follows, 0.0, rest * far)[:, :, None]
+    more = np.append(p, -far), np.concatenate([r, relaxing], axis=2)
+    return (sigma, square, a, b, *more), np.where(follows, rest, 0.0)
 
 
 def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Poles:
@@ -388,11 +408,19 @@ def _how_many(span: Chain, rates: Rates) -> float:
     most = most_roots(span, rates)
     if most is None:
         return np.inf
-    each = np.bincount(span.term_of, minlength=len(span.mass))
-    free = span.held == 0
+    return most - 2 * _spurious(span)
+
+
+def _spurious(chain: Chain) -> int:
+    """Return how many modes of lumps there are whose mass is negative, which are no motion.
+
+    The end correction of tensed elements makes the mass matrix indefinite.
+    """
+    each = np.bincount(chain.term_of, minlength=len(chain.mass))
+    free = chain.held == 0
     kept = free[:, :, None] & free[:, None, :]
-    negative = (np.linalg.eigvalsh(np.where(kept, span.mass, 0.0)) < 0).sum(axis=1)
-    return most - 2 * int(negative @ each)
+    negative = (np.linalg.eigvalsh(np.where(kept, chain.mass, 0.0)) < 0).sum(axis=1)
+    return int(negative @ each)
 
 
 def _count(found: Damped) -> int:
