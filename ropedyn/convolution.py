@@ -121,7 +121,8 @@ def _sines(modes: Pairs, rest: Real, turns: list[Piece], time: Real, order: int)
         v = v + piece.kick
         terms = _motion(modes, piece, q, v, stop - piece.start or time[-1] - time[0])
         value[:, now] = evaluate(terms.rate, _seen(modes, terms, order), time[now] - piece.start)
-        value[:, now] += rest * piece.value(time[now], order)
+        if rest.any():
+            value[:, now] += rest * piece.value(time[now], order)
         if following is not None:
             q, v = _state(terms, len(q), stop - piece.start)
     return value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,12 @@ Numerator = Callable[[Complex, Indices], Complex]
 
 BLOCK = 128
 """Times whose powers are tabled: a grid of n needs BLOCK + n/BLOCK exponentials of each rate."""
+SHARES = tuple(2**k for k in range(2, 40))
+"""Blocks from which on terms that have decayed are left out."""
+
+NOTHING = 1e-20
+"""Of the largest term at first."""
+
 SLICE = 1 << 16
 """Exponentials at once where times are not a grid."""
 DIGITS = 38.0
@@ -96,15 +103,36 @@ def is_uniform(time: Real) -> bool:
 
 
 def _on_grid(rate: Complex, coefficient: Complex, time: Real) -> Real:
-    """Evaluate by blocks: e^(z (a BLOCK + b) h) is a product, the sum over z one of matrices."""
+    """Evaluate by blocks: e^(z (a BLOCK + b) h) is a product, the sum over z one of matrices.
+
+    Terms leave from the block on in which they have decayed to nothing.
+    """
     h = (time[-1] - time[0]) / (len(time) - 1)
     blocks = -(-len(time) // BLOCK)
-    start = np.exp(np.multiply.outer(rate, time[0] + h * BLOCK * np.arange(blocks)))
     within = np.exp(np.multiply.outer(rate, h * np.arange(min(BLOCK, len(time)))))
-    left = (coefficient[:, :, None] * start).transpose(0, 2, 1)
-    left = np.concatenate([left.real, -left.imag], axis=2).reshape(-1, 2 * len(rate))
-    values = left @ np.concatenate([within.real, within.imag])
+    last = _lasts(rate, coefficient, time, h * BLOCK)
+    values = np.zeros((len(coefficient), blocks, within.shape[1]))
+    for first, stop in pairwise(np.unique(np.minimum([0, *SHARES, blocks], blocks)).tolist()):
+        z = np.flatnonzero(last >= first)
+        if len(z) == 0:
+            break
+        begin = time[0] + h * BLOCK * np.arange(first, stop)
+        left = coefficient[:, z, None] * np.exp(np.multiply.outer(rate[z], begin))
+        left = left.transpose(0, 2, 1)
+        left = np.concatenate([left.real, -left.imag], axis=2).reshape(-1, 2 * len(z))
+        right = np.concatenate([within[z].real, within[z].imag])
+        values[:, first:stop] = (left @ right).reshape(len(coefficient), stop - first, -1)
     return values.reshape(len(coefficient), -1)[:, : len(time)]
+
+
+def _lasts(rate: Complex, coefficient: Complex, time: Real, block: float) -> Real:
+    """Return the last block [of a length in s] in which each term is seen beside the largest."""
+    size = np.abs(coefficient) * np.exp(rate.real * time[0])
+    largest = size.max(axis=1, keepdims=True)
+    share = np.divide(size, largest, out=np.zeros_like(size), where=largest > 0).max(axis=0)
+    seen = np.log(np.maximum(share, NOTHING) / NOTHING)
+    decay = np.maximum(-rate.real, 0.0) * block
+    return np.divide(seen, decay, out=np.full(len(rate), np.inf), where=decay > 0)
 
 
 def _anywhere(rate: Complex, coefficient: Complex, time: Real) -> Real:

@@ -100,6 +100,16 @@ class Lumps:
     released: bool
 
     @property
+    def is_damped(self) -> bool:
+        """Whether all motion is damped along the chain."""
+        damping = self.chain.damping
+        if damping is None:
+            return bool(self.beside.rate.all())
+        free = (self.chain.held == 0) & (np.einsum("tii->ti", self.chain.mass) > 0)
+        along = np.einsum("tii->ti", damping)[free]
+        return bool(self.beside.rate.all()) or bool(len(along) and along.all())
+
+    @property
     def massless(self) -> NDArray[np.bool_]:
         """Which free coordinates have no inertia, shape (nodes, width)."""
         return _massless(self.chain)

@@ -85,8 +85,9 @@ class Walk:
     ) -> None:
         width, nodes = len(run.model.coordinates), len(run.model.x)
         self.run, self.line, self.g, self.share = run, line, g, share
-        refined = run.spectral_radius == 1 and (run.step is not None or _is_fine(run.tolerance))
-        self.motions = [Motion(lumps, refined=refined) for lumps in chains]
+        exact = run.spectral_radius == 1 and (run.step is not None or _is_fine(run.tolerance))
+        # what is damped forgets the rounding of its steps
+        self.motions = [Motion(one, refined=exact and not one.is_damped) for one in chains]
         self.now = np.zeros((len(chains), len(ENERGIES)))
         self.passage = Passage(
             value=np.zeros((len(run.responses), len(run.time))),
