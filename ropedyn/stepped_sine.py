@@ -97,25 +97,16 @@ def solve_stepped_sine(
     progress: Any,
 ) -> FRF:
     """Step a sine through frequencies; see `Model.stepped_sine`."""
-    check.one_of(method, "method", METHODS)
     check.one_of(quantity, "quantity", QUANTITIES)
-    f = check.frequencies(frequency)
-    if not f.min() > 0:
-        raise SceneError(f"frequency must be > 0 [Hz], got {float(f.min())!r}: that is `static`")
-    drives, several = points(model, drive, "drive", forces=False, ends=True)
-    if several:
-        raise SceneError(f"drive must be one point, got {len(drives)}")
-    why = why_direct(model)
-    if method == "modal" and why:
-        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
-    is_direct = method == "direct" or (method == "auto" and bool(why))
+    is_direct = _is_direct(model, method)
     given = check.optional(tolerance, "tolerance", sign="positive")
+    point = _driven(model, drive)
     steps = Steps(
         model=model,
-        frequency=f,
-        drive=drives[0],
+        frequency=_stepped(frequency),
+        drive=point,
         amplitude=check.number(amplitude, "amplitude", "N", sign="positive"),
-        responses=observed(model, response, drives),
+        responses=observed(model, response, (point,)),
         tolerance=given or (DIRECT if is_direct else MODAL),
         progress=reporter(progress),
     )
@@ -126,13 +117,40 @@ def solve_stepped_sine(
         found = march_steadily(steps)
     else:
         found = _superpose_steadily(steps)
-    seconds = clock.perf_counter() - start
+    return _answer(steps, found, quantity, clock.perf_counter() - start)
+
+
+def _is_direct(model: Model, method: str) -> bool:
+    check.one_of(method, "method", METHODS)
+    why = why_direct(model)
+    if method == "modal" and why:
+        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
+    return method == "direct" or (method == "auto" and bool(why))
+
+
+def _stepped(frequency: Any) -> Real:
+    f = check.frequencies(frequency)
+    if not f.min() > 0:
+        raise SceneError(f"frequency must be > 0 [Hz], got {float(f.min())!r}: that is `static`")
+    return f
+
+
+def _driven(model: Model, drive: Any) -> Point:
+    drives, several = points(model, drive, "drive", forces=False, ends=True)
+    if several:
+        raise SceneError(f"drive must be one point, got {len(drives)}")
+    return drives[0]
+
+
+def _answer(steps: Steps, found: Steady, quantity: str, seconds: float) -> FRF:
+    model, f = steps.model, steps.frequency
     value = found.value * (2j * np.pi * f) ** QUANTITIES[quantity]
+    drives = (steps.drive,)
     mesh: Mesh | Callable[[], Mesh]
     mesh = partial(
         mesh_of_frf, model.scene, f, drives, steps.responses, quantity=quantity, value=value
     )
-    if why:
+    if why_direct(model):
         mesh = Mesh(np.full(value.shape, np.inf))
     return FRF(
         drive=drives,
