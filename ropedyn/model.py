@@ -749,8 +749,8 @@ class Model(Frozen):
         SceneError
             If a value has no meaning, or the method does not take the scene.
         SolveError
-            If there is no steady state: nothing is damped, or motion grows or does not repeat
-            itself.
+            If there is no steady state: nothing is damped, motion grows or does not repeat itself,
+            or drive and pulsating tension do not begin anew together within 1000 periods.
 
         Examples
         --------

@@ -15,6 +15,7 @@ from .force import Sine
 from .lumps import Lumps, lumped_chains, refuse
 from .motion import Motion, stage_of
 from .stepped_sine import Steady, Steps, amplitudes
+from .tension import Tension
 from .transient import Run
 
 Real = NDArray[np.float64]
@@ -24,7 +25,13 @@ FEWEST, MOST = 32, 1 << 14
 """Steps of a period."""
 
 WINDOW = 8
-"""Periods between two looks at the amplitude."""
+"""Periods between two looks at the amplitude, at least."""
+
+TOGETHER = 1000
+"""Periods after which drive and tension must both begin anew, at most."""
+
+BLOCK = 4096
+"""Steps of one call of the core, where a period has no more: a look for Ctrl-C."""
 
 LOOKS = 4
 """In a row that must agree."""
@@ -112,13 +119,12 @@ def _settled(steps: Steps, motions: list[Motion], frequency: float, count: int) 
     """Follow the motion until its amplitude stays, with so many steps a period."""
     for motion in motions:
         motion.lumps = _pushed(motion.lumps, _push(steps, frequency))
-    h = 1 / (frequency * count)
-    time = h * np.arange(
-        WINDOW * count + 1, dtype=np.float64
-    )  # each window ends where the sine began
-    seen = [_window(steps, motions, time, h, count)]
-    for _ in range(LONGEST // WINDOW):
-        seen.append(_window(steps, motions, time, h, count))
+    periods = _together(steps, frequency)
+    seen: list[Complex] = []
+    for k in range(max(LONGEST // periods, LOOKS + 1)):
+        seen.append(
+            _window(steps, motions, frequency, count, range(k * periods, (k + 1) * periods))
+        )
         if len(seen) <= LOOKS:
             continue
         changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
@@ -128,8 +134,25 @@ def _settled(steps: Steps, motions: list[Motion], frequency: float, count: int) 
             return _Settled(seen[-1], np.full(len(seen[-1]), left))
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
-        f"changes by {float(changes[-1] / size):.1e} of itself in {WINDOW} periods"
+        f"changes by {float(changes[-1] / size):.1e} of itself in {periods} periods"
     )
+
+
+def _together(steps: Steps, frequency: float) -> int:
+    """Return after how many periods drive and tension both begin anew, `WINDOW` at least."""
+    tension = steps.model.scene.tension
+    if not isinstance(tension, Tension) or not tension.pulsates:
+        return WINDOW
+    turns = tension.frequency / frequency * np.arange(1, TOGETHER + 1)
+    whole = np.flatnonzero(np.abs(turns - np.rint(turns)) <= 1e-12 * np.maximum(turns, 1.0))
+    if len(whole) == 0:
+        raise SolveError(
+            f"frequency {frequency!r} Hz has no steady state: the tension pulsates at "
+            f"{tension.frequency!r} Hz, and both do not begin anew together within {TOGETHER} "
+            "periods"
+        )
+    least = int(whole[0]) + 1
+    return math.ceil(WINDOW / least) * least
 
 
 def _left(changes: Real) -> float:
@@ -148,16 +171,21 @@ def _pushed(lumps: Lumps, force: Sine) -> Lumps:
     return replace(lumps, forces=forces, motions=(force,) * len(lumps.motions))
 
 
-def _window(steps: Steps, motions: list[Motion], time: Real, h: float, count: int) -> Complex:
-    """Follow all chains through a window; return the amplitudes of its last period."""
+def _window(
+    steps: Steps, motions: list[Motion], frequency: float, count: int, periods: range
+) -> Complex:
+    """Follow all chains through some periods; return the mean of their amplitudes."""
     found = np.zeros(len(steps.responses), dtype=np.complex128)
-    for motion in motions:
-        stride = motion.stride(time, h, KEEPS, (0.0, 0.0))
-        if stride.error is not None:
-            raise stride.error
-        last = stride.read[-count:]
-        value = motion.lumps.reading.values(last, time[-count:], 0).T
-        # samples are at the ends of steps, the first one step after the sine begins
-        turn = np.exp(-2j * np.pi / count)
-        found[motion.lumps.number] = amplitudes(value, count)[:, 0] * turn
+    most = max(BLOCK // count, 1)
+    # samples are at the ends of steps, the first one step after a period begins
+    turn = np.exp(-2j * np.pi / count) / len(periods)
+    for first in periods[::most]:
+        these = np.arange(first * count, min(first + most, periods.stop) * count + 1)
+        time = these / (frequency * count)
+        for motion in motions:
+            stride = motion.stride(time, 1 / (frequency * count), KEEPS, (0.0, 0.0))
+            if stride.error is not None:
+                raise stride.error
+            value = motion.lumps.reading.values(stride.read, time[1:], 0).T
+            found[motion.lumps.number] += turn * amplitudes(value, count).sum(axis=1)
     return found

@@ -128,6 +128,56 @@ def test_small_amplitudes_are_linear():
     assert away(small, linear.frf(lines, drive=("z", 0.5))).max() < 1e-6
 
 
+# --- one mass on a string whose tension pulsates -------------------------------------------------
+
+
+def hill(frequency, pulsation, stiffness, terms=12):
+    """Amplitude per force of m x'' + m DECAY x' + (4T/L + stiffness cos) x = cos, by Hill's sum.
+
+    x is the real part of the sum of X_n exp(i (omega + n omega_p) t), where one more frequency may
+    be -omega.
+    """
+    n = np.arange(-terms, terms + 1)
+    omega = 2 * np.pi * (frequency + n * pulsation)
+    mass = DENSITY * LENGTH / 2
+    matrix = np.diag(4 * TENSION / LENGTH + mass * (1j * DECAY * omega - omega**2))
+    matrix += stiffness / 2 * (np.eye(len(n), k=1) + np.eye(len(n), k=-1))
+    x = np.linalg.solve(matrix, np.where(n == 0, 1.0, 0.0))
+    return x[terms] + x[omega == -omega[terms]].sum().conj()
+
+
+def pulsed(pulsation, amplitude):
+    tension = rd.Tension(TENSION, amplitude=amplitude, frequency=pulsation)
+    return hard().scene.replace(tension=tension).compile(elements=2)
+
+
+@pytest.mark.parametrize("pulsation", [30.0, 10.0, 17.0])
+def test_motion_under_a_tension_of_another_period_is_hills(pulsation):
+    # both begin anew after 2, 2 and 20 periods of the drive
+    stepped = pulsed(pulsation, 30.0).stepped_sine(
+        [20.0], drive=("z", LENGTH / 2), amplitude=1.0, tolerance=1e-5
+    )
+    exact = hill(20.0, pulsation, 4 * 30.0 / LENGTH)
+    assert abs(stepped.value[0, 0] / exact - 1) <= stepped.rounding_error[0, 0]
+    assert stepped.rounding_error[0, 0] < 2e-5
+
+
+def test_law_of_another_period_is_hills():
+    stiffness, omega = 120.0, 2 * np.pi * 30.0
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -stiffness * np.cos(omega * t) * u)
+    scene = hard(parts=[law]).scene.without("mean stretching")
+    stepped = scene.compile(elements=2).stepped_sine(
+        [20.0], drive=("z", LENGTH / 2), amplitude=1.0, tolerance=2e-2
+    )
+    error = abs(stepped.value[0, 0] / hill(20.0, 30.0, stiffness) - 1)
+    assert error <= stepped.rounding_error[0, 0] < 2e-2
+
+
+def test_tension_that_never_begins_anew_with_the_drive_is_refused():
+    with pytest.raises(rd.SolveError, match="do not begin anew together"):
+        pulsed(20.0 * np.sqrt(2), 30.0).stepped_sine([20.0], drive=("z", LENGTH / 2), amplitude=1.0)
+
+
 # --- what has no steady state -------------------------------------------------------------------
 
 
