@@ -63,6 +63,9 @@ RESOLVED = 0.1
 NOTHING = 1e-6
 """Responses smaller than this part of the motion of any node count as so much."""
 
+ROUNDING = 1e-9
+"""The same of the motion of other coordinates, which what is 0 by symmetry is the rounding of."""
+
 
 @dataclass(frozen=True, eq=False)
 class Pace:
@@ -187,7 +190,7 @@ class Trend:
         self._before = (ratio, distance)
         self.error = distance / (ratio**guess - 1)
         share = max(1 / (ratio**order - 1), AGREE)
-        resolved = _is_resolved(passage, coarse)
+        resolved = _is_resolved(run, passage, coarse)
         return apart * share, max(distance * share, 0.0 if resolved else FAR)
 
 
@@ -224,20 +227,35 @@ def _worst(run: Run, passage: Passage, apart: Real) -> float:
     return float(np.divide(most, size, out=np.zeros_like(most), where=most > 0).max())
 
 
-def _is_resolved(fine: Passage, coarse: Passage) -> bool:
+def _is_resolved(run: Run, fine: Passage, coarse: Passage) -> bool:
     """Whether both saw the same motion of the whole rope, however coarsely."""
     apart = np.abs(fine.last - coarse.last).max(axis=0)
-    return bool((apart <= RESOLVED * fine.largest[0]).all())
+    size = np.maximum(fine.largest, NOTHING * _others(run, fine))[0]
+    return bool((apart <= RESOLVED * size).all())
 
 
 def _floor(run: Run, passage: Passage) -> Real:
     """Return what responses are to be known to, however small they are."""
     floor = np.zeros(len(run.responses))
+    size = np.maximum(NOTHING * passage.largest, ROUNDING * _others(run, passage))
     for k, response in enumerate(run.responses):
         if not is_force(response):
-            u, v = passage.largest[:, run.model.coordinates.index(moving(response))]
-            floor[k] = (u, v, v * v / u if u > 0 else 0.0)[run.order] * NOTHING
+            at = run.model.coordinates.index(moving(response))
+            (u, v), least = passage.largest[:, at], size[:, at]
+            floor[k] = (*least, v * least[1] / u if u > 0 else 0.0)[run.order]
     return floor
+
+
+def _others(run: Run, passage: Passage) -> Real:
+    """Return the largest motion of what each coordinate moves with, shape (2, coordinates)."""
+    model, size = run.model, np.zeros_like(passage.largest)
+    for component in model.components:
+        at = [model.coordinates.index(c) for c in component]
+        # a rotation moves what is as far away as the rope is long
+        arm = np.array([1.0 if c in ("x", "z") else model.scene.rope.length for c in component])
+        most = (passage.largest[:, at] * arm).max(axis=1, keepdims=True)
+        size[:, at] = most / arm
+    return size
 
 
 def halved(run: Run, chains: list[Lumps], g: float) -> Passage:

@@ -498,3 +498,23 @@ def test_memory_does_not_grow_with_the_steps(steps):
     model.transient([0.0, 1e-4 * steps], **asked)
     # kilobytes: blocks of 4096 steps, whatever their number
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8_000
+
+
+@pytest.mark.parametrize("stretching", [False, True])
+def test_responses_that_are_rounding_by_symmetry_take_no_finer_steps(stretching):
+    """A moment in the middle of two elements turns it and does not lift it."""
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=0.1, rotary_inertia=1e-4, axial_stiffness=1e3)
+    tension = rd.Tension(100.0, stretching=stretching)
+    model = rd.Scene(rope, tension=tension).compile(elements=2)
+    history, alone = (
+        model.transient(
+            TIME,
+            drive=("beta", 0.5),
+            force=rd.Chirp(0.06, 5.0, 60.0, 0.1),
+            response=response,
+            method="direct",
+        )
+        for response in ([("z", 0.5), ("beta", 0.5)], ("beta", 0.5))
+    )
+    assert np.abs(history.value[0]).max() < 1e-12 * np.abs(history.value[1]).max()
+    assert history.cost.sweeps == alone.cost.sweeps
