@@ -72,6 +72,8 @@ class Lumps:
         One for each.
     reading : Reading
         What is watched.
+    local : ndarray, shape (responses, drives)
+        How far forces between nodes move what is watched in the same element at once.
     number : ndarray of int
         Which of the responses of the run each is.
     pulsation : callable or None
@@ -94,6 +96,7 @@ class Lumps:
     moved: NDArray[np.int32]
     motions: tuple[Force, ...]
     reading: Reading
+    local: Real
     number: NDArray[np.intp]
     pulsation: Callable[[Real], Real] | None
     start: State
@@ -120,6 +123,14 @@ class Lumps:
         node, row = self.drives.node, self.drives.row != 0
         none = self.massless
         return np.asarray((row & np.stack([none[node], none[node + 1]], axis=1)).any(axis=(1, 2)))
+
+    def values(self, read: Real, time: Real, order: int) -> Real:
+        """Return the responses, shape (times, responses), of what the core read at these times."""
+        value = self.reading.values(read, time, order)
+        if self.local.any():
+            verb = ("value", "rate")[order]
+            value = value + np.array([getattr(f, verb)(time) for f in self.forces]).T @ self.local.T
+        return value
 
 
 def lumped_chains(run: Run) -> list[Lumps]:
@@ -184,6 +195,9 @@ def _lumps(
     pulsation = pulsation_of(model, component)
     bare = nodal(chain, x, component, loads) != 0
     drives = ports(chain, x, component, points)._replace(force=None)
+    local = _local(chain, x, component, points, asked)
+    if local.any():
+        _refuse_local(run, chain, component, beside, pulsation)
     return Lumps(
         coordinates=component,
         chain=chain,
@@ -197,6 +211,7 @@ def _lumps(
         moved=_moved(chain, component, [run.drives[k] for k in ends]),
         motions=tuple(run.forces[k] for k in ends),
         reading=reading(chain, x, component, asked, beside=beside, pulsation=pulsation),
+        local=local,
         number=np.array(watched, dtype=np.intp),
         pulsation=pulsation,
         start=start,
@@ -211,18 +226,50 @@ def _cut(
     chain, x = model.chain.only(component), model.x
     inside = [p for p in (*drives, *filter(is_force, responses)) if locate(x, p[1])[1] is not None]
     if chain.kind != TENSED:
-        if inside:
+        if any(map(is_force, inside)):
             raise SceneError(
-                f'element must be "tensed" where {inside[0]} lies between nodes and is driven or '
-                f"an internal force, got {model.element!r}"
+                "response of an internal force must stand at a node unless elements are "
+                f'"tensed", got {next(filter(is_force, inside))} between nodes of '
+                f"{model.element!r} elements"
             )
-    elif stops(chain, x):
+        return chain, x
+    if stops(chain, x):
         most = np.sqrt(np.abs(chain.tension) * chain.flexibility[:, 2, 2]) * chain.length
         raise SceneError(
             "elements must be more, or rigid, so that the compression bends none by itself: they "
             f"must be shorter than sqrt(B/|T|), got {most.max():.3g} of it"
         )
     return cut(chain, x, [p[1] for p in inside])
+
+
+def _local(
+    chain: Chain, x: Real, component: tuple[str, ...], drives: list[Point], responses: list[Point]
+) -> Real:
+    """Return the flexibility inside driven elements, shape (responses, drives)."""
+    found = np.zeros((len(responses), len(drives)))
+    for r, watched in enumerate(responses):
+        for d, pushed in enumerate(drives):
+            (left, s), (other, p) = locate(x, watched[1]), locate(x, pushed[1])
+            if s is not None and p is not None and left == other and not is_force(watched):
+                local = _core.local(chain, left, s, p)
+                found[r, d] = local[component.index(watched[0]), component.index(pushed[0])]
+    return found
+
+
+def _refuse_local(
+    run: Run,
+    chain: Chain,
+    component: tuple[str, ...],
+    beside: Beside,
+    pulsation: Callable[[Real], Real] | None,
+) -> None:
+    """Refuse responses in a driven element whose own shape follows forces late or unsteadily."""
+    changes = "beta" not in component and (pulsation is not None or beside.stretching != 0)
+    if changes or beside.rate.any() or run.order == 2:
+        raise SceneError(
+            f'element must be "tensed", got {run.model.element!r}, where a response lies between '
+            "nodes beside a force and is an acceleration, or stiffness is damped or changes"
+        )
 
 
 def _massless(chain: Chain) -> NDArray[np.bool_]:

@@ -104,7 +104,7 @@ class Onset:
             pair = np.stack([motion[rows.node], motion[rows.node + 1]], axis=1)
             read[0, k, moves] = np.einsum("rsc,rsc->r", rows.row, pair)[moves]
         read[0, 0, moves] -= self.motion.late * read[0, 1, moves]
-        values = self.motion.lumps.reading.values(read, np.array([self.time]), order)
+        values = self.motion.lumps.values(read, np.array([self.time]), order)
         return np.asarray(values[0], dtype=np.float64)
 
     def _times(self, steps: int, h: float) -> Real:

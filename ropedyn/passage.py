@@ -147,7 +147,7 @@ class Walk:
         passage = self.passage
         for k, (motion, stride) in enumerate(zip(self.motions, strides)):
             lumps = motion.lumps
-            read = lumps.reading.values(stride.read[steps], block.time[steps + 1], self.run.order)
+            read = lumps.values(stride.read[steps], block.time[steps + 1], self.run.order)
             passage.value[lumps.number[:, None], times] = read.T
             energy = stride.energy[:done]
             energy[:, INPUT:] = self.now[k, INPUT:] + np.cumsum(energy[:, INPUT:], axis=0)

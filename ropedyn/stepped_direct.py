@@ -186,6 +186,6 @@ def _window(
             stride = motion.stride(time, 1 / (frequency * count), KEEPS, (0.0, 0.0))
             if stride.error is not None:
                 raise stride.error
-            value = motion.lumps.reading.values(stride.read, time[1:], 0).T
+            value = motion.lumps.values(stride.read, time[1:], 0).T
             found[motion.lumps.number] += turn * amplitudes(value, count).sum(axis=1)
     return found

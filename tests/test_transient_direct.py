@@ -446,7 +446,10 @@ def test_what_has_no_steps_is_refused_by_name(scene, words):
             {"start": PLUCK, "response": ("F_z", 0.5), "quantity": "velocity"},
             'quantity must be "displacement"',
         ),
-        ({"drive": ("z", 0.4), "force": rd.Step(1.0)}, 'element must be "tensed"'),
+        (
+            {"drive": ("z", 0.4), "force": rd.Step(1.0), "quantity": "acceleration"},
+            'element must be "tensed"',
+        ),
     ],
 )
 def test_questions_without_an_answer_are_refused(asked, words):
@@ -518,3 +521,72 @@ def test_responses_that_are_rounding_by_symmetry_take_no_finer_steps(stretching)
     )
     assert np.abs(history.value[0]).max() < 1e-12 * np.abs(history.value[1]).max()
     assert history.cost.sweeps == alone.cost.sweeps
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
+@pytest.mark.parametrize(
+    ("element", "rope", "tension"),
+    [
+        ("rigid", rd.Rope(1.0, 0.1), 100.0),
+        ("rigid", BEAM.replace(rotary_inertia=1e-4), 100.0),
+        ("difference", BEAM.replace(rotary_inertia=1e-4), 0.0),
+    ],
+)
+def test_force_between_nodes_moves_a_chain_as_the_sum_over_modes_tells(
+    element, rope, tension, quantity
+):
+    scene = rd.Scene(rope, tension=tension, damping=rd.RayleighDamping(20.0, 0.0))
+    model = scene.compile(elements=4, element=element)
+    asked = {
+        "drive": [("z", 0.35), ("z", 0.8)],
+        "force": [rd.Sine(1.0, 20.0, phase=0.3), rd.Impulse(0.1, duration=5e-3)],
+        "response": [("z", 0.35), ("z", 0.3), ("z", 0.5)],
+        "quantity": quantity,
+    }
+    exact = model.transient(TIME, method="modal", **asked).value
+    stepped = model.transient(TIME, method="direct", tolerance=1e-3, **asked)
+    assert (np.abs(stepped.value - exact).max(axis=1) < 1e-3 * np.abs(exact).max(axis=1)).all()
+    energy = stepped.energy
+    change = energy["kinetic"] + energy["strain"] - energy["input"] + energy["dissipated"]
+    assert np.ptp(change) < 1e-9 * energy["input"].max()
+
+
+@pytest.mark.parametrize("name", ["F_z", "M_beta"])
+def test_force_between_nodes_leaves_the_internal_forces_of_the_frequency_response(name):
+    rope = BEAM.replace(rotary_inertia=1e-4)
+    scene = rd.Scene(rope, tension=100.0, damping=rd.ViscousDamping(100.0))
+    model = scene.compile(elements=4, element="rigid")
+    asked = {"drive": ("z", 0.1), "response": [(name, 0.0), (name, 0.25)]}
+    history = model.transient(
+        [0.0, 4.0],
+        force=rd.Step(1.0),
+        method="direct",
+        step=0.01,
+        spectral_radius=0.0,
+        **asked,
+    )
+    static = model.frf([0.0], **asked).value[:, 0].real
+    assert history.value[:, -1] == pytest.approx(static, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("damping", "response", "quantity"),
+    [
+        (None, ("z", 0.4), "acceleration"),
+        (rd.RayleighDamping(0.0, 1e-4), ("z", 0.4), "displacement"),
+        (None, ("F_z", 0.4), "displacement"),
+    ],
+)
+def test_shape_of_a_driven_element_is_refused_where_it_is_not_known(damping, response, quantity):
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping).compile(
+        elements=4, element="rigid"
+    )
+    with pytest.raises(rd.SceneError, match='"tensed"'):
+        model.transient(
+            [0.0, 0.1],
+            drive=("z", 0.35),
+            force=rd.Step(1.0),
+            response=response,
+            quantity=quantity,
+            method="direct",
+        )
