@@ -120,9 +120,17 @@ class Lumps:
     @property
     def is_bare(self) -> NDArray[np.bool_]:
         """Whether each force acts on a coordinate without inertia, shape (drives,)."""
-        node, row = self.drives.node, self.drives.row != 0
-        none = self.massless
+        return self._without_mass(self.drives)
+
+    def _without_mass(self, points: Ports) -> NDArray[np.bool_]:
+        """Whether each point moves with a coordinate without inertia, shape (points,)."""
+        node, row, none = points.node, points.row != 0, self.massless
         return np.asarray((row & np.stack([none[node], none[node + 1]], axis=1)).any(axis=(1, 2)))
+
+    @property
+    def follows(self) -> bool:
+        """Whether something is watched that has no inertia where a force acts on such."""
+        return bool(self.is_bare.any() and self._without_mass(self.reading.ports).any())
 
     def values(self, read: Real, time: Real, order: int) -> Real:
         """Return the responses, shape (times, responses), of what the core read at these times."""
@@ -144,6 +152,7 @@ def lumped_chains(run: Run) -> list[Lumps]:
         if drives or loads or any(one.law.kind == "call" for one in laws):
             found.append(_lumps(run, component, laws, drives, loads))
             _refuse_blows(found[-1])
+            _refuse_accelerations(run, found[-1])
             _refuse_calls(found[-1])
     return found
 
@@ -168,6 +177,15 @@ def _refuse_blows(lumps: Lumps) -> None:
     if any(motion.blows for motion in lumps.motions):
         raise SceneError(
             "force must not be an Impulse at an instant where the motion of an end is given"
+        )
+
+
+def _refuse_accelerations(run: Run, lumps: Lumps) -> None:
+    """Refuse those of what follows a force at once: they are second derivatives of the force."""
+    if run.order == 2 and lumps.follows:
+        raise SceneError(
+            'quantity must be "displacement" or "velocity" where a force acts, and a response '
+            'lies, on a coordinate without mass and the method is "direct"'
         )
 
 

@@ -110,7 +110,10 @@ class Motion:
     def push(self, time: Real, h: float, g: float, begin: float, end: float) -> Push:
         """Return what pushes during steps.
 
-        The speeds lead ends that are moved to where they are at the end of each step exactly.
+        The speeds lead ends that are moved to where they are at the end of each step exactly. So
+        do forces what has no inertia, by the scheme that keeps energy, of two midpoint steps: it
+        takes them as means over both ends of these. Where they act there, at the middle, it would
+        be off by as much at each end, with another sign each time, and its velocity more and more.
 
         Parameters
         ----------
@@ -124,12 +127,16 @@ class Motion:
         lumps = self.lumps
         stages = time[:-1, None] + h * np.array([g, 1 - g])
         force = np.zeros((len(stages), 2, len(lumps.forces)))
-        for k, one in enumerate(lumps.forces):
-            force[..., k] = one.value(stages)
-        speed = np.zeros((len(stages), 2, len(lumps.motions)))
         inside = time.copy()
         inside[0] += begin
         inside[-1] -= end
+        for k, (one, follows) in enumerate(zip(lumps.forces, lumps.is_bare)):
+            if follows and g == KEEPS:
+                ends, middle = one.value(inside), one.value((time[:-1] + time[1:]) / 2)
+                force[..., k] = np.stack([ends[:-1] + middle, middle + ends[1:]], axis=1) / 2
+            else:
+                force[..., k] = one.value(stages)
+        speed = np.zeros((len(stages), 2, len(lumps.motions)))
         for k, (one, place) in enumerate(zip(lumps.motions, lumps.moved)):
             where = one.value(inside)
             where[0] = self.state.u[tuple(place)]

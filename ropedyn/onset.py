@@ -111,11 +111,11 @@ class Onset:
         return np.asarray(self.time + h * np.arange(steps + 1), dtype=np.float64)
 
     def _push(self, steps: int, h: float, g: float) -> Push:
-        """Return the forces of this time, kept for some steps."""
-        force = np.tile(self.force.value, (steps, 2, 1))
+        """Return the forces of this time, which grow as they do there."""
+        stages = self._times(steps, h)[:-1, None] + h * np.array([g, 1 - g])
+        force = self.force.value + self.force.rate * (stages - self.time)[..., None]
         speed = np.tile(self.ends.rate, (steps, 2, 1))
         pulsation = self.motion.lumps.pulsation
-        stages = self._times(steps, h)[:-1, None] + h * np.array([g, 1 - g])
         return Push(force, speed, None if pulsation is None else pulsation(stages))
 
 

@@ -133,8 +133,9 @@ class Walk:
             return motion.stride(block.time, block.h, self.g, edges)
         time, late, motion.late = block.time.copy(), motion.late, 0.0
         time[0] += late
-        first = motion.stride(time[:2], block.h - late, self.g, edges)
-        if first.error is not None or block.steps == 1:
+        alone = block.steps == 1
+        first = motion.stride(time[:2], block.h - late, self.g, (0.0, edges[1] if alone else 0.0))
+        if first.error is not None or alone:
             return first
         return first.then(motion.stride(time[1:], block.h, self.g, (0.0, edges[1])))
 

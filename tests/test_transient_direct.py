@@ -590,3 +590,31 @@ def test_shape_of_a_driven_element_is_refused_where_it_is_not_known(damping, res
             quantity=quantity,
             method="direct",
         )
+
+
+@pytest.mark.parametrize("drive", [("beta", 0.5), ("z", 0.35)])
+@pytest.mark.parametrize(
+    "force", [rd.Sine(1.0, 20.0, phase=0.3), rd.Chirp(1.0, 10.0, 80.0, 0.01), SAMPLES]
+)
+def test_velocity_of_what_has_no_inertia_follows_the_force(force, drive):
+    scene = rd.Scene(BEAM, tension=100.0, damping=rd.RayleighDamping(20.0, 0.0))
+    model = scene.compile(elements=4, element="rigid")
+    asked = {
+        "drive": drive,
+        "force": force,
+        "response": [("beta", 0.5), ("beta", 0.25)],
+        "quantity": "velocity",
+    }
+    exact = model.transient(TIME, method="modal", **asked).value
+    # of second order: on the way to 300 Hz of the shortest waves
+    for step, most in ((2e-5, 4e-4), (5e-6, 4e-5)):
+        stepped = model.transient(TIME, method="direct", step=step, **asked).value
+        assert np.abs(stepped - exact).max() < most * np.abs(exact).max()
+
+
+def test_acceleration_of_what_has_no_inertia_is_refused_under_a_force():
+    model = rd.Scene(BEAM, tension=100.0).compile(elements=4)
+    asked = {"force": rd.Sine(1.0, 20.0), "quantity": "acceleration", "method": "direct"}
+    with pytest.raises(rd.SceneError, match="on a coordinate without mass"):
+        model.transient(TIME, drive=("beta", 0.5), **asked)
+    model.transient(TIME, drive=("beta", 0.5), response=("z", 0.5), step=1e-4, **asked)
