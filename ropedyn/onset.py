@@ -97,8 +97,9 @@ class Onset:
 
     def values(self, order: int) -> Real:
         """Return the responses at this time, motion as the state has it."""
-        read = self.probe().read
         rows, state = self.motion.lumps.reading.ports, self.motion.state
+        told = order < 2 and rows.force is None
+        read = np.zeros((1, 3, len(rows.node))) if told else self.probe().read
         moves = rows.row.any(axis=(1, 2))
         for k, motion in enumerate((state.u, state.v)):
             pair = np.stack([motion[rows.node], motion[rows.node + 1]], axis=1)

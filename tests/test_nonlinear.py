@@ -332,3 +332,34 @@ def test_work_of_pulsation_is_input():
     history = released(mass_on_a_string(tension=tension), step=PERIOD / 50)
     assert np.ptp(history.energy["input"]) > 0.1 * history.energy["strain"][0]
     assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
+
+
+# --- what is not asked for is not computed ------------------------------------------------------
+
+EFFECTS = {
+    "pulsating tension": {"tension": rd.Tension(TENSION, amplitude=30.0, frequency=20.0)},
+    "mean stretching": {
+        "tension": rd.Tension(TENSION, stretching=True),
+        "rope": rd.Rope(LENGTH, DENSITY, axial_stiffness=AXIAL),
+    },
+    "stop": {"parts": [rd.Stop(LENGTH / 2, 5e3)]},
+    "node force": {"parts": [rd.NodeForce(LENGTH / 2, lambda t, u, v: -u)]},
+    "dashpot": {"parts": [rd.Dashpot(LENGTH / 2, 5.0, exponent=2.0)]},
+}
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_run_without_an_effect_is_that_of_the_scene_that_never_had_it(effect):
+    given = EFFECTS[effect]
+    scene = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION).replace(**given)
+    never = rd.Scene(scene.rope, tension=TENSION)
+    asked = {"drive": MIDDLE, "force": rd.Sine(1.0, 20.0), "method": "direct", "step": PERIOD / 60}
+    left, own = (
+        one.compile(elements=4).transient(TIME, **asked) for one in (scene.without(effect), never)
+    )
+    assert effect in scene.effects
+    assert left.cost.factorisations == own.cost.factorisations == 1
+    assert left.cost.sweeps == own.cost.sweeps
+    assert np.array_equal(left.value, own.value)
+    assert left.energy.keys() == own.energy.keys()
+    assert all(np.array_equal(left.energy[name], own.energy[name]) for name in own.energy)
