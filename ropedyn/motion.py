@@ -166,8 +166,9 @@ class Motion:
         self.state = state
         if stride.error is None:
             # kept exactly by this scheme: what was there before the step
-            change = stride.energy[0, [INPUT, DISSIPATED, LAWS]] @ [-1, 1, 1]
-            stride.energy[0, KINETIC] += change
+            with np.errstate(over="ignore", invalid="ignore"):
+                change = stride.energy[0, [INPUT, DISSIPATED, LAWS]] @ [-1, 1, 1]
+                stride.energy[0, KINETIC] += change
         return stride
 
     def _march(

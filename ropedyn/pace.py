@@ -242,7 +242,8 @@ def _floor(run: Run, passage: Passage) -> Real:
         if not is_force(response):
             at = run.model.coordinates.index(moving(response))
             (u, v), least = passage.largest[:, at], size[:, at]
-            floor[k] = (*least, v * least[1] / u if u > 0 else 0.0)[run.order]
+            rate = v / u if run.order == 2 and u > 0 else 0.0
+            floor[k] = (*least, rate * least[1])[run.order]
     return floor
 
 

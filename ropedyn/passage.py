@@ -151,7 +151,8 @@ class Walk:
             read = lumps.values(stride.read[steps], block.time[steps + 1], self.run.order)
             passage.value[lumps.number[:, None], times] = read.T
             energy = stride.energy[:done]
-            energy[:, INPUT:] = self.now[k, INPUT:] + np.cumsum(energy[:, INPUT:], axis=0)
+            with np.errstate(over="ignore", invalid="ignore"):
+                energy[:, INPUT:] = self.now[k, INPUT:] + np.cumsum(energy[:, INPUT:], axis=0)
             passage.energy[k, times] = energy[steps]
             if done:
                 self.now[k] = energy[-1]

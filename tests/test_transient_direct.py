@@ -618,3 +618,15 @@ def test_acceleration_of_what_has_no_inertia_is_refused_under_a_force():
     with pytest.raises(rd.SceneError, match="on a coordinate without mass"):
         model.transient(TIME, drive=("beta", 0.5), **asked)
     model.transient(TIME, drive=("beta", 0.5), response=("z", 0.5), step=1e-4, **asked)
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
+@pytest.mark.parametrize("size", [2.0**-600, 2.0**600])
+def test_motion_is_in_proportion_to_forces_of_any_size(size, quantity):
+    """Energies leave the range of numbers: motion does not."""
+    model = STRING.compile(elements=4)
+    asked = {"drive": ("z", 0.5), "quantity": quantity, "method": "direct"}
+    one, other = (
+        model.transient(TIME, force=rd.Sine(amplitude, 40.0), **asked) for amplitude in (1.0, size)
+    )
+    assert np.array_equal(other.value, size * one.value)
