@@ -104,6 +104,16 @@ class Frozen:
     def __post_init__(self) -> None:
         freeze(self)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what is kept: of parts that have been asked for no more what they come from."""
+        state = dict(vars(self))
+        declared: Any = type(self)
+        for item in fields(declared):
+            through = item.metadata.get("through")
+            if through in state:
+                state[item.name] = state[through]
+        return state
+
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
         freeze(self)

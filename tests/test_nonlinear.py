@@ -1,6 +1,7 @@
 """Motion that is not linear, against closed forms: one mass on a string of two elements."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -288,6 +289,14 @@ def test_law_that_raises_is_named_and_nothing_is_lost():
     assert part.stopped == "ZeroDivisionError: no"
     assert len(part.time) == 6
     assert np.abs(part.value - whole.value[:, :6]).max() < 1e-13 * np.abs(whole.value).max()
+
+
+def test_history_of_a_law_without_a_name_pickles_once_it_is_asked():
+    history = pushed(rd.NodeForce(LENGTH / 2, lambda t, u, v: -u))
+    error, energy = history.step_error, history.energy
+    copy = pickle.loads(pickle.dumps(history))
+    assert np.array_equal(copy.step_error, error)
+    assert energy.keys() == copy.energy.keys()
 
 
 def test_law_that_jumps_does_not_converge_and_says_when():
