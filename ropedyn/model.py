@@ -562,6 +562,8 @@ class Model(Frozen):
         The direct method lumps all inertia of a chain at its nodes, without the correction that
         makes the frequencies of tensed elements fourth order. What has no inertia follows forces at
         once: rotations of a rope without rotary inertia, and points between nodes that are driven.
+        Their accelerations under a force are refused. Between nodes of rigid and difference
+        elements forces act as in `frf`.
 
         Examples
         --------
