@@ -8,7 +8,9 @@ A mode that a force of 1 at the drive d moves by phi_d eta_d has r = phi_d phi_e
 
 y = f where what is left out of the modes follows at once, and y + gamma y' = f where stiffness is
 damped; without blows at an instant, which would put infinite energy there. Integrals are Gauss's,
-between all that jumps, of pieces below the fastest mode's period.
+between all that jumps, of pieces below the period of the modes they are of and of the forces; what
+decays fast after a jump has pieces that grow from its time on. So a mode of omega takes 4 omega
+values of itself a second, or 16 and more between two times.
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,14 +36,15 @@ from .proportional import proportional
 from .transient import Run
 
 Real = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 NAMES = ("kinetic", "strain", "input", "dissipated")
 
 NODES, RADIANS = 8, 2.0
-"""Of Gauss's rule, and of the fastest mode in each piece: right to 1e-13."""
+"""Of Gauss's rule, and of mode and force in each piece: right to 1e-13."""
 
-BLOCK = 64
-"""Modes that are looked at together."""
+BLOCK, ALIKE = 64, 4.0
+"""Modes that are looked at together, at most, and how far their rates may be apart in integrals."""
 
 MOST = 1 << 21
 """Numbers at a time."""
@@ -66,6 +71,16 @@ def _refuse(run: Run) -> None:
             why = "damping is not proportional"
     if why:
         raise SceneError(f'method must be "direct" for the energy where {why}, got "modal"')
+
+
+class Group(NamedTuple):
+    """Modes that are integrated together."""
+
+    modes: Indices
+    rate: float
+    """Highest angular frequency, or rate of slow decay or growth [rad/s]."""
+    decay: float
+    """Fastest rate of what only decays [1/s], 0 of none."""
 
 
 @dataclass(frozen=True)
@@ -112,40 +127,68 @@ class Driven:
             strain += np.einsum("dek,dkt,ekt->t", stiff, q, q, optimize=True) / 2
         y = self._rest(self.time, 0)
         still = np.einsum("de,dt,et->t", self.rest, y, y) / 2
-        given = self._integral(self._power) + self._blows()
-        lost = np.zeros(len(self.time))
-        if self.own.sigma.any() or self.lag:
-            lost = self._integral(self._loss)
+        given, lost = self._blows(), np.zeros(len(self.time))
+        for group in self._groups():
+            given += self._integral(partial(self._power, group.modes), group)
+            if self.own.sigma[group.modes].any():
+                lost += self._integral(partial(self._loss, group.modes), group)
+        if self.lag:
+            rest = Group(np.zeros(0, dtype=np.intp), 0.0, 1 / self.lag)
+            given += self._integral(self._power_of_rest, rest)
+            lost += self._integral(self._loss_of_rest, rest)
         return kinetic, strain + still, given if self.lag else given + still, lost
 
-    def _power(self, time: Real) -> Real:
-        """Return what forces do to the modes, and to what lags."""
-        since = np.append(self.time[0], time)
-        velocity = self._velocity(since)
-        if self.lag:
-            velocity = velocity + self.rest @ self._rest(since, 1)
-        return np.asarray((self._force(time) * velocity[:, 1:]).sum(axis=0))
+    def _groups(self) -> list[Group]:
+        """Return modes of like rates."""
+        sigma, omega = self.own.sigma, np.sqrt(np.abs(self.own.square))
+        split = np.sqrt(np.maximum(sigma**2 - self.own.square, 0.0))
+        creeps = (sigma > omega) & (self.own.square > 0)
+        decay = np.where(creeps, sigma + split, 0.0)
+        rate = np.divide(self.own.square, decay, out=omega + np.abs(sigma), where=creeps)
+        groups, order = [], np.argsort(rate)
+        while len(order):
+            alike = rate[order[:BLOCK]] <= ALIKE * rate[order[0]]
+            modes, order = order[: alike.sum()], order[alike.sum() :]
+            groups.append(Group(modes, float(rate[modes[-1]]), float(decay[modes].max())))
+        return groups
 
-    def _loss(self, time: Real) -> Real:
-        """Return what dampers take."""
-        lost = np.zeros(len(time))
-        for part in _blocks(len(self.own.sigma)):
-            v = self._modes(part, np.append(self.time[0], time), 1)[..., 1:]
-            r = 2 * self.own.sigma[part] * self.own.a[..., part]
-            lost += np.einsum("dek,dkt,ekt->t", r, v, v, optimize=True)
-        if self.lag:
-            y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
-            lost += self.lag * np.einsum("de,dt,et->t", self.rest, y, y)
-        return lost
+    def _power(self, modes: Indices, time: Real) -> Real:
+        """Return what forces do to some modes."""
+        velocity = self._velocity(np.append(self.time[0], time), modes)[:, 1:]
+        return np.asarray((self._force(time) * velocity).sum(axis=0))
 
-    def _velocity(self, time: Real) -> Real:
-        """Return what the modes have of the velocity of each drive, (drives, t)."""
-        shape = self.rest.shape
-        modes = self.own._replace(rest=np.zeros(shape), p=np.zeros(0), r=np.zeros((*shape, 0)))
-        moved = [_moved(modes, d, one, time, 1) for d, one in enumerate(self.given)]
+    def _loss(self, modes: Indices, time: Real) -> Real:
+        """Return what dampers take from some modes."""
+        v = self._modes(modes, np.append(self.time[0], time), 1)[..., 1:]
+        r = 2 * self.own.sigma[modes] * self.own.a[..., modes]
+        return np.asarray(np.einsum("dek,dkt,ekt->t", r, v, v, optimize=True))
+
+    def _power_of_rest(self, time: Real) -> Real:
+        """Return what forces do to what lags."""
+        y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
+        return np.asarray((self._force(time) * (self.rest @ y)).sum(axis=0))
+
+    def _loss_of_rest(self, time: Real) -> Real:
+        """Return what dampers take from what lags."""
+        y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
+        return np.asarray(self.lag * np.einsum("de,dt,et->t", self.rest, y, y))
+
+    def _velocity(self, time: Real, modes: Indices | slice) -> Real:
+        """Return what some modes have of the velocity of each drive, (drives, t)."""
+        own, shape = self.own, self.rest.shape
+        some = own._replace(
+            sigma=own.sigma[modes],
+            square=own.square[modes],
+            a=own.a[..., modes],
+            b=own.b[..., modes],
+            rest=np.zeros(shape),
+            p=np.zeros(0),
+            r=np.zeros((*shape, 0)),
+        )
+        moved = [_moved(some, d, one, time, 1) for d, one in enumerate(self.given)]
         return np.asarray(np.sum(moved, axis=0))
 
-    def _modes(self, part: slice, time: Real, order: int) -> Real:
+    def _modes(self, part: Indices | slice, time: Real, order: int) -> Real:
         """Return the motion of each mode per drive, (drives, modes, t)."""
         sigma, square = self.own.sigma[part], self.own.square[part]
         k = len(sigma)
@@ -167,13 +210,11 @@ class Driven:
 
     # --- over time ---
 
-    def _integral(self, power: Callable[[Real], Real]) -> Real:
+    def _integral(self, power: Callable[[Real], Real], group: Group) -> Real:
         """Integrate from the first time to each, shape (t,)."""
-        jumps = [at for force in self.given for at in _jumps(force)]
-        inside = [at for at in jumps if self.time[0] < at < self.time[-1]]
-        edges = np.unique(np.concatenate([self.time, inside]))
-        own, lag = self.own, 1 / self.lag if self.lag else 0.0
-        fastest = max(lag, *(np.sqrt(np.abs(own.square)) + own.sigma).tolist(), 0.0)
+        edges = self._edges(group.decay)
+        forces = [force for force in self.given if not isinstance(force, float)]
+        fastest = max([group.rate, *(2 * math.pi * force.highest for force in forces)])
         parts = np.ceil(np.diff(edges) * fastest / RADIANS).astype(np.intp) + 1
         step = np.repeat(np.diff(edges) / parts, parts)
         first = np.repeat(np.cumsum(parts) - parts, parts)
@@ -188,6 +229,19 @@ class Driven:
         total = np.concatenate([[0.0], np.cumsum(sums)])[np.append(0, np.cumsum(parts))]
         return np.asarray(total[np.searchsorted(edges, self.time)])
 
+    def _edges(self, decay: float) -> Real:
+        """Return times, what jumps between, and after each of them pieces that double [s]."""
+        jumps = [at for force in self.given for at in _jumps(force)]
+        inside = [at for at in jumps if self.time[0] < at < self.time[-1]]
+        edges = np.unique(np.concatenate([self.time, inside]))
+        length = np.diff(edges)
+        doublings = math.ceil(math.log2(max(length.max() * decay / RADIANS, 1.0)))
+        after = [edges]
+        for k in range(doublings):
+            piece = 2.0**k * RADIANS / decay
+            after.append(edges[:-1][length > piece] + piece)
+        return np.unique(np.concatenate(after))
+
     def _blows(self) -> Real:
         """Return what blows at an instant put in: their impulse times the mean velocity."""
         blows: dict[float, Real] = {}
@@ -200,7 +254,7 @@ class Driven:
         for when, kick in blows.items():
             since = np.array([self.time[0], when]) if when > self.time[0] else self.time[:2]
             at = int(when > self.time[0])
-            after = self._velocity(since)[:, at]
+            after = self._velocity(since, slice(None))[:, at]
             total[self.time >= when] += kick @ (after - r @ kick / 2)
         return total
 

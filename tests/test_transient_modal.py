@@ -311,6 +311,22 @@ def test_energy_is_kept_to_rounding(name, damping):
     assert energy["dissipated"][-1] > 0 or damping is None
 
 
+@pytest.mark.parametrize(
+    ("force", "damping"),
+    [
+        (rd.Sine(1.0, 5000.0), None),  # 55 times the fastest mode
+        (rd.Step(1.0), rd.RayleighDamping(0.0, 1e-10)),  # what lags is gone in 1e-9 s
+        (rd.Sine(1.0, 20.0), rd.RayleighDamping(0.0, 1e-2)),  # overdamped up to 4e4/s
+    ],
+)
+def test_energy_is_kept_where_forces_or_decay_are_faster_than_modes(force, damping):
+    model = rd.Scene(STRING, tension=TENSION / 10, damping=damping).compile(elements=4)
+    energy = model.transient([0.0, 0.3, 1.0], drive=("z", 0.4), force=force).energy
+    total = energy["kinetic"] + energy["strain"] - energy["input"] + energy["dissipated"]
+    most = max(energy["kinetic"].max(), energy["strain"].max())
+    assert np.ptp(total) < 1e-9 * most
+
+
 def test_energy_of_what_modes_do_not_part_is_refused():
     for name, drive in (("rope with a dashpot", ("z", 0.4)), ("rope", ("end", 0, "z"))):
         model = CHAINS[name].compile(elements=6)
