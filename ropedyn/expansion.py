@@ -8,6 +8,7 @@ place, s = 0 where the rope is held, less that of the modes.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -241,7 +242,7 @@ def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
 def _below(asked: _Asked) -> int:
     """Return how many modes there are below eight times what is of interest."""
     try:
-        below = min((REACH * asked.resolved) ** 2, HIGHEST)
+        below = min(REACH * asked.resolved, math.sqrt(HIGHEST)) ** 2
         return count_component(asked.model, asked.component, below)
     except SolveError:  # more than can be walked
         return MANY

@@ -34,7 +34,7 @@ class Piece(NamedTuple):
         """Return the force at times [s], `order` times differentiated."""
         angle = self.frequency * (time - self.start) + order * math.pi / 2
         wave = self.cosine * np.cos(angle) + self.sine * np.sin(angle)
-        return np.asarray(self.frequency**order * wave)
+        return np.asarray(np.float64(self.frequency) ** order * wave)
 
 
 def pieces(force: Force, begin: float) -> list[Piece]:

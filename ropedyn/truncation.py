@@ -55,7 +55,12 @@ def left_out(
         Largest damping ratio of them.
     """
     bound = np.asarray(bound, dtype=np.float64)
-    reach = _reach(force, (float(time[0]), float(time[-1])), beyond, order, ratio)
+    try:
+        reach = _reach(force, (float(time[0]), float(time[-1])), beyond, order, ratio)
+    except OverflowError:  # a derivative has left the numbers
+        reach = math.inf
+    if reach == 0:  # no force: also where there is no bound
+        return np.zeros_like(bound)
     return np.multiply(bound, reach, out=np.zeros_like(bound), where=bound != 0)
 
 

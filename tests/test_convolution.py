@@ -419,6 +419,8 @@ def test_bound_of_modes_left_out_falls_with_their_frequency():
     assert low < 0.15
     assert float(left_out(sine, GRID, 0.0, 1.0)) == 0
     assert math.isinf(left_out(Impulse(1.0), GRID, 1.0, 1e4))
+    assert math.isinf(left_out(Chirp(1.0, 0.0, 1e160, 1.0), GRID, 1.0, 1e4))
+    assert float(left_out(Step(0.0), GRID, math.inf, 1e4)) == 0
     assert math.isinf(left_out(Step(1.0), GRID, 1.0, 1e4, 1))
     assert float(left_out(Step(2.0), GRID, 1.0, 1e4)) == 2.0
 

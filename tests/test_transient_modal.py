@@ -358,6 +358,24 @@ def test_mesh_error_is_the_distance_to_continuous_spans():
     assert (chain.step_error == 0).all()
 
 
+def test_no_force_has_the_bound_of_no_motion():
+    """Also of an end, whose motion has none."""
+    model = rd.Scene(ROPE, ends=("pinned", "free")).compile(elements=8)
+    history = model.transient(TIME, drive=("end", 0, "z"), force=rd.Step(0.0), response=("z", 0.65))
+    assert history.truncation_error[0] == 0
+    assert not history.value.any()
+
+
+@pytest.mark.parametrize("elements", [4, None])
+@pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
+def test_half_sine_too_short_for_numbers_is_refused(elements, quantity):
+    """Its force is 1e298 N, its derivatives are beyond."""
+    model = rd.Scene(STRING, tension=TENSION).compile(elements=elements)
+    blow = rd.Impulse(0.01, duration=1e-300)
+    with pytest.raises(rd.SolveError, match="the motion grows beyond"):
+        model.transient(TIME, drive=("z", 0.4), force=blow, quantity=quantity)
+
+
 def test_blow_at_an_instant_has_no_bound_but_of_all_modes():
     asked = {"drive": ("z", 0.4), "force": rd.Impulse(0.01), "response": ("z", 0.9)}
     model = CHAINS["rope"].compile(elements=12)
