@@ -24,6 +24,7 @@ from .model import Model
 from .place import observed, points
 from .port import Point
 from .progress import reporter
+from .superposition import ratio_beyond
 from .transient import METHODS, why_direct
 from .unit import QUANTITIES
 
@@ -35,6 +36,9 @@ SAMPLES = 16
 
 REST = 100.0
 """Of the tolerance, what may be left of free motion where it is estimated from the slowest rate."""
+
+UNSEEN = 1e-11
+"""Of the largest residue: a mode at whose node is driven or watched has the rounding of one."""
 
 LATER = 30
 """Times the wait for the steady state is doubled."""
@@ -193,7 +197,7 @@ def _superpose_steadily(steps: Steps) -> Steady:
     slowest = min((_slowest(share) for share in shares), default=math.inf)
     for k, one in enumerate(f):
         value[:, k], error[:, k] = _steady(steps, shares, float(one), slowest)
-        left_out = _left_out(shares, 2 * math.pi * float(one), len(value))
+        left_out = _left_out(model, shares, 2 * math.pi * float(one), len(value))
         size = np.abs(value[:, k])
         error[:, k] += np.divide(left_out, size, out=np.zeros_like(size), where=size > 0)
         steps.progress((k + 1) / len(f))
@@ -204,7 +208,7 @@ def _superpose_steadily(steps: Steps) -> Steady:
 def _slowest(share: Share) -> float:
     """Return the rate at which the slowest motion that drive and responses share decays [1/s]."""
     e = share.expansion
-    seen = ((e.a != 0) | (e.b != 0)).any(axis=(0, 1))
+    seen = _seen(e.a) | _seen(e.b)
     over = np.sqrt(np.maximum(e.sigma**2 - e.square, 0.0))
     # the slow rate of overdamped motion as the product over the fast one
     fast = e.sigma + over
@@ -213,17 +217,26 @@ def _slowest(share: Share) -> float:
     return float(min(slow[seen].min(initial=math.inf), single.min(initial=math.inf)))
 
 
-def _left_out(shares: tuple[Share, ...], omega: float, responses: int) -> Real:
+def _seen(residues: Real) -> NDArray[np.bool_]:
+    size = np.abs(residues).max(axis=(0, 1), initial=0.0)
+    return np.asarray(size > UNSEEN * size.max(initial=0.0))
+
+
+def _left_out(model: Model, shares: tuple[Share, ...], omega: float, responses: int) -> Real:
     """Return how far modes that are left out move beyond what is static, at most.
 
-    A mode's response is its static one over 1 - (omega/omega_k)^2 or less.
+    A mode's response is 1/(1 - x^2 + 2 i zeta x) of its static one, x = omega/omega_k. Where
+    damping couples modes that motion is estimated: its residues have parts in proportion to x.
     """
     most = np.zeros(responses)
     for share in shares:
         e = share.expansion
         if math.isfinite(e.beyond):
-            ratio = (omega / e.beyond) ** 2
-            most[share.response] += e.bound[0] * (ratio / (1 - ratio) if ratio < 1 else math.inf)
+            x = omega / e.beyond
+            # what is left out of damped stiffness lags as it does
+            zeta = 0.5 if e.b.any() else 0.0 if len(e.p) else ratio_beyond(model, e)
+            far = (x**2 + 2 * zeta * x) / (1 - x**2) if x < 1 else math.inf
+            most[share.response] += np.where(e.bound[0] > 0, e.bound[0] * far, 0.0)
     return most
 
 

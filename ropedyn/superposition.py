@@ -118,7 +118,7 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
     given = [*run.forces, *run.loads.values()]
     for share in shares:
         expansion = share.expansion
-        ratio = _ratio(run.model, expansion)
+        ratio = ratio_beyond(run.model, expansion)
         for k, d in enumerate(share.drive):
             own, one = expansion.bound[k], given[d]
             if not own.any() or one == 0.0:
@@ -132,7 +132,7 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
     return error
 
 
-def _ratio(model: Model, expansion: Expansion) -> float:
+def ratio_beyond(model: Model, expansion: Expansion) -> float:
     """Return the largest damping ratio of the modes that are left out.
 
     (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.

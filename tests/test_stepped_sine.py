@@ -202,3 +202,32 @@ def test_what_has_no_meaning_is_refused(change, message):
     given = {"frequency": [10.0], "drive": ("z", 0.5), "amplitude": 1.0} | change
     with pytest.raises(rd.SceneError, match=message):
         hard().stepped_sine(**given)
+
+
+def test_undamped_modes_that_are_not_driven_do_not_hinder_the_steady_state():
+    """A dashpot in the middle leaves every second mode undamped, at whose node it is driven."""
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, parts=[rd.Dashpot(0.5, 0.5)])
+    f, drive = [2.0, 7.3, 33.0], ("z", 0.5)
+    for elements in (16, None):
+        model = scene.compile(elements=elements)
+        stepped = model.stepped_sine(f, drive=drive, amplitude=1.0)
+        exact = model.frf(f, drive=drive)
+        error = np.abs(stepped.value / exact.value - 1)
+        assert (error <= stepped.rounding_error + exact.rounding_error).all()
+    with pytest.raises(rd.SolveError, match="no steady state"):
+        model.stepped_sine(f, drive=("z", 0.25), amplitude=1.0)
+
+
+@pytest.mark.parametrize(
+    "damping", [rd.ModalDamping(0.3), rd.ViscousDamping(3.0), rd.Dashpot(0.375, 50.0)], ids=str
+)
+def test_error_of_modes_left_out_holds_where_damping_is_strong(damping):
+    """At 2 Hz what they do beyond their static motion is all in proportion to velocity."""
+    is_part = isinstance(damping, rd.Dashpot)
+    how = {"parts": [damping, rd.Dashpot(0.25, 1.0)]} if is_part else {"damping": damping}
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, **how).compile()
+    drive, response = ("z", 0.375), [("z", 0.375), ("z", 0.25)]
+    stepped = model.stepped_sine([2.0], drive=drive, response=response, amplitude=1.0)
+    exact = model.frf([2.0], drive=drive, response=response)
+    error = np.abs(stepped.value / exact.value - 1)
+    assert (error <= stepped.rounding_error + exact.rounding_error).all()
