@@ -109,12 +109,13 @@ def _criterion(trial: Trial) -> float:
 
 def _column_space(y: Complex) -> Complex:
     """Return what spans the windows of y, the strongest first: of modes, as many as there are."""
-    from scipy.linalg import hankel, qr, svd
+    from scipy.linalg import hankel
 
     rows = min(len(y) // 2, ROWS)
     windows = hankel(y[:rows], y[rows - 1 :])
-    triangle = qr(windows.conj().T, mode="r")[0][:rows]
-    return np.asarray(svd(triangle.conj().T, full_matrices=False)[0])
+    # of NumPy throughout: threads of SciPy's own BLAS would wait on the same cores
+    triangle = np.linalg.qr(windows.conj().T, mode="r")
+    return np.asarray(np.linalg.svd(triangle.conj().T, full_matrices=False)[0])
 
 
 def _logarithms(space: Complex, n: int) -> Complex:
