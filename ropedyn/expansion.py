@@ -392,10 +392,11 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Pol
         radius *= 2
     value = np.concatenate([one.value for one in found])
     error = np.concatenate([one.error for one in found])
-    # masses of tensed elements are indefinite: what grows faster than the rope is no motion of it
-    fastest = np.sqrt(max(0.0, -float(eigenvalue.min(initial=0.0))))
-    is_motion = value.real <= 1.01 * fastest + error
-    value, error = value[is_motion], error[is_motion]
+    if any(_spurious(span) for span in spans):
+        # masses are indefinite: what grows faster than the rope is no motion of it
+        fastest = np.sqrt(max(0.0, -float(eigenvalue.min(initial=0.0))))
+        is_motion = value.real <= 1.01 * fastest + error
+        value, error = value[is_motion], error[is_motion]
     twin = value.imag > 0
     return _Poles(
         np.concatenate([value, value[twin].conj()]),

@@ -269,6 +269,24 @@ def test_random_chains_are_the_exponentials_of_their_matrices(seed):
     np.testing.assert_allclose(history.value[0], exact, atol=1e-10 * np.abs(exact).max())
 
 
+def test_damping_of_a_negative_spring_makes_modes_grow():
+    """Stiffness damping of what pushes away drives: all modes grow, and are summed."""
+    scene = rd.Scene(
+        STRING,
+        tension=TENSION,
+        parts=[rd.Spring(LENGTH / 3, -20.0)],
+        damping=rd.StiffnessDamping(1e-4),
+    )
+    model = scene.compile(elements=12)
+    dense, pushed, seen = Dense(model), model.x[4], model.x[6]
+    assert np.linalg.eigvals(dense.A).real.max() > 1e-3
+    exact = dense.under_a_sine(pushed, 20.0, TIME)[0][dense.of(seen)]
+    history = model.transient(
+        TIME, drive=("z", pushed), force=rd.Sine(1.0, 20.0), response=("z", seen)
+    )
+    np.testing.assert_allclose(history.value[0], exact, atol=1e-10 * np.abs(exact).max())
+
+
 # --- what else an answer says -------------------------------------------------------------------
 
 
