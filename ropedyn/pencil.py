@@ -114,7 +114,7 @@ def _column_space(y: Complex) -> Complex:
     rows = min(len(y) // 2, ROWS)
     windows = hankel(y[:rows], y[rows - 1 :])
     # of NumPy throughout: threads of SciPy's own BLAS would wait on the same cores
-    triangle = np.linalg.qr(windows.conj().T, mode="r")
+    triangle = np.asarray(np.linalg.qr(windows.conj().T, mode="r"))
     return np.asarray(np.linalg.svd(triangle.conj().T, full_matrices=False)[0])
 
 
