@@ -15,12 +15,19 @@ from .recurrence import straight_lines
 from .swept import chirping, while_it_lasts
 from .truncation import left_out
 
-__all__ = ["convolve", "left_out", "release"]
+__all__ = ["convolve", "left_out", "move", "release"]
 
 Real = NDArray[np.float64]
 
 LARGEST = 1e300
 """What a growing mode may reach."""
+
+
+def move(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:
+    """Return what a force moves, or the motion after a static load [N, N m] is let go."""
+    if isinstance(given, float):
+        return release(expansion, drive, given, time, order)
+    return convolve(expansion, drive, given, time, order)
 
 
 def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: int) -> Real:
@@ -49,8 +56,8 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
         If a growing mode leaves the numbers.
     """
     if isinstance(force, Sum):
-        parts = [convolve(expansion, drive, one, time, order) for one in force.forces]
-        return np.sum(parts, axis=0)
+        still = np.zeros((len(expansion.rest[drive]), len(time)))
+        return sum((convolve(expansion, drive, one, time, order) for one in force.forces), still)
     modes = pairs(expansion, drive)
     rest = expansion.rest[drive][:, None]
     with np.errstate(all="ignore"):  # numbers that are not finite are refused at the end

@@ -26,10 +26,10 @@ from numpy.typing import NDArray
 
 from . import damping
 from .characteristic import Rates
-from .convolution import convolve, release
+from .convolution import move
 from .errors import SceneError
 from .expansion import Expansion, Share, expand
-from .force import Chirp, Force, Impulse, Samples, Step, Sum
+from .force import Force, Sum
 from .history import Balance
 from .moved_end import is_end
 from .proportional import proportional
@@ -185,7 +185,7 @@ class Driven:
             p=np.zeros(0),
             r=np.zeros((*shape, 0)),
         )
-        moved = [_moved(some, d, one, time, 1) for d, one in enumerate(self.given)]
+        moved = [move(some, d, one, time, 1) for d, one in enumerate(self.given)]
         return np.asarray(np.sum(moved, axis=0))
 
     def _modes(self, part: Indices | slice, time: Real, order: int) -> Real:
@@ -194,7 +194,7 @@ class Driven:
         k = len(sigma)
         unit = _nothing(k, k)._replace(sigma=sigma, square=square, a=np.eye(k)[None])
         unit = unit._replace(b=np.zeros((1, k, k)))
-        return np.stack([_moved(unit, 0, one, time, order) for one in self.given])
+        return np.stack([move(unit, 0, one, time, order) for one in self.given])
 
     def _rest(self, time: Real, order: int) -> Real:
         """Return y of each drive, (drives, t)."""
@@ -202,19 +202,22 @@ class Driven:
             return self._force(time)
         p = np.array([-1 / self.lag])
         unit = _nothing(0, 1)._replace(p=p, r=np.full((1, 1, 1), 1 / self.lag))
-        return np.stack([_moved(unit, 0, _smooth(one), time, order)[0] for one in self.given])
+        return np.stack([move(unit, 0, _smooth(one), time, order)[0] for one in self.given])
 
     def _force(self, time: Real) -> Real:
         still = np.zeros(len(time))
         return np.stack([still if isinstance(f, float) else f.value(time) for f in self.given])
+
+    @property
+    def _forces(self) -> list[Force]:
+        return [force for force in self.given if not isinstance(force, float)]
 
     # --- over time ---
 
     def _integral(self, power: Callable[[Real], Real], group: Group) -> Real:
         """Integrate from the first time to each, shape (t,)."""
         edges = self._edges(group.decay)
-        forces = [force for force in self.given if not isinstance(force, float)]
-        fastest = max([group.rate, *(2 * math.pi * force.highest for force in forces)])
+        fastest = max([group.rate, *(2 * math.pi * force.highest for force in self._forces)])
         parts = np.ceil(np.diff(edges) * fastest / RADIANS).astype(np.intp) + 1
         step = np.repeat(np.diff(edges) / parts, parts)
         first = np.repeat(np.cumsum(parts) - parts, parts)
@@ -231,8 +234,9 @@ class Driven:
 
     def _edges(self, decay: float) -> Real:
         """Return times, what jumps between, and after each of them pieces that double [s]."""
-        jumps = [at for force in self.given for at in _jumps(force)]
-        inside = [at for at in jumps if self.time[0] < at < self.time[-1]]
+        # samples bend at the times themselves
+        breaks = [at for force in self._forces for at in force.breaks]
+        inside = [at for at in breaks if self.time[0] < at < self.time[-1]]
         edges = np.unique(np.concatenate([self.time, inside]))
         length = np.diff(edges)
         doublings = math.ceil(math.log2(max(length.max() * decay / RADIANS, 1.0)))
@@ -246,10 +250,9 @@ class Driven:
         """Return what blows at an instant put in: their impulse times the mean velocity."""
         blows: dict[float, Real] = {}
         for d, force in enumerate(self.given):
-            for one in _parts(force):
-                if isinstance(one, Impulse) and _is_blow(one) and one.time >= self.time[0]:
-                    kick = blows.setdefault(one.time, np.zeros(len(self.given)))
-                    kick[d] += one.impulse
+            for when, impulse in () if isinstance(force, float) else force.blows:
+                if when >= self.time[0]:
+                    blows.setdefault(when, np.zeros(len(self.given)))[d] += impulse
         total, r = np.zeros(len(self.time)), self.own.a.sum(axis=-1)
         for when, kick in blows.items():
             since = np.array([self.time[0], when]) if when > self.time[0] else self.time[:2]
@@ -257,14 +260,6 @@ class Driven:
             after = self._velocity(since, slice(None))[:, at]
             total[self.time >= when] += kick @ (after - r @ kick / 2)
         return total
-
-
-def _moved(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:
-    if not isinstance(given, float) and not _parts(given):
-        return np.zeros((expansion.rest.shape[1], len(time)))
-    if isinstance(given, float):
-        return release(expansion, drive, given, time, order)
-    return convolve(expansion, drive, given, time, order)
 
 
 def _nothing(modes: int, responses: int) -> Expansion:
@@ -280,35 +275,10 @@ def _blocks(count: int) -> list[slice]:
     return [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
 
 
-def _smooth(force: Force | float) -> Force | float:
+def _smooth(given: Force | float) -> Force | float:
     """Return a force without blows at an instant."""
-    parts = tuple(one for one in _parts(force) if not _is_blow(one))
-    return force if isinstance(force, float) else Sum(parts)
-
-
-def _is_blow(force: Force) -> bool:
-    return isinstance(force, Impulse) and force.duration == 0
-
-
-def _parts(force: Force | float) -> list[Force]:
-    """Return a force as those that it is the sum of; none of a load."""
-    if isinstance(force, float):
-        return []
-    if isinstance(force, Sum):
-        return [part for one in force.forces for part in _parts(one)]
-    return [force]
-
-
-def _jumps(force: Force | float) -> list[float]:
-    """Return where a force is not smooth [s]."""
-    found: list[float] = []
-    for one in _parts(force):
-        if isinstance(one, Step):
-            found.append(one.time)
-        elif isinstance(one, Impulse):
-            found += [one.time, one.time + one.duration]
-        elif isinstance(one, Chirp):
-            found += [0.0, one.duration]
-        elif isinstance(one, Samples):
-            found += one.time.tolist()
-    return found
+    if isinstance(given, float) or not given.blows:
+        return given
+    if not isinstance(given, Sum):
+        return Sum(())
+    return Sum(tuple(one for one in map(_smooth, given.forces) if not isinstance(one, float)))

@@ -27,18 +27,26 @@ class Force(Protocol):
     @property
     def breaks(self) -> tuple[float, ...]:
         """When it jumps or bends [s], the times of samples apart."""
+        return ()
 
     @property
     def blows(self) -> tuple[tuple[float, float], ...]:
         """Impulses at one instant: when [s] and how much [N s, N m s]."""
+        return ()
 
     @property
     def highest(self) -> float:
         """Frequency that steps must resolve to see it at all [Hz]; 0 of what only breaks."""
+        return 0.0
+
+    @property
+    def bandwidth(self) -> float:
+        """Frequency up to which modes must reach to follow it between its breaks [Hz]."""
+        return self.highest
 
 
 @dataclass(frozen=True)
-class Sine:
+class Sine(Force):
     """amplitude sin(2 pi frequency t + phase), from t = 0 on.
 
     Parameters
@@ -85,23 +93,13 @@ class Sine:
         return np.asarray(self.amplitude * omega * np.cos(omega * time + self.phase))
 
     @property
-    def breaks(self) -> tuple[float, ...]:
-        """None."""
-        return ()
-
-    @property
-    def blows(self) -> tuple[tuple[float, float], ...]:
-        """None."""
-        return ()
-
-    @property
     def highest(self) -> float:
         """Its frequency."""
         return self.frequency
 
 
 @dataclass(frozen=True)
-class Chirp:
+class Chirp(Force):
     """amplitude sin(phase(t)), whose frequency grows or falls steadily; nothing after it.
 
     phase(t) = phase + 2 pi (start t + (stop - start) t^2/(2 duration)) for t from 0 to `duration`.
@@ -168,18 +166,13 @@ class Chirp:
         return (self.duration,)
 
     @property
-    def blows(self) -> tuple[tuple[float, float], ...]:
-        """None."""
-        return ()
-
-    @property
     def highest(self) -> float:
         """The higher of its frequencies."""
         return max(self.start, self.stop)
 
 
 @dataclass(frozen=True)
-class Step:
+class Step(Force):
     """A force that is there from a time on.
 
     Parameters
@@ -225,19 +218,9 @@ class Step:
         """Its time."""
         return (self.time,)
 
-    @property
-    def blows(self) -> tuple[tuple[float, float], ...]:
-        """None."""
-        return ()
-
-    @property
-    def highest(self) -> float:
-        """None."""
-        return 0.0
-
 
 @dataclass(frozen=True)
-class Impulse:
+class Impulse(Force):
     """A blow: an impulse at one instant, or a half sine of the same impulse.
 
     A blow at an instant makes a string jump and a beam's velocity infinite where it hits; that of a
@@ -311,13 +294,13 @@ class Impulse:
         return ((self.time, self.impulse),) if self.duration == 0 else ()
 
     @property
-    def highest(self) -> float:
-        """None."""
-        return 0.0
+    def bandwidth(self) -> float:
+        """That of its half sine."""
+        return 1 / (2 * self.duration) if self.duration > 0 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class Samples(Force):
     """A force by its samples, a straight line between two of them.
 
     Attributes
@@ -339,24 +322,9 @@ class Samples:
         at = np.searchsorted(self.time, time, side="right") - 1
         return np.asarray(slope[np.clip(at, 0, len(slope) - 1)])
 
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        """None but its samples."""
-        return ()
-
-    @property
-    def blows(self) -> tuple[tuple[float, float], ...]:
-        """None."""
-        return ()
-
-    @property
-    def highest(self) -> float:
-        """None."""
-        return 0.0
-
 
 @dataclass(frozen=True)
-class Sum:
+class Sum(Force):
     """Several forces at once."""
 
     forces: tuple[Force, ...]
@@ -382,7 +350,12 @@ class Sum:
     @property
     def highest(self) -> float:
         """The highest of each."""
-        return max(force.highest for force in self.forces)
+        return max((force.highest for force in self.forces), default=0.0)
+
+    @property
+    def bandwidth(self) -> float:
+        """The highest of each."""
+        return max((force.bandwidth for force in self.forces), default=0.0)
 
 
 def is_sampled(force: Force) -> bool:

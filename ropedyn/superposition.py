@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .answer import Cost
-from .convolution import convolve, left_out, release
+from .convolution import left_out, move
 from .damping import having
 from .deflection import POINTS
 from .eigen import within
 from .energy_balance import balance
 from .errors import SceneError, SolveError
 from .expansion import Expansion, Share, expand
-from .force import Chirp, Force, Impulse, Sine, Sum
+from .force import Force
 from .history import Deviation, History
 from .model import Model
 from .progress import silent
@@ -40,7 +40,7 @@ def superpose(run: Run) -> History:
     resolved = fastest(run.forces, run.time)
     shares = expand(run.model, drives, run.responses, modes=run.modes, resolved=resolved)
     value = _responses(run, shares, len(run.responses))
-    x, snapshot = _snapshots(run, drives)
+    x, snapshot = _snapshots(run, drives, resolved)
     seconds = clock.perf_counter() - start
     truncation = _truncation(run, shares)
     # what is computed later says nothing, and pickles
@@ -74,20 +74,7 @@ def superpose(run: Run) -> History:
 def fastest(forces: Sequence[Force], time: Real) -> float:
     """Return the highest angular frequency that forces have or times resolve [rad/s]."""
     resolved = 2 * math.pi / WAVE * (len(time) - 1) / float(time[-1] - time[0])
-    return max([resolved, *map(_own, forces)])
-
-
-def _own(force: Force) -> float:
-    """Return the highest angular frequency that a force has by itself [rad/s]."""
-    if isinstance(force, Sum):
-        return max(map(_own, force.forces), default=0.0)
-    if isinstance(force, Sine):
-        return 2 * math.pi * force.frequency
-    if isinstance(force, Chirp):
-        return 2 * math.pi * max(force.start, force.stop)
-    if isinstance(force, Impulse) and force.duration > 0:
-        return math.pi / force.duration
-    return 0.0
+    return max([resolved, *(2 * math.pi * force.bandwidth for force in forces)])
 
 
 def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
@@ -96,12 +83,7 @@ def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
     given = [*run.forces, *run.loads.values()]
     for done, share in enumerate(shares):
         for k, d in enumerate(share.drive):
-            one, at = given[d], int(k)
-            if isinstance(one, float):
-                moved = release(share.expansion, at, one, run.time, run.order)
-            else:
-                moved = convolve(share.expansion, at, one, run.time, run.order)
-            value[share.response] += moved
+            value[share.response] += move(share.expansion, k, given[d], run.time, run.order)
             run.progress((done + (k + 1) / len(share.drive)) / len(shares))
     return value
 
@@ -147,7 +129,7 @@ def ratio_beyond(model: Model, expansion: Expansion) -> float:
     return float(ratio[k] * expansion.beyond / omega[k])
 
 
-def _snapshots(run: Run, drives: list[Any]) -> tuple[Real, Real]:
+def _snapshots(run: Run, drives: list[Any], resolved: float) -> tuple[Real, Real]:
     """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
     model = run.model
     x = within(model.x, POINTS) if model.element == "continuous" else model.x
@@ -155,9 +137,7 @@ def _snapshots(run: Run, drives: list[Any]) -> tuple[Real, Real]:
     if len(run.snapshots) == 0:
         return x, np.zeros((0, len(x), width))
     points = [(c, float(at)) for at in x for c in model.coordinates]
-    shares = expand(
-        model, drives, points, modes=run.modes, resolved=fastest(run.forces, run.time), bound=False
-    )
+    shares = expand(model, drives, points, modes=run.modes, resolved=resolved, bound=False)
     time = np.unique(np.append(run.time[0], run.snapshots))
     looks = dataclasses.replace(run, time=time, order=0, progress=silent)
     kept = _responses(looks, shares, len(points))[:, len(time) - len(run.snapshots) :]
