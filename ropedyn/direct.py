@@ -79,11 +79,11 @@ def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> Histo
     return History(
         drive=run.drives,
         response=run.responses,
-        quantity=_quantity(run),
+        quantity=run.quantity,
         coordinates=model.coordinates,
         time=asked.time,
         value=value,
-        force=np.array([one.value(asked.time) for one in run.forces]).reshape(-1, passage.reached),
+        force=asked.push,
         truncation_error=np.zeros(len(run.responses)),
         snapshot_time=asked.snapshots,
         x=model.x,
@@ -100,10 +100,6 @@ def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> Histo
         deviation_source=deviation,
         stopped=_reason(passage),
     )
-
-
-def _quantity(run: Run) -> str:
-    return ("displacement", "velocity", "acceleration")[run.order]
 
 
 def _balance(chains: list[Lumps], passage: Passage) -> Balance:
@@ -129,17 +125,8 @@ def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
     if run.step is not None and len(run.time) > 1:
         finer = halved(run, lumped_chains(run), stage_of(run.spectral_radius)).value
         step_error = 4 / 3 * np.abs(value - finer)
-    return Deviation(step_error, _mesh_error(run, value))
-
-
-def _mesh_error(run: Run, value: Real) -> Real:
-    """Return the distance to the motion of continuous spans and the error of that."""
     if why_direct(run.model):
-        return np.full(value.shape, np.inf)
-    from .superposition import superpose
+        return Deviation(step_error, np.full(value.shape, np.inf))
+    from .superposition import mesh_error
 
-    try:
-        exact = superpose(replace(run, model=run.model.scene.compile(), snapshots=np.zeros(0)))
-    except (SceneError, SolveError):
-        return np.full(value.shape, np.inf)
-    return np.asarray(np.abs(value - exact.value) + exact.truncation_error[:, None])
+    return Deviation(step_error, mesh_error(run, value))

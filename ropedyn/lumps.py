@@ -12,15 +12,16 @@ from numpy.typing import NDArray
 from . import _core
 from .beside import Beside, plain, pulsation_of
 from .chain import TENSED, Chain
+from .damping import having
 from .deflection import nodal
 from .errors import SceneError, SolveError
 from .force import Force
 from .model import Model
+from .moved_end import is_end
 from .point_law import Call, Laws, Standing, laws_of, standing_laws
 from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from .reading import Reading, reading
 from .transient import Run
-from .unit import END
 
 Real = NDArray[np.float64]
 
@@ -147,7 +148,7 @@ def lumped_chains(run: Run) -> list[Lumps]:
     found = []
     for component in model.components:
         laws = standing_laws(model, component)
-        drives = [k for k, d in enumerate(run.drives) if _driven(d) in component]
+        drives = [k for k, d in enumerate(run.drives) if moving(d) in component]
         loads = {p: load for p, load in run.loads.items() if p[0] in component}
         if drives or loads or any(one.law.kind == "call" for one in laws):
             found.append(_lumps(run, component, laws, drives, loads))
@@ -189,10 +190,6 @@ def _refuse_accelerations(run: Run, lumps: Lumps) -> None:
         )
 
 
-def _driven(drive: Any) -> str:
-    return str(drive[2]) if drive[0] == END else moving(drive)
-
-
 def _lumps(
     run: Run,
     component: tuple[str, ...],
@@ -201,17 +198,17 @@ def _lumps(
     loads: dict[Point, float],
 ) -> Lumps:
     model = run.model
-    pushed = [k for k in driving if run.drives[k][0] != END]
-    ends = [k for k in driving if run.drives[k][0] == END]
+    pushed = [k for k in driving if not is_end(run.drives[k])]
+    ends = [k for k in driving if is_end(run.drives[k])]
     watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
     points = [run.drives[k] for k in pushed]
     asked = [run.responses[k] for k in watched]
     whole, x = _cut(model, component, points, asked)
     chain, beside = plain(model, component, whole)
     laws, calls = laws_of(chain, x, component, laws_there)
-    start = _start(whole, component, nodal(whole, x, component, loads), beside)
+    load = nodal(whole, x, component, loads)
+    start = _start(whole, component, load, beside)
     pulsation = pulsation_of(model, component)
-    bare = nodal(chain, x, component, loads) != 0
     drives = ports(chain, x, component, points)._replace(force=None)
     local = _local(chain, x, component, points, asked)
     if local.any():
@@ -233,7 +230,7 @@ def _lumps(
         number=np.array(watched, dtype=np.intp),
         pulsation=pulsation,
         start=start,
-        released=bool((bare & _massless(chain)).any()),
+        released=bool(((load != 0) & _massless(chain)).any()),
     )
 
 
@@ -334,13 +331,11 @@ def refuse(model: Model) -> None:
             'elements must be given where the method is "direct", such as compile(elements=64): '
             "continuous spans have no steps"
         )
-    for one in scene.dampings:
-        term = one.term()
-        if np.any(tuple(term.loss.values())) or np.any(term.ratio):
-            raise SceneError(
-                'damping must be in proportion to velocity where the method is "direct", such as '
-                f"StiffnessDamping, got {one}"
-            )
+    for one in having(scene.dampings, "loss", "ratio"):
+        raise SceneError(
+            'damping must be in proportion to velocity where the method is "direct", such as '
+            f"StiffnessDamping, got {one}"
+        )
     if not model.separable:
         raise SceneError(
             'element must be "rigid" where sections and tension are damped apart and the method '

@@ -25,7 +25,7 @@ from .place import observed, points
 from .port import Point
 from .progress import reporter
 from .superposition import ratio_beyond
-from .transient import METHODS, why_direct
+from .transient import is_direct, why_direct
 from .unit import QUANTITIES
 
 Real = NDArray[np.float64]
@@ -102,7 +102,7 @@ def solve_stepped_sine(
 ) -> FRF:
     """Step a sine through frequencies; see `Model.stepped_sine`."""
     check.one_of(quantity, "quantity", QUANTITIES)
-    is_direct = _is_direct(model, method)
+    direct = is_direct(model, method)
     given = check.optional(tolerance, "tolerance", sign="positive")
     point = _driven(model, drive)
     steps = Steps(
@@ -111,25 +111,17 @@ def solve_stepped_sine(
         drive=point,
         amplitude=check.number(amplitude, "amplitude", "N", sign="positive"),
         responses=observed(model, response, (point,)),
-        tolerance=given or (DIRECT if is_direct else MODAL),
+        tolerance=given or (DIRECT if direct else MODAL),
         progress=reporter(progress),
     )
     start = clock.perf_counter()
-    if is_direct:
+    if direct:
         from .stepped_direct import march_steadily
 
         found = march_steadily(steps)
     else:
         found = _superpose_steadily(steps)
     return _answer(steps, found, quantity, clock.perf_counter() - start)
-
-
-def _is_direct(model: Model, method: str) -> bool:
-    check.one_of(method, "method", METHODS)
-    why = why_direct(model)
-    if method == "modal" and why:
-        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
-    return method == "direct" or (method == "auto" and bool(why))
 
 
 def _stepped(frequency: Any) -> Real:

@@ -25,7 +25,6 @@ from .history import Deviation, History
 from .model import Model
 from .progress import silent
 from .transient import Run
-from .unit import MOTIONS
 
 Real = NDArray[np.float64]
 
@@ -51,11 +50,11 @@ def superpose(run: Run) -> History:
     return History(
         drive=run.drives,
         response=run.responses,
-        quantity=list(MOTIONS)[run.order],
+        quantity=run.quantity,
         coordinates=run.model.coordinates,
         time=run.time,
         value=value,
-        force=_forces(run),
+        force=run.push,
         truncation_error=truncation,
         snapshot_time=run.snapshots,
         x=x,
@@ -86,12 +85,6 @@ def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
             value[share.response] += move(share.expansion, k, given[d], run.time, run.order)
             run.progress((done + (k + 1) / len(share.drive)) / len(shares))
     return value
-
-
-def _forces(run: Run) -> Real:
-    if not run.forces:
-        return np.zeros((0, len(run.time)))
-    return np.stack([force.value(run.time) for force in run.forces])
 
 
 def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
@@ -148,11 +141,15 @@ def _snapshots(run: Run, drives: list[Any], resolved: float) -> tuple[Real, Real
 
 
 def _deviation(run: Run, value: Real) -> Deviation:
-    """Return the distance to the motion of continuous spans."""
-    step = np.zeros(value.shape)
+    """Return how far exact steps are from the motion of continuous spans."""
+    return Deviation(np.zeros(value.shape), mesh_error(run, value))
+
+
+def mesh_error(run: Run, value: Real) -> Real:
+    """Return the distance to the motion of continuous spans and the error of that, as value."""
     try:
         model: Model = run.model.scene.compile()
         true = superpose(dataclasses.replace(run, model=model, modes=None, snapshots=np.zeros(0)))
     except (SceneError, SolveError):
-        return Deviation(step, np.full(value.shape, np.inf))
-    return Deviation(step, np.abs(value - true.value) + true.truncation_error[:, None])
+        return np.full(value.shape, np.inf)
+    return np.asarray(np.abs(value - true.value) + true.truncation_error[:, None])

@@ -76,6 +76,17 @@ class Run:
     progress: Callable[[float], Any]
     partial: bool
 
+    @property
+    def quantity(self) -> str:
+        """Name of the displacement, differentiated so often."""
+        return list(MOTIONS)[self.order]
+
+    @property
+    def push(self) -> Real:
+        """What drives, at the times, shape (drives, t)."""
+        still = np.zeros((0, len(self.time)))
+        return np.stack([one.value(self.time) for one in self.forces]) if self.forces else still
+
 
 def solve_transient(
     model: Model,
@@ -96,7 +107,7 @@ def solve_transient(
     partial: bool,
 ) -> History:
     """Integrate over time; see `Model.transient`."""
-    check.one_of(method, "method", METHODS)
+    direct = is_direct(model, method)
     check.one_of(quantity, "quantity", MOTIONS)
     t = _times(time)
     drives, given = _driven(model, drive, force, t)
@@ -117,16 +128,22 @@ def solve_transient(
         progress=reporter(progress),
         partial=check.instance(partial, "partial", bool, "True or False"),
     )
-    why = why_direct(model)
-    if method == "modal" and why:
-        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
-    if method == "direct" or (method == "auto" and why):
+    if direct:
         from .direct import march
 
         return march(run)
     from .superposition import superpose
 
     return superpose(run)
+
+
+def is_direct(model: Model, method: str) -> bool:
+    """Whether a method is the direct one; refuse modes where they do not tell the motion."""
+    check.one_of(method, "method", METHODS)
+    why = why_direct(model)
+    if method == "modal" and why:
+        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
+    return method == "direct" or (method == "auto" and bool(why))
 
 
 def why_direct(model: Model) -> str:
