@@ -64,15 +64,14 @@ class Carried(NamedTuple):
         every = cls.none(len(shape))
         if chain.attached_kind is None:
             return every
-        assert chain.attached_term is not None
         assert chain.attached_row is not None
         assert chain.attached_value is not None
         factor = np.ascontiguousarray(factor)
         for k, kind in enumerate(chain.attached_kind):
-            node = chain.first[chain.term == chain.attached_term[k]]
-            if len(node) == 0:  # of another span
+            foot_at = chain.feet[k]
+            if foot_at < 0:
                 continue
-            moved = shape[:, int(node[0])]
+            moved = shape[:, foot_at]
             tip = np.abs((_core.tip(chain, k, factor).T * moved).sum(axis=1))
             np.maximum(every.motion, tip, out=every.motion)
             foot = moved @ chain.attached_row[k].T

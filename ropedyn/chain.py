@@ -136,6 +136,14 @@ class Chain(NamedTuple):
         return self.attached_value[own, -1]
 
     @property
+    def feet(self) -> NDArray[np.intp]:
+        """Nodes that carry the structures, -1 for those of another part, shape (attached,)."""
+        if self.attached_term is None:
+            return np.zeros(0, dtype=np.intp)
+        carries = self.attached_term[:, None] == self.term
+        return np.where(carries.any(axis=1), self.first[carries.argmax(axis=1)], -1)
+
+    @property
     def at_rest(self) -> Chain:
         """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
         kind = self.kind if self.inertia is None else TENSED

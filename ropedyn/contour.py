@@ -17,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .cluster import clusters
+
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
@@ -73,16 +75,10 @@ def in_the_plane(pole: Complex, error: Real, beyond: float) -> Circles:
     """Draw circles around poles, all there are but for those beyond a modulus."""
     size = np.abs(pole)
     limit = ALIKE * np.maximum.outer(size, size) + 4 * np.add.outer(error, error)
-    near = np.abs(pole[:, None] - pole) <= limit
-    left, members, room = set(range(len(pole))), [], []
-    while left:
-        own = {min(left)}
-        while (more := set(np.flatnonzero(near[sorted(own)].any(axis=0)).tolist())) != own:
-            own = more
-        left -= own
-        members.append(np.array(sorted(own)))
-        center = pole[members[-1]].mean()
-        others = np.abs(np.delete(pole, members[-1]) - center)
+    members, room = clusters(np.abs(pole[:, None] - pole) <= limit), []
+    for own in members:
+        center = pole[own].mean()
+        others = np.abs(np.delete(pole, own) - center)
         room.append(float(others.min(initial=beyond - abs(center))))
     return _circles(pole, members, np.array(room))
 

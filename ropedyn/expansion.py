@@ -46,9 +46,6 @@ EDGE = 0.8
 WIDER, ATTEMPTS = 2, 4
 """Times the radius is doubled in which all damped modes are looked for; tries with less."""
 
-POINTS = 8
-"""Whose own responses are computed at once."""
-
 
 class Expansion(NamedTuple):
     """What responses are to drives, in the rate s of a motion e^(s t).
@@ -170,6 +167,11 @@ class _Asked:
     resolved: float
     bound: bool
 
+    @property
+    def chain(self) -> Chain:
+        """That of the component."""
+        return self.model.chain.only(self.component)
+
     def at(self, factor: Complex) -> Complex:
         """Return them at the factors (5, n) of the parts, shape (drives, responses, n)."""
         model, asked = self.model, tip.spread(self.model, self.responses)
@@ -225,8 +227,7 @@ class _Known(NamedTuple):
 
 def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
     """Return those of the undamped modes that are summed, and the next one."""
-    model, component = asked.model, asked.component
-    chain = model.chain.only(component)
+    chain = asked.chain
     finite = chain.finite
     if asked.modes is not None:
         wanted = asked.modes
@@ -234,7 +235,7 @@ def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
         wanted = finite
     else:
         wanted = min(max(_below(asked), LEAST), MANY, most)
-    value, error = spectrum(model, component, wanted + 1)
+    value, error = spectrum(asked.model, asked.component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
     return _Known(value[:wanted], error[:wanted]), beyond
 
@@ -277,7 +278,7 @@ def _closed(
         p, r = np.array([-stiff / soften]), np.where(power == 0, rest / soften, 0.0)[:, :, None]
         rest = np.where(power == 0, 0.0, rest)
     bound = np.zeros(rest.shape)
-    if not np.isfinite(beyond) and _spurious(asked.model.chain.only(asked.component)):
+    if not np.isfinite(beyond) and _spurious(asked.chain):
         beyond = float(eigenvalue.max(initial=0.0))
     if np.isfinite(beyond):
         bound = _bound(asked, lambda own: _apart(own, eigenvalue, circles)[1])
@@ -343,7 +344,7 @@ def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> E
     bound = np.zeros(rest.shape)
     if np.isfinite(poles.radius):
         bound = _bound(asked, lambda own: _taken(own, rates, poles, circles)[1])
-    far = horizon(asked.model.chain.only(asked.component), rates)
+    far = horizon(asked.chain, rates)
     if np.isfinite(far) and np.isfinite(poles.radius):
         terms, rest = _relaxing(asked, terms, rest, far)
     return Expansion(*terms, rest, bound, poles.radius)
@@ -369,7 +370,7 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Pol
 
     Those before the place where overdamped ones accumulate, and fewer where rounding hides some.
     """
-    chain = asked.model.chain.only(asked.component)
+    chain = asked.chain
     spans = [chain.between(*span) for span in chain.spans]
     there_are = [_how_many(span, rates) for span in spans]
     edge = EDGE * horizon(chain, rates)

@@ -23,9 +23,9 @@ from .modal_sum import Solver, Summed, modal_sum, refuse_other_damping
 from .model import EXACT, MOST_STEPS, Model
 from .moved_end import moves_ends
 from .place import observed, points
-from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
-from .reaction import first_left_end
-from .unit import OF_FORCE, QUANTITIES
+from .port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
+from .reaction import at_start, first_left_end, tellers
+from .unit import QUANTITIES
 
 LANES = 16
 """Frequencies that the sweep solves side by side."""
@@ -97,7 +97,7 @@ class Question:
         positions = [p[1] for p in between]
         if model.element == "tensed":
             positions += stops(chain, model.x)
-        if model.element == "continuous" and any(_at_start(model.x, p) for p in self.responses):
+        if model.element == "continuous" and any(at_start(model.x, p) for p in self.responses):
             positions += self._short(chain)
         return cut(chain, model.x, positions)
 
@@ -278,10 +278,10 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     component, factor = question.component, question.factor
     chain, x = question.cut
-    direct = [p for p in question.responses if not _at_start(x, p)]
+    direct = [p for p in question.responses if not at_start(x, p)]
     reactions = len(direct) < len(question.responses)
     pushed = ports(chain, x, component, question.drives)
-    asked = direct + (_hidden(component, x) if reactions else [])
+    asked = direct + (tellers(component, x) if reactions else [])
     watched = pushed if asked == question.drives else ports(chain, x, component, asked)
 
     def solve(part: slice) -> tuple[Complex, Real]:
@@ -337,18 +337,6 @@ def _hold(question: Question, value: Complex, error: Real) -> None:
             value[:, k] = error[:, k] = 0.0
 
 
-def _at_start(x: Real, point: Point) -> bool:
-    """Whether an internal force is asked for at the left end, where no element ends."""
-    return is_force(point) and locate(x, point[1])[0] == 0
-
-
-def _hidden(component: tuple[str, ...], x: Real) -> list[Point]:
-    """Return what the force at the left end follows from: motion of nodes 0 and 1, force at 1."""
-    motion = [(c, float(at)) for at in x[:2] for c in component]
-    force = [(f, float(x[1])) for c in component for f in OF_FORCE if OF_FORCE[f] == c]
-    return motion + force
-
-
 def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Complex, Real]:
     """Put f_a = E f_b - Q u_a + P u_b of the first element where it was asked for."""
     component, responses = question.component, question.responses
@@ -366,7 +354,7 @@ def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Co
     values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
     direct = iter(given)
     for k, point in enumerate(responses):
-        if _at_start(x, point):
+        if at_start(x, point):
             at = component.index(moving(point))
             values[:, k], errors[:, k] = reaction[:, at], spread[:, at]
         else:
@@ -403,23 +391,14 @@ def _add_local(question: Question, value: Complex) -> None:
     """Add the flexibility inside a driven element that is not cut."""
     if question.model.element in EXACT:
         return
+    chain, x = question.cut
+    bends = "beta" in question.component
     for d, pushed in enumerate(question.drives):
+        which = damping.SECTION if bends or pushed[0] != "z" else damping.TENSION
         for r, watched in enumerate(question.responses):
-            which, flexibility = _local(question, pushed, watched)
+            flexibility = local(chain, x, question.component, pushed, watched)
             if flexibility != 0:
                 value[d, r] += flexibility / question.factor[which]
-
-
-def _local(question: Question, pushed: Point, watched: Point) -> tuple[int, float]:
-    """Return which factor divides the local flexibility, and that; 0 outside one element."""
-    component, (chain, x) = question.component, question.cut
-    which = damping.SECTION if "beta" in component or pushed[0] != "z" else damping.TENSION
-    left, p = locate(x, pushed[1])
-    other, s = locate(x, watched[1])
-    if p is None or s is None or left != other or is_force(watched):
-        return which, 0.0
-    local = _core.local(chain, left, s, p)
-    return which, float(local[component.index(watched[0]), component.index(pushed[0])])
 
 
 SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}

@@ -19,7 +19,7 @@ from .force import Force
 from .model import Model
 from .moved_end import is_end
 from .point_law import Call, Laws, Standing, laws_of, standing_laws
-from .port import Point, Ports, cut, is_force, locate, moving, ports, stops
+from .port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
 from .reading import Reading, reading
 from .transient import Run
 
@@ -210,8 +210,9 @@ def _lumps(
     start = _start(whole, component, load, beside)
     pulsation = pulsation_of(model, component)
     drives = ports(chain, x, component, points)._replace(force=None)
-    local = _local(chain, x, component, points, asked)
-    if local.any():
+    inside = np.array([[local(chain, x, component, p, r) for p in points] for r in asked])
+    inside = inside.reshape(len(asked), len(points))
+    if inside.any():
         _refuse_local(run, chain, component, beside, pulsation)
     return Lumps(
         coordinates=component,
@@ -226,7 +227,7 @@ def _lumps(
         moved=_moved(chain, component, [run.drives[k] for k in ends]),
         motions=tuple(run.forces[k] for k in ends),
         reading=reading(chain, x, component, asked, beside=beside, pulsation=pulsation),
-        local=local,
+        local=inside,
         number=np.array(watched, dtype=np.intp),
         pulsation=pulsation,
         start=start,
@@ -255,20 +256,6 @@ def _cut(
             f"must be shorter than sqrt(B/|T|), got {most.max():.3g} of it"
         )
     return cut(chain, x, [p[1] for p in inside])
-
-
-def _local(
-    chain: Chain, x: Real, component: tuple[str, ...], drives: list[Point], responses: list[Point]
-) -> Real:
-    """Return the flexibility inside driven elements, shape (responses, drives)."""
-    found = np.zeros((len(responses), len(drives)))
-    for r, watched in enumerate(responses):
-        for d, pushed in enumerate(drives):
-            (left, s), (other, p) = locate(x, watched[1]), locate(x, pushed[1])
-            if s is not None and p is not None and left == other and not is_force(watched):
-                local = _core.local(chain, left, s, p)
-                found[r, d] = local[component.index(watched[0]), component.index(pushed[0])]
-    return found
 
 
 def _refuse_local(
@@ -317,10 +304,9 @@ def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside)
 
 def _feet(chain: Chain, u: Real) -> Real:
     """Return how far the feet of resonators are moved."""
-    if chain.attached_row is None or chain.attached_term is None:
+    if chain.attached_row is None:
         return np.zeros(0)
-    node = [int(np.flatnonzero(chain.term_of == term)[0]) for term in chain.attached_term]
-    return np.asarray(np.einsum("kc,kc->k", chain.attached_row[:, 0], u[node]))
+    return np.asarray(np.einsum("kc,kc->k", chain.attached_row[:, 0], u[chain.feet]))
 
 
 def refuse(model: Model) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import ATTACHED, Chain
+from .cluster import clusters
 from .compile import divided
 from .damping import INERTIA, SECTION, TENSION, factors, having, ratios
 from .eigen import SOLVERS, Found, pieces_of, spectrum
@@ -62,11 +63,7 @@ class ModalSystem:
     @cached_property
     def blocks(self) -> tuple[NDArray[np.intp], ...]:
         """Modes that tension or damping couple, those of each block in order."""
-        from scipy.sparse.csgraph import connected_components
-
-        joined = (self.geometric != 0) | (self.damping != 0)
-        count, label = connected_components(joined, directed=False)
-        return tuple(np.flatnonzero(label == k) for k in range(count))
+        return tuple(clusters((self.geometric != 0) | (self.damping != 0)))
 
     def only(self, modes: NDArray[np.intp]) -> ModalSystem:
         """Return that of some modes."""
@@ -311,13 +308,12 @@ class _Carried:
         form = cls(*(np.zeros((count, count)) for _ in range(3)))
         if chain.attached_kind is None:
             return form
-        assert chain.attached_term is not None
         assert chain.attached_row is not None
         assert chain.attached_value is not None
         for k, kind in enumerate(chain.attached_kind):
             if kind != RESONATOR:
                 continue
-            node = int(chain.first[chain.term == chain.attached_term[k]][0])
+            node = chain.feet[k]
             mass, stiffness, _, damping = chain.attached_value[k]
             y = motion[:, k]
             stretched = y - shape[:, node] @ chain.attached_row[k, 0]

@@ -87,6 +87,21 @@ def ports(
     return Ports(node, row, force if force.any() else None)
 
 
+def local(
+    chain: Chain,
+    x: NDArray[np.float64],
+    coordinates: Sequence[str],
+    pushed: Point,
+    watched: Point,
+) -> float:
+    """Return the flexibility inside one element between two points in it, 0 for all others."""
+    (left, p), (other, s) = locate(x, pushed[1]), locate(x, watched[1])
+    if p is None or s is None or left != other or is_force(watched):
+        return 0.0
+    inside = _core.local(chain, left, s, p)
+    return float(inside[coordinates.index(watched[0]), coordinates.index(pushed[0])])
+
+
 def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
     """Return where tensed elements are cut so that none is near its own critical load.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from . import _core
 from .chain import CHANNELS, KINDS, Chain
 from .check import COORDINATES
+from .port import Point, is_force, locate
+from .unit import FORCE
 
 BENDING = CHANNELS["beta"]
 
@@ -27,6 +30,17 @@ class LeftEnd(NamedTuple):
     E: NDArray[Any]
     Q: NDArray[Any]
     P: NDArray[Any]
+
+
+def at_start(x: NDArray[np.float64], point: Point) -> bool:
+    """Whether an internal force is asked for at the left end, where no element ends."""
+    return is_force(point) and locate(x, point[1])[0] == 0
+
+
+def tellers(coordinates: Sequence[str], x: NDArray[np.float64]) -> list[Point]:
+    """Return what the force at the left end follows from: motion of nodes 0 and 1, force at 1."""
+    motion = [(c, float(at)) for at in x[:2] for c in coordinates]
+    return motion + [(FORCE[c], float(x[1])) for c in coordinates]
 
 
 def left_ends(chain: Chain) -> LeftEnd:

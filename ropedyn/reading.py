@@ -12,8 +12,8 @@ from . import _core
 from .beside import Beside
 from .chain import Chain
 from .errors import SceneError
-from .port import Point, Ports, is_force, locate, moving, ports
-from .unit import FORCE
+from .port import Point, Ports, moving, ports
+from .reaction import at_start, tellers
 
 Real = NDArray[np.float64]
 
@@ -106,18 +106,16 @@ def reading(
     pulsation : callable or None
         Tension [N] at times [s].
     """
-    at_start = [is_force(p) and locate(x, p[1])[0] == 0 for p in points]
-    direct = [p for p, left in zip(points, at_start) if not left]
-    number = np.flatnonzero(~np.array(at_start, dtype=np.bool_))
+    hidden = [at_start(x, p) for p in points]
+    direct = [p for p, left in zip(points, hidden) if not left]
+    number = np.flatnonzero(~np.array(hidden, dtype=np.bool_))
     if len(direct) == len(points):
         return Reading(ports(chain, x, coordinates, points), number, None)
-    channel = [coordinates.index(moving(p)) for p, left in zip(points, at_start) if left]
+    channel = [coordinates.index(moving(p)) for p, left in zip(points, hidden) if left]
     if beside.stretching and "beta" in coordinates and coordinates.index("beta") in channel:
         raise SceneError(
             "response must not be M_beta at the left end where the tension is stretching"
         )
-    motion = [(c, float(at)) for at in x[:2] for c in coordinates]
-    force = [(FORCE[c], float(x[1])) for c in coordinates]
     e = int(chain.element[0])
     F, _, Q = (array[e] for array in _core.triples(chain.at_rest))
     length = float(chain.length[e])
@@ -131,4 +129,5 @@ def reading(
         extra=lambda time: np.zeros(len(time)) if pulsation is None else pulsation(time) / length,
         z=coordinates.index("z") if "z" in coordinates else None,
     )
-    return Reading(ports(chain, x, coordinates, [*direct, *motion, *force]), number, left)
+    read = ports(chain, x, coordinates, direct + tellers(coordinates, x))
+    return Reading(read, number, left)

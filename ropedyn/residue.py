@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from . import _core
 from .chain import Chain
 from .characteristic import Complex, Rates, Real
+from .cluster import clusters
 from .damped_roots import Damped
 from .errors import SolveError
 from .port import Ports
@@ -88,14 +89,7 @@ def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:
 def _groups(value: Complex, error: Real) -> list[Index]:
     """Gather rates that are not told apart."""
     near = np.abs(value[:, None] - value[None, :]) <= ALIKE * (error[:, None] + error[None, :])
-    left, groups = set(range(len(value))), []
-    while left:
-        own: set[int] = {min(left)}
-        while (more := set(np.flatnonzero(near[sorted(own)].any(axis=0)).tolist())) != own:
-            own = more
-        left -= own
-        groups.append(np.array(sorted(own)))
-    return groups
+    return clusters(near)
 
 
 def _room(value: Complex, group: Index, damped: Damped) -> float:
@@ -111,9 +105,7 @@ def _probes(chain: Chain) -> NDArray[np.int64]:
     """Return the ends of a chain, some nodes spread along it and those that carry structures."""
     last = chain.nodes - 1
     spread = np.rint(np.arange(1, PLACES + 1) * GOLDEN % 1.0 * last).astype(np.int64)
-    carrying = () if chain.attached_term is None else chain.attached_term
-    feet = chain.first[np.isin(chain.term, carrying)]
-    return np.unique(np.concatenate([[0, last], spread, feet]))
+    return np.unique(np.concatenate([[0, last], spread, chain.feet[chain.feet >= 0]]))
 
 
 def _ports(chain: Chain, nodes: NDArray[np.int64]) -> Ports:

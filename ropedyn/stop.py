@@ -8,6 +8,7 @@ from typing import ClassVar
 from . import check
 from .errors import SceneError
 from .node import Law, NodeRate, NodeTerm
+from .unit import UNIT
 
 
 @dataclass(frozen=True)
@@ -59,8 +60,8 @@ class Stop:
         unit = "N/m" if self.coordinate in ("x", "z") else "N m"
         stiffness = check.number(self.stiffness, "stiffness", unit, sign="positive")
         object.__setattr__(self, "stiffness", stiffness)
-        unit = "m" if self.coordinate in ("x", "z") else "rad"
-        object.__setattr__(self, "gap", check.number(self.gap, "gap", unit, sign="nonnegative"))
+        gap = check.number(self.gap, "gap", UNIT[self.coordinate], sign="nonnegative")
+        object.__setattr__(self, "gap", gap)
         side = int(check.number(self.side, "side", sign="nonzero"))
         if side not in (1, -1) or side != self.side:
             raise SceneError(f"side must be 1 or -1, got {self.side!r}")

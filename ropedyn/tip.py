@@ -38,7 +38,6 @@ def tip_of(model: Model, point: Point) -> Tip:
     """Return the tip of the wire with this number among the broken wires of the scene."""
     chain, scene = model.chain, model.scene
     assert chain.attached_kind is not None
-    assert chain.attached_term is not None
     assert chain.attached_row is not None
     kind = ATTACHED.index(BrokenWire.kind)
     wires = (p for p in standing(scene.parts) if isinstance(p, BrokenWire))
@@ -47,7 +46,7 @@ def tip_of(model: Model, point: Point) -> Tip:
     order = sorted(range(len(nodes)), key=nodes.__getitem__)
     rank = order.index(int(point[1]))
     structure = int(np.flatnonzero(chain.attached_kind == kind)[rank])
-    node = chain.first[np.flatnonzero(chain.term == chain.attached_term[structure])[0]]
+    node = chain.feet[structure]
     moved = chain.attached_row[structure].any(axis=0)
     root = [(c, float(model.x[node])) for c, moves in zip(model.coordinates, moved) if moves]
     return Tip(structure, root)

@@ -1,0 +1,25 @@
+"""Groups of what lies near each other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def clusters(near: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """Gather what is near, or near to what is near, and so on.
+
+    Parameters
+    ----------
+    near : ndarray of bool, shape (n, n)
+        Symmetric.
+
+    Returns
+    -------
+    list of ndarray of int
+        Members of each group in order, the groups in the order of their first members.
+    """
+    from scipy.sparse.csgraph import connected_components
+
+    count, label = connected_components(near, directed=False)
+    return [np.flatnonzero(label == k) for k in range(count)]
