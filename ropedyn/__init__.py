@@ -7,6 +7,7 @@ Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask f
 from . import ask, study2015
 from .accuracy import AccuracyCost, accuracy_cost
 from .answer import Answer, Cost, load
+from .bending_test import BendingTest
 from .broken_wire import BrokenWire
 from .choice import Choice
 from .compare import Comparison, compare
@@ -28,6 +29,7 @@ from .modes import Modes
 from .node_force import NodeForce
 from .part import Dashpot, Hinge, PointMass, Spring, Support
 from .peaks import Peaks
+from .prior import Prior
 from .resonance import Resonances
 from .resonator import Resonator
 from .ringdown import RingDown
@@ -39,6 +41,7 @@ from .stop import Stop
 from .stretch import AddedMass, LocalChange
 from .table import Table
 from .tension import Tension
+from .torsion_test import TorsionTest
 
 __version__ = "0.1.0"
 
@@ -47,6 +50,7 @@ __all__ = [
     "AccuracyCost",
     "AddedMass",
     "Answer",
+    "BendingTest",
     "BrokenWire",
     "Chirp",
     "Choice",
@@ -72,6 +76,7 @@ __all__ = [
     "NodeForce",
     "Peaks",
     "PointMass",
+    "Prior",
     "RayleighDamping",
     "Resonances",
     "Resonator",
@@ -91,6 +96,7 @@ __all__ = [
     "Support",
     "Table",
     "Tension",
+    "TorsionTest",
     "ViscousDamping",
     "accuracy_cost",
     "ask",

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import KW_ONLY, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import check
 from .errors import SceneError
+
+if TYPE_CHECKING:
+    from .bending_test import BendingTest
+    from .torsion_test import TorsionTest
 
 
 @dataclass(frozen=True)
@@ -117,6 +121,62 @@ class Rope:
             f"torsional_stiffness]] must be positive definite, got {[[EA, D], [D, C]]} with the "
             f"eigenvalue {lowest:.6g}"
         )
+
+    @staticmethod
+    def from_tests(
+        length: float,
+        linear_density: float,
+        *,
+        bending: BendingTest | None = None,
+        torsion: TorsionTest | None = None,
+        **others: Any,
+    ) -> Rope:
+        """Return a rope with the stiffnesses that static tests of pieces of it imply.
+
+        A rope keeps no errors: ``Prior.of(bending=..., torsion=...)`` does.
+
+        Parameters
+        ----------
+        length, linear_density : float
+            Of the rope [m, kg/m].
+        bending : BendingTest, optional
+            Of `bending_stiffness`.
+        torsion : TorsionTest, optional
+            Of `torsional_stiffness`.
+        **others
+            Any further argument of `Rope`.
+
+        Returns
+        -------
+        Rope
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type, or there is no such argument.
+        SceneError
+            If there is no test, a stiffness is given that a test tells, or as `Rope` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> bent = rd.BendingTest(0.5, [0.0, 2.0, 4.0], [1.0e-3, 2.5e-3, 4.1e-3])
+        >>> twisted = rd.TorsionTest(0.5, [0.0, 0.05, 0.1], [0.0, 0.17, 0.336])
+        >>> rope = rd.Rope.from_tests(1.35, 0.1017, bending=bent, torsion=twisted)
+        >>> round(rope.bending_stiffness, 2), round(rope.torsional_stiffness, 4)
+        (53.76, 0.1488)
+        """
+        from .prior import given_tests
+
+        for test in given_tests(bending, torsion):
+            name = test.stiffness_name
+            if name in others:
+                raise SceneError(
+                    f"{name} must not be given where a {type(test).__name__} tells it, "
+                    f"got {check.shown(others[name])}"
+                )
+            others[name] = test.stiffness
+        return Rope(length, linear_density, **others)
 
     def replace(self, **changes: Any) -> Rope:
         """Return a rope with these properties changed.
