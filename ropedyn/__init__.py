@@ -39,6 +39,7 @@ from .spectrum import Spectrum
 from .stability import StabilityMap
 from .stop import Stop
 from .stretch import AddedMass, LocalChange
+from .sweep import Sweep, sweep
 from .table import Table
 from .tension import Tension
 from .torsion_test import TorsionTest
@@ -94,6 +95,7 @@ __all__ = [
     "StiffnessDamping",
     "Stop",
     "Support",
+    "Sweep",
     "Table",
     "Tension",
     "TorsionTest",
@@ -104,4 +106,5 @@ __all__ = [
     "effect_cost",
     "load",
     "study2015",
+    "sweep",
 ]
