@@ -1,0 +1,43 @@
+"""How the site is built: python -m sphinx -W --keep-going -n docs build/site."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "extensions"))
+
+import ropedyn
+
+project = "ropedyn"
+author = "The ropedyn developers"
+copyright = author
+release = version = ropedyn.__version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "numpydoc",
+    "myst_nb",
+    "command_help",
+    "docstrings",
+    "gallery_notebooks",
+    "mathml",
+]
+templates_path = ["_templates"]
+
+autodoc_typehints = "none"  # docstrings say them in words
+# single backticks of docstrings link what has a page, and may be arguments and attributes too
+default_role = "py:obj"
+nitpick_ignore_regex = [("py:obj", ".*")]
+numpydoc_show_class_members = False
+
+myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_heading_anchors = 3
+myst_update_mathjax = False
+html_math_renderer = "mathml"
+nb_execution_mode = "off"  # gallery_notebooks.py has executed them
+nb_merge_streams = True
+
+html_theme = "pydata_sphinx_theme"
+html_title = "ropedyn"
+html_copy_source = False
+html_show_sourcelink = False
