@@ -17,12 +17,14 @@ from .damping import LossFactor, ModalDamping, RayleighDamping, StiffnessDamping
 from .deflection import Deflection
 from .effect import EffectCost, effect_cost
 from .end import End
-from .errors import RopedynError, SceneError, SolveError
+from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
+from .fit import Fit
 from .floquet import Floquet
 from .force import Chirp, Impulse, Sine, Step
 from .frf import FRF
 from .gravity import Gravity
 from .history import History
+from .identify import identify
 from .measured import Measured
 from .model import Model
 from .modes import Modes
@@ -63,10 +65,12 @@ __all__ = [
     "Deflection",
     "EffectCost",
     "End",
+    "Fit",
     "Floquet",
     "Gravity",
     "Hinge",
     "History",
+    "IdentifyWarning",
     "Impulse",
     "LocalChange",
     "LossFactor",
@@ -104,6 +108,7 @@ __all__ = [
     "ask",
     "compare",
     "effect_cost",
+    "identify",
     "load",
     "study2015",
     "sweep",

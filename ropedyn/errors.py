@@ -26,3 +26,7 @@ class SolveError(RopedynError, ArithmeticError):
     """
 
     history: History | None = None
+
+
+class IdentifyWarning(UserWarning):
+    """What was measured does not tell all that was asked; the message says what it does tell."""

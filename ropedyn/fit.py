@@ -1,0 +1,161 @@
+"""What an identification found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .answer import TRANSIENT, Answer, Cost, axes
+from .errors import SceneError
+from .named import Named
+from .scene import Scene
+from .table import Table, numbers
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Fit(Answer):
+    """Numbers of a scene that make its natural frequencies those of measured peaks.
+
+    Attributes
+    ----------
+    unknown : tuple of str
+        Paths of the numbers.
+    value, std : Named, shape (p,)
+        Each number, ``fit.value["tension"]``, and its standard deviation by the exact derivatives;
+        infinite where the peaks do not tell it. A stiffness that went to 0, because the peaks do
+        not show it, is 0.
+    correlation : ndarray, shape (p, p)
+        NaN where one of both is not told.
+    orders : ndarray of int, shape (k,)
+        Which mode each peak is, from 1; 0 where it is none.
+    measured, calculated : ndarray, shape (k,)
+        [Hz]; calculated is NaN where the peak is no mode.
+    measured_std : ndarray, shape (k,)
+        Of the peaks [Hz]: as they were given; else the relative noise that the residuals show,
+        equal for all.
+    freedom : float or None
+        Degrees of freedom the noise was estimated with; None where it was given.
+    chi_square : float
+        Sum of the squared residuals in units of `measured_std`.
+    notes : tuple of str
+        What the peaks cannot tell, and what they tell instead.
+    cost : Cost
+    """
+
+    unknown: tuple[str, ...]
+    value: Named = field(metadata=axes("unknown"))
+    std: Named = field(metadata=axes("unknown"))
+    correlation: NDArray[np.float64] = field(metadata=axes("unknown", "other"))
+    orders: NDArray[np.int64] = field(metadata=axes("peak"))
+    measured: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    measured_std: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    calculated: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    freedom: float | None
+    chi_square: float
+    notes: tuple[str, ...]
+    cost: Cost
+    solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
+
+    def __post_init__(self) -> None:
+        for name in ("value", "std"):
+            object.__setattr__(self, name, Named(getattr(self, name), self.unknown))
+        super().__post_init__()
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """Calculated less measured frequencies [Hz], shape (k,)."""
+        return self.calculated - self.measured
+
+    @property
+    def scene(self) -> Scene:
+        """The scene with the numbers that were found."""
+        return self._solution.scene
+
+    @property
+    def _solution(self) -> Solution:
+        if self.solution is None:
+            raise SceneError("a fit from a file has no scene: identify again")
+        return self.solution
+
+    def interval(self, level: float = 0.95, *, method: str = "profile") -> Named:
+        """Find confidence intervals.
+
+        Parameters
+        ----------
+        level : float
+            With which the truth is covered, between 0 and 1.
+        method : {"profile", "linear"}
+            ``"profile"``: where the sum of squares, least over the others, has grown by the square
+            of the quantile: right also where the numbers act in a curved way, such as a bending
+            stiffness that hardly shows, whose interval begins at 0. It takes some solutions for
+            each bound. ``"linear"``: the quantile times the standard deviation to either side.
+
+        Returns
+        -------
+        Named, shape (p, 2)
+            The bounds; 0 or infinite where there is none.
+
+        Raises
+        ------
+        TypeError
+            If the level is not a number.
+        SceneError
+            If an argument has no meaning, or the fit was read from a file.
+
+        Notes
+        -----
+        The quantile is the normal one where peaks were given a standard deviation, and Student's t
+        where that was estimated.
+
+        References
+        ----------
+        D. M. Bates, D. G. Watts, Nonlinear Regression Analysis (1988), section 6.1.
+        """
+        level = check.number(level, "level", sign="positive")
+        if level >= 1:
+            raise SceneError(f"level must be between 0 and 1, got {level!r}")
+        check.one_of(method, "method", ("profile", "linear"))
+        solution = self._solution
+        by = solution.interval if method == "profile" else solution.linear_interval
+        return Named(by(level), self.unknown)
+
+    def table(self) -> Table:
+        """Return one row for each number."""
+        columns: dict[str, Any] = {
+            "unknown": self.unknown,
+            "value": self.value,
+            "std": self.std,
+        }
+        return Table.of("identified", columns)
+
+    @property
+    def peaks(self) -> Table:
+        """One row for each peak."""
+        columns: dict[str, Any] = {
+            "measured [Hz]": self.measured,
+            "std [Hz]": self.measured_std,
+            "mode": tuple(k or None for k in self.orders.tolist()),
+            "calculated [Hz]": numbers(self.calculated),
+            "residual [Hz]": numbers(self.residual),
+        }
+        return Table.of("calculated against measured peaks", columns)
+
+    def report(self) -> str:
+        """Return values, peaks and notes as text."""
+        notes = [f"note: {note}" for note in self.notes]
+        return "\n".join([str(self.table()), "", str(self.peaks), *notes])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot residuals over orders with the uncertainty of the peaks."""
+        from .plotting_fit import plot_fit
+
+        return plot_fit(self, ax)

@@ -1,0 +1,94 @@
+"""What least squares make small: weighted differences from what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .calculated import Calculated
+from .unknown import Unknowns
+
+Real = NDArray[np.float64]
+
+Misfit = Callable[[Real], tuple[Real, Real]]
+"""From variables u, shape (p,), to residuals (m,) and their slopes (m, p)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PeakMisfit:
+    """Differences of natural frequencies from measured peaks.
+
+    Attributes
+    ----------
+    calculated : Calculated
+        The frequencies.
+    measured : ndarray, shape (k,)
+        [Hz].
+    weight : ndarray, shape (k,)
+        By which differences are divided [Hz].
+    orders : ndarray of int, shape (k,)
+        From 1; 0 of a peak that is no mode, whose difference is 0.
+    """
+
+    calculated: Calculated
+    measured: Real
+    weight: Real
+    orders: NDArray[np.intp]
+
+    def __call__(self, u: Real) -> tuple[Real, Real]:
+        """Return the residuals and their slopes."""
+        frequency, slope = self.partners(u)
+        used = self.orders > 0
+        residual = np.where(used, (frequency - self.measured) / self.weight, 0.0)
+        return residual, np.where(used, slope.T / self.weight, 0.0).T
+
+    def partners(self, u: Real) -> tuple[Real, Real]:
+        """Return the calculated frequency of each peak [Hz] and its slope; any where it is none."""
+        frequency, slope = self.calculated(u, int(self.orders.max()))
+        return frequency[self.orders - 1], slope[self.orders - 1]
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What is known beforehand: values and their standard deviations.
+
+    Attributes
+    ----------
+    unknowns : Unknowns
+        What is sought.
+    at : ndarray of int, shape (q,)
+        Which of it.
+    value, std : ndarray, shape (q,)
+    """
+
+    unknowns: Unknowns
+    at: NDArray[np.intp]
+    value: Real
+    std: Real
+
+    def __call__(self, u: Real) -> tuple[Real, Real]:
+        """Return (p - value)/std and its slopes."""
+        residual = (self.unknowns.value(u)[self.at] - self.value) / self.std
+        slope = np.zeros((len(self.at), len(u)))
+        slope[np.arange(len(self.at)), self.at] = self.unknowns.slope(u)[self.at] / self.std
+        return residual, slope
+
+
+@dataclass(frozen=True, eq=False)
+class Together:
+    """What was measured and what was known, the last in units of the noise of the first."""
+
+    measured: Misfit
+    known: Known
+    noise: float
+
+    def __call__(self, u: Real) -> tuple[Real, Real]:
+        """Return the residuals of both and their slopes."""
+        (first, of_first), (second, of_second) = self.measured(u), self.known(u)
+        return (
+            np.concatenate([first, self.noise * second]),
+            np.concatenate([of_first, self.noise * of_second]),
+        )

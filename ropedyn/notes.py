@@ -1,0 +1,107 @@
+"""What was measured does not tell, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .solution import Solution
+
+Real = NDArray[np.float64]
+
+INVOLVED = 1e-6
+"""Share of a direction from which on a number takes part in it."""
+
+
+def notes_of(solution: Solution) -> tuple[str, ...]:
+    """Return a sentence for each thing that was not told."""
+    return (*_gone(solution), *_blind(solution), *_noise(solution))
+
+
+def _gone(solution: Solution) -> list[str]:
+    """Name the numbers that went to 0 or infinity."""
+    found = []
+    for path, side in zip(solution.unknowns.paths, solution.side):
+        if side:
+            where = "0" if side < 0 else "infinity"
+            found.append(
+                f"{path} goes to {where}: the peaks do not show it, its interval has one bound"
+            )
+    return found
+
+
+def _blind(solution: Solution) -> list[str]:
+    """Name numbers that cannot be told apart, and the combinations that can."""
+    uncertainty = solution.uncertainty
+    blind = uncertainty.blind & (solution.side == 0)
+    at = np.flatnonzero(blind)
+    if not len(at):
+        return []
+    names = [solution.unknowns.paths[i] for i in at]
+    silent = ", ".join(names[:-1]) + " and " + names[-1] if len(names) > 1 else names[0]
+    if len(at) == 1:
+        return [f"the peaks do not depend on {silent}: it stays at its start"]
+    told = [_shown(solution, at, power) for power in combinations(solution, at)]
+    apart = f"the peaks cannot tell {silent} apart: all have an infinite std"
+    if not told:
+        return [f"{apart}; another number must be known"]
+    return [f"{apart}; what the peaks tell is {', '.join(told)}"]
+
+
+def combinations(solution: Solution, at: NDArray[np.intp]) -> list[Real]:
+    """Return exponents of products that are told, where all are small fractions.
+
+    Null directions N in echelon form, a pivot each: p_i is told with pivots to the power -N.
+    """
+    if not solution.unknowns.by_factor[at].all():
+        return []
+    basis = solution.uncertainty.basis[at]
+    inertia = solution.minimum.slope[:, at].sum(axis=0) * solution.value[at] < 0
+    null = np.linalg.svd(basis.T)[2][np.linalg.matrix_rank(basis, tol=INVOLVED) :]
+    pivots: list[int] = []
+    for row in range(len(null)):
+        # others are divided by one that takes part as much as any, by inertia rather than stiffness
+        share = np.abs(null[row])
+        share[pivots] = 0.0
+        pivot = int(np.argmax((share > 0.999 * share.max()) * (1 + inertia)))
+        null[row] /= null[row, pivot]
+        for other in range(len(null)):
+            if other != row:
+                null[other] -= null[other, pivot] * null[row]
+        pivots.append(pivot)
+    found = []
+    for i in range(len(at)):
+        if i not in pivots:
+            power = np.zeros(len(at))
+            power[i], power[pivots] = 1.0, -null[:, i]
+            if np.abs(4 * power - np.round(4 * power)).max() > 1e-3:
+                return []
+            found.append(np.round(4 * power) / 4)
+    return found
+
+
+def _shown(solution: Solution, at: NDArray[np.intp], power: Real) -> str:
+    """Return a product with its value and standard deviation."""
+    value = float(np.prod(solution.value[at] ** power))
+    direction = np.zeros(len(solution.unknowns))
+    direction[at] = power
+    std = solution.noise * float(np.sqrt(direction @ solution.uncertainty.unit @ direction))
+    name = _product([solution.unknowns.paths[i] for i in at], power)
+    return f"{name} = {value:.6g} +- {abs(value) * std:.2g}"
+
+
+def _product(names: list[str], power: Real) -> str:
+    def factor(name: str, exponent: float) -> str:
+        return name if exponent == 1 else f"{name}^{exponent:g}"
+
+    above = [factor(n, p) for n, p in zip(names, power) if p > 0]
+    below = [factor(n, -p) for n, p in zip(names, power) if p < 0]
+    over = "/".join(["*".join(above) or "1", *([] if not below else ["*".join(below)])])
+    return over if len(below) < 2 else over.replace("/", "/(") + ")"
+
+
+def _noise(solution: Solution) -> list[str]:
+    """Say where nothing tells the noise, or where it is not as it was said."""
+    if not np.isfinite(solution.noise):
+        return ["as many unknown as peaks, and no std: nothing tells how uncertain they are"]
+    return []

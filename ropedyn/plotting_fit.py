@@ -1,0 +1,35 @@
+"""Figures of identification."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .plotting import new_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .fit import Fit
+
+
+def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
+    """Plot residuals over orders, in per cent of the measured frequency."""
+    ax = new_axes(ax)
+    used = fit.orders > 0
+    per_cent = 100 / fit.measured[used]
+    error = fit.measured_std[used] * per_cent
+    ax.errorbar(
+        fit.orders[used],
+        fit.residual[used] * per_cent,
+        yerr=np.where(np.isfinite(error), error, 0.0),
+        fmt="o",
+        capsize=3,
+    )
+    ax.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
+    ax.set(xlabel="mode", ylabel="calculated less measured [%]")
+    ax.set_xticks(np.unique(fit.orders[used]))
+    ax.set_title("identified: " + ", ".join(f"{p} {v:.5g}" for p, v in fit.value.items()))
+    ax.grid(True, color="0.92")
+    return ax

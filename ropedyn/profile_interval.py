@@ -1,0 +1,119 @@
+"""Confidence bounds by profile likelihood."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import SceneError, SolveError
+from .minimum import Minimum, minimise, told
+from .misfit import Misfit
+
+Real = NDArray[np.float64]
+
+CLOSE = 1e-3
+"""Of the bound's distance in standard deviations: it changes what is covered by 1e-4."""
+
+ACCEPTED = 0.02
+"""Share of the growth that a linear step may take off: what it leaves is its square."""
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """How the least sum of squares grows when one number is held off its best value.
+
+    Where the model is linear the root of that growth is the distance in standard deviations; where
+    it is not, the interval on which the root is below a quantile still covers the truth as often
+    (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, section 6.1).
+
+    Attributes
+    ----------
+    misfit : callable
+    minimum : Minimum
+    i : int
+        The number.
+    path : ndarray, shape (p,)
+        Change of the best others, linearly, for a change of 1 of it.
+    """
+
+    misfit: Misfit
+    minimum: Minimum
+    i: int
+    path: Real
+
+    def bound(self, side: int, root: float, step: float, limit: float) -> float:
+        """Return u_i where the root of the growth has a value.
+
+        Parameters
+        ----------
+        side : {-1, 1}
+        root : float
+            That value > 0.
+        step : float
+            Guess of the distance.
+        limit : float
+            Largest distance.
+
+        Returns
+        -------
+        float
+            Infinite where there is none within the limit.
+        """
+
+        def off(distance: float) -> float:
+            return self._root(side * distance, ACCEPTED * root**2)
+
+        distance = _crossing(off, root, min(step, 1.0), limit)
+        return float(self.minimum.u[self.i]) + side * distance
+
+    def _root(self, distance: float, accepted: float) -> float:
+        """Return the root of the growth at a distance, infinite where there is no scene.
+
+        Next to the least sum of squares of the others what one linear step takes off it is all
+        there is to take, to second order in that.
+        """
+        others = np.delete(np.eye(len(self.path)), self.i, axis=1)
+        start = self.minimum.u + distance * self.path
+        try:
+            residual, slope = self.misfit(start)
+            free = slope @ others
+            along, _ = np.linalg.qr(free @ told(free))
+            left, less = float(residual @ residual), float(np.sum((along.T @ residual) ** 2))
+            if less > accepted:
+                left, less = minimise(self.misfit, start, others).cost, 0.0
+        except (SceneError, SolveError):
+            return np.inf
+        return float(np.sqrt(max(left - less - self.minimum.cost, 0.0)))
+
+
+def _crossing(root: Callable[[float], float], target: float, step: float, limit: float) -> float:
+    """Return where an increasing function that is 0 at 0 is `target`, infinite beyond a limit."""
+    low, at_low, high, at_high = 0.0, 0.0, np.inf, np.inf
+    while True:
+        value = root(step)
+        if abs(value - target) <= CLOSE * target:
+            return step
+        if value < target:
+            low, at_low = step, value
+        else:
+            high, at_high = step, value
+        if np.isfinite(high):
+            if high - low <= 1e-6 * high:
+                return high if np.isfinite(at_high) else np.inf
+            step = _between(low, at_low, high, at_high, target)
+        elif low >= limit:
+            return np.inf
+        else:
+            ahead = low * target / at_low if at_low > 0 else np.inf
+            step = min(max(ahead, 1.1 * low), 3 * low, limit)
+
+
+def _between(low: float, at_low: float, high: float, at_high: float, target: float) -> float:
+    """Return the secant's crossing, kept off the ends of the bracket."""
+    if not np.isfinite(at_high):
+        return (low + high) / 2
+    part = (target - at_low) / (at_high - at_low)
+    return low + min(max(part, 0.02), 0.98) * (high - low)

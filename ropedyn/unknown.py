@@ -1,0 +1,106 @@
+"""Numbers of a scene that are sought, and the variables they are sought by."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import check
+from .errors import SceneError
+from .path import value_at, with_values
+from .scene import Scene
+
+Real = NDArray[np.float64]
+
+_PLACE = re.compile(r"parts\[\d+\]\.(x|start|stop)")
+_ANGLE = "gravity.inclination"
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """What is sought.
+
+    A number keeps its sign: u = ln(p/p_0), p_0 its start, so that what is positive stays so and a
+    step of 1 is a factor e, whatever the unit. Only positions, by the length of the rope, and the
+    inclination may pass 0: u = (p - p_0)/scale.
+
+    Attributes
+    ----------
+    scene : Scene
+        With the starts.
+    paths : tuple of str
+        Of the p numbers.
+    start : ndarray, shape (p,)
+        [of each number].
+    scale : ndarray, shape (p,)
+        0 where u is a logarithm.
+    """
+
+    scene: Scene
+    paths: tuple[str, ...]
+    start: Real
+    scale: Real
+
+    @classmethod
+    def of(cls, scene: Scene, unknown: str | Sequence[str]) -> Unknowns:
+        """Check paths and read their starts."""
+        what = 'paths such as ["tension", "bending_stiffness"]'
+        if isinstance(unknown, str):
+            unknown = [unknown]
+        check.instance(unknown, "unknown", (list, tuple, np.ndarray), what)
+        paths = tuple(check.instance(p, f"unknown[{i}]", str, what) for i, p in enumerate(unknown))
+        if not paths or len(set(paths)) < len(paths):
+            raise SceneError(f"unknown must be different {what}, got {check.shown(unknown)}")
+        start = np.array([_start(scene, path, i) for i, path in enumerate(paths)])
+        scale = np.array([_scale(scene, path) for path in paths])
+        for i, path in enumerate(paths):
+            if start[i] == 0 and scale[i] == 0:
+                raise SceneError(
+                    f"unknown[{i}] must not start at 0, from where no factor leads on: give the "
+                    f"scene a guess of {path}"
+                )
+        return cls(scene, paths, start, scale)
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    @property
+    def by_factor(self) -> NDArray[np.bool_]:
+        """Which are sought by their logarithms, shape (p,)."""
+        return self.scale == 0
+
+    def value(self, u: Real) -> Real:
+        """Return the numbers, shape (p,)."""
+        factor = np.exp(np.where(self.by_factor, u, 0.0))
+        return self.start * factor + self.scale * u
+
+    def slope(self, u: Real) -> Real:
+        """Return dp/du, shape (p,)."""
+        return np.where(self.by_factor, self.value(u), self.scale)
+
+    def variable(self, value: float, i: int) -> float:
+        """Return u of one number that has the sign of its start."""
+        if self.by_factor[i]:
+            return float(np.log(value / self.start[i]))
+        return float((value - self.start[i]) / self.scale[i])
+
+    def at(self, u: Real) -> Scene:
+        """Return the scene with these numbers."""
+        return with_values(self.scene, dict(zip(self.paths, self.value(u).tolist())))
+
+
+def _start(scene: Scene, path: str, i: int) -> float:
+    try:
+        return value_at(scene, path)
+    except SceneError as error:
+        raise SceneError(f"unknown[{i}]: {error}") from error
+
+
+def _scale(scene: Scene, path: str) -> float:
+    if _PLACE.fullmatch(path):
+        return scene.rope.length
+    return 1.0 if path == _ANGLE else 0.0

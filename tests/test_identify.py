@@ -1,0 +1,395 @@
+"""Numbers of a scene from measured peaks, against closed forms and models that are known."""
+
+import dataclasses
+import pickle
+
+import numpy as np
+import pytest
+from conftest import EPS
+
+import ropedyn as rd
+
+LENGTH, DENSITY, TENSION = 2.0, 0.5, 1000.0
+BOTH = ["tension", "bending_stiffness"]
+PINNED = ("pinned", "pinned")
+
+
+def pinned_beam(number, tension, bending, density=DENSITY):
+    """Frequencies of a pinned beam [Hz]: lambda = k^2 (B k^2 + T)/mu with k = n pi/L."""
+    k = np.arange(1, number + 1) * np.pi / LENGTH
+    return np.sqrt(k**2 * (bending * k**2 + tension) / density) / (2 * np.pi)
+
+
+def scene(tension, bending, ends=PINNED, density=DENSITY):
+    return rd.Scene(rd.Rope(LENGTH, density, bending_stiffness=bending), tension=tension, ends=ends)
+
+
+def noisy(frequency, relative, seed):
+    return frequency * (1 + relative * np.random.default_rng(seed).normal(size=len(frequency)))
+
+
+# --- exact peaks ------------------------------------------------------------------------------
+
+
+def test_string_of_one_peak_has_the_tension_of_the_formula():
+    """T = 4 mu L^2 f^2, whatever the guess."""
+    string = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=1.0)
+    with pytest.warns(rd.IdentifyWarning, match="as many unknown as peaks"):
+        fit = rd.identify(string, [11.0], "tension")
+    # a root and a square
+    assert fit.value["tension"] == pytest.approx(4 * DENSITY * (LENGTH * 11.0) ** 2, rel=8 * EPS)
+
+
+@pytest.mark.claim(
+    "tension and bending stiffness from exact peaks of a pinned rope, T L^2/B from 10 to 10^5",
+    reference="lambda = k^2 (B k^2 + T)/mu, k = n pi/L",
+    accepted=1e-6,
+)
+@pytest.mark.parametrize("ratio", [10.0, 1e3, 1e5])
+def test_exact_peaks_of_a_pinned_rope_tell_its_tension_and_stiffness(ratio, claim):
+    bending = TENSION * LENGTH**2 / ratio
+    peaks = pinned_beam(10, TENSION, bending)
+    fit = rd.identify(scene(3 * TENSION, bending / 20), peaks, BOTH)
+    claim(max(np.abs(fit.value / [TENSION, bending] - 1)))
+
+
+@pytest.mark.claim(
+    "tension and bending stiffness from exact peaks of clamped ropes, guesses 10^4 off",
+    reference="the spans the peaks were computed with",
+    accepted=1e-6,
+)
+@pytest.mark.parametrize(
+    ("ratio", "guess"),
+    [
+        (10.0, (1e-4, 1e4)),
+        (1e2, (1e3, 1e-3)),
+        (1e5, (100.0, 0.01)),
+        *(
+            pytest.param(ratio, guess, marks=pytest.mark.slow)
+            for ratio in (10.0, 1e3, 1e5)
+            for guess in ((1e-3, 1e-3), (1e3, 1e3), (0.01, 100.0))
+        ),
+    ],
+)
+def test_guesses_wrong_by_powers_of_ten_lead_to_the_same_clamped_rope(ratio, guess, claim):
+    bending = TENSION * LENGTH**2 / ratio
+    clamped = ("clamped", "clamped")
+    peaks = scene(TENSION, bending, clamped).compile().modes(10).frequency
+    start = scene(TENSION * guess[0], bending * guess[1], clamped)
+    claim(max(np.abs(rd.identify(start, peaks, BOTH).value / [TENSION, bending] - 1)))
+
+
+def test_spring_mass_and_its_place_are_found_at_once():
+    def one(tension, spring, mass, x):
+        ends = (rd.End(beta="free", spring={"beta": spring}), "pinned")
+        rope = rd.Rope(LENGTH, DENSITY, bending_stiffness=2.0)
+        return rd.Scene(rope, tension=tension, ends=ends, parts=[rd.PointMass(x, mass)])
+
+    true = (TENSION, 50.0, 0.05, 0.6)
+    unknown = ["tension", "ends[0].spring.beta", "parts[0].mass", "parts[0].x"]
+    peaks = one(*true).compile().modes(8).frequency
+    fit = rd.identify(one(700.0, 5.0, 0.02, 0.5), peaks, unknown)
+    # peaks are right to some eps, of which the spring's share is 1e-4
+    np.testing.assert_allclose(fit.value, true, rtol=1e-9)
+    assert fit.scene.parts[0].x == fit.value["parts[0].x"]
+
+
+def test_a_scene_without_tension_needs_no_guess_of_it():
+    peaks = pinned_beam(6, TENSION, 2.0)
+    fit = rd.identify(scene(0.0, 10.0), peaks, BOTH)
+    np.testing.assert_allclose(fit.value, [TENSION, 2.0], rtol=1e-10)
+
+
+def test_compression_is_found_as_compression():
+    """Numbers keep the sign of their guess."""
+    critical = -2.0 * (np.pi / LENGTH) ** 2
+    peaks = pinned_beam(5, 0.6 * critical, 2.0)
+    fit = rd.identify(scene(0.1 * critical, 3.0), peaks, BOTH)
+    np.testing.assert_allclose(fit.value, [0.6 * critical, 2.0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("given", [[2, 4, 0, 5], np.array([2, 4, 0, 5])])
+def test_orders_say_which_mode_a_peak_is_and_which_is_none(given):
+    f = pinned_beam(5, TENSION, 2.0)
+    fit = rd.identify(scene(800.0, 1.0), [f[1], f[3], 40.123, f[4]], BOTH, orders=given)
+    np.testing.assert_allclose(fit.value, [TENSION, 2.0], rtol=1e-10)
+    assert fit.orders.tolist() == [2, 4, 0, 5]
+    assert np.isnan(fit.residual).tolist() == [False, False, True, False]
+
+
+def test_peaks_bring_their_orders_and_others_are_sorted():
+    f = pinned_beam(4, TENSION, 2.0)
+    assert rd.identify(scene(800.0, 1.0), f[[2, 0, 1]], BOTH).orders.tolist() == [3, 1, 2]
+    ordered = rd.Peaks(f[[3, 1, 2]], order=[4, 2, 3])
+    assert rd.identify(scene(800.0, 1.0), ordered, BOTH).orders.tolist() == [4, 2, 3]
+
+
+def test_chains_are_identified_as_they_are():
+    """Beads on a string: f_k = sqrt(T/(mu a^2)) sin(k pi/2n)/pi."""
+    k = np.arange(1, 5)
+    peaks = np.sqrt(TENSION / DENSITY) * 8 / LENGTH * np.sin(k * np.pi / 16) / np.pi
+    string = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=10.0)
+    fit = rd.identify(string, peaks, "tension", elements=8, element="rigid")
+    assert fit.value["tension"] == pytest.approx(TENSION, rel=100 * EPS)
+
+
+def test_rigid_motion_and_growth_are_no_peaks():
+    rope = rd.Rope(LENGTH, DENSITY, bending_stiffness=2.0)
+    free = rd.Scene(rope, ends=("free", "free"))
+    peaks = free.compile().modes(5).frequency[2:]
+    start = free.replace(rope=rope.replace(bending_stiffness=50.0))
+    fit = rd.identify(start, peaks, "bending_stiffness")
+    assert fit.value["bending_stiffness"] == pytest.approx(2.0, rel=1e-10)
+
+
+# --- statistics -------------------------------------------------------------------------------
+
+
+def test_standard_deviation_is_that_of_the_linear_model():
+    """Lambda of a pinned beam is linear in T and B: weighted linear regression."""
+    f, std = pinned_beam(6, TENSION, 2.0), 0.002 * pinned_beam(6, TENSION, 2.0)
+    fit = rd.identify(scene(900.0, 1.0), rd.Peaks(f, std=std), BOTH)
+    k = np.arange(1, 7) * np.pi / LENGTH
+    slope = np.column_stack([k**2, k**4]) / DENSITY / (8 * np.pi**2 * f * std)[:, None]
+    covariance = np.linalg.inv(slope.T @ slope)
+    size = np.sqrt(np.diag(covariance))
+    # derivatives are exact to 1e-12, the inverse loses its condition of 1e3
+    np.testing.assert_allclose(fit.std, size, rtol=1e-8)
+    np.testing.assert_allclose(fit.correlation, covariance / np.outer(size, size), rtol=1e-8)
+    assert fit.freedom is None
+
+
+def test_noise_is_estimated_from_the_residuals():
+    f = noisy(pinned_beam(8, TENSION, 2.0), 2e-3, 5)
+    fit = rd.identify(scene(900.0, 1.0), f, BOTH)
+    relative = fit.residual / f
+    noise = np.sqrt(np.sum(relative**2) / 6)
+    assert fit.freedom == pytest.approx(6)
+    np.testing.assert_allclose(fit.measured_std, noise * f, rtol=1e-9)
+    # at the least sum of squares nothing is left along the slopes
+    given = rd.identify(scene(900.0, 1.0), rd.Peaks(f, std=noise * f), BOTH)
+    np.testing.assert_allclose(given.std, fit.std, rtol=1e-6)
+
+
+def test_profile_bounds_are_where_the_sum_of_squares_grows_by_the_quantile():
+    f = noisy(pinned_beam(6, TENSION, 0.05), 2e-3, 3)
+    peaks = rd.Peaks(f, std=2e-3 * f)
+    fit = rd.identify(scene(900.0, 1.0), peaks, BOTH)
+    low, high = fit.interval(0.95)["bending_stiffness"]
+    for bound in (b for b in (low, high) if b > 0):
+        held = rd.identify(scene(900.0, bound), peaks, "tension")
+        # 1.96^2, to the tolerance of the crossing
+        assert held.chi_square - fit.chi_square == pytest.approx(1.959964**2, rel=3e-3)
+
+
+def test_interval_of_a_stiffness_that_does_not_show_begins_at_zero():
+    f = noisy(pinned_beam(6, TENSION, 1e-9), 2e-3, 8) * (1 - 1e-3 * np.arange(6))
+    with pytest.warns(rd.IdentifyWarning, match="bending_stiffness goes to 0"):
+        fit = rd.identify(scene(900.0, 1.0), rd.Peaks(f, std=2e-3 * f), BOTH)
+    assert fit.value["bending_stiffness"] == 0.0
+    assert np.isinf(fit.std["bending_stiffness"])
+    low, high = fit.interval()["bending_stiffness"]
+    assert low == 0.0
+    held = rd.identify(scene(900.0, high), rd.Peaks(f, std=2e-3 * f), "tension")
+    assert held.chi_square - fit.chi_square == pytest.approx(1.959964**2, rel=3e-3)
+    # the tension is that of the string
+    string = rd.identify(
+        rd.Scene(rd.Rope(LENGTH, DENSITY), tension=1.0), rd.Peaks(f, std=2e-3 * f), "tension"
+    )
+    assert fit.value["tension"] == pytest.approx(string.value["tension"], rel=1e-6)
+    assert fit.std["tension"] == pytest.approx(string.std["tension"], rel=1e-6)
+
+
+def covered(count, *, known, seed, level=0.95):
+    """Return the share of intervals that cover the truth, for each number."""
+    exact = pinned_beam(6, TENSION, 2.0)
+    random = np.random.default_rng(seed)
+    inside = np.zeros(2)
+    for _ in range(count):
+        f = exact * (1 + 2e-3 * random.normal(size=6))
+        peaks = rd.Peaks(f, std=2e-3 * exact if known else None)
+        bounds = rd.identify(scene(TENSION, 2.0), peaks, BOTH).interval(level)
+        inside += (bounds[:, 0] <= [TENSION, 2.0]) & (bounds[:, 1] >= [TENSION, 2.0])
+    return inside / count
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_intervals_cover_the_truth_in_a_small_sample(known):
+    """Of 24 intervals of 80 % fewer than 13 would cover by chance in 1e-4 of all samples."""
+    assert (covered(24, known=known, seed=11, level=0.8) >= 13 / 24).all()
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "95 % intervals of tension and stiffness, 0.2 % noise on 6 peaks: coverage off 95 % [%]",
+    reference="2000 samples of normal noise, whose share is off by 0.5 % by chance",
+    accepted=2.0,
+)
+@pytest.mark.parametrize("known", [True, False])
+def test_intervals_cover_the_truth_as_often_as_they_say(known, claim):
+    claim(100 * np.abs(covered(2000, known=known, seed=1) - 0.95).max())
+
+
+# --- what peaks do not tell -------------------------------------------------------------------
+
+
+def test_tension_and_density_are_told_as_their_ratio():
+    f = noisy(pinned_beam(5, TENSION, 1e-3), 1e-3, 2)
+    string = rd.Scene(rd.Rope(LENGTH, 0.1), tension=1000.0)
+    with pytest.warns(rd.IdentifyWarning, match=r"tension/linear_density = "):
+        fit = rd.identify(string, f, ["tension", "linear_density"])
+    alone = rd.identify(string, f, "tension")
+    ratio = fit.value["tension"] / fit.value["linear_density"]
+    assert ratio == pytest.approx(alone.value["tension"] / 0.1, rel=1e-9)
+    assert np.isinf(fit.std).all()
+    assert fit.interval().tolist() == [[0.0, np.inf], [0.0, np.inf]]
+    # of least change: each moved by the same factor
+    factor = fit.value / [1000.0, 0.1]
+    assert factor[0] * factor[1] == pytest.approx(1.0, rel=1e-9)
+    relative = alone.std["tension"] / alone.value["tension"]
+    assert f"+- {ratio * relative:.2g}" in fit.notes[0]
+
+
+def test_of_three_numbers_that_scale_alike_two_ratios_are_told():
+    f = noisy(pinned_beam(6, TENSION, 2.0), 1e-3, 2)
+    with pytest.warns(rd.IdentifyWarning) as caught:
+        fit = rd.identify(scene(900.0, 1.0), f, ["linear_density", *BOTH])
+    assert "tension/linear_density = " in str(caught[0].message)
+    assert "bending_stiffness/linear_density = " in str(caught[0].message)
+    assert np.isinf(fit.std).all()
+
+
+def test_what_is_known_beforehand_tells_the_rest():
+    f = noisy(pinned_beam(6, TENSION, 2.0), 1e-3, 2)
+    prior = {"linear_density": (DENSITY, 0.01)}
+    for peaks in (f, rd.Peaks(f, std=1e-3 * f)):
+        fit = rd.identify(scene(900.0, 1.0), peaks, ["linear_density", *BOTH], prior=prior)
+        alone = rd.identify(scene(900.0, 1.0), peaks, BOTH)
+        np.testing.assert_allclose(fit.value, [DENSITY, *alone.value], rtol=1e-6)
+        assert fit.std["linear_density"] == pytest.approx(0.01, rel=1e-6)
+        # relative variances add: of the ratio, and of the density
+        relative = np.sqrt((alone.std / alone.value) ** 2 + 0.02**2)
+        np.testing.assert_allclose(fit.std[1:] / fit.value[1:], relative, rtol=1e-3)
+
+
+def test_a_prior_and_a_peak_are_weighted_means():
+    """One peak of a string says T = T_1 +- s_1; with T_0 +- s_0 the mean is weighted by 1/s^2."""
+    string = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=990.0)
+    f = np.sqrt(TENSION / DENSITY) / (2 * LENGTH)
+    peaks = rd.Peaks([f], std=1e-6 * f)
+    sharp = 2e-6 * TENSION
+    fit = rd.identify(string, peaks, "tension", prior={"tension": (TENSION + 3 * sharp, sharp)})
+    # T is a square of f: linear to 1e-6
+    assert fit.value["tension"] == pytest.approx(TENSION + 1.5 * sharp, rel=1e-8)
+    assert fit.std["tension"] == pytest.approx(sharp / np.sqrt(2), rel=1e-4)
+
+
+def test_a_mass_at_a_node_of_the_mode_is_not_told():
+    rope = rd.Rope(LENGTH, DENSITY)
+    string = rd.Scene(rope, tension=900.0, parts=[rd.PointMass(LENGTH / 2, 0.01)])
+    peaks = rd.Peaks(pinned_beam(4, TENSION, 1e-12)[1::2], order=[2, 4], std=0.01)
+    with pytest.warns(rd.IdentifyWarning, match=r"do not depend on parts\[0\].mass"):
+        fit = rd.identify(string, peaks, ["tension", "parts[0].mass"])
+    assert fit.value["tension"] == pytest.approx(TENSION, rel=1e-9)
+    assert fit.value["parts[0].mass"] == pytest.approx(0.01)
+
+
+# --- answers ----------------------------------------------------------------------------------
+
+FIT = rd.identify(scene(900.0, 1.0), noisy(pinned_beam(6, TENSION, 2.0), 2e-3, 5), BOTH)
+
+
+def test_values_are_arrays_and_mappings():
+    assert FIT.value[0] == FIT.value["tension"]
+    assert list(FIT.value) == FIT.value.tolist()
+    assert dict(FIT.value) == {"tension": FIT.value[0], "bending_stiffness": FIT.value[1]}
+    assert "tension" in FIT.value and "mass" not in FIT.value
+    assert FIT.interval()["tension"].shape == (2,)
+    assert (2 * FIT.std)["tension"] == 2 * FIT.std[0]
+    with pytest.raises(KeyError, match="mass"):
+        FIT.value["mass"]
+
+
+def test_fit_is_saved_pickled_and_read(tmp_path):
+    FIT.save(tmp_path / "fit.nc")
+    for again in (rd.load(tmp_path / "fit.nc"), pickle.loads(pickle.dumps(FIT))):
+        assert dict(again.value) == dict(FIT.value)
+        assert again.report() == FIT.report()
+    assert pickle.loads(pickle.dumps(FIT)).interval().tolist() == FIT.interval().tolist()
+    with pytest.raises(rd.SceneError, match="a fit from a file has no scene"):
+        rd.load(tmp_path / "fit.nc").interval()
+
+
+def test_fitted_scene_has_the_calculated_frequencies():
+    found = FIT.scene.compile().modes(6).frequency
+    # the residuals add and take away what was measured
+    np.testing.assert_allclose(FIT.calculated, found, rtol=10 * EPS)
+    assert FIT.table().column("value") == tuple(FIT.value)
+
+
+def test_figure_shows_residuals_over_orders():
+    (points,) = FIT.plot().get_lines()[:1]
+    np.testing.assert_array_equal(points.get_xdata(), FIT.orders)
+    np.testing.assert_allclose(points.get_ydata(), 100 * FIT.residual / FIT.measured)
+
+
+# --- refusals ---------------------------------------------------------------------------------
+
+STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=900.0)
+DAMPED = dataclasses.replace(
+    STRING,
+    damping=rd.RayleighDamping(1.0, 0.0),
+    parts=[rd.Dashpot(0.5, 1.0), rd.PointMass(0.7, 0.0), rd.PointMass(0.9, 0.1)],
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"unknown": "bending_stiffness"}, r"unknown\[0\]: .*the scene has none"),
+        ({"unknown": []}, "unknown must be different paths"),
+        ({"unknown": ["tension", "tension"]}, "unknown must be different paths"),
+        ({"unknown": "damping.mass"}, r"unknown\[0\] must change natural frequencies"),
+        ({"unknown": "parts[0].damping"}, r"unknown\[0\] must change .*'parts\[0\].damping'"),
+        ({"unknown": "parts[1].mass"}, r"unknown\[0\] must not start at 0"),
+        ({"measured": [10.0], "unknown": ["tension", "parts[2].mass"]}, "at least 2 peaks .*got 1"),
+        ({"measured": [10.0, -1.0]}, r"measured\[1\] must be a finite number > 0"),
+        ({"measured": rd.Peaks([10.0, 20.0], std=0.0)}, r"measured.std\[0\] must be"),
+        ({"orders": [1]}, "orders must be 2 whole numbers"),
+        ({"orders": [1, 1]}, "orders must be 2 whole numbers"),
+        ({"orders": [0, 0]}, "orders must be 2 whole numbers"),
+        ({"orders": [1, -2]}, r"orders\[1\] must be a whole number from 0"),
+        ({"orders": "all"}, 'orders must be one of "auto"'),
+        ({"prior": {"tensions": (1.0, 1.0)}}, "key of prior must be one of"),
+        (
+            {"prior": {"tension": (1.0, 0.0)}},
+            r"prior\['tension'\]\[1\] must be a finite",
+        ),
+        ({"prior": {"tension": (1.0,)}}, r"prior\['tension'\] must be \(value, std\)"),
+    ],
+)
+def test_what_has_no_meaning_is_refused_by_name(change, message):
+    arguments = {"measured": [10.0, 20.0], "unknown": "tension"} | change
+    with pytest.raises(rd.SceneError, match=message):
+        rd.identify(DAMPED, **arguments)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"unknown": 3}, {"unknown": [3]}, {"measured": "10"}, {"prior": 3}, {"scene": 3}],
+)
+def test_wrong_types_are_refused(change):
+    arguments = {"scene": STRING, "measured": [10.0], "unknown": "tension"} | change
+    with pytest.raises(TypeError):
+        rd.identify(**arguments)
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, 95, -0.5, np.nan])
+def test_levels_are_probabilities(level):
+    with pytest.raises(rd.SceneError, match="level"):
+        FIT.interval(level)
+
+
+def test_a_chain_with_fewer_modes_than_orders_is_refused():
+    with pytest.raises(rd.SolveError, match="must have 9 modes for these orders, got 3"):
+        rd.identify(STRING, [90.0], "tension", orders=[9], elements=4, element="rigid")
