@@ -31,6 +31,8 @@ from .modes import Modes
 from .node_force import NodeForce
 from .part import Dashpot, Hinge, PointMass, Spring, Support
 from .peaks import Peaks
+from .plan import Plan
+from .planning import plan_measurement
 from .prior import Prior
 from .resonance import Resonances
 from .resonator import Resonator
@@ -80,6 +82,7 @@ __all__ = [
     "Modes",
     "NodeForce",
     "Peaks",
+    "Plan",
     "PointMass",
     "Prior",
     "RayleighDamping",
@@ -110,6 +113,7 @@ __all__ = [
     "effect_cost",
     "identify",
     "load",
+    "plan_measurement",
     "study2015",
     "sweep",
 ]

@@ -1,0 +1,129 @@
+"""Places to drive and to listen, chosen so that the mode that is seen worst is seen best."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+TIE = 1e-6
+"""Weight of the mean over modes beside the least: of equals the one that sees more is taken."""
+
+STARTS = 24
+"""Places of the drive that the exchange of several sensors begins with."""
+
+
+class Candidates(NamedTuple):
+    """Places for a drive or for a sensor."""
+
+    x: Real
+    """(p,) [m]."""
+    seen: Real
+    """(k, p): motion of each mode there over its largest."""
+
+
+class Found(NamedTuple):
+    """What was chosen."""
+
+    drive: int
+    sensors: tuple[int, ...]
+    score: float
+
+
+def place(drive: Candidates, sensors: Sequence[Candidates], apart: float) -> Found | None:
+    """Maximise the least of a_n(x_d) max_s b_n(x_s) over modes n.
+
+    One sensor: every pair is tried. More: each place in turn is moved to where it is best, given
+    the others, until none moves, from several starts; the best that was found, not proved to be.
+
+    Parameters
+    ----------
+    drive : Candidates
+        a_n.
+    sensors : sequence of Candidates
+        b_n of each sensor.
+    apart : float
+        Least distance between any two places [m].
+
+    Returns
+    -------
+    Found or None
+        Indices into the candidates; None where `apart` leaves no room.
+    """
+    if len(sensors) == 1:
+        return _pair(drive, sensors[0], apart)
+    many = len(drive.x)
+    starts = np.unique(np.linspace(0, many - 1, min(many, STARTS)).astype(int)).tolist()
+    first = _pair(drive, sensors[0], apart)
+    if first is not None:
+        starts.append(first.drive)
+    found = [_exchange(drive, sensors, apart, start) for start in starts]
+    return max((one for one in found if one is not None), key=lambda one: one.score, default=None)
+
+
+def _score(seen: Real) -> Real:
+    return np.asarray(seen.min(axis=0) + TIE * seen.mean(axis=0))
+
+
+def _pair(drive: Candidates, sensor: Candidates, apart: float) -> Found | None:
+    least = np.full((len(drive.x), len(sensor.x)), np.inf)
+    mean = np.zeros_like(least)
+    for a, b in zip(drive.seen, sensor.seen):
+        seen = np.multiply.outer(a, b)
+        np.minimum(least, seen, out=least)
+        mean += seen / len(drive.seen)
+    score = least + TIE * mean
+    score[np.abs(drive.x[:, None] - sensor.x) < apart] = -np.inf
+    best = int(score.argmax())
+    d, s = divmod(best, len(sensor.x))
+    return Found(d, (s,), float(score[d, s])) if np.isfinite(score[d, s]) else None
+
+
+def _exchange(
+    drive: Candidates, sensors: Sequence[Candidates], apart: float, start: int
+) -> Found | None:
+    """Add sensors one by one to a drive, then move each place until none gets better."""
+    slots = [drive, *sensors]
+    at: list[int] = [start]
+    score = -np.inf
+    for slot in range(1, len(slots)):
+        moved = _best(slots, [*at, 0], slot, apart)
+        if moved is None:
+            return None
+        at.append(moved[0])
+        score = moved[1]
+    moves = True
+    while moves:
+        moves = False
+        for slot in range(len(slots)):
+            moved = _best(slots, at, slot, apart)
+            if moved is not None and moved[1] > score + 1e-3 * TIE:
+                at[slot], score = moved
+                moves = True
+    return Found(at[0], tuple(at[1:]), score)
+
+
+def _best(
+    slots: Sequence[Candidates], at: Sequence[int], slot: int, apart: float
+) -> tuple[int, float] | None:
+    """Return where one place is best, given the others, and how good that is."""
+    others = [k for k in range(len(at)) if k != slot]
+    heard = np.zeros(len(slots[0].seen))
+    for k in others:
+        if k > 0:
+            heard = np.maximum(heard, slots[k].seen[:, at[k]])
+    if slot == 0:
+        seen = slots[0].seen * heard[:, None]
+    else:
+        driven = slots[0].seen[:, at[0]]
+        seen = driven[:, None] * np.maximum(slots[slot].seen, heard[:, None])
+    score = _score(seen)
+    for k in others:
+        score[np.abs(slots[slot].x - slots[k].x[at[k]]) < apart] = -np.inf
+    best = int(score.argmax())
+    return (best, float(score[best])) if np.isfinite(score[best]) else None
