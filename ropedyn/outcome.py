@@ -5,8 +5,9 @@ from __future__ import annotations
 import pickle
 import time
 import traceback
+import uuid
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from .errors import RopedynError
 
@@ -61,12 +62,23 @@ def outcome_of(function: Callable[[One], Any], scene: One) -> Outcome:
     return Outcome(result, failure, time.perf_counter() - start)
 
 
-def first_outcomes(function: Callable[[One], Any], scenes: Sequence[One]) -> list[Outcome]:
-    """Return the outcomes of the first scenes, at least of one, until time is up."""
-    stop = time.perf_counter() + SLICE
-    found: list[Outcome] = []
-    for scene in scenes:
-        found.append(outcome_of(function, scene))
-        if time.perf_counter() > stop:
-            break
-    return found
+class Errand(Generic[One]):
+    """What an executor is sent: scenes, and the function to call with each."""
+
+    def __init__(self, function: Callable[[One], Any], scenes: Sequence[One]) -> None:
+        self.function = function
+        self.scenes = scenes
+
+    def __call__(self) -> list[Outcome]:
+        """Return the outcomes of the first scenes, at least of one, until time is up."""
+        stop = time.perf_counter() + SLICE
+        found: list[Outcome] = []
+        for scene in self.scenes:
+            found.append(outcome_of(self.function, scene))
+            if time.perf_counter() > stop:
+                break
+        return found
+
+    def __dask_tokenize__(self) -> str:
+        """No two are the same: Dask would run equal ones once, and spend long on comparing them."""
+        return uuid.uuid4().hex

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from . import check
 from .answer import Cost
-from .outcome import Failure, Outcome, first_outcomes, outcome_of
+from .outcome import Errand, Failure, Outcome, outcome_of
 from .progress import Progress, reporter
 from .table import Table, numbers
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 One = TypeVar("One")
 Result = TypeVar("Result")
 
-CHUNKS = 256
+CHUNKS = 128
 """Scenes are sent in so many chunks, or one by one where there are fewer."""
 
 NUMBERS, WIDEST = (bool, int, float, complex), 20
@@ -230,10 +230,7 @@ def _sent(
     """Yield numbers of scenes and their outcomes as they come back."""
     done: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
     pending: dict[Future[list[Outcome]], range] = {}
-    size = max(1, -(-len(scenes) // CHUNKS))
-    todo = deque(
-        range(first, min(first + size, len(scenes))) for first in range(0, len(scenes), size)
-    )
+    todo = deque(_parts(range(len(scenes)), CHUNKS))
     try:
         while todo or pending:
             while todo:
@@ -246,11 +243,17 @@ def _sent(
             outcomes = _received(future, len(chunk))
             yield from zip(chunk, outcomes)
             rest = chunk[len(outcomes) :]
-            # what came back without any outcome goes again, one by one, to find the culprit
-            todo.extend([rest] if outcomes and rest else (range(k, k + 1) for k in rest))
+            # what takes long is spread further; of what failed as a whole the culprit is looked for
+            todo.extend(_parts(rest, 2 if outcomes else len(rest)))
     finally:
         for future in pending:
             future.cancel()
+
+
+def _parts(whole: range, count: int) -> list[range]:
+    """Cut a range into so many parts, of one number each where there are fewer."""
+    size = max(1, -(-len(whole) // max(1, count)))
+    return [whole[k : k + size] for k in range(0, len(whole), size)]
 
 
 def _submitted(
@@ -260,7 +263,7 @@ def _submitted(
     from concurrent.futures import Future
 
     try:
-        return executor.submit(first_outcomes, function, scenes)
+        return executor.submit(Errand(function, scenes))
     except Exception as error:
         refused: Future[list[Outcome]] = Future()
         refused.set_exception(error)
