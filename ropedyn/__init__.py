@@ -6,6 +6,7 @@ Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask f
 
 from . import ask, study2015
 from .accuracy import AccuracyCost, accuracy_cost
+from .animation import Animation
 from .answer import Answer, Cost, load
 from .bending_test import BendingTest
 from .broken_wire import BrokenWire
@@ -54,6 +55,7 @@ __all__ = [
     "FRF",
     "AccuracyCost",
     "AddedMass",
+    "Animation",
     "Answer",
     "BendingTest",
     "BrokenWire",

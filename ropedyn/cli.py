@@ -23,8 +23,10 @@ from .cli_options import (
 )
 from .cli_time import time_commands
 from .compare import compare
+from .damped_modes import DampedModes
 from .effect import effect_cost
 from .errors import RopedynError, SceneError, SolveError
+from .modes import Modes
 from .peaks import Peaks
 from .scene import Scene
 
@@ -93,6 +95,10 @@ def _scene_command(
         parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
     if name == "modes":
         parser.add_argument("--damped", action="store_true", help="complex modes")
+        parser.add_argument(
+            "--animate", type=Path, metavar="FILE", help="write a mode in motion: .gif, .html, .mp4"
+        )
+        parser.add_argument("--mode", type=int, help="which of them --animate shows (1)")
     if name == "frf":
         _frf_options(parser, required=True)
     if name == "compare":
@@ -159,11 +165,16 @@ def _study(options: argparse.Namespace) -> None:
 
 
 def _modes(options: argparse.Namespace) -> None:
+    if options.mode is not None and options.animate is None:
+        raise SceneError("--animate must be given with --mode, got none")
     model = compiled(options)
-    if options.damped:
-        show(options, model.modes(options.modes, damped=True))
-    else:
-        show(options, model.modes(options.modes))
+    modes: Modes | DampedModes
+    modes = (
+        model.modes(options.modes, damped=True) if options.damped else model.modes(options.modes)
+    )
+    if options.animate is not None:
+        modes.animate(1 if options.mode is None else options.mode, path=options.animate)
+    show(options, modes)
 
 
 def _frf(options: argparse.Namespace) -> None:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .answer import Answer, Frozen, axes
 from .chain import CARRIED
+
+if TYPE_CHECKING:
+    from .animation import Animation
+    from .damped_modes import DampedModes
+    from .modes import Modes
 
 Number = TypeVar("Number", np.float64, np.complex128)
 
@@ -41,6 +47,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
     """Base of modes: what follows from shapes and from continuous spans is found when asked for."""
 
     coordinates: tuple[str, ...]
+    x: NDArray[np.float64]
     source: OfShapes | Callable[[], OfShapes]
     mesh_source: OfMesh | Callable[[], OfMesh]
 
@@ -78,6 +85,58 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
     def energy(self) -> dict[str, NDArray[np.float64]]:
         """Fractions of strain and of kinetic energy, each shape (k,)."""
         return self.vectors.energy
+
+    def animate(
+        self,
+        mode: int = 1,
+        *,
+        path: str | os.PathLike[str] | None = None,
+        frames: int = 30,
+        seconds: float = 2.0,
+    ) -> Animation:
+        """Show one period of a mode in motion.
+
+        Complex shapes travel as they do, Re(shape e^(i omega t)); decay is left out.
+
+        Parameters
+        ----------
+        mode : int
+            Its number, from 1 as in the table.
+        path : path, optional
+            Of a file to write: ``.gif``, ``.html`` or, where ffmpeg is installed, ``.mp4``.
+        frames : int
+            How many there are in the period, from 2 to 1000.
+        seconds : float
+            What the period takes on the screen [s].
+
+        Returns
+        -------
+        Animation
+            A notebook shows it.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a number is out of range, the mode does not oscillate or the file is of another kind.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> animation = modes.animate(2, frames=4)
+        >>> animation
+        <Animation of mode 2: 50 Hz, transverse, 4 frames>
+        >>> animation.motion.shape == (4, len(modes.x), 1)
+        True
+        """
+        from .animation import animated
+
+        modes = cast("Modes | DampedModes", self)
+        return animated(modes, mode, path=path, frames=frames, seconds=seconds)
 
     @property
     def _shares(self) -> dict[str, NDArray[np.float64]]:

@@ -10,6 +10,7 @@ import pytest
 
 import ropedyn as rd
 from ropedyn.cli import main
+from ropedyn.free_motion import FreeMotion
 
 
 @pytest.fixture
@@ -164,6 +165,16 @@ def test_plot_writes_a_figure(scene_file, tmp_path, capsys, command):
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.parametrize("damped", [[], ["--damped"]])
+def test_animate_writes_a_mode_in_motion(scene_file, tmp_path, capsys, monkeypatch, damped):
+    monkeypatch.setitem(FreeMotion.animate.__kwdefaults__, "frames", 2)
+    file = tmp_path / "mode.gif"
+    options = ["--modes", "2", "--elements", "8", "--animate", str(file), "--mode", "2", *damped]
+    assert main(["modes", str(scene_file), *options]) == 0
+    assert file.read_bytes().startswith(b"GIF89a")
+    assert "frequency [Hz]" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "words"),
     [
@@ -176,6 +187,9 @@ def test_plot_writes_a_figure(scene_file, tmp_path, capsys, command):
         (["frf", "{}", "--frequency", "-5", "--drive", "z@0.5"], 2, "frequency[0]"),
         (["compare", "{}", "--peaks", "a"], 2, "--peaks"),
         (["modes", "{}", "--plot", "/nowhere/figure.png"], 2, "nowhere"),
+        (["modes", "{}", "--animate", "mode.png"], 2, "path must end in .gif, .html, .mp4"),
+        (["modes", "{}", "--mode", "2"], 2, "--animate must be given with --mode"),
+        (["modes", "{}", "--mode", "0", "--animate", "mode.gif"], 2, "mode must be"),
         (["modes", "{}", "--element", "rigid"], 2, "elements must be given"),
         (["accuracy", "nowhere.toml"], 2, "nowhere.toml"),
         (["accuracy", "{}", "--elements", "16,x"], 2, "--elements"),
