@@ -1,9 +1,11 @@
-"""Formulas as MathML, which browsers draw without a script; one that is not TeX ends the build."""
+"""Formulas as MathML, which browsers draw without a script; one that is not TeX is a warning."""
 
 from docutils import nodes
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
-from sphinx.errors import ExtensionError
+from sphinx.util import logging
+
+LOGGER = logging.getLogger(__name__)
 
 
 def setup(app):
@@ -26,4 +28,5 @@ def _written(node, as_block):
     try:
         return tex2mathml(node.astext(), as_block=as_block)
     except MathError as error:
-        raise ExtensionError(f"no formula: {error}: {node.astext()}") from error
+        LOGGER.warning("no formula: %s: %s", error, node.astext(), location=node)
+        return ""
