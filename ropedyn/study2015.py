@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,9 @@ from .peaks import Peaks
 from .rope import Rope
 from .scene import Scene
 from .table import Table
+
+if TYPE_CHECKING:
+    from .implied import Implied
 
 ELEMENTS = 8
 """Elements of the study's chain."""
@@ -126,30 +129,56 @@ def tensed_beam(tension: float, bending_stiffness: float) -> Scene:
     return Scene(Rope(LENGTH, MASS / LENGTH, bending_stiffness=bending_stiffness), tension=tension)
 
 
-def fitted_beam(elements: int = 64) -> Scene:
+def fitted_beam() -> Scene:
     """Fit tension and bending stiffness of a clamped tensed beam to the measured peaks.
 
     Two unknowns, three peaks: least squares of the relative differences.
-
-    Parameters
-    ----------
-    elements : int
-        Of the rigid chain that is fitted.
 
     Returns
     -------
     Scene
     """
-    from scipy.optimize import least_squares
+    from .identify import identify
 
-    target = np.asarray(measured.frequency)
+    return identify(tensed_beam(1000.0, 1.0), measured, ["tension", "bending_stiffness"]).scene
 
-    def differences(logarithms: NDArray[np.float64]) -> NDArray[np.float64]:
-        model = tensed_beam(*np.exp(logarithms)).compile(elements=elements)
-        return model.modes(len(target)).frequency / target - 1
 
-    start = np.log([1000.0, 10.0])
-    return tensed_beam(*np.exp(least_squares(differences, start, xtol=1e-8).x).tolist())
+def implied(peaks: Peaks = measured) -> Implied:
+    """Fit tension and bending stiffness to peaks of the study under each reading of its mass.
+
+    Parameters
+    ----------
+    peaks : Peaks
+        `measured` or `published`.
+
+    Returns
+    -------
+    Implied
+        `print` shows the table, with intervals of 95 %, and the verdict.
+
+    Raises
+    ------
+    TypeError
+        If `peaks` are no peaks.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> fit = rd.study2015.implied().fits["0.13725 kg the whole rope", "clamped"]
+    >>> print(fit.interval(0.95)["tension"].round())
+    [1626. 3591.]
+    """
+    from . import implied as fits
+
+    return fits.implied(peaks)
+
+
+def solid_rod_stiffness() -> float:
+    """Return the bending stiffness of a solid steel rod as thick as the rope, E pi d^4/64 [N m^2].
+
+    No rope of such wires is stiffer.
+    """
+    return STEEL * float(np.pi) * DIAMETER**4 / 64
 
 
 def flexibility(*, printed: bool = False) -> NDArray[np.float64]:
@@ -329,7 +358,7 @@ def _verdict(found: tuple[Reading, ...]) -> str:
     fitted, torsion = by_name[FITTED], by_name[TORSION]
     energy = whole.model.modes(3).energy
     rope = fitted.model.scene.rope
-    rod = STEEL * np.pi * DIAMETER**4 / 64
+    rod = solid_rod_stiffness()
     lines = [
         f"Read as the mass of the whole rope, 0.13725 kg gives the published peaks within "
         f"{_largest(whole, published):.0f} %; read literally, at each mass, it misses them by "

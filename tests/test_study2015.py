@@ -48,7 +48,7 @@ def test_fitted_beam_is_no_worse_than_any_neighbour():
     target = np.asarray(study2015.measured.frequency)
 
     def misfit(tension, bending):
-        model = study2015.tensed_beam(tension, bending).compile(elements=64)
+        model = study2015.tensed_beam(tension, bending).compile()
         return float(((model.modes(3).frequency / target - 1) ** 2).sum())
 
     best = study2015.fitted_beam()
@@ -57,6 +57,47 @@ def test_fitted_beam_is_no_worse_than_any_neighbour():
     for change in (0.99, 1.01):
         assert misfit(change * tension, bending) > least
         assert misfit(tension, change * bending) > least
+
+
+def test_peaks_imply_tension_over_density_whatever_the_rope_weighs():
+    fits = study2015.implied().fits
+    for ends in ("clamped", "pinned"):
+        speeds = [
+            fit.value["tension"] / fit.scene.rope.linear_density
+            for (_, held), fit in fits.items()
+            if held == ends
+        ]
+        assert np.ptp(speeds) <= 1e-6 * speeds[0]
+
+
+def test_solid_rod_is_within_what_the_peaks_imply_and_the_study_is_not():
+    found = study2015.implied()
+    interval = found.intervals["0.13725 kg the whole rope", "clamped"]
+    low, high = interval["bending_stiffness"]
+    # 2.64 N m^2: design.md, section 8
+    assert agrees(study2015.solid_rod_stiffness(), "2.64")
+    assert low == 0
+    assert study2015.solid_rod_stiffness() < high < study2015.BENDING_STIFFNESS
+    assert "wide intervals" in str(found)
+    assert "<table>" in found._repr_html_()
+
+
+def test_published_peaks_show_no_bending():
+    fits = study2015.implied(study2015.published).fits
+    assert all(fit.value["bending_stiffness"] == 0 for fit in fits.values())
+
+
+def test_implied_refuses_what_are_no_peaks():
+    with pytest.raises(TypeError, match="peaks must be Peaks"):
+        study2015.implied([64.0])
+
+
+def test_torsion_of_the_study_is_twice_its_third_peak():
+    modes = rd.study2015.scene().compile().modes(12)
+    torsion = modes.frequency[modes.family == "torsional"][0]
+    # uncoupled 380, coupled about 390 Hz, twice 190 to 195: design.md, section 8
+    assert 380 < torsion < 390
+    assert abs(torsion / 2 / study2015.measured.frequency[2] - 1) < 0.01
 
 
 def test_third_mode_is_transverse_by_its_energy():
