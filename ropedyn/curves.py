@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -100,6 +101,48 @@ class Curves(Answer):
             resonances(self.frequency, self.curve(r, drive), self.quantity, self.labels[r])
             for r in range(len(self.response))
         )
+
+    def write(self, path: str | os.PathLike[str], *, binary: bool = False) -> None:
+        """Write the responses in SI for other programs, whole or not at all.
+
+        `Measured.read` reads them without being told more.
+
+        Parameters
+        ----------
+        path : path
+            ``.csv`` for text in columns, which keeps every bit; ``.uff`` or ``.unv`` for a
+            universal file with a dataset 58 for each response, by pyuff.
+        binary : bool, optional
+            Whether a universal file is binary and keeps every bit, or is ASCII with 12 digits of
+            each value and, where start and step do not say them all, 6 of each frequency.
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If the suffix is none of these, something is not finite, frequencies do not increase,
+            or a universal file has no words for it: internal forces, wires and moved ends, less
+            than two frequencies, ASCII ones that are the same in 6 digits.
+        ImportError
+            If pyuff is missing for a universal file.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=8)
+        >>> frf = model.frf([10.0, 11.0], drive=("z", 0.5))
+        >>> path = tempfile.mkdtemp() + "/calculated.csv"
+        >>> frf.write(path)
+        >>> bool((rd.Measured.read(path).value == frf.value).all())
+        True
+        """
+        from .curves_file import write
+
+        write(self, path, binary)
 
     def table(self) -> Table:
         """Return amplitude and phase of every response over frequency."""

@@ -16,6 +16,10 @@ from .unit import MOTIONS, QUANTITIES
 if TYPE_CHECKING:
     from .history import History
 
+OVERLAPPING = 0.53
+"""Segments of Hann's window that half overlap count so many times as independent ones: Bendat and
+Piersol (2010), section 11.5.2.2."""
+
 FLOOR = 1e-3
 """Lines where the force is less than this part of its largest line are left out."""
 
@@ -55,6 +59,7 @@ def estimate(
         response=history.response,
         quantity=names[MOTIONS[history.quantity]],
         coherence=coherence,
+        averages=OVERLAPPING * segments if coherence is not None and window == "hann" else None,
     )
 
 

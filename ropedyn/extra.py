@@ -30,3 +30,8 @@ def netcdf() -> ModuleType:
     _need("h5netcdf")
     _need("h5py")
     return xarray()
+
+
+def pyuff() -> ModuleType:
+    """Import pyuff."""
+    return _need("pyuff")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,6 +37,8 @@ class Measured(Curves):
     coherence : array_like, as value, optional
         Share of the motion that follows from the force, from 0 to 1; None where nothing was
         averaged.
+    averages : float, optional
+        How many independent records were averaged, where that is known.
 
     Raises
     ------
@@ -60,6 +64,7 @@ class Measured(Curves):
     coherence: NDArray[np.float64] | None = field(
         default=None, metadata=axes("response", "frequency")
     )
+    averages: float | None = None
 
     def __post_init__(self) -> None:
         frequency = check.frequencies(self.frequency)
@@ -81,7 +86,123 @@ class Measured(Curves):
                     f"coherence must lie between 0 and 1, got {check.shown(self.coherence)}"
                 )
             object.__setattr__(self, "coherence", coherence)
+        averages = check.optional(self.averages, "averages", sign="positive")
+        object.__setattr__(self, "averages", averages)
         super().__post_init__()
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        drive: Any = None,
+        response: Any = None,
+        unit: str | Sequence[str] | None = None,
+        quantity: str | None = None,
+        positions: Mapping[int, float | None] | None = None,
+        coordinate: str | Mapping[str, str] | None = None,
+        reciprocal: bool = False,
+        records: int | Sequence[int] | None = None,
+        columns: Mapping[str, Any] | None = None,
+        delimiter: str | None = None,
+        decimal: str = ".",
+        comments: str = "#",
+        skip: int = 0,
+    ) -> Self:
+        r"""Read a universal file (dataset 58, ASCII or binary) or text in columns.
+
+        What `write` has written needs nothing else. Of other files, what they do not say must be
+        said here, and what is said here replaces what they say.
+
+        Parameters
+        ----------
+        path : path
+            ``.uff``, ``.unv`` or ``.uf``; ``.csv``, ``.txt``, ``.dat`` or ``.tsv``.
+        drive : point, optional
+            What the force acted on, such as ``("z", 0.5)``. Of a universal file: which of several.
+        response : point or list of points, optional
+            What was watched. Of a universal file: which of several; all where left out.
+        unit : str, optional
+            Of the values, as the file has them: motion per force such as ``"m/N"``, ``"mm/s/N"``,
+            ``"g/N"``, ``"(m/s^2)/lbf"``, ``"rad/(N m)"``; or one for each response. Of a universal
+            file where left out: by its labels, or else by dataset 164.
+        quantity : {"receptance", "mobility", "accelerance"}, optional
+            The unit says it too. Of a universal file where left out: by the type of its ordinate.
+        positions : dict, optional
+            Of a universal file: where on the rope each node is [m]; None leaves it out.
+        coordinate : str or dict, optional
+            Of a universal file: which coordinate of the rope each of its directions is, such as
+            ``{"Z": "z", "RY": "-beta"}``, or one where there is one direction. The signs of
+            records such as -Z are respected.
+        reciprocal : bool, optional
+            Of a universal file: exchange what was driven and what was watched, which changes no
+            response of a passive rope (Maxwell, Betti); for a hammer that roves.
+        records : int or list of int, optional
+            Of a universal file: numbers of the datasets to be read, from 0.
+        columns : dict, optional
+            Of text: names or numbers, from 0, of the columns "frequency" [Hz], "real" and "imag" or
+            "amplitude" and "phase" [deg], and "coherence"; a list has one for each response.
+        delimiter : str, optional
+            Of text; found where left out.
+        decimal : {".", ","}, optional
+            Of text.
+        comments : str, optional
+            Of text: how lines begin that are left out.
+        skip : int, optional
+            Of text: how many lines are left out first. One line of names may follow.
+
+        Returns
+        -------
+        Measured
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If something is not said, has no meaning for such a file, or the file is damaged; the
+            message names it.
+        ImportError
+            If pyuff is missing for a universal file.
+        OSError
+            If the file cannot be read.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import ropedyn as rd
+        >>> path = tempfile.mkdtemp() + "/run1.csv"
+        >>> with open(path, "w") as file:
+        ...     _ = file.write("f,re,im\n10.0,1.5,0.5\n11.0,2.5,-0.5\n")
+        >>> columns = {"frequency": "f", "real": "re", "imag": "im"}
+        >>> where = {"drive": ("z", 0.5), "response": ("z", 0.2)}
+        >>> measured = rd.Measured.read(path, columns=columns, unit="g/N", **where)
+        >>> measured.labels
+        ('z at 0.200 m [m/s^2/N]',)
+        """
+        from .curves_file import read
+
+        given = read(
+            path,
+            anything={"drive": drive, "response": response, "unit": unit, "quantity": quantity},
+            universal={
+                "positions": positions,
+                "coordinate": coordinate,
+                "reciprocal": reciprocal,
+                "records": records,
+            },
+            text={
+                "columns": columns,
+                "delimiter": delimiter,
+                "decimal": decimal,
+                "comments": comments,
+                "skip": skip,
+            },
+        )
+        try:
+            return cls(**given)
+        except SceneError as error:
+            raise SceneError(f"{path}: {error}") from error
 
     def _columns(self) -> dict[str, Any]:
         columns = super()._columns()
