@@ -89,7 +89,8 @@ class Curves(Answer):
         Returns
         -------
         tuple of Resonances
-            Frequency [Hz], amplitude and damping ratio of each peak.
+            Frequency [Hz] with its standard uncertainty, amplitude and damping ratio of each peak.
+            Of a measurement only what stands out of the noise is a peak.
 
         Raises
         ------
@@ -98,9 +99,24 @@ class Curves(Answer):
         """
         check.count(drive, "drive", least=0, most=len(self.drive) - 1)
         return tuple(
-            resonances(self.frequency, self.curve(r, drive), self.quantity, self.labels[r])
+            resonances(
+                self.frequency,
+                self.curve(r, drive),
+                self.quantity,
+                self.labels[r],
+                self._noise(r),
+                known=self._is_noise_known,
+            )
             for r in range(len(self.response))
         )
+
+    @property
+    def _is_noise_known(self) -> bool:
+        return False
+
+    def _noise(self, response: int) -> NDArray[np.float64] | None:
+        """Return the standard deviation of real and imaginary part at each line, None for none."""
+        return None
 
     def write(self, path: str | os.PathLike[str], *, binary: bool = False) -> None:
         """Write the responses in SI for other programs, whole or not at all.

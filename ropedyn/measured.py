@@ -14,6 +14,7 @@ from . import check
 from .answer import axes
 from .curves import Curves
 from .errors import SceneError
+from .line_noise import by_coherence, by_differences
 from .port import Point
 from .unit import QUANTITIES
 
@@ -203,6 +204,17 @@ class Measured(Curves):
             return cls(**given)
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from error
+
+    @property
+    def _is_noise_known(self) -> bool:
+        return self.coherence is not None and self.averages is not None
+
+    def _noise(self, response: int) -> NDArray[np.float64] | None:
+        """Return the noise of each line: by coherence and averages, or as differences show it."""
+        value = self.value[response]
+        if self.coherence is None or self.averages is None:
+            return by_differences(value)
+        return by_coherence(value, self.coherence[response], self.averages)
 
     def _columns(self) -> dict[str, Any]:
         columns = super()._columns()

@@ -3,17 +3,38 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import one_mode
 from .answer import Answer, axes
 from .table import Table
 from .unit import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LEVEL = 0.4
+"""Lines as high as this part of a peak, and not below, are fitted: 2.3 half widths to each side."""
+
+SIDE = 4
+"""Lines to each side that are fitted at least, unless another peak is near."""
+
+STANDING = 8.0
+"""Prominence of a measured peak in standard deviations of the noise at least: what noise alone
+shows among a million lines."""
+
+GAIN = 50.0
+"""What a pole explains at least and a smooth curve does not, in variances of the noise."""
+
+NEGATIVE = -3.0
+"""Damping ratio of a measured peak in its standard errors at least: what rests does not grow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,22 +48,31 @@ class Resonances(Answer):
     frequency : ndarray, shape (k,)
         Undamped natural frequency of the one-mode fit [Hz].
     amplitude : ndarray, shape (k,)
-        Largest computed amplitude.
+        Largest computed or measured amplitude.
     damping_ratio : ndarray, shape (k,)
         Of the one-mode fit.
+    std, damping_ratio_std : ndarray, shape (k,)
+        Standard uncertainty of frequency [Hz] and damping ratio: standard error of the fit to the
+        lines, which grows with their spacing, with the noise and with what other modes bend. Where
+        lines are too few for a fit, that of a frequency anywhere between two lines, their distance
+        over sqrt(12) (JCGM 100:2008, 4.3.7), and infinite.
     """
 
     label: str
     frequency: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
     amplitude: NDArray[np.float64] = field(metadata=axes("peak"))
     damping_ratio: NDArray[np.float64] = field(metadata=axes("peak"))
+    std: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    damping_ratio_std: NDArray[np.float64] = field(metadata=axes("peak"))
 
     def table(self) -> Table:
         """Return one row for each peak."""
         columns = {
             "frequency [Hz]": self.frequency,
+            "std [Hz]": self.std,
             "amplitude": self.amplitude,
             "damping ratio": self.damping_ratio,
+            "std of damping ratio": self.damping_ratio_std,
         }
         return Table.of(f"peaks of {self.label}", columns)
 
@@ -55,15 +85,25 @@ class Resonances(Answer):
         return ax
 
 
+class _Peak(NamedTuple):
+    """What is known of one."""
+
+    omega: float
+    ratio: float
+    omega_std: float
+    ratio_std: float
+
+
 def resonances(
-    frequency: NDArray[np.float64], value: NDArray[np.complex128], quantity: str, label: str
+    frequency: Real,
+    value: Complex,
+    quantity: str,
+    label: str,
+    noise: Real | None = None,
+    *,
+    known: bool = False,
 ) -> Resonances:
     """Find local maxima of the amplitude and fit one mode to each.
-
-    Of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
-    omega: the one through the three lines about the maximum has its root there at the pole
-    omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact for
-    one mode; others tilt it a little.
 
     Parameters
     ----------
@@ -75,6 +115,10 @@ def resonances(
         What it is.
     label : str
         Its name.
+    noise : ndarray, shape (f,), optional
+        Standard deviation of its real and imaginary parts: what does not stand out is no peak.
+    known : bool, optional
+        Whether the noise is good for errors too, and not an estimate to tell peaks by.
 
     Returns
     -------
@@ -84,20 +128,70 @@ def resonances(
 
     frequency, first = np.unique(frequency, return_index=True)
     value = value[first]
-    omega = 2 * np.pi * frequency
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = (1j * omega) ** QUANTITIES[quantity] / value
-    at, _ = find_peaks(np.abs(value))
-    pole = np.array([_pole(omega, inverse, int(k)) for k in at], dtype=np.complex128)
+    noise = None if noise is None else noise[first]
+    omega, size = 2 * np.pi * frequency, np.abs(value)
+    at, _ = find_peaks(size, prominence=None if noise is None else (STANDING * noise, None))
+    found: list[tuple[int, _Peak | one_mode.OneMode]] = []
+    for k, (start, stop) in zip(at.tolist(), _windows(size, at)):
+        lines = slice(start, stop + 1)
+        each = None if noise is None else noise[lines]
+        mode = _fitted(omega[lines], value[lines], each if known else None)
+        if mode is None and (each is None or len(omega[lines]) < one_mode.LEAST):
+            found.append((k, _by_three(omega, value, quantity, k)))
+        elif mode is not None and (each is None or _stands_out(mode, each)):
+            found.append((k, mode))
     return Resonances(
         label=label,
-        frequency=np.abs(pole) / (2 * np.pi),
-        amplitude=np.abs(value[at]),
-        damping_ratio=pole.imag / np.abs(pole),
+        frequency=np.array([peak.omega for _, peak in found]) / (2 * np.pi),
+        amplitude=size[[k for k, _ in found]],
+        damping_ratio=np.array([peak.ratio for _, peak in found]),
+        std=np.array([peak.omega_std for _, peak in found]) / (2 * np.pi),
+        damping_ratio_std=np.array([peak.ratio_std for _, peak in found]),
     )
 
 
-def _pole(omega: NDArray[np.float64], inverse: NDArray[np.complex128], k: int) -> complex:
+def _windows(size: Real, at: NDArray[np.intp]) -> list[tuple[int, int]]:
+    """Return the first and the last line that are fitted for each peak."""
+    last = len(size) - 1
+    middle = (at[:-1] + at[1:]) // 2
+    lowest, highest = np.append(0, middle), np.append(middle, last)
+    windows = []
+    for k, low, high in zip(at.tolist(), lowest.tolist(), highest.tolist()):
+        below = np.flatnonzero(size < LEVEL * size[k])
+        where = int(np.searchsorted(below, k))
+        left = below[where - 1] + 1 if where > 0 else 0
+        right = below[where] - 1 if where < len(below) else last
+        windows.append((max(low, min(int(left), k - SIDE)), min(high, max(int(right), k + SIDE))))
+    return windows
+
+
+def _fitted(omega: Real, value: Complex, noise: Real | None) -> one_mode.OneMode | None:
+    """Fit a mode where lines are enough."""
+    return one_mode.fit(omega, value, noise) if len(omega) >= one_mode.LEAST else None
+
+
+def _stands_out(mode: one_mode.OneMode, noise: Real) -> bool:
+    """Whether a mode explains more of a measurement than noise may be."""
+    explains = mode.gain > GAIN * float(np.mean(noise**2))
+    return explains and mode.ratio >= NEGATIVE * mode.ratio_std
+
+
+def _by_three(omega: Real, value: Complex, quantity: str, k: int) -> _Peak:
+    """Return the mode through line k and its neighbours.
+
+    Of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
+    omega: the one through the three lines about the maximum has its root there at the pole
+    omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact for
+    one mode; others tilt it a little.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = (1j * omega) ** QUANTITIES[quantity] / value
+    pole = _pole(omega, inverse, k)
+    spacing = (omega[k + 1] - omega[k - 1]) / 2
+    return _Peak(abs(pole), pole.imag / abs(pole), spacing / np.sqrt(12), np.inf)
+
+
+def _pole(omega: Real, inverse: Complex, k: int) -> complex:
     """Return the root of the parabola through line k and its neighbours [rad/s].
 
     At 0 Hz a velocity or an acceleration is 0 and says nothing: the parabola then goes through

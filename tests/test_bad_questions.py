@@ -170,6 +170,13 @@ row(
 )
 row(
     "Peaks",
+    "damping_ratio",
+    lambda v: rd.Peaks([1.0, 2.0], damping_ratio=v),
+    without(NOT_AN_ARRAY, "none"),
+    without(BAD_ARRAY, "negative") | {"three_of_two": [0.1, 0.1, 0.1]},
+)
+row(
+    "Peaks",
     "order",
     lambda v: rd.Peaks([1.0, 2.0], order=v),
     {
