@@ -447,7 +447,23 @@ def _shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = No
     edges = np.arange(len(model.x))
     if model.element == "continuous":
         model, edges = _cut(model, float(eigenvalue.max(initial=0.0)), points)
-    number = len(eigenvalue)
+    return shapes_of(model, solver, len(eigenvalue), edges)
+
+
+def shapes_of(model: Model, solver: str, number: int, edges: NDArray[np.intp]) -> Shapes:
+    """Solve for so many modes, and those that coincide with the last one, with their shapes.
+
+    Parameters
+    ----------
+    model : Model
+        Of continuous spans one with elements below their own resonance.
+    solver : str
+        One of `SOLVERS`.
+    number : int
+        Of modes.
+    edges : ndarray of int
+        See `Shapes`.
+    """
     more = number
     while True:
         more += 1
