@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .accuracy import AccuracyCost
-    from .compare import Comparison
     from .curves import Curves
     from .damage import Damage
     from .damped_modes import DampedModes
@@ -115,22 +114,6 @@ def plot_deflection(deflection: Deflection, ax: Axes | None) -> Axes:
             ax.plot(deflection.x, u / largest, label=f"{NAME[c]}, largest {largest:.3g} {UNIT[c]}")
     ax.set(xlabel="position along the rope [m]", ylabel="share of the largest [1]")
     ax.set_title("static deflection")
-    ax.legend(fontsize="small")
-    return ax
-
-
-def plot_comparison(comparison: Comparison, ax: Axes | None) -> Axes:
-    """Plot calculated over measured peaks, with the line where both agree."""
-    ax = new_axes(ax)
-    paired = comparison.order > 0
-    measured, calculated = comparison.measured[paired], comparison.calculated[paired]
-    top = 1.1 * max([*comparison.measured, *calculated])
-    ax.plot([0.0, top], [0.0, top], color="0.7", label="agreement")
-    ax.plot(measured, calculated, "o", label="pairs")
-    for f, g, difference in zip(measured, calculated, comparison.difference[paired]):
-        ax.annotate(f"{difference:+.1f} %", (f, g), textcoords="offset points", xytext=(8, -10))
-    ax.set(xlabel="measured [Hz]", ylabel="calculated [Hz]", xlim=(0.0, top), ylim=(0.0, top))
-    ax.set_title("calculated against measured peaks")
     ax.legend(fontsize="small")
     return ax
 

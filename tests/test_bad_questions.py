@@ -209,7 +209,58 @@ row(
     "compare",
     "measured",
     lambda v: rd.compare(MODEL, v),
-    {"none": None, "numbers": [20.0], "number": 20.0, "modes": MODEL.modes(1), "class": rd.Peaks},
+    {**NOT_AN_ARRAY, "modes": MODEL.modes(1), "class": rd.Peaks},
+    {**BAD_ARRAY, "zero": [20.0, 0.0]},
+)
+POINTS = [("z", 0.2), ("z", 0.5)]
+SHAPES = [[1.0, 2.0]]
+row(
+    "compare",
+    "within",
+    lambda v: rd.compare(MODEL, PEAKS, within=v),
+    without(NOT_A_NUMBER, "none"),
+    NOT_FINITE | NEGATIVE | ZERO,
+)
+row(
+    "compare",
+    "band",
+    lambda v: rd.compare(MODEL, PEAKS, band=v),
+    without(NOT_A_NUMBER, "none"),
+    NOT_FINITE | NEGATIVE | ZERO,
+)
+row(
+    "compare",
+    "shapes",
+    lambda v: rd.compare(MODEL, 20.0, shapes=v, points=POINTS),
+    {"text": "ab", "words": [["a", "b"]], "bools": [[True, False]], "object": object()},
+    {
+        "none": None,
+        "flat": [1.0, 2.0],
+        "one_point": [[1.0]],
+        "two_peaks": [[1.0, 2.0]] * 2,
+        "ragged": [[1.0], [1.0, 2.0]],
+        "nan": [[NAN, 1.0]],
+    },
+)
+row(
+    "compare",
+    "points",
+    lambda v: rd.compare(MODEL, 20.0, shapes=SHAPES, points=v),
+    {"number": 0.5, "numbers": [0.2, 0.5], "word": "z"},
+    {
+        "none": None,
+        "outside": [("z", 0.2), ("z", 7.0)],
+        "absent": [("z", 0.2), ("x", 0.5)],
+        "end": [("z", 0.2), ("end", 0, "z")],
+        "force": [("z", 0.2), ("F_z", 0.5)],
+    },
+)
+row(
+    "Comparison.plot",
+    "of",
+    lambda v: rd.compare(MODEL, 20.0).plot(of=v),
+    without(NOT_A_WORD, "none"),
+    {"unknown": "shape", "no_shapes": "mac", "no_response": "phase"},
 )
 
 TABLE = rd.Table.of("a table", {"a": [1, 2]})

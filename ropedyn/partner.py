@@ -1,0 +1,89 @@
+"""Which calculated frequency each measured one is, if any."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+CLOSE = 0.1
+"""Of the mean distance of calculated frequencies: nearer ones are close to each other."""
+
+ALONE = math.log(2.0)
+"""Spacing of a frequency that has no neighbour: that of the first two of a string."""
+
+SPREAD = 3.0
+"""Standard uncertainties that a measured frequency may be off."""
+
+
+def reach(calculated: Real) -> Real:
+    """Return how far away a partner may be, in logarithms of frequencies.
+
+    Half the distance to a neighbour: a peak in the middle between two modes says nothing about
+    which of them it is. Of two neighbours the farther one counts. Modes close to each other, as
+    where twist meets bending, are one neighbour.
+
+    Parameters
+    ----------
+    calculated : ndarray, shape (m,)
+        [Hz], increasing, each > 0.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+    """
+    log = np.log(calculated)
+    mean = (log[-1] - log[0] + ALONE) / len(log)
+    place = np.append(0, np.cumsum(np.diff(log) > CLOSE * mean))
+    gap = np.diff(np.bincount(place, log) / np.bincount(place))
+    if len(gap) == 0:
+        return np.full(len(log), ALONE / 2)
+    wider = np.maximum(np.append(gap[0], gap), np.append(gap, gap[-1]))
+    return np.asarray(wider[place] / 2)
+
+
+def partners(
+    measured: Real, calculated: Real, *, std: Real | None = None, within: float | None = None
+) -> NDArray[np.int64]:
+    """Find the calculated partner of each measured frequency, or none.
+
+    Over all sets of pairs the sum of d^2 + (reach^2 of each calculated frequency without partner)
+    is smallest, d = log(measured/calculated): to leave a pair out costs as much as a peak in the
+    middle between two modes, so that peaks that are no modes and modes that are no peaks stay
+    alone. As d^2 is convex, no two pairs cross: the order of frequencies is kept.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (k,)
+        [Hz], in any order.
+    calculated : ndarray, shape (m,)
+        [Hz], increasing, each > 0.
+    std : ndarray, shape (k,), optional
+        Standard uncertainty of the measured frequencies [Hz].
+    within : float, optional
+        Largest relative error of a calculated frequency: no pair is farther apart than that and
+        three standard uncertainties.
+
+    Returns
+    -------
+    ndarray of int, shape (k,)
+        Numbers from 1, 0 where there is none.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    order = np.zeros(len(measured), dtype=np.int64)
+    if len(measured) == 0 or len(calculated) == 0:
+        return order
+    distance = np.abs(np.log(np.divide.outer(measured, calculated)))
+    price = reach(calculated) ** 2 + np.zeros_like(distance)
+    if within is not None:
+        spread = np.zeros(len(measured)) if std is None else SPREAD * np.nan_to_num(std) / measured
+        price = np.minimum(price, (math.log1p(within) + spread[:, None]) ** 2)
+    saved = np.maximum(price - distance**2, 0.0)
+    row, column = linear_sum_assignment(saved, maximize=True)
+    paired = saved[row, column] > 0
+    order[row[paired]] = column[paired] + 1
+    return order
