@@ -10,11 +10,11 @@ from typing import Any
 
 from . import ask, study2015
 from .accuracy import accuracy_cost
+from .cli_compare import compare_command
 from .cli_options import (
     compile_options,
     compiled,
     drive,
-    numbers,
     output_options,
     point,
     show,
@@ -22,12 +22,10 @@ from .cli_options import (
     whole_numbers,
 )
 from .cli_time import time_commands
-from .compare import compare
 from .damped_modes import DampedModes
 from .effect import effect_cost
 from .errors import RopedynError, SceneError, SolveError
 from .modes import Modes
-from .peaks import Peaks
 from .scene import Scene
 
 STUDY_FOLDER = Path("ropedyn-study")
@@ -78,7 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     study.set_defaults(run=_study)
     _scene_command(commands, "modes", _modes, "natural frequencies and shapes")
     _scene_command(commands, "frf", _frf, "frequency response")
-    _scene_command(commands, "compare", _compare, "calculated against measured peaks")
+    compare_command(commands)
     _accuracy_command(commands)
     _effects_command(commands)
     time_commands(commands)
@@ -91,9 +89,8 @@ def _scene_command(
     parser = commands.add_parser(name, help=text)
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
     compile_options(parser)
-    if name in ("modes", "compare"):
-        parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
     if name == "modes":
+        parser.add_argument("--modes", type=int, default=10, help="how many (%(default)s)")
         parser.add_argument("--damped", action="store_true", help="complex modes")
         parser.add_argument(
             "--animate", type=Path, metavar="FILE", help="write a mode in motion: .gif, .html, .mp4"
@@ -101,8 +98,6 @@ def _scene_command(
         parser.add_argument("--mode", type=int, help="which of them --animate shows (1)")
     if name == "frf":
         _frf_options(parser, required=True)
-    if name == "compare":
-        parser.add_argument("--peaks", required=True, help="measured peaks, comma list [Hz]")
     output_options(parser)
     parser.set_defaults(run=run)
 
@@ -214,8 +209,3 @@ def _asked_frf(options: argparse.Namespace) -> ask.FRFQuestion:
         drive=drive(options.drive, "--drive"),
         response=options.response and [point(text, "--response") for text in options.response],
     )
-
-
-def _compare(options: argparse.Namespace) -> None:
-    peaks = Peaks(numbers(options.peaks, "--peaks"))
-    show(options, compare(compiled(options).modes(options.modes), peaks))

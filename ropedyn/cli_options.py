@@ -42,15 +42,15 @@ def compiled(options: argparse.Namespace) -> Model:
     return Scene.load(options.scene).compile(elements=options.elements, element=options.element)
 
 
-def show(options: argparse.Namespace, answer: Answer) -> None:
-    """Print an answer, and draw it where that is asked."""
+def show(options: argparse.Namespace, answer: Answer, text: str | None = None) -> None:
+    """Print an answer, as text that or its table, and draw it where that is asked."""
     table = answer.table()
     if options.json:
         print(json.dumps({"title": table.title, "rows": table.to_records()}, indent=1))
     elif options.csv:
         print(table.to_csv(), end="")
     else:
-        print(table)
+        print(table if text is None else text)
     if options.plot is not None:
         figure = answer.plot().get_figure(root=True)
         assert figure is not None

@@ -1,4 +1,4 @@
-"""Predicted against measured peaks, responses and shapes."""
+"""Calculated against measured peaks, responses and shapes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ FEWEST = 10
 
 @dataclass(frozen=True, eq=False)
 class Comparison(Answer):
-    """Predicted against measured peaks, responses and shapes; made by `compare`.
+    """Calculated against measured peaks, responses and shapes; made by `compare`.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class Comparison(Answer):
 
     @property
     def residual(self) -> Real:
-        """Predicted less measured frequencies [Hz], shape (k,)."""
+        """Calculated less measured frequencies [Hz], shape (k,)."""
         return self.calculated - self.measured
 
     @property
@@ -114,7 +114,7 @@ class Comparison(Answer):
 
     @property
     def missed(self) -> NDArray[np.int64]:
-        """Predicted peaks between the lowest and the highest measured one that none is."""
+        """Calculated peaks between the lowest and the highest measured one that none is."""
         f, low = self.all_calculated, self.measured.min(initial=np.inf)
         within = (f >= low) & (f <= self.measured.max(initial=0.0))
         number = np.arange(1, len(f) + 1)
