@@ -19,7 +19,7 @@ from .fit import Fit
 from .misfit import Known, PeakMisfit
 from .notes import notes_of
 from .peaks import Peaks
-from .rayleigh import start_of
+from .guess import start_of
 from .resonance import Resonances
 from .scene import Scene
 from .solution import Solution, solve
