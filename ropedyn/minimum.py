@@ -19,8 +19,8 @@ BLIND = 1e-8
 FARTHEST = 23.0
 """From the start, as a logarithm: ten decades, beyond which nothing depends on a number."""
 
-DIGITS = {"ftol": 1e-10, "gtol": 1e-14, "xtol": 1e-13}
-"""ftol: 1e-5 of a standard deviation. gtol: with exact peaks, rounding of frequencies."""
+DIGITS = {"ftol": 1e-8, "gtol": 1e-14, "xtol": 1e-13}
+"""ftol: 1e-4 of a standard deviation. gtol: with exact peaks, rounding of frequencies."""
 
 SCALES: tuple[float | str, ...] = (1.0, "jac")
 """Of the trust region: a factor e of every number; in narrow valleys what residuals feel."""

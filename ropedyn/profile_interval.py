@@ -92,18 +92,21 @@ class Profile:
 def _crossing(root: Callable[[float], float], target: float, step: float, limit: float) -> float:
     """Return where an increasing function that is 0 at 0 is `target`, infinite beyond a limit."""
     low, at_low, high, at_high = 0.0, 0.0, np.inf, np.inf
+    below = above = 0
     while True:
         value = root(step)
         if abs(value - target) <= CLOSE * target:
             return step
         if value < target:
-            low, at_low = step, value
+            low, at_low, below, above = step, value, below + 1, 0
         else:
-            high, at_high = step, value
+            high, at_high, below, above = step, value, 0, above + 1
         if np.isfinite(high):
             if high - low <= 1e-6 * high:
                 return high if np.isfinite(at_high) else np.inf
-            step = _between(low, at_low, high, at_high, target)
+            halve = max(below, above) > 2 or not np.isfinite(at_high)
+            part = 0.5 if halve else _secant(at_low, at_high, target)
+            step = low + part * (high - low)
         elif low >= limit:
             return np.inf
         else:
@@ -111,9 +114,11 @@ def _crossing(root: Callable[[float], float], target: float, step: float, limit:
             step = min(max(ahead, 1.1 * low), 3 * low, limit)
 
 
-def _between(low: float, at_low: float, high: float, at_high: float, target: float) -> float:
-    """Return the secant's crossing, kept off the ends of the bracket."""
-    if not np.isfinite(at_high):
-        return (low + high) / 2
-    part = (target - at_low) / (at_high - at_low)
-    return low + min(max(part, 0.02), 0.98) * (high - low)
+def _secant(low: float, high: float, target: float) -> float:
+    """Return the part of the way from low to high where a function crosses, a straight line.
+
+    Over a decade and more it rather grows as an exponential: what acts by its logarithm.
+    """
+    if low > 0 and high > 10 * low:
+        low, high, target = np.log(low), np.log(high), np.log(target)
+    return min(max((target - low) / (high - low), 0.02), 0.98)

@@ -236,8 +236,8 @@ class Sensitivity:
         """
         weights = self.rate(path).weights(self.places)
         form = self.pairs.matrix(self.slopes.weigh(weights))
-        change = np.zeros(len(form))
-        for cluster in self.shapes.clusters:
+        change = np.diag(form) / np.diag(self.mass)
+        for cluster in (c for c in self.shapes.clusters if len(c) > 1):
             within = np.ix_(cluster, cluster)
             half = np.linalg.inv(np.linalg.cholesky(self.mass[within]))
             change[cluster] = np.linalg.eigvalsh(half @ form[within] @ half.T)
