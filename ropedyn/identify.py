@@ -16,10 +16,10 @@ from .answer import Cost
 from .calculated import Calculated
 from .errors import IdentifyWarning, SceneError
 from .fit import Fit
+from .guess import start_of
 from .misfit import Known, PeakMisfit
 from .notes import notes_of
 from .peaks import Peaks
-from .guess import start_of
 from .resonance import Resonances
 from .scene import Scene
 from .solution import Solution, solve
