@@ -1,0 +1,155 @@
+"""Fits of parameters to peaks whose orders are assumed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .numbering import Likelihood
+from .parameter_grid import Calculated, quotients_at
+from .rayleigh import Quotients
+
+Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+SETTLED = 0.02
+"""Error of the frequencies, in standard uncertainties, that ends a fit."""
+
+ROUNDS = 8
+"""Calculations for one fit, at most."""
+
+HOPELESS = 50.0
+"""How much dearer than the best an assignment is whose fit is given up."""
+
+STRIDE = 4.0
+"""Factor that a parameter may change by at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """What was calculated at some parameters.
+
+    Attributes
+    ----------
+    parameters : ndarray, shape (p,)
+    quotients : Quotients
+    """
+
+    parameters: Real
+    quotients: Quotients
+
+
+@dataclass(frozen=True, eq=False)
+class OrderFit:
+    """The likeliest parameters for orders.
+
+    Attributes
+    ----------
+    orders : ndarray of int, shape (k,)
+    parameters : ndarray, shape (p,)
+    frequency : ndarray, shape (m,)
+        With these parameters [Hz].
+    cost, misfit : float
+        See `Likelihood`.
+    tangent : Tangent
+        What they were found from.
+    """
+
+    orders: Whole
+    parameters: Real
+    frequency: Real
+    cost: float
+    misfit: float
+    tangent: Tangent
+
+
+class OrderFits:
+    """Fits by their orders, each made once."""
+
+    def __init__(
+        self, likelihood: Likelihood, calculated: Calculated, limits: tuple[Real, Real]
+    ) -> None:
+        self.likelihood, self.calculated, self.limits = likelihood, calculated, limits
+        self.count = len(likelihood.frequency) + likelihood.missing
+        self.made: dict[bytes, OrderFit | None] = {}
+
+    def ranked(self) -> list[OrderFit]:
+        """Return those that were not given up, the likeliest first."""
+        return sorted((one for one in self.made.values() if one), key=lambda one: one.cost)
+
+    def settle(self, orders: Whole, parameters: Real) -> None:
+        """Fit, number the peaks anew, and again until the numbers stay."""
+        tangent = self._tangent(parameters)
+        while tangent is not None and orders.tobytes() not in self.made:
+            found = self.fit(orders, tangent)
+            if found is None:
+                return
+            tangent = found.tangent
+            anew, cost = self.likelihood.numbered(found.frequency[None], self.likelihood.sigma)
+            if np.isfinite(cost[0]):
+                orders = anew[0]
+
+    def look_around(self) -> None:
+        """Fit what differs least from the best, until that stays the best."""
+        looked: set[bytes] = set()
+        while ranked := self.ranked():
+            best = ranked[0]
+            key = best.orders.tobytes()
+            if key in looked:
+                return
+            looked.add(key)
+            for orders in self.likelihood.others(best.frequency, best.orders):
+                if orders.tobytes() not in self.made:
+                    self.fit(orders, best.tangent)
+
+    def fit(self, orders: Whole, tangent: Tangent) -> OrderFit | None:
+        """Fit parameters to peaks of these orders; None where that is given up."""
+        self.made[orders.tobytes()] = found = self._fitted(orders, tangent)
+        return found
+
+    def _fitted(self, orders: Whole, tangent: Tangent) -> OrderFit | None:
+        """Follow tangents until one is exact enough.
+
+        Its error is of second order in the changes of the frequencies, taken without their signs.
+        """
+        likelihood, real = self.likelihood, orders > 0
+        best = min((one.cost for one in self.made.values() if one), default=np.inf)
+        for left in range(ROUNDS, 0, -1):
+            parameters, quotients = tangent.parameters, tangent.quotients
+            if len(quotients.frequency) < orders.max():
+                return None
+            ratio = self._ratio(orders, tangent)
+            frequency = quotients.at(ratio)
+            change = np.abs(quotients.share[orders[real] - 1] * (ratio - 1)).sum(axis=-1) / 2
+            error = np.zeros(len(orders))
+            error[real] = change**2
+            sigma = likelihood.coarser(error)
+            cost = likelihood.cost(frequency, orders, sigma)
+            if cost > best + HOPELESS:
+                return None
+            tight = SETTLED * likelihood.sigma
+            if left == 1 or (error * likelihood.frequency <= tight).all():
+                break
+            following = self._tangent(parameters * ratio)
+            if following is None:
+                return None
+            tangent = following
+        cost = likelihood.cost(frequency, orders, likelihood.sigma)
+        misfit = likelihood.misfit(frequency, orders)
+        return OrderFit(orders, parameters * ratio, frequency, cost, misfit, tangent)
+
+    def _ratio(self, orders: Whole, tangent: Tangent) -> Real:
+        peaks, parameters = self.likelihood, tangent.parameters
+        bounds = (
+            np.maximum(self.limits[0] / parameters, 1 / STRIDE),
+            np.minimum(self.limits[1] / parameters, STRIDE),
+        )
+        stay = np.ones(len(parameters)), STRIDE
+        weight = peaks.frequency / peaks.sigma
+        return tangent.quotients.fit(peaks.frequency, weight, orders, stay, bounds)
+
+    def _tangent(self, parameters: Real) -> Tangent | None:
+        quotients = quotients_at(self.calculated, parameters, self.count)
+        return None if quotients is None else Tangent(parameters, quotients)
