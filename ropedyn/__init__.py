@@ -2,6 +2,9 @@
 
 Describe a rope and what acts on it as a `Scene`, compile it to a `Model`, ask for `modes`, `frf` or
 `static`, and compare the answer with a measurement.
+
+Numbers are in SI units, frequencies in Hz. Where pint is installed a quantity of it is taken in any
+unit of the dimension.
 """
 
 from . import ask, study2015

@@ -110,8 +110,8 @@ class AccuracyCost(Answer):
         int or None
             None where no row is within it.
         """
-        check.number(tolerance, "tolerance", sign="positive")
-        enough = np.flatnonzero(self.error <= tolerance)
+        within = check.number(tolerance, "tolerance", sign="positive")
+        enough = np.flatnonzero(self.error <= within)
         if len(enough) == 0:
             return None
         quickest = enough[np.argmin(self.total_seconds[enough])]

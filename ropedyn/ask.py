@@ -55,7 +55,8 @@ class ModesQuestion:
             )
         if self.number is not None:
             check.count(self.number, "number", most=np.iinfo(np.int32).max)
-        check.optional(self.below, "below", "Hz", sign="positive")
+        below = check.optional(self.below, "below", "Hz", sign="positive")
+        object.__setattr__(self, "below", below)
 
     def __str__(self) -> str:
         return f"{self.number} modes" if self.below is None else f"modes below {self.below:g} Hz"

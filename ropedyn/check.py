@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
+from .quantity import is_quantity, magnitude
 from .unit import END, OF_FORCE, WIRE
 
 COORDINATES = ("x", "z", "alpha", "beta")
@@ -42,15 +43,26 @@ def _expected(name: str, what: str, unit: str, value: object) -> str:
     return f"{name} must be {what}{f' [{unit}]' if unit else ''}, got {shown(value)}"
 
 
+def _plain(quantity: Any, name: str, what: str, unit: str) -> Any:
+    """Return the number, or the array, of a quantity in our unit."""
+    try:
+        return magnitude(quantity, unit)
+    except ValueError as error:
+        raise SceneError(_expected(name, what, unit, quantity)) from error
+
+
 def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float:
     """Return a finite real number.
 
     Parameters
     ----------
-    value : float
+    value : float or quantity of pint
         What the user gave.
-    name, unit : str
+    name : str
         For the message.
+    unit : str
+        For the message, and what a quantity is converted to: of several, as in "N/m or N m", to the
+        first that has its dimension.
     sign : {"any", "nonzero", "positive", "nonnegative"}
         What has a meaning.
 
@@ -59,7 +71,7 @@ def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float
     TypeError
         If it is not a real number.
     SceneError
-        If it is not finite or has the wrong sign.
+        If it is not finite, has the wrong sign or, as a quantity, another dimension.
     """
     words = {
         "any": "a finite number",
@@ -68,6 +80,8 @@ def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float
         "nonnegative": "a finite number >= 0",
     }
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, Real):
+        if is_quantity(value):
+            return number(_plain(value, name, words[sign], unit), name, unit, sign=sign)
         raise TypeError(_expected(name, words[sign], unit, value))
     try:
         result = float(value)
@@ -119,14 +133,21 @@ def instance(value: Any, name: str, types: type | tuple[type, ...], what: str) -
 
 
 def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDArray[np.float64]:
-    """Return a new one-dimensional array of at least one finite real number; a number is one."""
+    """Return a new one-dimensional array of at least one finite real number; a number is one.
+
+    Quantities of pint, an array or a list of them, are converted to the unit.
+    """
     words = {"any": "", "nonnegative": " >= 0", "positive": " > 0"}[sign]
     what = f"a one-dimensional array of finite numbers{words}"
+    if is_quantity(value):
+        value = _plain(value, name, what, unit)
+    elif isinstance(value, (list, tuple)) and value and is_quantity(value[0]):
+        value = [number(one, f"{name}[{k}]", unit) for k, one in enumerate(value)]
     if value is None or isinstance(value, (str, bytes)):
         raise TypeError(_expected(name, what, unit, value))
     try:
         array = np.atleast_1d(np.asarray(value))
-    except ValueError as error:
+    except (TypeError, ValueError) as error:
         raise SceneError(_expected(name, what, unit, value)) from error
     if array.dtype.kind not in "iuf":
         if array.size == 0:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from . import check
 from .errors import SceneError
+from .quantity import is_quantity
 
 SECTION, TENSION, SPRING, INERTIA, DASHPOT = PARTS = range(5)
 
@@ -243,6 +244,8 @@ class ModalDamping:
 
 
 def _checked_ratio(ratio: Any) -> float | tuple[float, ...]:
+    if is_quantity(ratio) and np.ndim(ratio.magnitude):
+        return tuple(check.numbers(ratio, "ratio", sign="nonnegative").tolist())
     several = ratio.ndim == 1 if isinstance(ratio, np.ndarray) else isinstance(ratio, (list, tuple))
     if not several:
         return check.number(ratio, "ratio", sign="nonnegative")

@@ -10,26 +10,29 @@ from . import check
 from .errors import SceneError
 from .node import NodeTerm
 from .part import Dashpot, PointMass, Spring
+from .unit import UNIT
 
 STANDING = {"spring": Spring.kind, "dashpot": Dashpot.kind, "mass": PointMass.kind}
 """What can stand at an end, and the effect it is."""
 
 _NUMBER = {
-    "spring": ("N/m or N m", "nonzero"),
-    "dashpot": ("N s/m or N m s", "positive"),
-    "mass": ("kg or kg m^2", "nonnegative"),
+    "spring": ("N/m", "N m", "nonzero"),
+    "dashpot": ("N s/m", "N m s", "positive"),
+    "mass": ("kg", "kg m^2", "nonnegative"),
 }
 
 
 class PerCoordinate(Mapping[str, float]):
     """Values per coordinate, such as spring stiffnesses; a mapping that cannot change."""
 
-    def __init__(self, values: Mapping[str, Any], name: str, unit: str, sign: str) -> None:
+    def __init__(
+        self, values: Mapping[str, Any], name: str, units: tuple[str, str], sign: str
+    ) -> None:
         check.instance(values, name, Mapping, "a mapping from coordinates to numbers")
         for key in values:
             check.one_of(key, f"key of {name}", check.COORDINATES)
         self._values = {
-            c: check.number(values[c], f"{name}[{c!r}]", unit, sign=sign)
+            c: check.number(values[c], f"{name}[{c!r}]", units[UNIT[c] == "rad"], sign=sign)
             for c in check.COORDINATES
             if c in values
         }
@@ -93,8 +96,8 @@ class End:
     def __post_init__(self) -> None:
         for coordinate in check.COORDINATES:
             check.one_of(getattr(self, coordinate), coordinate, ("held", "free"))
-        for name, (unit, sign) in _NUMBER.items():
-            values = PerCoordinate(getattr(self, name), name, unit, sign)
+        for name, (along, turning, sign) in _NUMBER.items():
+            values = PerCoordinate(getattr(self, name), name, (along, turning), sign)
             for coordinate in values:
                 if self.holds(coordinate):
                     raise SceneError(

@@ -14,6 +14,9 @@ from .errors import SceneError
 
 Real = NDArray[np.float64]
 
+ANY = "N or N m or m or rad"
+"""Units of what drives: a force, a moment, or the motion of an end."""
+
 
 class Force(Protocol):
     """What the analyses ask of a force, or of the motion of an end, in time."""
@@ -78,7 +81,7 @@ class Sine(Force):
     phase: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", "N"))
+        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", ANY))
         frequency = check.number(self.frequency, "frequency", "Hz", sign="nonnegative")
         object.__setattr__(self, "frequency", frequency)
         object.__setattr__(self, "phase", check.number(self.phase, "phase", "rad"))
@@ -137,7 +140,7 @@ class Chirp(Force):
     phase: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", "N"))
+        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", ANY))
         for name in ("start", "stop"):
             value = check.number(getattr(self, name), name, "Hz", sign="nonnegative")
             object.__setattr__(self, name, value)
@@ -201,7 +204,7 @@ class Step(Force):
     time: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", "N"))
+        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", ANY))
         time = check.number(self.time, "time", "s", sign="nonnegative")
         object.__setattr__(self, "time", time)
 
@@ -255,7 +258,7 @@ class Impulse(Force):
     duration: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "impulse", check.number(self.impulse, "impulse", "N s"))
+        object.__setattr__(self, "impulse", check.number(self.impulse, "impulse", "N s or N m s"))
         for name in ("time", "duration"):
             value = check.number(getattr(self, name), name, "s", sign="nonnegative")
             object.__setattr__(self, name, value)
@@ -369,7 +372,7 @@ KINDS = (Sine, Chirp, Step, Impulse)
 """What users give beside arrays."""
 
 
-def forces(given: object, name: str, time: Real) -> Force:
+def forces(given: object, name: str, time: Real, unit: str = ANY) -> Force:
     """Return a force from one of `KINDS`, an array over time or a sequence of these.
 
     Raises
@@ -382,8 +385,8 @@ def forces(given: object, name: str, time: Real) -> Force:
     if isinstance(given, KINDS):
         return given
     if isinstance(given, (tuple, list)) and any(isinstance(one, KINDS) for one in given):
-        return Sum(tuple(forces(one, f"{name}[{k}]", time) for k, one in enumerate(given)))
-    sample = check.numbers(given, name, "N")
+        return Sum(tuple(forces(one, f"{name}[{k}]", time, unit) for k, one in enumerate(given)))
+    sample = check.numbers(given, name, unit)
     if sample.shape != time.shape:
         raise SceneError(
             f"{name} must be one number for each of the {len(time)} times, got {len(sample)}"

@@ -180,7 +180,7 @@ def _force(stage: Stage, one: Call, moved: float) -> float:
         return value
     where = f"parts[{one.part}].law(t={stage.time!r}, u={u!r}, v={v!r})"
     try:
-        return check.number(value, where, "N")
+        return check.number(value, where, "N or N m")
     except (TypeError, ValueError) as error:
         raise SolveError(str(error).replace("must be", "must return")) from error
 

@@ -206,11 +206,14 @@ class Dashpot:
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", check.number(self.x, "x", "m"))
         check.one_of(self.coordinate, "coordinate", check.COORDINATES)
-        unit = "N s/m" if self.coordinate in ("x", "z") else "N m s"
-        damping = check.number(self.damping, "damping", unit, sign="positive")
-        object.__setattr__(self, "damping", damping)
         exponent = check.number(self.exponent, "exponent", sign="nonnegative")
         object.__setattr__(self, "exponent", exponent)
+        unit = "N s/m" if self.coordinate in ("x", "z") else "N m s"
+        if exponent != 1:
+            speed = "N (s/m)^" if self.coordinate in ("x", "z") else "N m s^"
+            unit = f"{speed}{exponent!r}"
+        damping = check.number(self.damping, "damping", unit, sign="positive")
+        object.__setattr__(self, "damping", damping)
 
     @property
     def stands_on(self) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from typing import Any
 from . import check
 from .bending_test import BendingTest
 from .errors import SceneError
+from .path_unit import unit_of
 from .static_test import StaticTest
 from .table import Table
 from .torsion_test import TorsionTest
@@ -145,5 +146,6 @@ def _pair(path: str, pair: Any) -> tuple[float, float]:
     check.instance(pair, name, (tuple, list), what)
     if len(pair) != 2:
         raise SceneError(f"{name} must be {what}, got {check.shown(pair)}")
-    value = check.number(pair[0], f"{name}[0]")
-    return value, check.number(pair[1], f"{name}[1]", sign="positive")
+    unit = unit_of(path)
+    value = check.number(pair[0], f"{name}[0]", unit)
+    return value, check.number(pair[1], f"{name}[1]", unit, sign="positive")

@@ -26,7 +26,7 @@ from .port import Point
 from .progress import reporter
 from .superposition import ratio_beyond
 from .transient import is_direct, why_direct
-from .unit import QUANTITIES
+from .unit import QUANTITIES, push_unit
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -109,7 +109,7 @@ def solve_stepped_sine(
         model=model,
         frequency=_stepped(frequency),
         drive=point,
-        amplitude=check.number(amplitude, "amplitude", "N", sign="positive"),
+        amplitude=check.number(amplitude, "amplitude", push_unit(point), sign="positive"),
         responses=observed(model, response, (point,)),
         tolerance=given or (DIRECT if direct else MODAL),
         progress=reporter(progress),

@@ -55,9 +55,10 @@ def compile_within(
     within = check.number(tolerance, "tolerance", sign="positive")
     if within >= 1:
         raise SceneError(f"tolerance must be below 1, the whole frequency, got {tolerance!r}")
+    highest = check.number(below, "below", "Hz", sign="positive")
     least = len(stations_of(scene)) - 1
     compile_scene(scene, elements=least, element=element)  # refuses what no chain can be
-    question = Question(scene, element, eigenvalue_of(below))
+    question = Question(scene, element, eigenvalue_of(highest))
     tried = Search(
         question.error,
         start=question.start(least),
@@ -70,12 +71,12 @@ def compile_within(
         n = min(tried, key=tried.__getitem__)
         raise SolveError(
             f"tolerance must be one that {element} elements meet: their relative mesh error below "
-            f"{below:g} Hz is {tried[n]:.2g} with {n}, the best of {len(tried)} chains of up to "
+            f"{highest:g} Hz is {tried[n]:.2g} with {n}, the best of {len(tried)} chains of up to "
             f"{max(tried)}, got {tolerance!r}"
         )
     choice = Choice(
         tolerance=within,
-        below=float(below),
+        below=highest,
         element=element,
         elements=chosen,
         mesh_error=tried[chosen],

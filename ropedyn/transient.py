@@ -20,7 +20,7 @@ from .place import observed, points
 from .port import Point
 from .progress import reporter
 from .tension import Tension
-from .unit import MOTIONS
+from .unit import MOTIONS, push_unit
 
 Real = NDArray[np.float64]
 
@@ -181,12 +181,15 @@ def _driven(
         return (), ()
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     if not several:
-        return drives, (forces(force, "force", time),)
+        return drives, (forces(force, "force", time, push_unit(drives[0])),)
     if not isinstance(force, (tuple, list, np.ndarray)) or len(force) != len(drives):
         raise SceneError(
             f"force must be one for each of the {len(drives)} drives, got {check.shown(force)}"
         )
-    return drives, tuple(forces(one, f"force[{k}]", time) for k, one in enumerate(force))
+    return drives, tuple(
+        forces(one, f"force[{k}]", time, push_unit(drive))
+        for k, (one, drive) in enumerate(zip(force, drives))
+    )
 
 
 def _loads(model: Model, start: Any) -> dict[Point, float]:

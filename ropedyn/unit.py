@@ -34,6 +34,11 @@ def place(point: tuple[Any, ...]) -> str:
     return f"tip of {name} {x:.0f}" if name == WIRE else f"{name} at {x:.3f} m"
 
 
+def push_unit(drive: tuple[Any, ...]) -> str:
+    """Return the unit of a force at a point, or of the motion of an end."""
+    return UNIT[drive[2]] if drive[0] == END else FORCE_UNIT[drive[0]]
+
+
 def label(
     response: tuple[str, float],
     drive: tuple[Any, ...] | None = None,
@@ -45,7 +50,7 @@ def label(
     unit += ("", "/s", "/s^2")[(QUANTITIES | MOTIONS)[quantity]]
     if drive is None:
         return f"{place(response)} [{unit}]"
-    cause = UNIT[drive[2]] if drive[0] == END else FORCE_UNIT[drive[0]]
+    cause = push_unit(drive)
     per = f"{unit}/{cause}" if " " not in cause else f"{unit}/({cause})"
     return f"{place(response)} [{per}]"
 

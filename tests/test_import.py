@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-LATER = ("scipy", "matplotlib", "pandas", "xarray", "h5netcdf", "h5py", "pyuff", "tomli_w")
+LATER = ("scipy", "matplotlib", "pandas", "xarray", "h5netcdf", "h5py", "pyuff", "tomli_w", "pint")
 ROPE = "rd.Rope(1.0, 0.1, bending_stiffness=1.0)"
 WORK = {
     "import": "",
