@@ -60,7 +60,7 @@ def plan_measurement(
     """Choose where to drive and where to listen so that all wanted modes are seen.
 
     The peak of mode n is |phi_n(x_d) phi_n(x_r)|/(2 zeta_n m_n omega_n^2) (Ewins, Modal Testing,
-    2nd ed., section 2.4), so that |phi_n(x_d) phi_n(x_r)| over its largest along the rope is what
+    2nd ed., chapter 2), so that |phi_n(x_d) phi_n(x_r)| over its largest along the rope is what
     places decide about it. The least of that over the modes is maximised; of several sensors the
     best counts for each mode.
 

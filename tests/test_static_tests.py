@@ -194,6 +194,25 @@ def test_a_prior_is_a_mapping_from_paths_to_value_and_error():
     assert "<table>" in prior._repr_html_()
 
 
+def test_a_test_tells_as_much_beside_peaks_as_alone():
+    """Information adds: 1/std^2 of both is the sum of the two."""
+    rope = rd.Rope(1.35, 0.1017, bending_stiffness=B, torsional_stiffness=C)
+    scene = rd.Scene(rope, tension=3000.0)
+    peaks = rd.Peaks(scene.compile().modes(3).frequency, std=0.2, order=[1, 2, 3])
+    test = bent(noise=scatter(2, 2e-4))
+    alone = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+    both = rd.identify(
+        scene, peaks, ["tension", "bending_stiffness"], prior=rd.Prior.of(bending=test)
+    )
+    stds = np.array([alone.std["bending_stiffness"], test.std])
+    assert 0.2 < stds[0] / stds[1] < 5  # both matter
+    # B moved by a part of its error, and slopes with it
+    expected = (stds**-2.0).sum() ** -0.5
+    assert both.std["bending_stiffness"] == pytest.approx(expected, rel=0.02)
+    weighted = (B / stds[0] ** 2 + test.stiffness / stds[1] ** 2) * expected**2
+    assert both.value["bending_stiffness"] == pytest.approx(weighted, abs=0.02 * expected)
+
+
 # what has no meaning
 
 REFUSED = {
