@@ -65,6 +65,19 @@ class AccuracyCost(Answer):
         the sweep along the same chain; of the sweep those that its own bound gives up.
     refusal : ndarray of str, shape (rows,)
         Why there is no answer, empty where there is one; numbers of such rows are NaN.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    >>> question = rd.ask.modes(1)
+    >>> cost = rd.accuracy_cost(scene, question, elements=[8, 64], solver="sweep", repeat=1)
+    >>> cost.element.tolist(), cost.elements.tolist()
+    (['rigid', 'rigid', 'tensed', 'tensed', 'continuous'], [8, 64, 8, 64, 1])
+    >>> cost.error[:2].round(6)
+    array([0.006413, 0.0001  ])
+    >>> bool((cost.total_seconds > 0).all()), cost.cheapest[1e-12], cost.cost.method
+    (True, 4, 'trials')
     """
 
     question: str
@@ -109,6 +122,15 @@ class AccuracyCost(Answer):
         -------
         int or None
             None where no row is within it.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> question = rd.ask.modes(1)
+        >>> cost = rd.accuracy_cost(scene, question, elements=[8, 64], solver="sweep", repeat=1)
+        >>> cost.cheapest_within(1e-9)
+        4
         """
         within = check.number(tolerance, "tolerance", sign="positive")
         enough = np.flatnonzero(self.error <= within)
@@ -134,7 +156,16 @@ class AccuracyCost(Answer):
         )
 
     def way(self, row: int) -> str:
-        """Say in words how a row answers, such as ``tensed, 64, sweep``."""
+        """Say in words how a row answers, such as ``tensed, 64, sweep``.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> cost = rd.accuracy_cost(scene, rd.ask.modes(1), elements=8, element="tensed", repeat=1)
+        >>> cost.way(0), cost.way(1)
+        ('tensed, 8, sweep', 'tensed, 8, lapack')
+        """
         check.count(row, "row", least=0, most=len(self.element) - 1)
         return words(self.element[row], self.elements[row], self.solver[row])
 

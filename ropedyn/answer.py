@@ -120,7 +120,17 @@ class Frozen:
 
 
 class Answer(Frozen):
-    """Base of the answers: frozen dataclasses whose array fields are declared with `axes`."""
+    """Base of the answers: frozen dataclasses whose array fields are declared with `axes`.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+    >>> isinstance(modes, rd.Answer)
+    True
+    >>> print(str(modes).splitlines()[0])
+    natural frequencies
+    """
 
     kinds: ClassVar[dict[str, type[Answer]]] = {}
 
@@ -129,7 +139,15 @@ class Answer(Frozen):
         Answer.kinds[cls.__name__] = cls
 
     def table(self) -> Table:
-        """Return the answer as a table."""
+        """Return the answer as a table.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> [round(f, 9) for f in modes.table().column("frequency [Hz]")]
+        [25.0, 50.0]
+        """
         raise NotImplementedError
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -143,6 +161,13 @@ class Answer(Frozen):
         Returns
         -------
         matplotlib.axes.Axes
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> modes.plot().get_xlabel()
+        'position along the rope [m]'
         """
         raise NotImplementedError
 
@@ -159,6 +184,14 @@ class Answer(Frozen):
         ------
         ImportError
             If pandas is missing.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> frame = modes.to_dataframe()
+        >>> frame["frequency [Hz]"].round(9).tolist()
+        [25.0, 50.0]
         """
         return self.table().to_dataframe()
 
@@ -169,6 +202,14 @@ class Answer(Frozen):
         ------
         ImportError
             If xarray is missing.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> dataset = modes.to_xarray()
+        >>> dataset["frequency"].dims, dataset["frequency"].attrs["units"]
+        (('mode',), 'Hz')
         """
         import json
 
@@ -205,6 +246,17 @@ class Answer(Frozen):
             If xarray or h5netcdf is missing.
         OSError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> with TemporaryDirectory() as folder:
+        ...     modes.save(Path(folder, "modes.nc"))
+        ...     rd.load(Path(folder, "modes.nc")).frequency.round(9)
+        array([25., 50.])
         """
         from .extra import netcdf
 
@@ -241,6 +293,17 @@ def load(path: str | os.PathLike[str]) -> Answer:
         If the file cannot be read.
     SceneError
         If it holds no answer of ropedyn.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import ropedyn as rd
+    >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+    >>> with TemporaryDirectory() as folder:
+    ...     modes.save(Path(folder, "modes.nc"))
+    ...     type(rd.load(Path(folder, "modes.nc"))).__name__
+    'Modes'
     """
     from .extra import netcdf
 

@@ -43,6 +43,23 @@ class ModesQuestion:
         So many of the lowest.
     below : float or None
         All below this frequency [Hz].
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0)
+    >>> question = rd.ask.modes(below=60.0)
+    >>> answer = question.of(scene.compile(elements=64))
+    >>> question.values(answer).round(3), question.mesh(answer).round(6)
+    (array([24.997, 49.98 ]), array([0.0001  , 0.000402]))
+    >>> question.like(answer), bool(question.rounding(answer).max() < 1e-9)
+    (ModesQuestion(number=2, below=None), True)
+    >>> heavier = scene.replace(rope=rd.Rope(2.0, 0.1001)).compile(elements=64)
+    >>> change = question.like(answer).change(answer, heavier)
+    >>> question.measures[0], round(change.size["largest [Hz]"], 3)
+    ('largest [Hz]', 0.025)
+    >>> question.solvers, question.work(heavier) < 1e-3
+    (('sweep', 'lapack'), True)
     """
 
     number: int | None = None
@@ -114,6 +131,23 @@ class FRFQuestion(Frozen):
         [Hz].
     drive, response, quantity
         As in `Model.frf`.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0)
+    >>> question = rd.ask.frf([10.0, 20.0], drive=("z", 0.5))
+    >>> answer = question.of(scene.compile(elements=64))
+    >>> question.values(answer).real.round(6), question.mesh(answer).round(4)
+    (array([[0.000418, 0.000757]]), array([[0.0001, 0.0004]]))
+    >>> question.like(answer) is question, bool(question.rounding(answer).max() < 1e-9)
+    (True, True)
+    >>> heavier = scene.replace(rope=rd.Rope(2.0, 0.1001)).compile(elements=64)
+    >>> change = question.change(answer, heavier)
+    >>> question.measures[0], round(change.size["largest [dB]"], 3)
+    ('largest [dB]', 0.012)
+    >>> question.solvers, question.work(heavier) < 1e-3
+    (('sweep', 'band', 'lapack'), True)
     """
 
     frequency: Real

@@ -27,6 +27,14 @@ class Choice:
     tried : tuple of (int, float)
         Elements and relative mesh error of each chain that was solved, in order; infinite where a
         chain lacks a frequency.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    >>> choice = scene.compile(tolerance=1e-3, below=20.0).choice
+    >>> choice.elements, choice.frequencies
+    (21, 1)
     """
 
     tolerance: float

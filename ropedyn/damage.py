@@ -47,6 +47,15 @@ class Damage(Answer):
         exact mean over each part. The property is what it is there, with all that changes the rope
         over a stretch; the tension stays, and under gravity the length of the whole rope's curve. 0
         where the frequency is 0.
+
+    Examples
+    --------
+    Half of a rope that loses a tenth of its density moves a frequency by half of 5 %:
+
+    >>> import ropedyn as rd
+    >>> damage = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(1).damage(points=8)
+    >>> damage.frequency_change(0.0, 1.0, linear_density=0.1).round(9)
+    array([0.025])
     """
 
     edge: Real = field(metadata=axes("edge", unit="m"))
@@ -75,6 +84,13 @@ class Damage(Answer):
         SceneError
             If a position is off the rope, the positions are not in order or the rope has no such
             property.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> damage = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2).damage(points=8)
+        >>> damage.frequency_change(0.5, 1.0, linear_density=0.1).round(4)
+        array([0.0205, 0.0125])
         """
         length = float(self.edge[-1])
         begin = check.position(start, "start", length)

@@ -71,6 +71,18 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
         Fractions, as in `Modes`, averaged over a period.
     cost : Cost
         What the rates cost.
+
+    Examples
+    --------
+    A string in a viscous medium loses c/2 mu per second, whatever the mode:
+
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, damping=rd.ViscousDamping(2.0))
+    >>> modes = scene.compile().modes(2, damped=True)
+    >>> modes.decay_rate.round(9), modes.natural_frequency.round(9)
+    (array([10., 10.]), array([25., 50.]))
+    >>> modes.frequency.round(3), modes.damping_ratio.round(4)
+    (array([24.949, 49.975]), array([0.0637, 0.0318]))
     """
 
     coordinates: tuple[str, ...]

@@ -48,7 +48,14 @@ class Damping(Protocol):
     """Name of the effect."""
 
     def term(self) -> DampingTerm:
-        """Return what it adds."""
+        """Return what it adds.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.ViscousDamping(2.0).term().drag
+        2.0
+        """
 
 
 @dataclass(frozen=True)

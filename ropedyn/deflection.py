@@ -44,6 +44,14 @@ class Deflection(Answer):
         That was asked for [N, N m].
     cost : Cost
         What it cost.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=2)
+    >>> static = model.static({("z", 0.5): 10.0})
+    >>> static.displacement[:, 0].round(6), static.force[:, 0].round(6)
+    (array([0.   , 0.025, 0.   ]), array([-5., 10., -5.]))
     """
 
     coordinates: tuple[str, ...]

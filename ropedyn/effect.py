@@ -73,6 +73,16 @@ class EffectCost(Answer):
     refusal : ndarray of str, shape (rows,)
         Why there is no answer without the effect, empty where there is one; numbers of such rows
         are NaN or 0.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.5)
+    >>> cost = rd.effect_cost(rd.Scene(rope, tension=100.0), rd.ask.modes(1), repeat=1)
+    >>> cost.effect.tolist(), cost.largest.round(3), cost.cost.method
+    (['tension', 'bending'], array([10.893,  3.044]), 'trials')
+    >>> cost.share.shape, len(cost.share_quartiles), len(cost.costs)
+    ((2,), 2, 2)
     """
 
     question: str
@@ -132,7 +142,16 @@ class EffectCost(Answer):
         )
 
     def verdict(self, row: int) -> str:
-        """Say in words whether a row changes the answer, such as ``none beyond rounding``."""
+        """Say in words whether a row changes the answer, such as ``none beyond rounding``.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.5)
+        >>> cost = rd.effect_cost(rd.Scene(rope, tension=100.0), rd.ask.modes(1), repeat=1)
+        >>> cost.verdict(1)
+        'yes'
+        """
         check.count(row, "row", least=0, most=len(self.effect) - 1)
         if self.refusal[row]:
             return "no answer without it"

@@ -107,17 +107,40 @@ class End:
             object.__setattr__(self, name, values)
 
     def holds(self, coordinate: str) -> bool:
-        """Whether the coordinate cannot move."""
+        """Whether the coordinate cannot move.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> pinned = rd.End(beta="free")
+        >>> pinned.holds("z"), pinned.holds("beta")
+        (True, False)
+        """
         return bool(getattr(self, coordinate) == "held")
 
     @property
     def standing(self) -> dict[str, Mapping[str, float]]:
-        """What stands there, by the name of the argument; nothing where nothing does."""
+        """What stands there, by the name of the argument; nothing where nothing does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.End(beta="free", spring={"beta": 12.0}).standing
+        {'spring': {'beta': 12.0}}
+        """
         values = {name: getattr(self, name) for name in STANDING}
         return {name: value for name, value in values.items() if value}
 
     def term(self) -> NodeTerm:
-        """Return what it adds to its node."""
+        """Return what it adds to its node.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> term = rd.End(beta="free", spring={"beta": 12.0}).term()
+        >>> term.held, term.stiffness
+        (['x', 'z', 'alpha'], {'beta': 12.0})
+        """
         held = [c for c in check.COORDINATES if self.holds(c)]
         return NodeTerm(self.mass, self.spring, held, damping=self.dashpot)
 

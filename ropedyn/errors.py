@@ -9,11 +9,30 @@ if TYPE_CHECKING:
 
 
 class RopedynError(Exception):
-    """Whatever ropedyn refuses."""
+    """Whatever ropedyn refuses.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> try:
+    ...     rd.Rope(-1.0, 0.1)
+    ... except rd.RopedynError as error:
+    ...     print(error)
+    length must be a finite number > 0 [m], got -1.0
+    """
 
 
 class SceneError(RopedynError, ValueError):
-    """What the user gave has no meaning; the message names the argument and its value."""
+    """What the user gave has no meaning; the message names the argument and its value.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Rope(1.0, 0.1, bending_stiffness=float("nan"))
+    Traceback (most recent call last):
+    ...
+    ropedyn.errors.SceneError: bending_stiffness must be a finite number > 0 [N m^2], got nan
+    """
 
 
 class SolveError(RopedynError, ArithmeticError):
@@ -23,6 +42,15 @@ class SolveError(RopedynError, ArithmeticError):
     ----------
     history : History or None
         What `Model.transient` had computed before a step that does not converge.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile(elements=2)
+    >>> model.modes(5)
+    Traceback (most recent call last):
+    ...
+    ropedyn.errors.SolveError: number must be at most 1, the modes this model has, got 5
     """
 
     history: History | None = None

@@ -70,6 +70,16 @@ class Floquet(Answer):
         The modes that take part in the motion which grows most, or decays least.
     cost : Cost
         What it cost.
+
+    Examples
+    --------
+    A string whose tension pulsates at twice its first frequency:
+
+    >>> import ropedyn as rd
+    >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=100.0)
+    >>> floquet = rd.Scene(rd.Rope(1.0, 0.1), tension=tension).compile().floquet(1)
+    >>> floquet.stable, floquet.dominant, floquet.growth.round(2)
+    (False, (1,), array([ 7.85, -7.85]))
     """
 
     period: float

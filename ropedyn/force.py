@@ -22,29 +22,73 @@ class Force(Protocol):
     """What the analyses ask of a force, or of the motion of an end, in time."""
 
     def value(self, time: Real) -> Real:
-        """Return it at times [s], of the time's shape; from the right where it jumps."""
+        """Return it at times [s], of the time's shape; from the right where it jumps.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> rd.Step(10.0, time=0.5).value(np.array([0.0, 0.5, 1.0]))
+        array([ 0., 10., 10.])
+        """
 
     def rate(self, time: Real) -> Real:
-        """Return its derivative at times [s], of the time's shape; from the right at `breaks`."""
+        """Return its derivative at times [s], of the time's shape; from the right at `breaks`.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> rd.Sine(10.0, 0.5).rate(np.array([0.0, 1.0])).round(4)
+        array([ 31.4159, -31.4159])
+        """
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """When it jumps or bends [s], the times of samples apart."""
+        """When it jumps or bends [s], the times of samples apart.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Chirp(10.0, 20.0, 400.0, 2.0).breaks
+        (2.0,)
+        """
         return ()
 
     @property
     def blows(self) -> tuple[tuple[float, float], ...]:
-        """Impulses at one instant: when [s] and how much [N s, N m s]."""
+        """Impulses at one instant: when [s] and how much [N s, N m s].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Impulse(0.1, time=0.5).blows
+        ((0.5, 0.1),)
+        """
         return ()
 
     @property
     def highest(self) -> float:
-        """Frequency that steps must resolve to see it at all [Hz]; 0 of what only breaks."""
+        """Frequency that steps must resolve to see it at all [Hz]; 0 of what only breaks.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Chirp(10.0, 20.0, 400.0, 2.0).highest
+        400.0
+        """
         return 0.0
 
     @property
     def bandwidth(self) -> float:
-        """Frequency up to which modes must reach to follow it between its breaks [Hz]."""
+        """Frequency up to which modes must reach to follow it between its breaks [Hz].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Sine(10.0, 70.0).bandwidth
+        70.0
+        """
         return self.highest
 
 

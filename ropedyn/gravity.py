@@ -86,11 +86,25 @@ class Gravity:
         object.__setattr__(self, "inclination", inclination)
 
     def curvature(self, rope: Rope, tension: float) -> float:
-        """Return w/H [1/m] of a rope under a chordwise tension [N]."""
+        """Return w/H [1/m] of a rope under a chordwise tension [N].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> round(rd.Gravity().curvature(rd.Rope(100.0, 2.0), 10e3), 6)
+        0.001962
+        """
         return rope.linear_density * self.g * math.cos(self.inclination) / tension
 
     def lengthening(self, rope: Rope, tension: float) -> float:
-        """Return L_e/L = 1 + (w L/H)^2/8 of a rope under a chordwise tension [N]."""
+        """Return L_e/L = 1 + (w L/H)^2/8 of a rope under a chordwise tension [N].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> round(rd.Gravity().lengthening(rd.Rope(100.0, 2.0), 10e3), 6)
+        1.004812
+        """
         slope = self.curvature(rope, tension) * rope.length
         return 1 + slope * slope / 8
 

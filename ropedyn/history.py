@@ -92,6 +92,22 @@ class History(Answer):
         Why it ends before the last time that was asked for; empty where it does not.
     cost : Cost
         What it cost.
+
+    Examples
+    --------
+    A string that is let go keeps its energy:
+
+    >>> import numpy as np
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+    >>> time = np.linspace(0.0, 0.04, 5)
+    >>> history = model.transient(time, start={("z", 1.0): 20.0}, response=("z", 1.0))
+    >>> history.value.round(4)
+    array([[ 0.01  ,  0.0002, -0.0091,  0.0007,  0.0091]])
+    >>> (history.energy["kinetic"] + history.energy["strain"]).round(6)
+    array([0.1, 0.1, 0.1, 0.1, 0.1])
+    >>> bool((history.mesh_error < 2e-3).all()), float(history.step_error.max())
+    (True, 0.0)
     """
 
     drive: tuple[Point, ...]
@@ -116,13 +132,31 @@ class History(Answer):
 
     @cached_property
     def balance(self) -> Balance:
-        """Where the energy is."""
+        """Where the energy is.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+        >>> history = model.transient([0.0, 0.01], start={("z", 1.0): 20.0}, response=("z", 1.0))
+        >>> sorted(history.balance.energy)
+        ['dissipated', 'input', 'kinetic', 'strain']
+        """
         source = self.balance_source
         return source if isinstance(source, Balance) else source()
 
     @cached_property
     def deviation(self) -> Deviation:
-        """What other runs say."""
+        """What other runs say.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+        >>> history = model.transient([0.0, 0.01], start={("z", 1.0): 20.0}, response=("z", 1.0))
+        >>> history.deviation.step_error
+        array([[0., 0.]])
+        """
         source = self.deviation_source
         return source if isinstance(source, Deviation) else source()
 
@@ -172,6 +206,15 @@ class History(Answer):
         ------
         SceneError
             If there are no snapshots, or no such coordinate.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+        >>> push = {"drive": ("z", 0.5), "force": rd.Step(9.0)}
+        >>> history = model.transient([0.0, 0.01], **push, snapshots=[0.005, 0.01])
+        >>> history.plot_snapshots().get_ylabel()
+        'transverse displacement [m]'
         """
         from .plotting_time import plot_snapshots
 

@@ -123,6 +123,14 @@ class Model(Frozen):
         """Whether damping scales parts of the assembled stiffness that the model keeps apart.
 
         In a tensed element that bends, sections and tension are one, and in a string that hangs.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope, damping = rd.Rope(1.0, 0.1, bending_stiffness=1.0), rd.StiffnessDamping(1e-4)
+        >>> scene = rd.Scene(rope, tension=100.0, damping=damping)
+        >>> [scene.compile(elements=4, element=kind).separable for kind in ("rigid", "tensed")]
+        [True, False]
         """
         bends = "beta" in self.coordinates
         inseparable = self.element == "tensed" if bends else self.scene.gravity is not None
@@ -138,12 +146,27 @@ class Model(Frozen):
         ------
         SolveError
             If the compression is exactly the critical load of one element.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4, element="rigid")
+        >>> model.triples.G.round(6), model.triples.element
+        (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
         """
         return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
 
     @property
     def node_terms(self) -> NodeTerms:
-        """The distinct node terms."""
+        """The distinct node terms.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4, element="rigid")
+        >>> model.node_terms.held.tolist(), model.node_terms.term.tolist()
+        ([[1], [1], [0]], [0, 2, 2, 2, 1])
+        """
         chain = self.chain
         return NodeTerms(chain.mass, chain.stiffness, chain.held, chain.term_of)
 
@@ -154,6 +177,14 @@ class Model(Frozen):
         -------
         scipy.sparse.csr_array, shape (size, size)
             Over the free coordinates, node by node in the order of `coordinates` [N/m, N, N m].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=3, element="rigid")
+        >>> print(model.stiffness().toarray().round(6))
+        [[ 600. -300.]
+         [-300.  600.]]
         """
         from .matrices import stiffness
 
@@ -167,6 +198,14 @@ class Model(Frozen):
         -------
         scipy.sparse.csr_array, shape (size, size)
             Over the free coordinates [kg, kg m, kg m^2].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0).compile(elements=3, element="rigid")
+        >>> print(model.mass().toarray().round(6))
+        [[0.1 0. ]
+         [0.  0.1]]
         """
         from .matrices import mass
 
@@ -186,6 +225,14 @@ class Model(Frozen):
         SceneError
             If there is none: tensed elements with tension and stiffness damping, a loss factor,
             modal damping.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0, damping=rd.ViscousDamping(6.0))
+        >>> print(scene.compile(elements=3, element="rigid").damping().toarray().round(6))
+        [[2. 0.]
+         [0. 2.]]
         """
         self._refuse_matrices()
         self._refuse_nonlinear()
@@ -798,5 +845,13 @@ class Model(Frozen):
                 raise SceneError(f"parts[{i}].{must_be}: only integration over time takes others")
 
     def component_of(self, coordinate: str) -> tuple[str, ...]:
-        """Return the coordinates that move with this one."""
+        """Return the coordinates that move with this one.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=0.2)
+        >>> rd.Scene(rope, tension=100.0).compile(elements=4).component_of("beta")
+        ('z', 'beta')
+        """
         return next(c for c in self.components if coordinate in c)

@@ -91,6 +91,19 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         second.
     cost : Cost
         What the frequencies cost.
+
+    Examples
+    --------
+    A string of 64 elements, and what it would be without them:
+
+    >>> import ropedyn as rd
+    >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=64).modes(2)
+    >>> modes.frequency.round(3), modes.limit.round(3), modes.mesh_error.round(3)
+    (array([24.997, 49.98 ]), array([25., 50.]), array([0.003, 0.02 ]))
+    >>> modes.family.tolist(), modes.certified, modes.energy["tension"].round(9)
+    (['transverse', 'transverse'], True, array([1., 1.]))
+    >>> modes.shape.shape, modes.modal_mass.round(3)
+    ((2, 65, 1), array([0.1, 0.1]))
     """
 
     coordinates: tuple[str, ...]
@@ -121,7 +134,15 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
 
     @cached_property
     def sensitivity(self) -> Sensitivity:
-        """What derivatives are computed from."""
+        """What derivatives are computed from.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(1)
+        >>> modes.sensitivity.frequency("tension")[:1].round(6)
+        array([0.0125])
+        """
         from .sensitivity import Sensitivity
 
         return Sensitivity(self._solved_again())

@@ -30,13 +30,34 @@ class Part(Protocol):
 
     @property
     def stands_on(self) -> tuple[str, ...]:
-        """Coordinates without which it has no meaning."""
+        """Coordinates without which it has no meaning.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).stands_on, rd.PointMass(0.5, 0.1).stands_on
+        (('z',), ())
+        """
 
     def term(self) -> NodeTerm:
-        """Return what it adds to its node."""
+        """Return what it adds to its node.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).term().stiffness
+        {'z': 10000.0}
+        """
 
     def rates(self) -> Mapping[str, NodeRate]:
-        """Return how fast that changes with each number of it, positions apart."""
+        """Return how fast that changes with each number of it, positions apart.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).rates()["stiffness"].stiffness
+        {'z': 1.0}
+        """
 
 
 @dataclass(frozen=True)

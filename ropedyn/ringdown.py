@@ -53,6 +53,17 @@ class RingDown(Answer):
         Motion is Re(amplitude exp(s (t - since))).
     residual : ndarray, shape (k,)
         Rms of what no mode explains, over the rms of the record, near each frequency.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
+    >>> time = np.linspace(0.0, 4.0, 2001)
+    >>> history = scene.compile().transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
+    >>> decay = history.damping(5.0)
+    >>> decay.frequency.round(4), decay.damping_ratio.round(4)
+    (array([5.]), array([0.01]))
     """
 
     label: str

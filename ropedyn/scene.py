@@ -227,12 +227,27 @@ NodeForce, Stop, AddedMass, LocalChange
 
     @property
     def mean_tension(self) -> float:
-        """The tension about which motion is small [N]."""
+        """The tension about which motion is small [N].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=50.0)
+        >>> rd.Scene(rd.Rope(1.0, 0.1), tension=tension).mean_tension
+        1000.0
+        """
         return self.tension.mean if isinstance(self.tension, Tension) else self.tension
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """Coordinates of a node: z with bending or tension, beta with bending, and so on."""
+        """Coordinates of a node: z with bending or tension, beta with bending, and so on.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1.0)).coordinates
+        ('z', 'beta')
+        """
         rope = self.rope
         present = {
             "x": rope.axial_stiffness is not None,
@@ -244,7 +259,15 @@ NodeForce, Stop, AddedMass, LocalChange
 
     @property
     def dampings(self) -> tuple[Damping, ...]:
-        """The dampings whose sum acts, none or one or more."""
+        """The dampings whose sum acts, none or one or more.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> damping = rd.ViscousDamping(2.0)
+        >>> rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping).dampings
+        (ViscousDamping(coefficient=2.0),)
+        """
         if self.damping is None:
             return ()
         return self.damping if isinstance(self.damping, tuple) else (self.damping,)
@@ -284,6 +307,13 @@ NodeForce, Stop, AddedMass, LocalChange
             If there is no such argument.
         SceneError
             As `Scene` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> scene.replace(tension=200.0).tension
+        200.0
         """
         return dataclasses.replace(self, **changes)
 
@@ -304,6 +334,14 @@ NodeForce, Stop, AddedMass, LocalChange
         SceneError
             If there is no such effect, or nothing is left that could vibrate, or that holds a rope
             with weight along x.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
+        >>> scene = rd.Scene(rope, tension=100.0, parts=[rd.PointMass(0.5, 0.1)])
+        >>> scene.without("bending", "point mass").effects
+        ('tension',)
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
@@ -407,6 +445,17 @@ NodeForce, Stop, AddedMass, LocalChange
         ------
         OSError
             If the file cannot be written.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> with TemporaryDirectory() as folder:
+        ...     scene.save(Path(folder, "rope.toml"))
+        ...     Path(folder, "rope.toml").read_text().splitlines()[0]
+        'tension = 100.0'
         """
         from .scene_file import save
 
@@ -427,6 +476,17 @@ NodeForce, Stop, AddedMass, LocalChange
             If the file cannot be read.
         SceneError
             If it is not TOML, a key is unknown or missing, or a value has no meaning.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> with TemporaryDirectory() as folder:
+        ...     scene.save(Path(folder, "rope.toml"))
+        ...     rd.Scene.load(Path(folder, "rope.toml")) == scene
+        True
         """
         from .scene_file import load
 

@@ -45,6 +45,21 @@ class Spectrum(Answer):
     value : ndarray of complex, shape (responses, f)
         Motion is the sum of Re(value exp(+i omega t)): a steady motion A cos(omega t + phi) at one
         of these frequencies shows as A exp(i phi) there, whatever the window.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile()
+    >>> time = np.linspace(0.0, 2.0, 401)[:-1]
+    >>> history = model.transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
+    >>> spectrum = history.spectrum(window="boxcar")
+    >>> line = spectrum.amplitude[0].argmax()
+    >>> print(spectrum.frequency[line], spectrum.amplitude[0, line].round(6))
+    5.0 0.008116
+    >>> mean_square = (spectrum.psd[0] * spectrum.bandwidth).sum()
+    >>> print((mean_square / (history.value**2).mean()).round(9))
+    1.0
     """
 
     response: tuple[Point, ...]

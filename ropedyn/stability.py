@@ -52,6 +52,17 @@ class StabilityMap(Answer):
         as "f1 + f2". Damping takes them off the axis.
     cost : Cost
         What it cost.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile()
+    >>> stability = model.stability_map([90.0, 100.0], [0.0, 100.0], modes=1)
+    >>> stability.stable, stability.mode_frequency.round(9)
+    (array([[ True,  True],
+           [ True, False]]), array([50.]))
+    >>> stability.tongues[0].label, round(stability.tongues[0].frequency, 6)
+    ('2 f1', 100.0)
     """
 
     frequency: Real = field(metadata=axes("frequency", unit="Hz"))
@@ -64,7 +75,16 @@ class StabilityMap(Answer):
 
     @cached_property
     def system(self) -> ModalSystem:
-        """The equations of the modes."""
+        """The equations of the modes.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile()
+        >>> stability = model.stability_map([90.0, 100.0], [0.0, 100.0], modes=1)
+        >>> (stability.system.omega / 6.283185307).round(6)
+        array([50.])
+        """
         return ModalSystem(self.eigenvalue, self.geometric, self.damping)
 
     @property

@@ -94,11 +94,25 @@ class AddedMass:
             object.__setattr__(self, name, value)
 
     def change(self) -> Change:
-        """Return what is added."""
+        """Return what is added.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.AddedMass(0.0, 0.5, 0.02).change().linear_density
+        0.02
+        """
         return Change(linear_density=self.linear_density, polar_inertia=self.polar_inertia)
 
     def on(self, coordinates: Collection[str]) -> AddedMass:
-        """Return itself, on whatever coordinates."""
+        """Return itself, on whatever coordinates.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.AddedMass(0.0, 0.5, 0.02).on(["z"])
+        AddedMass(start=0.0, stop=0.5, linear_density=0.02, polar_inertia=0.0)
+        """
         return self
 
 
@@ -161,11 +175,27 @@ class LocalChange:
             object.__setattr__(self, name, value)
 
     def change(self) -> Change:
-        """Return the factors."""
+        """Return the factors.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.LocalChange(0.0, 0.5, bending=0.9).change().bending
+        0.9
+        """
         return Change(bending=self.bending, torsion=self.torsion, density=self.density)
 
     def on(self, coordinates: Collection[str]) -> LocalChange | None:
-        """Return what is left of it on these coordinates, None where that changes nothing."""
+        """Return what is left of it on these coordinates, None where that changes nothing.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.LocalChange(0.0, 0.5, bending=0.9, torsion=0.8).on(["z", "alpha"])
+        LocalChange(start=0.0, stop=0.5, bending=1.0, torsion=0.8, density=1.0)
+        >>> rd.LocalChange(0.0, 0.5, bending=0.9).on(["z"]) is None
+        True
+        """
         left = dataclasses.replace(
             self,
             bending=self.bending if "beta" in coordinates else 1.0,

@@ -125,6 +125,12 @@ def tensed_beam(tension: float, bending_stiffness: float) -> Scene:
         [N].
     bending_stiffness : float
         [N m^2].
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.study2015.tensed_beam(2830.0, 1.54).compile().modes(3).frequency.round(1)
+    array([ 64.1, 128.8, 194.6])
     """
     return Scene(Rope(LENGTH, MASS / LENGTH, bending_stiffness=bending_stiffness), tension=tension)
 
@@ -137,6 +143,13 @@ def fitted_beam() -> Scene:
     Returns
     -------
     Scene
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> fitted = rd.study2015.fitted_beam()
+    >>> round(fitted.tension), round(fitted.rope.bending_stiffness, 2)
+    (2959, 0.42)
     """
     from .identify import identify
 
@@ -194,6 +207,15 @@ def flexibility(*, printed: bool = False) -> NDArray[np.float64]:
     -------
     ndarray, shape (3, 3)
         Equation (11) of the study [m/N, rad/N, rad/(N m)].
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> right, printed = (rd.study2015.flexibility(printed=p) for p in (False, True))
+    >>> (right - printed).round(6)
+    array([[0.      , 0.      , 0.      ],
+           [0.      , 0.      , 0.      ],
+           [0.      , 0.      , 0.006178]])
     """
     H, B, C, length = LAY_SLOPE, BENDING_STIFFNESS, TORSIONAL_STIFFNESS, ELEMENT_LENGTH
     own, cross = H**2 / C + 1 / B, H * (1 / C - 1 / B)
@@ -268,6 +290,13 @@ class Reading:
         The chain.
     frequency : tuple of float
         Of its first three modes [Hz].
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> reading = next(rd.study2015.readings())
+    >>> reading.name, [round(f, 2) for f in reading.frequency]
+    ("study's kinematics, 0.13725 kg at each mass", [29.73, 58.31, 84.65])
     """
 
     name: str
@@ -281,6 +310,12 @@ def readings() -> Iterator[Reading]:
     Yields
     ------
     Reading
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> next(rd.study2015.readings()).model.size
+    21
     """
     fitted = fitted_beam()
     best = f"{FITTED}: T = {fitted.tension:.0f} N, B = {fitted.rope.bending_stiffness:.2f} N m^2"
@@ -317,7 +352,14 @@ class Report:
     verdict: str
 
     def table(self) -> Table:
-        """Return one row for each reading."""
+        """Return one row for each reading.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.study2015.report().table().column("f1 [Hz]")[:4]
+        ('70', '64', '29.73', '69.40')
+        """
         rows: list[tuple[Any, ...]] = []
         against = (np.asarray(published.frequency), np.asarray(measured.frequency))
         for name, peaks in zip(("published model", "measured, 4 mm rope"), against):
@@ -346,6 +388,12 @@ def report() -> Report:
     -------
     Report
         `print` shows the table and the verdict.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> print(str(rd.study2015.report()).splitlines()[0])
+    the 2015 study: first three natural frequencies
     """
     found = tuple(readings())
     return Report(found, _verdict(found))

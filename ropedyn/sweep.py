@@ -51,6 +51,17 @@ class Sweep(Sequence[Result | None], Generic[Result]):
     cost : Cost
         Wall time of all together, `method` says on what; counts are sums over those results that
         have a cost.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> found = rd.sweep(lambda length: rd.Rope(length, 0.1), [2.0, -1.0, 4.0])
+    >>> found
+    <Sweep of 3 scenes, 1 failed>
+    >>> found[0].length, found[1], found[2].length
+    (2.0, None, 4.0)
+    >>> found.failed[1]
+    SceneError('length must be a finite number > 0 [m], got -1.0')
     """
 
     results: tuple[Result | None, ...]
@@ -81,6 +92,13 @@ class Sweep(Sequence[Result | None], Generic[Result]):
 
         Numbers, rows of a few numbers and mappings have columns of their own, other results are
         named; a scene that failed says why.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> table = rd.sweep(lambda length: rd.Rope(length, 0.1).length, [2.0, -1.0]).table()
+        >>> table.column("result"), table.column("failed")
+        ((2.0, None), (None, 'length must be a finite number > 0 [m], got -1.0'))
         """
         rows = [{} if k in self.failed else _cells(result) for k, result in enumerate(self.results)]
         names = dict.fromkeys(name for row in rows for name in row)
@@ -98,6 +116,12 @@ class Sweep(Sequence[Result | None], Generic[Result]):
         ------
         ImportError
             If pandas is missing.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.sweep(abs, [-1, 2]).to_dataframe()["result"].tolist()
+        [1, 2]
         """
         return self.table().to_dataframe()
 

@@ -27,6 +27,17 @@ class Table:
         Names, with units in brackets.
     rows : tuple of tuple
         Numbers, strings or None where there is nothing.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> table = rd.Table.of("two ropes", {"rope": ("thin", "thick"), "mass [kg]": (0.1, 0.25)})
+    >>> print(table)
+    two ropes
+    rope   mass [kg]
+    -----  ---------
+    thin         0.1
+    thick       0.25
     """
 
     title: str
@@ -35,7 +46,14 @@ class Table:
 
     @staticmethod
     def of(title: str, columns: Mapping[str, Sequence[Any] | np.ndarray[Any, Any]]) -> Table:
-        """Build a table from columns of equal length."""
+        """Build a table from columns of equal length.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Table.of("two ropes", {"rope": ("thin", "thick"), "mass [kg]": (0.1, 0.25)}).rows
+        (('thin', 0.1), ('thick', 0.25))
+        """
         check.instance(columns, "columns", Mapping, "a mapping from names to columns")
         values = [
             np.asarray(c).tolist() if not isinstance(c, tuple) else c for c in columns.values()
@@ -46,7 +64,14 @@ class Table:
         return Table(title, tuple(columns), tuple(zip(*values)))
 
     def column(self, name: str) -> tuple[Any, ...]:
-        """Return one column."""
+        """Return one column.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Peaks([64.0, 130.0]).table().column("frequency [Hz]")
+        (64.0, 130.0)
+        """
         at = self.columns.index(check.one_of(name, "name", self.columns))
         return tuple(row[at] for row in self.rows)
 
@@ -76,7 +101,17 @@ class Table:
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def to_csv(self) -> str:
-        """Return the table as comma-separated text with every digit."""
+        """Return the table as comma-separated text with every digit.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> table = rd.Table.of("two ropes", {"rope": ("thin", "thick"), "mass [kg]": (0.1, 0.25)})
+        >>> print(table.to_csv(), end="")
+        rope,mass [kg]
+        thin,0.1
+        thick,0.25
+        """
         import csv
         import io
 
@@ -87,7 +122,15 @@ class Table:
         return text.getvalue()
 
     def to_records(self) -> list[dict[str, Any]]:
-        """Return one dictionary for each row."""
+        """Return one dictionary for each row.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> table = rd.Table.of("two ropes", {"rope": ("thin", "thick"), "mass [kg]": (0.1, 0.25)})
+        >>> table.to_records()
+        [{'rope': 'thin', 'mass [kg]': 0.1}, {'rope': 'thick', 'mass [kg]': 0.25}]
+        """
         return [dict(zip(self.columns, row)) for row in self.rows]
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -97,6 +140,13 @@ class Table:
         ------
         ImportError
             If pandas is missing; ``pip install 'ropedyn[io]'`` brings it.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> table = rd.Table.of("two ropes", {"rope": ("thin", "thick"), "mass [kg]": (0.1, 0.25)})
+        >>> list(table.to_dataframe()["rope"])
+        ['thin', 'thick']
         """
         from .extra import pandas
 

@@ -92,6 +92,17 @@ class Tension:
         return not self.pulsates and not self.stretching
 
     def pulsation(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what pulsation adds to the mean [N], as `time` [s]."""
+        """Return what pulsation adds to the mean [N], as `time` [s].
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=50.0)
+        >>> tension.pulsates, tension.is_constant
+        (True, False)
+        >>> tension.pulsation(np.array([0.0, 0.01, 0.02]))
+        array([ 100., -100.,  100.])
+        """
         angle = 2 * np.pi * self.frequency * time + self.phase
         return np.asarray(self.amplitude * np.cos(angle))
