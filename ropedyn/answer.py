@@ -47,6 +47,14 @@ class Cost:
     redone : float
         Share of the answer that was solved twice: modes that counts did not confirm at first.
         0 of responses: one sweep is careful enough for all of them.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+    >>> cost = model.modes(2).cost
+    >>> cost.method, cost.elements, cost.unknowns
+    ('sweep', 8, 7)
     """
 
     seconds: float
