@@ -163,8 +163,10 @@ def sweep(
         If `function` is not callable or, for a process pool, cannot be pickled; if `scenes` is not
         iterable or `executor` no executor.
 
-    Whatever else ends it (Ctrl-C, what `progress` raises) cancels what has not begun and carries
-    what is finished as its attribute ``sweep``.
+    Notes
+    -----
+    What ends it before its time (Ctrl-C, what `progress` raises) cancels what has not begun, and
+    carries as its attribute ``sweep`` what is finished.
 
     Examples
     --------

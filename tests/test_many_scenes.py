@@ -1,56 +1,20 @@
 """Sweeps over many scenes: the same results in the same order on every executor, none lost."""
 
-import os
 import pickle
 import threading
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import ThreadPoolExecutor as Threads
+from contextlib import contextmanager
 from multiprocessing import get_context
 
 import numpy as np
 import pytest
-from distributed import Client, LocalCluster
+from scene_tasks import ROPE, frequencies, interrupted, itself, reciprocal, strange
 
 import ropedyn as rd
 from ropedyn import outcome
 
-ROPE = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
 SCENES = [rd.Scene(ROPE, tension=tension) for tension in np.linspace(50.0, 500.0, 24)]
-
-
-class Unlucky(Exception):
-    """An exception that pickles and cannot be unpickled."""
-
-    def __init__(self, number, reason):
-        super().__init__(f"number {number} {reason}")
-
-
-def frequencies(scene):
-    return scene.compile().modes(3).frequency
-
-
-def reciprocal(number):
-    if number == 3:
-        raise Unlucky(3, "has bad luck")
-    return 1 / number
-
-
-def strange(number):
-    if number == 5:
-        return lambda: number  # no process can send it
-    if number == 7:
-        os._exit(1)
-    return number
-
-
-def itself(anything):
-    return anything
-
-
-def interrupted(number):
-    if number == 2:
-        raise KeyboardInterrupt
-    return number
 
 
 def processes(workers=1):
@@ -63,15 +27,19 @@ def pool():
         yield executor
 
 
+@contextmanager
+def dask(**how):
+    from distributed import Client, LocalCluster
+
+    options = {"n_workers": 1, "dashboard_address": "127.0.0.1:0", **how}
+    with LocalCluster(**options) as cluster, Client(cluster) as client:
+        yield client.get_executor()
+
+
 @pytest.fixture(scope="module")
 def dask_executor():
-    with (
-        LocalCluster(
-            n_workers=1, threads_per_worker=2, processes=False, dashboard_address="127.0.0.1:0"
-        ) as cluster,
-        Client(cluster) as client,
-    ):
-        yield client.get_executor()
+    with dask(threads_per_worker=2, processes=False) as executor:
+        yield executor
 
 
 class AtOnce(Executor):
@@ -133,11 +101,8 @@ def test_dask_keeps_order_and_failures(dask_executor):
 
 
 def test_dask_processes_keep_order_and_failures():
-    with (
-        LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
-        Client(cluster) as client,
-    ):
-        hold(client.get_executor())
+    with dask(threads_per_worker=1) as executor:
+        hold(executor)
 
 
 def test_a_failure_in_another_process_says_where_it_was(pool):
@@ -228,6 +193,14 @@ def test_a_worker_that_dies_leaves_what_is_finished():
     assert 2 in found.failed
     assert all(isinstance(error, BrokenExecutor) for error in found.failed.values())
     assert isinstance(again.failed[0], BrokenExecutor)
+
+
+def test_an_executor_that_is_shut_down_fails_every_scene():
+    executor = Threads(1)
+    executor.shutdown()
+    found = rd.sweep(itself, range(300), executor=executor)
+    assert len(found.failed) == 300
+    assert "cannot schedule new futures after shutdown" in str(found.failed[299])
 
 
 def test_an_interrupt_cancels_what_is_pending_and_keeps_what_is_finished():
