@@ -4,6 +4,9 @@ import re
 
 ATTRIBUTES = "Attributes"
 
+BRIEF = {"column", "of", "plot", "table", "to_csv", "to_records", "value", "verdict", "way"}
+"""Methods whose docstring is a line, and which are for users all the same."""
+
 
 def setup(app):
     """Come before numpydoc, and after it."""
@@ -17,8 +20,9 @@ def setup(app):
 
 
 def _skip(app, what, name, thing, skip, options):
-    """Leave out what is not for users: their names have a docstring with a section."""
-    return skip or "\n---" not in re.sub(r"\n +", "\n", getattr(thing, "__doc__", None) or "")
+    """Leave out what is not for users: that has no section in its docstring."""
+    is_told = "\n---" in re.sub(r"\n +", "\n", getattr(thing, "__doc__", None) or "")
+    return skip or not (is_told or name in BRIEF)
 
 
 def _without_signature(app, what, name, thing, options, signature, returned):
@@ -55,4 +59,4 @@ def _give(attributes, app, what, name, thing, options, lines):
             names, _, kind = line.partition(" : ")
             first, *others = names.split(", ")
             lines += ["", f".. attribute:: {first}", *(f"               {one}" for one in others)]
-            lines += ["", f"   *{kind}.*", ""]
+            lines += ["", f"   *{kind}:*"]

@@ -20,7 +20,7 @@ def _inline(translator, node):
 
 
 def _displayed(translator, node):
-    translator.body.append(f'<div class="math">{_written(node, as_block=True)}</div>\n')
+    translator.body.append(f'<div class="formula">{_written(node, as_block=True)}</div>\n')
     raise nodes.SkipNode
 
 
