@@ -140,8 +140,8 @@ def _torsion(fit: Fit, third: float) -> str:
     return (
         f"The study's own constants twist at {twist:.0f} Hz, twice {twist / 2:.0f} Hz, which is "
         f"{100 * abs(twist / 2 / third - 1):.1f} % from the third peak. One frequency cannot "
-        f"decide, tension can: 10 % more of it raises the transverse mode by {rise:.1f} %, and torsion not "
-        "at all."
+        f"decide, tension can: 10 % more of it raises the transverse mode by {rise:.1f} %, and "
+        "torsion not at all."
     )
 
 

@@ -27,7 +27,7 @@ UNSEEN = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Predicted:
-    """Predicted frequencies.
+    """Calculated frequencies.
 
     Attributes
     ----------
