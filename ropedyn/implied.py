@@ -26,6 +26,8 @@ DENSITIES = {
     "0.13725 kg at each mass": study2015.MASS / study2015.ELEMENT_LENGTH,
 }
 """What the study's rope may weigh [kg/m]."""
+FITTED = next(iter(DENSITIES.values()))
+"""Of the rope that is fitted [kg/m]."""
 ENDS = ("clamped", "pinned")
 """How its ends may be held."""
 STATED_TENSION = 300.0
@@ -35,46 +37,50 @@ UNKNOWN = ("tension", "bending_stiffness")
 
 @dataclass(frozen=True)
 class Implied:
-    """A tensed beam fitted to three peaks, for each reading of mass and ends.
+    """A tensed beam fitted to three peaks, for each reading of the mass and of the ends.
+
+    Frequencies tell tension and bending stiffness per linear density alone: one fit for each kind
+    of ends holds for every density, multiplied by it.
 
     Attributes
     ----------
     peaks : Peaks
         Of the study.
-    fits : dict of (str, str) to Fit
-        By reading of the mass and ends.
+    fits : dict of str to Fit
+        By ends, of the rope that weighs what the first of `DENSITIES` says.
     """
 
     peaks: Peaks
-    fits: dict[tuple[str, str], Fit]
+    fits: dict[str, Fit]
 
     @cached_property
-    def intervals(self) -> dict[tuple[str, str], Named]:
+    def intervals(self) -> dict[str, Named]:
         """Intervals of 95 %, as the fits."""
-        return {reading: fit.interval(0.95) for reading, fit in self.fits.items()}
+        return {ends: fit.interval(0.95) for ends, fit in self.fits.items()}
 
     def table(self) -> Table:
         """Return one row for each reading, with intervals of 95 %."""
+        readings = [(rope, ends) for rope in DENSITIES for ends in self.fits]
         columns: dict[str, list[object]] = {
-            "rope": [rope for rope, _ in self.fits],
-            "ends": [ends for _, ends in self.fits],
+            "rope": [rope for rope, _ in readings],
+            "ends": [ends for _, ends in readings],
         }
         for path, unit in zip(UNKNOWN, ("N", "N m^2")):
-            low, high = np.array([bounds[path] for bounds in self.intervals.values()]).T
-            columns[f"{path} [{unit}]"] = [float(fit.value[path]) for fit in self.fits.values()]
-            columns[f"95 % from [{unit}]"] = low.tolist()
-            columns[f"to [{unit}]"] = high.tolist()
+            told = {e: [f.value[path], *self.intervals[e][path]] for e, f in self.fits.items()}
+            rows = [DENSITIES[rope] / FITTED * np.array(told[ends]) for rope, ends in readings]
+            names = (f"{path} [{unit}]", f"95 % from [{unit}]", f"to [{unit}]")
+            columns |= dict(zip(names, np.transpose(rows).tolist()))
         return Table.of("what the peaks imply", columns)
 
     @property
     def verdict(self) -> str:
         """What they show, with the numbers of the first reading."""
-        reading, fit = next(iter(self.fits.items()))
+        fit, interval = self.fits[ENDS[0]], self.intervals[ENDS[0]]
         return "\n".join(
             [
-                _width(fit, self.intervals[reading]),
+                _width(fit, interval),
                 _density(fit),
-                _rod(*self.intervals[reading]["bending_stiffness"]),
+                _rod(*interval["bending_stiffness"]),
                 _torsion(fit, float(np.asarray(self.peaks.frequency)[2])),
             ]
         )
@@ -93,12 +99,13 @@ def implied(peaks: Peaks) -> Implied:
     with warnings.catch_warnings():
         # that a stiffness does not show is what the table says
         warnings.simplefilter("ignore", IdentifyWarning)
-        fits = {
-            (name, ends): identify(_scene(density, ends), peaks, UNKNOWN)
-            for name, density in DENSITIES.items()
-            for ends in ENDS
-        }
+        fits = {ends: identify(_scene(ends), peaks, UNKNOWN) for ends in ENDS}
     return Implied(peaks, fits)
+
+
+def _scene(ends: str) -> Scene:
+    rope = Rope(study2015.LENGTH, FITTED, bending_stiffness=1.0)
+    return Scene(rope, tension=1000.0, ends=(ends, ends))
 
 
 def _width(fit: Fit, interval: Named) -> str:
@@ -147,8 +154,3 @@ def _torsion(fit: Fit, third: float) -> str:
 
 def _third(scene: Scene) -> float:
     return float(scene.compile().modes(3).frequency[2])
-
-
-def _scene(density: float, ends: str) -> Scene:
-    rope = Rope(study2015.LENGTH, density, bending_stiffness=1.0)
-    return Scene(rope, tension=1000.0, ends=(ends, ends))
