@@ -23,6 +23,7 @@ from .effect import EffectCost, effect_cost
 from .end import End
 from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .fit import Fit
+from .fits import Fits
 from .floquet import Floquet
 from .force import Chirp, Impulse, Sine, Step
 from .frf import FRF
@@ -73,6 +74,7 @@ __all__ = [
     "EffectCost",
     "End",
     "Fit",
+    "Fits",
     "Floquet",
     "Gravity",
     "Hinge",

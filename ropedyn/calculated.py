@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .eigen import solve_modes
-from .errors import SceneError, SolveError
+from .errors import SceneError
 from .modes import Modes
 from .unknown import Unknowns
 
@@ -39,7 +39,7 @@ class Calculated:
     )
 
     def __call__(self, u: Real, count: int) -> tuple[Real, Real]:
-        """Find the lowest frequencies, rigid motion and growth left out.
+        """Find the lowest frequencies, rigid motion and growth left out, or all there are.
 
         Parameters
         ----------
@@ -74,17 +74,13 @@ class Calculated:
             raise SceneError(f"unknown[{i}] must change natural frequencies: {error}") from error
 
     def _modes(self, u: Real, count: int) -> tuple[Modes, NDArray[np.intp]]:
-        """Return modes among which so many vibrate, and which they are."""
+        """Return modes among which so many vibrate, or all there are, and which they are."""
         model = self.unknowns.at(u).compile(elements=self.elements, element=self.element)
         still = 0
         while True:
             asked = count + still
             modes = solve_modes(model, asked, below=None, solver="sweep", strict=False)
-            kept = np.flatnonzero(modes.frequency > 0)
-            if len(kept) >= count:
-                return modes, kept[:count]
-            if len(modes.frequency) < asked:
-                raise SolveError(
-                    f"the scene must have {count} modes for these orders, got {len(kept)}"
-                )
+            kept = np.flatnonzero(modes.frequency > 0)[:count]
+            if len(kept) == count or len(modes.frequency) < asked:
+                return modes, kept
             still = asked - len(kept)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,12 +13,15 @@ from . import check
 from .answer import TRANSIENT, Answer, Cost, axes
 from .errors import SceneError
 from .named import Named
+from .orders import RunnerUp
 from .scene import Scene
 from .table import Table, numbers
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .alternative import Alternative
+    from .identification import Identification
     from .solution import Solution
 
 
@@ -46,6 +50,8 @@ class Fit(Answer):
         Degrees of freedom the noise was estimated with; None where it was given.
     chi_square : float
         Sum of the squared residuals in units of `measured_std`.
+    runner_up : RunnerUp or None
+        The second best orders and how much worse they are, where orders were searched.
     notes : tuple of str
         What the peaks cannot tell, and what they tell instead.
     cost : Cost
@@ -61,19 +67,51 @@ class Fit(Answer):
     calculated: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
     freedom: float | None
     chi_square: float
+    runner_up: RunnerUp | None
     notes: tuple[str, ...]
     cost: Cost
     solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
+    identification: Identification | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     def __post_init__(self) -> None:
         for name in ("value", "std"):
             object.__setattr__(self, name, Named(getattr(self, name), self.unknown))
+        if self.runner_up is not None:
+            object.__setattr__(self, "runner_up", RunnerUp(*self.runner_up))
         super().__post_init__()
 
     @property
     def residual(self) -> NDArray[np.float64]:
         """Calculated less measured frequencies [Hz], shape (k,)."""
         return self.calculated - self.measured
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the relative residuals."""
+        used = self.orders > 0
+        return float(np.sqrt(np.mean((self.residual / self.measured)[used] ** 2)))
+
+    @property
+    def value_is_bound(self) -> bool:
+        """Whether a number went to 0 or infinity."""
+        return bool(((self.value == 0) | np.isinf(self.value)).any())
+
+    @cached_property
+    def alternatives(self) -> tuple[Alternative, ...]:
+        """What other ends would tell, pinned or clamped both, where the scene's are such words.
+
+        Found when it is first asked for.
+
+        Raises
+        ------
+        SceneError
+            If the fit was read from a file.
+        """
+        if self.identification is None:
+            raise SceneError("a fit from a file has no scene: identify again")
+        from .alternative import alternatives_of
+
+        return alternatives_of(self)
 
     @property
     def scene(self) -> Scene:
@@ -150,9 +188,28 @@ class Fit(Answer):
         return Table.of("calculated against measured peaks", columns)
 
     def report(self) -> str:
-        """Return values, peaks and notes as text."""
-        notes = [f"note: {note}" for note in self.notes]
-        return "\n".join([str(self.table()), "", str(self.peaks), *notes])
+        """Return values, peaks and all that limits what they mean, as text.
+
+        A fit from a file has no alternatives.
+        """
+        lines = [str(self.table()), "", str(self.peaks), ""]
+        lines.append(f"rms residual {100 * self.rms:.3g} %; {self._said_of_noise}")
+        if self.runner_up is not None:
+            lines.append(f"second best orders {list(self.runner_up.orders)}: {self._worse}")
+        if self.identification is not None:
+            lines += map(str, self.alternatives)
+        return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+
+    @property
+    def _said_of_noise(self) -> str:
+        if self.freedom is None:
+            return f"chi-square {self.chi_square:.3g} of {int((self.orders > 0).sum())} peaks"
+        return f"noise estimated with {self.freedom:.3g} degrees of freedom"
+
+    @property
+    def _worse(self) -> str:
+        assert self.runner_up is not None
+        return f"chi-square larger by {self.runner_up.worse:.3g}"
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Plot residuals over orders with the uncertainty of the peaks."""

@@ -3,43 +3,78 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import check
-from .answer import Cost
 from .calculated import Calculated
-from .errors import IdentifyWarning, SceneError
+from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .fit import Fit
-from .guess import start_of
-from .misfit import Known, PeakMisfit
-from .notes import notes_of
+from .fits import Fits
+from .identification import Identification
+from .orders import found_orders, given_orders, likelier_is_none, lowest_orders, search_std
+from .path import with_values
 from .peaks import Peaks
+from .prior import Prior
 from .resonance import Resonances
 from .scene import Scene
-from .solution import Solution, solve
-from .tension import Tension
 from .unknown import Unknowns
 
 Real = NDArray[np.float64]
-Orders = NDArray[np.intp]
+
+KINDS = (Peaks, Resonances)
+"""What peaks of one rope may be, beside numbers."""
+
+MOST = 64
+"""Modes that are missing, and peaks that are none."""
 
 
+@overload
 def identify(
     scene: Scene,
     measured: Peaks | Resonances | ArrayLike,
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
+    missing: int = 2,
+    spurious: int = 1,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
     element: str | None = None,
-) -> Fit:
+) -> Fit: ...
+
+
+@overload
+def identify(
+    scene: Scene,
+    measured: Sequence[Peaks | Resonances],
+    unknown: str | Sequence[str],
+    *,
+    orders: str | Sequence[int] | None = "auto",
+    missing: int = 2,
+    spurious: int = 1,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> Fits: ...
+
+
+def identify(
+    scene: Scene,
+    measured: Any,
+    unknown: str | Sequence[str],
+    *,
+    orders: str | Sequence[int] | None = "auto",
+    missing: int = 2,
+    spurious: int = 1,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> Fit | Fits:
     """Find the numbers of a scene that make its natural frequencies those that were measured.
 
     Weighted least squares with exact derivatives. Numbers keep the sign of their guess in the
@@ -49,24 +84,30 @@ def identify(
     ----------
     scene : Scene
         With what is known, and guesses of what is not; a tension of 0 is no guess.
-    measured : Peaks, Resonances or array_like of shape (k,)
+    measured : Peaks, Resonances or array_like of shape (k,), or a list of Peaks
         Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
-        to be the same for all and estimated from the residuals.
+        to be the same for all and estimated from the residuals. A list has one for each of many
+        ropes, which the scene describes alike.
     unknown : str or sequence of str
         Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
         ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
         takes.
-    orders : "auto" or sequence of int, shape (k,)
+    orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
-        where they do not the lowest modes in their order.
-    prior : mapping from str to (float, float), optional
-        What is known of unknown numbers beforehand: value and standard deviation by path.
+        where they do not the lowest modes, if these fit so well that no others can be likelier;
+        else they are searched. None: they are searched in any case. A search moves all but
+        positions by a factor of 30, about their guesses and about what the lowest modes tell.
+    missing, spurious : int
+        Of a search: at most so many modes are not among the peaks, so many peaks are no modes.
+    prior : Prior or mapping from str to (float, float), optional
+        What is known beforehand: value and standard deviation by path. Of a `Prior` what is not
+        sought does not matter.
     elements, element
         As `Scene.compile` takes them: continuous spans where left out.
 
     Returns
     -------
-    Fit
+    Fit, or Fits of a list of Peaks
 
     Raises
     ------
@@ -99,66 +140,108 @@ def identify(
     bending_stiffness  2.05243  0.0277407
     """
     check.instance(scene, "scene", Scene, "a Scene")
-    started = time.perf_counter()
-    peaks = _peaks(measured)
-    frequency = np.asarray(peaks.frequency, dtype=np.float64)
-    chosen = _orders(orders, peaks)
-    unknowns = Unknowns.of(_guessed(scene, unknown, frequency, chosen), unknown)
-    known = _known(unknowns, prior)
-    _refuse_few(unknowns, chosen, known)
-    std = _weights(peaks)
-    weight = frequency if std is None else std
-    misfit = PeakMisfit(Calculated(unknowns, elements, element), frequency, weight, chosen)
-    start = start_of(misfit, np.zeros(len(unknowns)))
-    _refuse_unseen(misfit, start, known)
-    noise = None if std is None else 1.0
-    solution = solve(unknowns, misfit, start, rows=len(frequency), known=known, noise=noise)
-    notes = notes_of(solution)
+    checked = Unknowns.of(_tensed(scene, 1.0), unknown)
+    how = Options(
+        paths=checked.paths,
+        orders=orders,
+        missing=check.count(missing, "missing", least=0, most=MOST),
+        spurious=check.count(spurious, "spurious", least=0, most=MOST),
+        prior=_prior(prior, checked.paths),
+        elements=elements,
+        element=element,
+    )
+    if _is_of_many(measured):
+        return _fits(scene, measured, how)
+    fit = _fit(scene, _peaks(measured, "measured"), how)
+    _warn(fit.notes)
+    return fit
+
+
+class Options(NamedTuple):
+    """How it is identified, checked; see `identify`."""
+
+    paths: tuple[str, ...]
+    orders: Any
+    missing: int
+    spurious: int
+    prior: Mapping[str, tuple[float, float]]
+    elements: int | None
+    element: str | None
+
+
+def _fit(scene: Scene, peaks: Peaks, how: Options) -> Fit:
+    """Identify one rope."""
+    frequency, std = np.asarray(peaks.frequency, dtype=np.float64), _weights(peaks)
+    if scene.mean_tension == 0 and "tension" in how.paths:
+        # a string whose lowest peak is its first mode
+        wave = 2 * scene.rope.length * float(frequency.min())
+        scene = _tensed(scene, scene.rope.linear_density * wave**2)
+    calculated = Calculated(Unknowns.of(scene, how.paths), how.elements, how.element)
+    orders = given_orders(how.orders, peaks)
+    lowest = Identification(calculated, frequency, std, lowest_orders(frequency), how.prior)
+    if orders is not None:
+        return dataclasses.replace(lowest, orders=orders).fit()
+    return _likeliest(lowest, how)
+
+
+def _likeliest(lowest: Identification, how: Options) -> Fit:
+    """Return the fit with the likeliest orders: of the lowest modes, or as a search says."""
+    centres = [np.zeros(len(how.paths))]
+    try:
+        fit = lowest.fit()
+    except SolveError:
+        pass
+    else:
+        off = fit.residual / search_std(lowest.frequency, lowest.std)
+        if how.orders is not None and likelier_is_none(float(off @ off)):
+            return fit
+        assert fit.solution is not None
+        centres.append(fit.solution.minimum.u)
+    orders, runner_up = found_orders(
+        lowest.calculated,
+        centres,
+        lowest.frequency,
+        lowest.std,
+        missing=how.missing,
+        spurious=how.spurious,
+    )
+    return dataclasses.replace(lowest, orders=orders, runner_up=runner_up).fit()
+
+
+def _fits(scene: Scene, measured: Sequence[Any], how: Options) -> Fits:
+    """Identify many ropes; those that cannot be do not stop the others."""
+    fits: list[Fit | None] = []
+    failed: dict[int, RopedynError] = {}
+    for i, one in enumerate(measured):
+        peaks = _peaks(one, f"measured[{i}]")
+        try:
+            fits.append(_fit(scene, peaks, how))
+        except RopedynError as error:
+            fits.append(None)
+            failed[i] = error
+    _warn([f"rope {i}: {note}" for i, fit in enumerate(fits) if fit for note in fit.notes])
+    return Fits.of(how.paths, fits, failed)
+
+
+def _warn(notes: Sequence[str]) -> None:
     for note in notes:
-        warnings.warn(note, IdentifyWarning, stacklevel=2)
-    return _fit(solution, misfit, notes, time.perf_counter() - started)
-
-
-def _fit(solution: Solution, misfit: PeakMisfit, notes: tuple[str, ...], seconds: float) -> Fit:
-    minimum, used = solution.minimum, misfit.orders > 0
-    off = minimum.residual[: solution.rows]
-    calculated = np.where(used, misfit.measured + off * misfit.weight, np.nan)
-    chi_square = float(np.sum((off / solution.noise) ** 2))
-    cost = Cost(
-        seconds=seconds,
-        method="least squares",
-        elements=misfit.calculated.elements or 0,
-        unknowns=len(solution.unknowns),
-        factorisations=minimum.evaluations,
-    )
-    return Fit(
-        unknown=solution.unknowns.paths,
-        value=solution.value,  # type: ignore[arg-type]
-        std=solution.std,  # type: ignore[arg-type]
-        correlation=solution.uncertainty.correlation,
-        orders=misfit.orders.astype(np.int64),
-        measured=misfit.measured,
-        measured_std=solution.noise * misfit.weight,
-        calculated=calculated,
-        freedom=solution.freedom,
-        chi_square=chi_square,
-        notes=notes,
-        cost=cost,
-        solution=solution,
-    )
+        warnings.warn(note, IdentifyWarning, stacklevel=4)
 
 
 # --- what was given ---------------------------------------------------------------------------
 
 
-def _peaks(measured: Any) -> Peaks:
+def _is_of_many(measured: Any) -> bool:
+    return isinstance(measured, (list, tuple)) and any(isinstance(m, KINDS) for m in measured)
+
+
+def _peaks(measured: Any, name: str) -> Peaks:
     """Return peaks from what they may be given as."""
     if isinstance(measured, Peaks):
         return measured
     if isinstance(measured, Resonances):
         return Peaks(measured.frequency)
-    frequency = check.numbers(measured, "measured", "Hz", sign="positive")
-    return Peaks(frequency)
+    return Peaks(check.numbers(measured, name, "Hz", sign="positive"))
 
 
 def _weights(peaks: Peaks) -> Real | None:
@@ -175,74 +258,18 @@ def _weights(peaks: Peaks) -> Real | None:
     return std
 
 
-def _orders(orders: Any, peaks: Peaks) -> Orders:
-    """Return the mode of each peak, from 1; 0 where it is none."""
-    frequency = np.asarray(peaks.frequency)
-    if isinstance(orders, str):
-        check.one_of(orders, "orders", ("auto",))
-        if peaks.order is not None:
-            return np.array(peaks.order, dtype=np.intp)
-        return np.argsort(np.argsort(frequency, kind="stable")) + 1
-    k = len(frequency)
-    what = f"{k} whole numbers, one for each peak, those from 1 different"
-    check.instance(orders, "orders", (list, tuple, np.ndarray), what)
-    most = np.iinfo(np.int32).max
-    given = [check.count(n, f"orders[{i}]", least=0, most=most) for i, n in enumerate(orders)]
-    modes = [n for n in given if n > 0]
-    if len(given) != k or len(set(modes)) < len(modes) or not modes:
-        raise SceneError(f"orders must be {what}, got {check.shown(orders)}")
-    return np.array(given, dtype=np.intp)
-
-
-def _known(unknowns: Unknowns, prior: Any) -> Known | None:
-    """Return what is known of the unknowns beforehand, if anything is."""
+def _prior(prior: Any, paths: tuple[str, ...]) -> Mapping[str, tuple[float, float]]:
+    """Return what is known beforehand."""
     if prior is None:
-        return None
-    what = 'a mapping such as {"bending_stiffness": (value, std)}'
-    check.instance(prior, "prior", Mapping, what)
-    at, value, std = [], [], []
-    for path, given in prior.items():
-        check.one_of(path, "key of prior", unknowns.paths)
-        check.instance(given, f"prior[{path!r}]", (tuple, list), "(value, std)")
-        if len(given) != 2:
-            raise SceneError(f"prior[{path!r}] must be (value, std), got {check.shown(given)}")
-        at.append(unknowns.paths.index(path))
-        value.append(check.number(given[0], f"prior[{path!r}][0]"))
-        std.append(check.number(given[1], f"prior[{path!r}][1]", sign="positive"))
-    if not at:
-        return None
-    return Known(unknowns, np.array(at, dtype=np.intp), np.array(value), np.array(std))
+        return {}
+    if not isinstance(prior, Prior):
+        check.instance(prior, "prior", Mapping, 'a mapping such as {"tension": (300.0, 15.0)}')
+        for path in prior:
+            check.one_of(path, "key of prior", paths)
+        prior = Prior(prior)
+    return {path: prior[path] for path in prior if path in paths}
 
 
-def _refuse_few(unknowns: Unknowns, orders: Orders, known: Known | None) -> None:
-    peaks, others = int((orders > 0).sum()), 0 if known is None else len(known.at)
-    if peaks + others < len(unknowns):
-        raise SceneError(
-            f"measured must have at least {len(unknowns) - others} peaks for {len(unknowns)} "
-            f"unknown and {others} prior values, got {peaks}"
-        )
-
-
-def _refuse_unseen(misfit: PeakMisfit, u: Real, known: Known | None) -> None:
-    """Refuse numbers that no peak depends on, unless they are known beforehand."""
-    unseen = np.asarray(~misfit(u)[1].any(axis=0))
-    if known is not None:
-        unseen[known.at] = False
-    for i in np.flatnonzero(unseen):
-        raise SceneError(
-            f"unknown[{i}] must change the natural frequencies of these peaks, got "
-            f"{misfit.calculated.unknowns.paths[i]!r}, which does not"
-        )
-
-
-def _guessed(scene: Scene, unknown: Any, frequency: Real, orders: Orders) -> Scene:
-    """Return the scene with the tension of a string in place of none."""
-    wanted = [unknown] if isinstance(unknown, str) else unknown
-    if scene.mean_tension != 0 or not isinstance(wanted, (list, tuple)) or "tension" not in wanted:
-        return scene
-    rope = scene.rope
-    wave = 2 * rope.length * frequency[orders > 0] / orders[orders > 0]
-    tension = rope.linear_density * float(wave.min()) ** 2
-    if isinstance(scene.tension, Tension):
-        return scene.replace(tension=dataclasses.replace(scene.tension, mean=tension))
-    return scene.replace(tension=tension)
+def _tensed(scene: Scene, tension: float) -> Scene:
+    """Return a scene with this tension in place of none."""
+    return with_values(scene, {"tension": tension}) if scene.mean_tension == 0 else scene

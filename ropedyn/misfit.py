@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .calculated import Calculated
+from .errors import SolveError
 from .unknown import Unknowns
 
 Real = NDArray[np.float64]
@@ -47,7 +48,12 @@ class PeakMisfit:
 
     def partners(self, u: Real) -> tuple[Real, Real]:
         """Return the calculated frequency of each peak [Hz] and its slope; any where it is none."""
-        frequency, slope = self.calculated(u, int(self.orders.max()))
+        most = int(self.orders.max())
+        frequency, slope = self.calculated(u, most)
+        if len(frequency) < most:
+            raise SolveError(
+                f"the scene must have {most} modes for these orders, got {len(frequency)}"
+            )
         return frequency[self.orders - 1], slope[self.orders - 1]
 
 

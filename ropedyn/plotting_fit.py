@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import check
 from .plotting import new_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .fit import Fit
+    from .fits import Fits
 
 
 def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
@@ -31,5 +33,17 @@ def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
     ax.set(xlabel="mode", ylabel="calculated less measured [%]")
     ax.set_xticks(np.unique(fit.orders[used]))
     ax.set_title("identified: " + ", ".join(f"{p} {v:.5g}" for p, v in fit.value.items()))
+    ax.grid(True, color="0.92")
+    return ax
+
+
+def plot_fits(fits: Fits, ax: Axes | None, unknown: str | None) -> Axes:
+    """Plot one number of many ropes."""
+    path = fits.unknown[0] if unknown is None else check.one_of(unknown, "unknown", fits.unknown)
+    at, ax = fits.unknown.index(path), new_axes(ax)
+    std = fits.std[:, at]
+    error = np.where(np.isfinite(std), std, 0.0)
+    ax.errorbar(np.arange(len(fits)), fits.value[:, at], yerr=error, fmt="o", capsize=3)
+    ax.set(xlabel="rope", ylabel=path)
     ax.grid(True, color="0.92")
     return ax

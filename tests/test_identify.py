@@ -208,7 +208,8 @@ def covered(count, *, known, seed, level=0.95):
     for _ in range(count):
         f = exact * (1 + 2e-3 * random.normal(size=6))
         peaks = rd.Peaks(f, std=2e-3 * exact if known else None)
-        bounds = rd.identify(scene(TENSION, 2.0), peaks, BOTH).interval(level)
+        fit = rd.identify(scene(TENSION, 2.0), peaks, BOTH, orders=[1, 2, 3, 4, 5, 6])
+        bounds = fit.interval(level)
         inside += (bounds[:, 0] <= [TENSION, 2.0]) & (bounds[:, 1] >= [TENSION, 2.0])
     return inside / count
 
@@ -314,7 +315,8 @@ def test_fit_is_saved_pickled_and_read(tmp_path):
     FIT.save(tmp_path / "fit.nc")
     for again in (rd.load(tmp_path / "fit.nc"), pickle.loads(pickle.dumps(FIT))):
         assert dict(again.value) == dict(FIT.value)
-        assert again.report() == FIT.report()
+        assert str(again.peaks) == str(FIT.peaks)
+        assert again.notes == FIT.notes
     assert pickle.loads(pickle.dumps(FIT)).interval().tolist() == FIT.interval().tolist()
     with pytest.raises(rd.SceneError, match="a fit from a file has no scene"):
         rd.load(tmp_path / "fit.nc").interval()
@@ -355,9 +357,9 @@ DAMPED = dataclasses.replace(
         ({"measured": [10.0], "unknown": ["tension", "parts[2].mass"]}, "at least 2 peaks .*got 1"),
         ({"measured": [10.0, -1.0]}, r"measured\[1\] must be a finite number > 0"),
         ({"measured": rd.Peaks([10.0, 20.0], std=0.0)}, r"measured.std\[0\] must be"),
-        ({"orders": [1]}, "orders must be 2 whole numbers"),
-        ({"orders": [1, 1]}, "orders must be 2 whole numbers"),
-        ({"orders": [0, 0]}, "orders must be 2 whole numbers"),
+        ({"orders": [1]}, 'orders must be "auto", None or 2 whole numbers'),
+        ({"orders": [1, 1]}, "those from 1 different"),
+        ({"orders": [0, 0]}, "those from 1 different"),
         ({"orders": [1, -2]}, r"orders\[1\] must be a whole number from 0"),
         ({"orders": "all"}, 'orders must be one of "auto"'),
         ({"prior": {"tensions": (1.0, 1.0)}}, "key of prior must be one of"),
@@ -365,7 +367,7 @@ DAMPED = dataclasses.replace(
             {"prior": {"tension": (1.0, 0.0)}},
             r"prior\['tension'\]\[1\] must be a finite",
         ),
-        ({"prior": {"tension": (1.0,)}}, r"prior\['tension'\] must be \(value, std\)"),
+        ({"prior": {"tension": (1.0,)}}, r"prior\['tension'\] must be a value and"),
     ],
 )
 def test_what_has_no_meaning_is_refused_by_name(change, message):
