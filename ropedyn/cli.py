@@ -11,6 +11,7 @@ from typing import Any
 from . import ask, study2015
 from .accuracy import accuracy_cost
 from .cli_compare import compare_command
+from .cli_identify import identify_command
 from .cli_options import (
     compile_options,
     compiled,
@@ -79,6 +80,7 @@ def _parser() -> argparse.ArgumentParser:
     compare_command(commands)
     _accuracy_command(commands)
     _effects_command(commands)
+    identify_command(commands)
     time_commands(commands)
     return parser
 

@@ -190,15 +190,21 @@ class Fit(Answer):
     def report(self) -> str:
         """Return values, peaks and all that limits what they mean, as text.
 
-        A fit from a file has no alternatives.
+        Intervals are those of 95 %; a fit from a file has none, and no alternatives.
         """
-        lines = [str(self.table()), "", str(self.peaks), ""]
+        numbers = self.table() if self.solution is None else self._with_intervals()
+        lines = [str(numbers), "", str(self.peaks), ""]
         lines.append(f"rms residual {100 * self.rms:.3g} %; {self._said_of_noise}")
         if self.runner_up is not None:
             lines.append(f"second best orders {list(self.runner_up.orders)}: {self._worse}")
         if self.identification is not None:
             lines += map(str, self.alternatives)
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+
+    def _with_intervals(self) -> Table:
+        columns = {name: self.table().column(name) for name in self.table().columns}
+        low, high = self.interval().T.tolist()
+        return Table.of("identified", columns | {"95 % from": low, "to": high})
 
     @property
     def _said_of_noise(self) -> str:

@@ -6,11 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .solution import Solution
+from .uncertainty import freedom_of
 
 Real = NDArray[np.float64]
 
 INVOLVED = 1e-6
 """Share of a direction from which on a number takes part in it."""
+
+UNLIKELY = 1e-3
+"""Probability of residuals as large as that by chance."""
 
 
 def notes_of(solution: Solution) -> tuple[str, ...]:
@@ -101,7 +105,18 @@ def _product(names: list[str], power: Real) -> str:
 
 
 def _noise(solution: Solution) -> list[str]:
-    """Say where nothing tells the noise, or where it is not as it was said."""
+    """Say where nothing tells the noise, or where there is more of it than was said."""
     if not np.isfinite(solution.noise):
         return ["as many unknown as peaks, and no std: nothing tells how uncertain they are"]
-    return []
+    if solution.freedom is not None:
+        return []
+    from scipy.special import chdtrc
+
+    freedom = freedom_of(solution.minimum, solution.rows)
+    if freedom < 0.5 or chdtrc(freedom, solution.off) > UNLIKELY:
+        return []
+    return [
+        f"the peaks are off by more than their std: chi-square {solution.off:.3g} of "
+        f"{freedom:.3g} degrees of freedom; something else acts, the orders are wrong, or their "
+        "std is larger"
+    ]
