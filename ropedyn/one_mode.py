@@ -46,7 +46,8 @@ class OneMode(NamedTuple):
     omega_std: float
     ratio_std: float
     gain: float
-    """What the sum of the squared distances is less than that of a curve without a pole."""
+    """What the sum of the squared distances is less than that of a curve without a pole, over the
+    square of the largest line."""
 
 
 class _Window(NamedTuple):
@@ -109,7 +110,7 @@ def fit(omega: Real, value: Complex, noise: Real | None) -> OneMode | None:
         ratio=float(pole[1] * half / natural),
         omega_std=float(np.sqrt(square[0]) * middle * half / natural),
         ratio_std=float(np.sqrt(square[1]) * half / natural),
-        gain=float((_smooth(lines) - rest @ rest) * scale**2),
+        gain=_smooth(lines) - float(rest @ rest),
     )
 
 

@@ -138,7 +138,7 @@ def resonances(
         mode = _fitted(omega[lines], value[lines], each if known else None)
         if mode is None and (each is None or len(omega[lines]) < one_mode.LEAST):
             found.append((k, _by_three(omega, value, quantity, k)))
-        elif mode is not None and (each is None or _stands_out(mode, each)):
+        elif mode is not None and (each is None or _stands_out(mode, each / size[lines].max())):
             found.append((k, mode))
     return Resonances(
         label=label,
@@ -171,7 +171,7 @@ def _fitted(omega: Real, value: Complex, noise: Real | None) -> one_mode.OneMode
 
 
 def _stands_out(mode: one_mode.OneMode, noise: Real) -> bool:
-    """Whether a mode explains more of a measurement than noise may be."""
+    """Whether a mode explains more than noise, in parts of the largest line, may be."""
     explains = mode.gain > GAIN * float(np.mean(noise**2))
     return explains and mode.ratio >= NEGATIVE * mode.ratio_std
 

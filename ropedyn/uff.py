@@ -31,9 +31,6 @@ UNSAID = (0, 1)
 DIRECTIONS = ("scalar", "X", "Y", "Z", "RX", "RY", "RZ")
 """By their codes without sign; R is rotation."""
 
-EVEN = 1e-13
-"""A relative distance of frequencies: rounding of start + k step."""
-
 OWN = re.compile(r"ropedyn (?P<r>[a-z]+) (?P<rx>\S+) per (?P<d>[a-z]+) (?P<dx>\S+)$")
 """What is written as second line of a function: its points."""
 AVERAGES = re.compile(r"ropedyn averages (\S+)$")

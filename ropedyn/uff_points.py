@@ -97,15 +97,10 @@ def chosen(lines: Sequence[Line], file: Path, drive: Any, response: Any) -> list
     """Return the responses to one drive, one for each point."""
     drives = list(dict.fromkeys(line.drive for line in lines))
     if drive is None and len(drives) > 1:
-        hint = (
-            ""
-            if len({line.response for line in lines}) > 1
-            else (
-                "; with reciprocal=True these are the responses and what was watched is the drive"
-            )
-        )
+        one = len({line.response for line in lines}) == 1
         raise SceneError(
-            f"drive must be one of those of {str(file)!r}, {_list(drives)}, got None{hint}"
+            f"drive must be one of those of {str(file)!r}, {_list(drives)}, got None"
+            + one * "; with reciprocal=True these are watched and what was watched is driven"
         )
     cause = drives[0] if drive is None else _one(drive, "drive", drives, file)
     to_it = [line for line in lines if line.drive == cause]

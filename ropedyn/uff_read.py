@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 
 from . import check, uff
 from .errors import SceneError
-from .uff import AVERAGES, COHERENCE, EVEN, FREQUENCY, FRF, UNSAID, Record, label_of
+from .uff import AVERAGES, COHERENCE, FREQUENCY, FRF, UNSAID, Record, label_of
 from .uff_points import Line, chosen, located
 from .uff_units import scale
+
+SAME = 1e-6
+"""A relative distance of frequencies: they may have six digits."""
 
 HERTZ = {
     "Hz": 1.0,
@@ -119,7 +122,7 @@ def _frequency(record: Record, file: Path) -> NDArray[np.float64]:
 
 
 def _alike(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
-    return len(a) == len(b) and np.allclose(a, b, rtol=EVEN, atol=0.0)
+    return len(a) == len(b) and np.allclose(a, b, rtol=SAME, atol=0.0)
 
 
 def _coherence(

@@ -29,8 +29,8 @@ def scale(
         raise SceneError(
             f"path must hold motion per force, got {where}: ordinate type {kind} over {over}"
         )
-    sides = _said(line, where, reciprocal) if unit is None else stated(unit)
     ends = (line.drive, line.response) if reciprocal else (line.response, line.drive)
+    sides = _said(line.record, where, ends) if unit is None else stated(unit)
     name, size = scaled(sides, *ends, f"unit of {where}" if unit is None else "unit")
     expected = quantity
     if expected is None and kind in MOTION:
@@ -45,15 +45,14 @@ def scale(
     return name, size
 
 
-def _said(line: Line, where: str, reciprocal: bool) -> tuple[Unit, Unit]:
+def _said(record: Record, where: str, ends: tuple[Point, Point]) -> tuple[Unit, Unit]:
     """Return the unit that a record says itself, by its labels or by dataset 164."""
-    fields = line.record.fields
+    fields = record.fields
     above = label_of(fields["ordinate_axis_units_lab"])
     below = label_of(fields["orddenom_axis_units_lab"])
     whole = ratio(above)
     by_label = whole if whole is not None and not below else (side(above), side(below))
-    ends = (line.drive, line.response) if reciprocal else (line.response, line.drive)
-    by_units = _by_dataset(line.record, ends)
+    by_units = _by_dataset(record, ends)
     found = []
     for text, labelled, general in zip((above, below), by_label, by_units):
         if text and labelled is None:

@@ -13,11 +13,14 @@ from . import uff
 from .errors import SceneError
 from .motion_unit import dimensions
 from .port import Point
-from .uff import COHERENCE, EVEN, FORCE, FREQUENCY, FRF, MOTION, UNSAID, Fields
+from .uff import COHERENCE, FORCE, FREQUENCY, FRF, MOTION, UNSAID, Fields
 from .unit import QUANTITIES, label
 
 if TYPE_CHECKING:
     from .curves import Curves
+
+EVEN = 1e-13
+"""A relative distance of frequencies: rounding of start + k step."""
 
 CODE = {"x": 1, "z": 3, "alpha": 4, "beta": -5}
 """Directions: x along the rope and z of a right-handed system, where dz/dx turns against +Y."""

@@ -293,7 +293,7 @@ def test_a_hammer_that_roves_measures_responses_at_its_places(tmp_path):
     assert some.value[:, 0].tolist() == [3]
     left = read(tmp_path, *texts, positions={1: 0.5, 2: None, 3: None})
     assert left.value.tolist() == [[1, 1j]]
-    with pytest.raises(rd.SceneError, match="with reciprocal=True these are the responses"):
+    with pytest.raises(rd.SceneError, match="with reciprocal=True these are watched"):
         read(tmp_path, *texts)
 
 
