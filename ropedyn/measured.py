@@ -100,7 +100,7 @@ class Measured(Curves):
         response: Any = None,
         unit: str | Sequence[str] | None = None,
         quantity: str | None = None,
-        positions: Mapping[int, float | None] | None = None,
+        positions: str | Mapping[int, float | None] | None = None,
         coordinate: str | Mapping[str, str] | None = None,
         reciprocal: bool = False,
         records: int | Sequence[int] | None = None,
@@ -129,8 +129,10 @@ class Measured(Curves):
             file where left out: by its labels, or else by dataset 164.
         quantity : {"receptance", "mobility", "accelerance"}, optional
             The unit says it too. Of a universal file where left out: by the type of its ordinate.
-        positions : dict, optional
-            Of a universal file: where on the rope each node is [m]; None leaves it out.
+        positions : dict or {"X", "Y", "Z"}, optional
+            Of a universal file: where on the rope each node is [m]; None leaves it out. Or the axis
+            along which the rope lies, its first end at 0, if the file has the nodes (dataset 15 or
+            2411) and their unit (164).
         coordinate : str or dict, optional
             Of a universal file: which coordinate of the rope each of its directions is, such as
             ``{"Z": "z", "RY": "-beta"}``, or one where there is one direction. The signs of

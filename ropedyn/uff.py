@@ -15,6 +15,7 @@ from .errors import SceneError
 from .extra import pyuff
 
 FUNCTION = 58
+NODES = (15, 2411)
 UNITS = 164
 
 FRF, COHERENCE = 4, 6
@@ -123,6 +124,49 @@ def _functions(
             fields = _dataset(file, opened, number)
             _check(file, number, fields)
             found.append(Record(number, fields, units))
+    return found
+
+
+def nodes(file: Path, axis: str) -> dict[int, float]:
+    """Read where the nodes of a file are along one of its axes [m].
+
+    Parameters
+    ----------
+    file : Path
+        A universal file that `read` has read.
+    axis : {"X", "Y", "Z"}
+        Of its own coordinates.
+
+    Returns
+    -------
+    dict
+        From numbers of nodes; empty without datasets 15 and 2411.
+
+    Raises
+    ------
+    SceneError
+        If a dataset is damaged, or no dataset 164 before it says what the unit of length is.
+    """
+    opened = pyuff().UFF(str(file))
+    found: dict[int, float] = {}
+    units = None
+    for number, kind in enumerate(opened.get_set_types().tolist()):
+        if kind == UNITS:
+            units = _units(file, number, _dataset(file, opened, number))
+        if kind in NODES:
+            if units is None:
+                raise SceneError(
+                    f"positions must be stated in m: no dataset 164 before dataset {number} of "
+                    f"{str(file)!r} says the unit of its nodes"
+                )
+            fields = _dataset(file, opened, number)
+            names, where = (np.asarray(fields[key]) for key in ("node_nums", axis.lower()))
+            if len(names) != len(where) or not np.isfinite([*names, *where]).all():
+                raise SceneError(
+                    f"path must be a universal file without damage, got {str(file)!r}: dataset "
+                    f"{number} (from 0) must hold finite numbers, seven for each node"
+                )
+            found |= {int(n): float(x) for n, x in zip(names, where / units[0])}
     return found
 
 

@@ -9,10 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import check
+from . import check, uff
 from .errors import SceneError
 from .port import Point
 from .uff import DIRECTIONS, OWN, Record
+
+AXES = ("X", "Y", "Z")
+"""Of the nodes in a file."""
 
 
 class Line(NamedTuple):
@@ -62,7 +65,12 @@ def _positions(given: Any, records: Sequence[Record], file: Path) -> dict[int, f
     nodes = sorted({record.fields[side] for record in records for side in ("rsp_node", "ref_node")})
     what = f"a position [m] for each node of {str(file)!r} ({', '.join(map(str, nodes))})"
     if given is None:
-        raise SceneError(f"positions must be {what}, such as {{{nodes[0]}: 0.5}}, got None")
+        raise SceneError(
+            f'positions must be {what}, such as {{{nodes[0]}: 0.5}}, or "X", "Y" or "Z", got None'
+        )
+    if isinstance(given, str):
+        axis = check.one_of(given, "positions", AXES)
+        given = uff.nodes(file, axis)
     check.instance(given, "positions", Mapping, what)
     for node in nodes:
         if node not in given:

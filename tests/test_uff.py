@@ -179,6 +179,7 @@ def read(tmp_path, *texts, **options):
 
 
 SI = ("m/s2", "N")
+SI_IN_MM = ("mm/s2", "N")
 
 
 @pytest.mark.parametrize("single", [True, False])
@@ -259,6 +260,36 @@ def test_directions_turn_the_sign(tmp_path, response, drive, coordinate, sign):
     text = function(response=(1, response), drive=(2, drive), labels=SI)
     found = read(tmp_path, text, coordinate=coordinate)
     assert found.value.tolist() == [[sign * (1 + 2j), sign * (3 - 4j)]]
+
+
+def geometry(kind=15, nodes=((1, 500.0), (2, 200.0), (4, 0.0))):
+    """Return nodes along X in dataset 15 or 2411."""
+    between, form = ("", "{:13.5e}") if kind == 15 else ("\n", "{:25.16e}")
+    rows = [f"{n:10d}" + 3 * f"{1:10d}" + between + (3 * form).format(x, 7, 0) for n, x in nodes]
+    text = "\n".join(["    -1", f"{kind:6d}", *rows, "    -1", ""])
+    return text if kind == 15 else text.replace("e+", "D+")
+
+
+@pytest.mark.parametrize("kind", [15, 2411])
+def test_nodes_of_the_file_are_positions_along_one_of_its_axes(tmp_path, kind):
+    found = read(tmp_path, units(1e3), geometry(kind), function(labels=SI_IN_MM), positions="X")
+    assert (found.drive, found.response) == ((("z", 0.2),), (("z", 0.5),))
+    with pytest.raises(rd.SceneError, match="positions must be stated in m: no dataset 164"):
+        read(tmp_path, geometry(kind), function(labels=SI), positions="X")
+    with pytest.raises(rd.SceneError, match="without node 3"):
+        read(tmp_path, units(), geometry(kind), function(response=(3, 3)), positions="X")
+    with pytest.raises(rd.SceneError, match="positions must be one of"):
+        read(tmp_path, units(), geometry(kind), function(labels=SI), positions="x")
+    with pytest.raises(rd.SceneError, match="must hold finite numbers"):
+        read(tmp_path, units(), geometry(kind, [(1, np.nan)]), function(), positions="X")
+
+
+def test_line_ends_may_be_those_of_windows(tmp_path):
+    for options in ({}, {"single": True}, {"uneven": (1.0, 1.25)}):
+        text = (units() + function(labels=SI, **options)).replace("\n", "\r\n")
+        (tmp_path / "a.uff").write_bytes(text.encode())
+        found = rd.Measured.read(tmp_path / "a.uff", positions={1: 0.5, 2: 0.2}, coordinate="z")
+        assert found.value.tolist() == [[1 + 2j, 3 - 4j]]
 
 
 @pytest.mark.parametrize(("label", "factor"), [("NONE", 1.0), ("kHz", 1e3), ("rpm", 1 / 60)])
@@ -382,7 +413,7 @@ def test_what_is_not_said_is_asked_for_by_name(tmp_path, what):
 
 # damaged files
 
-WHOLE = units() + function(labels=SI) + function([0.5, 1.0], function_type=6)
+WHOLE = units() + geometry() + function(labels=SI) + function([0.5, 1.0], function_type=6)
 DAMAGED = {
     "empty": (b"", "which is empty"),
     "blank": (b" \n\n", "which is empty"),
@@ -449,7 +480,11 @@ def try_it(file, content):
     except rd.SceneError as error:
         assert "must" in str(error)
     try:
-        found = rd.Measured.read(file, positions=dict.fromkeys(range(9), 0.5), coordinate="z")
+        rd.Measured.read(file, positions=dict.fromkeys(range(9), 0.5), coordinate="z")
+    except rd.SceneError as error:
+        assert "must" in str(error)
+    try:
+        rd.Measured.read(file, positions="X", coordinate="z", unit="m/s^2/N")
     except rd.SceneError as error:
         assert "must" in str(error)
 
