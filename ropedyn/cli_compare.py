@@ -23,7 +23,17 @@ from .peaks import Peaks
 from .unit import QUANTITIES
 
 OF_PEAKS = ("std", "order")
-OF_FILES = ("drive", "response", "quantity", "unit", "position", "coordinate", "column", "band")
+OF_FILES = (
+    "drive",
+    "response",
+    "quantity",
+    "unit",
+    "position",
+    "coordinate",
+    "column",
+    "reciprocal",
+    "band",
+)
 """Options that only one of both takes."""
 
 
@@ -75,6 +85,12 @@ def _file_options(group: Any) -> None:
         help="column of a CSV file: frequency, real, imag, amplitude, phase or coherence; "
         "may be repeated",
     )
+    group.add_argument(
+        "--reciprocal",
+        action="store_true",
+        default=None,
+        help="exchange what was driven and what was watched, for a hammer that roves",
+    )
     group.add_argument("--band", type=float, help="that FRAC is taken over at each line [Hz]")
 
 
@@ -95,7 +111,9 @@ def _peaks(options: argparse.Namespace) -> Peaks:
 
 def _measured(options: argparse.Namespace) -> Measured:
     _refuse(options, OF_PEAKS, "--peaks")
-    given: dict[str, Any] = {name: getattr(options, name) for name in ("quantity", "unit")}
+    given: dict[str, Any] = {
+        name: getattr(options, name) for name in ("quantity", "unit", "reciprocal")
+    }
     if options.drive is not None:
         given["drive"] = drive_of(options.drive, "--drive")
     if options.response is not None:
