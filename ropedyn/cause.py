@@ -92,7 +92,7 @@ def likely_cause(found: Predicted, order: NDArray[np.int64], measured: Real, std
     at = order[order > 0] - 1
     spread = np.hypot(std[order > 0], found.error[at])
     known = np.isfinite(spread) & (spread > 0)
-    if found.modes is None or found.modes.solve_shapes is None or known.sum() < FEWEST:
+    if found.modes is None or not found.has_shapes or known.sum() < FEWEST:
         return ""
     at, target = at[known], measured[order > 0][known]
     wanted = np.log(target / found.frequency[at])

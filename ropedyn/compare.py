@@ -57,12 +57,15 @@ class Comparison(Answer):
     std : ndarray, shape (k,)
         Standard uncertainty of the measured peaks [Hz], NaN where it is not known.
     error : ndarray, shape (k,)
-        Of the calculated peaks by mesh and rounding [Hz]; NaN where it is not known, as of peaks
-        of a response.
+        Of the calculated peaks [Hz]: of modes by mesh and rounding, of peaks of a response that of
+        the fit to them.
     damping_ratio, calculated_damping_ratio : ndarray, shape (k,)
         NaN where it is not known or nothing damps.
     all_calculated : ndarray, shape (m,)
         Every calculated peak, paired or not [Hz].
+    visible : ndarray of bool, shape (m,)
+        Whether the drive of a measured response shows anything of it in any of them; True where
+        peaks alone were compared.
     hint : str
         What the differences show of their cause, where they prove it; else empty.
     response : tuple of str
@@ -90,6 +93,7 @@ class Comparison(Answer):
     damping_ratio: Real = field(metadata=axes("peak"))
     calculated_damping_ratio: Real = field(metadata=axes("peak"))
     all_calculated: Real = field(metadata=axes("calculated", unit="Hz"))
+    visible: NDArray[np.bool_] = field(metadata=axes("calculated"))
     hint: str = ""
     response: tuple[str, ...] = ()
     frequency: Real | None = field(default=None, metadata=axes("frequency", unit="Hz"))
@@ -114,9 +118,9 @@ class Comparison(Answer):
 
     @property
     def missed(self) -> NDArray[np.int64]:
-        """Calculated peaks between the lowest and the highest measured one that none is."""
+        """Visible calculated peaks from the lowest to the highest measured one that none is."""
         f, low = self.all_calculated, self.measured.min(initial=np.inf)
-        within = (f >= low) & (f <= self.measured.max(initial=0.0))
+        within = self.visible & (f >= low) & (f <= self.measured.max(initial=0.0))
         number = np.arange(1, len(f) + 1)
         return np.setdiff1d(number[within], self.order)
 
@@ -250,7 +254,10 @@ def compare(
     if isinstance(calculated, FRF) and seen.curves is not None:
         drive = drive_of(calculated, seen.curves)
     found = predicted_of(calculated, seen.highest, max(len(seen.frequency), 2), seen.last, drive)
-    order = _order(found, seen, within)
+    visible = np.ones(len(found.frequency), dtype=np.bool_)
+    if seen.curves is not None:
+        visible = found.seen(seen.curves.drive[0], seen.curves.response)
+    order = _order(found.frequency, visible, seen, within)
     mine = np.where(order > 0, order - 1, len(found.frequency))
     partner, error, damping = (
         np.append(column, np.nan)[mine]
@@ -266,25 +273,25 @@ def compare(
         damping_ratio=seen.damping_ratio,
         calculated_damping_ratio=damping,
         all_calculated=found.frequency,
+        visible=visible,
         hint=likely_cause(found, order, seen.frequency, seen.std),
         mac=_mac(found, seen, shapes, points, drive),
         **_responses(calculated, seen.curves, band),
     )
 
 
-def _order(found: Predicted, seen: Seen, within: float | None) -> NDArray[np.int64]:
+def _order(
+    calculated: Real, visible: NDArray[np.bool_], seen: Seen, within: float | None
+) -> NDArray[np.int64]:
     """Return which calculated peak each measured one is."""
     if seen.order is not None:
-        if seen.last > len(found.frequency):
+        if seen.last > len(calculated):
             raise SceneError(
-                f"measured.order must be at most {len(found.frequency)}, the calculated peaks "
-                f"there are, got {seen.last}"
+                f"measured.order must be at most {len(calculated)}, the calculated peaks there "
+                f"are, got {seen.last}"
             )
         return seen.order
-    visible = np.ones(len(found.frequency), dtype=np.bool_)
-    if seen.curves is not None:
-        visible = found.seen(seen.curves.drive[0], seen.curves.response)
-    order = partners(seen.frequency, found.frequency[visible], std=seen.std, within=within)
+    order = partners(seen.frequency, calculated[visible], std=seen.std, within=within)
     return np.append(0, np.flatnonzero(visible) + 1)[order]
 
 
@@ -327,7 +334,7 @@ def _mac(
         measured = _checked_shapes(shapes, (len(seen.frequency), len(where)))
     else:
         curves = seen.curves
-        if curves is None or len(seen.frequency) == 0:
+        if curves is None or len(seen.frequency) == 0 or not found.has_shapes:
             return None
         rows = [k for k, point in enumerate(curves.response) if is_motion(point)]
         if len(rows) < 2:

@@ -13,10 +13,10 @@ from .check import COORDINATES, NEAR
 from .eigen import solve_modes
 from .errors import SceneError
 from .frf import FRF
-from .merged import merged
 from .model import Model
 from .modes import Modes
 from .port import Point
+from .seen import peaks_in
 from .shape_at import residues, shapes_at
 
 Real = NDArray[np.float64]
@@ -34,7 +34,7 @@ class Predicted:
     frequency : ndarray, shape (m,)
         [Hz], increasing, each > 0.
     error : ndarray, shape (m,)
-        Of mesh and rounding [Hz]; NaN where that is not known.
+        Of modes by mesh and rounding, of peaks of a response that of the fit to them [Hz].
     damping_ratio : ndarray, shape (m,)
         NaN where nothing damps.
     number : ndarray of int, shape (m,)
@@ -51,6 +51,11 @@ class Predicted:
     number: NDArray[np.intp]
     modes: Modes | None = None
     frf: FRF | None = None
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether shapes can be asked for: modes from a file have no model."""
+        return self.modes is None or self.modes.solve_shapes is not None
 
     def checked(self, points: Any, name: str) -> tuple[Point, ...]:
         """Return points that the rope has, each a coordinate at a position."""
@@ -85,9 +90,8 @@ class Predicted:
 
     def seen(self, drive: Point, response: tuple[Point, ...]) -> NDArray[np.bool_]:
         """Return which frequencies a drive can show in at least one response."""
-        every = np.ones(len(self.frequency), dtype=np.bool_)
-        if self.modes is None or not all(is_motion(point) for point in response):
-            return every
+        if self.modes is None or not self.has_shapes or not all(map(is_motion, response)):
+            return np.ones(len(self.frequency), dtype=np.bool_)
         response = self.checked(response, "measured.response")
         drives = self.checked([drive], "measured.drive") if is_motion(drive) else ()
         shape = np.abs(shapes_at(self.modes, (*drives, *response))[self.number])
@@ -163,10 +167,10 @@ def _of_modes(modes: Modes) -> Predicted:
 
 
 def _of_frf(frf: FRF, drive: int) -> Predicted:
-    peaks = merged(frf.peaks(drive))
+    peaks = peaks_in(frf if len(frf.drive) == 1 else frf.peaks(drive))
     return Predicted(
         frequency=peaks.frequency,
-        error=np.full(len(peaks.frequency), np.nan),
+        error=peaks.std,
         damping_ratio=peaks.damping_ratio,
         number=np.arange(len(peaks.frequency)),
         frf=frf,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from numbers import Real as RealNumber
 from typing import Any, NamedTuple
@@ -10,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
+from .curves import Curves
 from .errors import SceneError
 from .measured import Measured
-from .merged import merged
+from .merge import Merged, merge
 from .peaks import Peaks
 from .resonance import Resonances
 
@@ -53,20 +55,29 @@ def seen_in(measured: Any) -> Seen:
     check.instance(measured, "measured", given, what)
     if isinstance(measured, Measured):
         curves = _above_zero(measured)
-        peaks = merged(curves.peaks())
-        return Seen(peaks.frequency, peaks.std, peaks.damping_ratio, None, curves)
+        return Seen(*peaks_in(curves), None, curves)
     if isinstance(measured, Resonances):
-        peaks = merged([measured])
-        return Seen(peaks.frequency, peaks.std, peaks.damping_ratio, None, None)
+        return Seen(*peaks_in([measured]), None, None)
     if not isinstance(measured, Peaks):
         frequency = check.numbers(measured, "measured", "Hz", sign="positive")
         unknown = np.full(len(frequency), np.nan)
         return Seen(frequency, unknown, unknown, None, None)
     frequency = np.asarray(measured.frequency, dtype=np.float64)
-    unknown = np.full(len(frequency), np.nan)
-    std = unknown if measured.std is None else np.asarray(measured.std, dtype=np.float64)
+    std, ratio = (
+        np.full(len(frequency), np.nan if given is None else given, dtype=np.float64)
+        for given in (measured.std, measured.damping_ratio)
+    )
     order = None if measured.order is None else np.array(measured.order, dtype=np.int64)
-    return Seen(frequency, std, unknown, order, None)
+    return Seen(frequency, std, ratio, order, None)
+
+
+def peaks_in(source: Curves | Sequence[Resonances]) -> Merged:
+    """Return the peaks of all responses, which may be none."""
+    try:
+        return merge(source)
+    except SceneError:
+        none = np.zeros(0)
+        return Merged(none, none, none)
 
 
 def _above_zero(measured: Measured) -> Measured:

@@ -224,10 +224,38 @@ def test_shapes_may_be_given_with_their_points():
     np.testing.assert_allclose(comparison.mac[:, :3], mac(shapes, sines), rtol=1e-9)
 
 
-def test_shapes_of_modes_from_a_file_are_refused(tmp_path):
+def test_modes_from_a_file_have_no_shapes(tmp_path, measured):
     modes = BEADS.modes(3)
     modes.save(tmp_path / "modes.nc")
     again = rd.load(tmp_path / "modes.nc")
     assert rd.compare(again, [16.0]).order.tolist() == [1]
+    whole = rd.compare(again, measured)
+    assert whole.order.tolist() == [1, 2, 3, 0]
+    assert whole.mac is None
     with pytest.raises(rd.SceneError, match="modes from a file have no model"):
         rd.compare(again, [16.0], shapes=[[1.0, 2.0]], points=[("z", 0.2), ("z", 0.5)])
+
+
+@pytest.mark.claim(
+    "Measured residues of a free beam in three points, six modes: largest 1 - MAC with the shapes "
+    "of a free beam",
+    reference="accelerances of github.com/ladisk/pyuff, data/meas_point_1.txt to 3 (MIT licence), "
+    "one-mode fits; positions fitted to them, geometry not stated",
+    accepted=1e-3,
+)
+def test_measured_shapes_of_a_free_beam_are_those_of_a_beam(claim):
+    frequency = [51.52, 142.18, 278.67, 460.40, 687.17, 958.54]  # Hz
+    residues = np.array(
+        [
+            [0.1551, -0.1169, 0.098, -0.0784, 0.058, -0.0432],
+            [0.1136, -0.055, 0.0229, 0.0059, -0.025, 0.0364],
+            [0.0717, -0.0046, -0.0389, 0.0629, -0.0664, 0.0584],
+        ]
+    )
+    # sqrt(B/mu)/L^2 from the first frequency alone, 4.7300^2 = 22.373 of a free beam
+    rope = rd.Rope(1.0, 1.0, bending_stiffness=(51.52 * 2 * math.pi / 22.37329) ** 2)
+    model = rd.Scene(rope, ends=("free", "free")).compile()
+    points = [("z", 0.974), ("z", 0.922), ("z", 0.873)]
+    comparison = rd.compare(model, frequency, shapes=residues.T, points=points)
+    assert comparison.order.tolist() == [1, 2, 3, 4, 5, 6]
+    claim(1 - comparison.mac[np.arange(6), np.arange(6)].min())

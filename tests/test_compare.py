@@ -346,10 +346,14 @@ def test_modes_that_the_drive_cannot_show_have_no_peak():
     # second one, from something else, finds nothing there, and the next odd ones are farther apart
     middle = (("z", 0.5),)
     odd = measurement(damped_string(), drive=("z", 0.5), response=middle)
-    assert rd.compare(damped_string(), odd).order.tolist() == [1, 3]
+    alone = rd.compare(damped_string(), odd)
+    assert alone.order.tolist() == [1, 3]
+    number = np.arange(1, len(alone.visible) + 1)
+    assert alone.visible.tolist() == (number % 2 == 1).tolist()
+    assert alone.missed.tolist() == []
     # at 30 Hz, 3 % from the second mode, a trace of something else
     f = LINES
-    other = 1e-3 / (30.0**2 - f**2 + 2j * 0.01 * 30.0 * f)
+    other = 1e-2 / (30.0**2 - f**2 + 2j * 0.01 * 30.0 * f)
     both = rd.Measured(f, odd.value + other, drive=("z", 0.5), response=middle)
     comparison = rd.compare(damped_string(), both)
     assert comparison.order.tolist() == [1, 0, 3]
@@ -487,3 +491,55 @@ def test_curves_of_the_figure_are_both_responses():
     measured, calculated = comparison.plot().lines[:2]
     np.testing.assert_array_equal(measured.get_ydata(), np.abs(comparison.measured_value[0]))
     np.testing.assert_array_equal(calculated.get_ydata(), np.abs(comparison.calculated_value[0]))
+
+
+# hard cases
+
+
+def test_a_sensor_that_measures_nothing_has_no_likeness():
+    model = damped_string()
+    measured = measurement(model)
+    dead = measured.value.copy()
+    dead[1] = 0.0
+    measured = rd.Measured(LINES, dead, drive=DRIVE, response=POINTS)
+    comparison = rd.compare(model, measured)
+    assert comparison.order.tolist() == [1, 2, 3, 4]
+    assert np.isnan(comparison.frac).tolist() == [False, True, False, False]
+    for of in ("response", "phase", "frac", "mac"):
+        comparison.plot(of=of)
+
+
+def test_one_line_has_a_likeness():
+    model = damped_string()
+    comparison = rd.compare(model, measurement(model, lines=np.array([20.0])))
+    assert len(comparison.order) == 0
+    np.testing.assert_allclose(comparison.frac_over_frequency, 1.0, rtol=10 * EPS)
+
+
+def test_a_line_on_an_undamped_resonance_is_refused():
+    # one bead: k = 4 T/L, m = mu L/2
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=2, element="rigid")
+    f = math.sqrt(8 * 100.0 / 0.1) / (2 * math.pi)
+    measured = rd.Measured([f], [1.0], drive=("z", 0.5), response=("z", 0.5))
+    with pytest.raises(rd.SolveError, match="resonance"):
+        rd.compare(model, measured)
+
+
+def test_peaks_of_twist_and_bending_at_one_frequency_are_both_modes():
+    # sqrt(0.1/1e-4)/2 L = sqrt(T/mu)/2 L = 15.81 Hz times the order, without mesh exactly
+    rope = rd.Rope(1.0, 0.1, torsional_stiffness=0.1, polar_inertia=1e-4)
+    model = rd.Scene(rope, tension=100.0).compile()
+    comparison = rd.compare(model, [15.6, 15.9, 31.0, 32.0, 47.0])
+    assert sorted(comparison.order[:4].tolist()) == [1, 2, 3, 4]
+    assert comparison.order[4] in (5, 6)
+
+
+def test_a_chain_that_moves_rigidly_is_compared_by_its_vibrations():
+    # free along z, held by nothing, with tension: one rigid motion
+    end = rd.End(z="free", beta="free")
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, ends=(end, end))
+    model = scene.compile(elements=8, element="rigid")
+    # beads and half beads between free ends have the frequencies of the held ones
+    comparison = rd.compare(model, BEADS[:3] * 1.01)
+    assert comparison.order.tolist() == [1, 2, 3]
+    np.testing.assert_allclose(comparison.calculated, BEADS[:3], rtol=1e-12)
