@@ -38,6 +38,9 @@ MOST = 4
 
 ITERATIONS = 20
 
+FARTHEST = 3.0
+"""Logarithm of the factor at most: a number is not looked for beyond 20 times what it is."""
+
 NOTHING = 1e-12
 """Relative change that rounding makes."""
 
@@ -152,7 +155,7 @@ def _fitted(tracked: Tracked, path: str, wanted: Real, weight: Real) -> Cause | 
         size = float((weight * slope**2).sum())
         step = float((weight * slope * (wanted - shift)).sum()) / size
         log += min(max(step, -1.0), 1.0)
-        moved = tracked.shift(path, math.exp(log))
+        moved = tracked.shift(path, math.exp(log)) if abs(log) <= FARTHEST else None
         if moved is None:
             return None
         shift = moved

@@ -153,7 +153,16 @@ class Comparison(Answer):
         return self.peaks
 
     def report(self) -> str:
-        """Return as text the pairs, FRAC of each response and the hint, as far as there are any."""
+        """Return as text the pairs, FRAC of each response and the hint, as far as there are any.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=90.0).compile()
+        >>> peaks = rd.Peaks([15.81, 31.62, 47.43, 63.25], std=0.01)
+        >>> print(rd.compare(model, peaks).report().splitlines()[-1].split(":")[0])
+        All shifts are alike within their uncertainty
+        """
         lines = [str(self.peaks)]
         if self.frac is not None:
             lines += [f"FRAC of {r}: {value:.4g}" for r, value in zip(self.response, self.frac)]
@@ -175,6 +184,13 @@ class Comparison(Answer):
         ------
         SceneError
             If that was not compared.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> rd.compare(model, [15.5, 31.0]).plot().get_ylabel()
+        'calculated [Hz]'
         """
         from .plotting_compare import plot_comparison
 
