@@ -215,14 +215,18 @@ def compare(
     stay alone, and pairs never cross. Of a whole response, modes of which the drive shows nothing
     in any response have no peak.
 
+    Where the uncertainties of the peaks prove that one number of the scene explains all
+    differences, and which, the `hint` of the comparison says so.
+
     Parameters
     ----------
     calculated : Model, Modes or FRF
         Of a model the modes that are needed are computed, and the response at the measured lines.
         Of an FRF its peaks count, to the drive of the measurement or else the first one.
     measured : Peaks, Measured, Resonances or array_like of frequencies [Hz]
-        Of a whole response the peaks of all its responses are merged. With the orders of `Peaks`
-        each is compared with that mode, however far away.
+        Of a whole response the peaks of all its responses are merged, as by `Peaks.of`; its line at
+        0 Hz is not compared. With the orders of `Peaks` each is compared with that mode, however
+        far away.
     within : float, optional
         Largest relative error that the calculated frequencies may have: no pair is farther apart
         than that and three standard uncertainties of the peak.
@@ -231,7 +235,7 @@ def compare(
         a tenth of the measured range, or ten lines where that is wider, where left out.
     shapes : array_like of real or complex, shape (k, points), optional
         Measured shapes, one for each peak; of a whole response those that its peaks show in two
-        responses and more, where left out. Lines at 0 Hz are not compared.
+        responses and more, where left out.
     points : sequence of points, optional
         Where they were measured, such as ``[("z", 0.2), ("z", 0.5)]``; of one coordinate, or MAC
         depends on units.

@@ -16,6 +16,7 @@ from .errors import SceneError
 from .measured import Measured
 from .merge import Merged, merge
 from .peaks import Peaks
+from .quantity import is_quantity
 from .resonance import Resonances
 
 Real = NDArray[np.float64]
@@ -52,7 +53,8 @@ def seen_in(measured: Any) -> Seen:
     """Return what was measured, of whatever form."""
     what = "Peaks, a Measured, Resonances or frequencies [Hz]"
     given = (Peaks, Measured, Resonances, list, tuple, np.ndarray, RealNumber)
-    check.instance(measured, "measured", given, what)
+    if not is_quantity(measured):
+        check.instance(measured, "measured", given, what)
     if isinstance(measured, Measured):
         curves = _above_zero(measured)
         return Seen(*peaks_in(curves), None, curves)

@@ -543,3 +543,15 @@ def test_a_chain_that_moves_rigidly_is_compared_by_its_vibrations():
     comparison = rd.compare(model, BEADS[:3] * 1.01)
     assert comparison.order.tolist() == [1, 2, 3]
     np.testing.assert_allclose(comparison.calculated, BEADS[:3], rtol=1e-12)
+
+
+def test_quantities_of_pint_are_converted():
+    unit = pytest.importorskip("pint").UnitRegistry()
+    model = damped_string()
+    plain = rd.compare(model, [15.9, 33.0], within=0.05)
+    given = rd.compare(model, [15.9, 33.0] * unit.Hz, within=5 * unit.percent)
+    assert given.order.tolist() == plain.order.tolist() == [1, 0]
+    assert given.measured.tolist() == [15.9, 33.0]
+    points = [("z", 25 * unit.cm), ("z", 0.5 * unit.m)]
+    shaped = rd.compare(model, [15.9], shapes=[[0.7, 1.0]], points=points)
+    assert shaped.mac[0, 0] > 0.99
