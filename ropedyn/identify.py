@@ -16,6 +16,7 @@ from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .fit import Fit
 from .fits import Fits
 from .identification import Identification
+from .measured import Measured
 from .orders import found_orders, given_orders, likelier_is_none, lowest_orders, search_std
 from .path import with_values
 from .peaks import Peaks
@@ -26,9 +27,6 @@ from .unknown import Unknowns
 
 Real = NDArray[np.float64]
 
-KINDS = (Peaks, Resonances)
-"""What peaks of one rope may be, beside numbers."""
-
 MOST = 64
 """Modes that are missing, and peaks that are none."""
 
@@ -36,7 +34,7 @@ MOST = 64
 @overload
 def identify(
     scene: Scene,
-    measured: Peaks | Resonances | ArrayLike,
+    measured: Peaks | Measured | Resonances | Sequence[Resonances] | ArrayLike,
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
@@ -51,7 +49,7 @@ def identify(
 @overload
 def identify(
     scene: Scene,
-    measured: Sequence[Peaks | Resonances],
+    measured: Sequence[Peaks | Measured],
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
@@ -84,10 +82,10 @@ def identify(
     ----------
     scene : Scene
         With what is known, and guesses of what is not; a tension of 0 is no guess.
-    measured : Peaks, Resonances or array_like of shape (k,), or a list of Peaks
-        Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
-        to be the same for all and estimated from the residuals. A list has one for each of many
-        ropes, which the scene describes alike.
+    measured : Peaks, Measured, Resonances or array_like of shape (k,), or a list of Peaks
+        Peaks [Hz], or responses that have some, which `Peaks.of` finds. Their standard deviations
+        are weights; without any the relative noise is taken to be the same for all and estimated
+        from the residuals. A list has one for each of many ropes, which the scene describes alike.
     unknown : str or sequence of str
         Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
         ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
@@ -232,15 +230,17 @@ def _warn(notes: Sequence[str]) -> None:
 
 
 def _is_of_many(measured: Any) -> bool:
-    return isinstance(measured, (list, tuple)) and any(isinstance(m, KINDS) for m in measured)
+    kinds = (Peaks, Measured)
+    return isinstance(measured, (list, tuple)) and any(isinstance(m, kinds) for m in measured)
 
 
 def _peaks(measured: Any, name: str) -> Peaks:
     """Return peaks from what they may be given as."""
     if isinstance(measured, Peaks):
         return measured
-    if isinstance(measured, Resonances):
-        return Peaks(measured.frequency)
+    many = isinstance(measured, (list, tuple)) and any(isinstance(m, Resonances) for m in measured)
+    if many or isinstance(measured, (Measured, Resonances)):
+        return Peaks.of(measured)
     return Peaks(check.numbers(measured, name, "Hz", sign="positive"))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,7 +20,7 @@ FARTHEST = 23.0
 """From the start, as a logarithm: ten decades, beyond which nothing depends on a number."""
 
 DIGITS = {"ftol": 1e-8, "gtol": 1e-14, "xtol": 1e-13}
-"""ftol: 1e-4 of a standard deviation. gtol: with exact peaks, rounding of frequencies."""
+"""ftol: 1e-4 of a standard deviation, squared; gtol: rounding of relative residuals."""
 
 SCALES: tuple[float | str, ...] = (1.0, "jac")
 """Of the trust region: a factor e of every number; in narrow valleys what residuals feel."""
@@ -82,7 +82,13 @@ def told(slope: Real) -> Real:
     return np.asarray(rows[seen].T)
 
 
-def minimise(misfit: Misfit, start: Real, directions: Real | None = None) -> Minimum:
+def minimise(
+    misfit: Misfit,
+    start: Real,
+    directions: Real | None = None,
+    *,
+    digits: Mapping[str, float] = DIGITS,
+) -> Minimum:
     """Find the least sum of squares by a trust region method.
 
     Directions that do not change the residuals at the start are not gone: of all points with the
@@ -95,6 +101,8 @@ def minimise(misfit: Misfit, start: Real, directions: Real | None = None) -> Min
     start : ndarray, shape (p,)
     directions : ndarray, shape (p, q), optional
         Orthonormal, all that may be gone.
+    digits : mapping
+        Tolerances as SciPy's least_squares takes them.
 
     Returns
     -------
@@ -105,8 +113,6 @@ def minimise(misfit: Misfit, start: Real, directions: Real | None = None) -> Min
     SolveError
         If it does not converge.
     """
-    from scipy.optimize import least_squares
-
     seen = Memory(misfit, start)
     residual, slope = seen(start)
     free = np.eye(len(start)) if directions is None else directions
@@ -114,38 +120,71 @@ def minimise(misfit: Misfit, start: Real, directions: Real | None = None) -> Min
     if not basis.shape[1]:
         return Minimum(start, residual, slope, seen.evaluations)
     size = float(np.linalg.norm(slope @ basis, axis=0).max())
-    ask = _refused_as_infinite(seen, len(residual))
-    y = np.zeros(basis.shape[1])
-    for scale in SCALES:
-        found = least_squares(
-            lambda y: ask(start + basis @ y)[0] / size,
-            y,
-            jac=lambda y: ask(start + basis @ y)[1] @ basis / size,
-            x_scale=scale,
-            max_nfev=EVALUATIONS,
-            **DIGITS,
-        )
-        y = found.x
-        if found.success:
-            break
-    else:
-        raise SolveError(
-            f"identification must converge within {len(SCALES) * EVALUATIONS} steps, the last "
-            f"ended at a sum of squares of {float(2 * found.cost * size**2):.3g}: give the scene "
-            "better guesses"
-        )
+    y = _Walk(seen, start, basis, size, digits).end()
     u = np.clip(start + basis @ y, start - FARTHEST, start + FARTHEST)
     residual, slope = seen(start + basis @ y)
     return Minimum(u, residual, slope, seen.evaluations)
 
 
-def _refused_as_infinite(seen: Memory, rows: int) -> Callable[[Real], tuple[Real, Real]]:
-    """Let steps to where there is no scene or no answer be taken back."""
+class _Arrived(Exception):
+    """Of all that a solver of SciPy calls, what can end it."""
 
-    def ask(u: Real) -> tuple[Real, Real]:
+
+@dataclass(eq=False)
+class _Walk:
+    """Steps along a basis from a start, y = 0; residuals in units of the largest slope there."""
+
+    seen: Memory
+    start: Real
+    basis: Real
+    size: float
+    digits: Mapping[str, float]
+    at: Real = field(init=False)
+
+    def end(self) -> Real:
+        """Return y at the least sum of squares."""
+        from scipy.optimize import least_squares
+
+        self.at = np.zeros(self.basis.shape[1])
+        for scale in SCALES:
+            try:
+                found = least_squares(
+                    self.residual,
+                    self.at,
+                    jac=self.slope,
+                    x_scale=scale,
+                    max_nfev=EVALUATIONS,
+                    **self.digits,
+                )
+            except _Arrived:
+                return self.at
+            self.at = found.x
+            if found.success:
+                return self.at
+        raise SolveError(
+            f"identification must converge within {len(SCALES) * EVALUATIONS} steps, the last "
+            f"ended at a sum of squares of {2 * float(found.cost) * self.size**2:.3g}: give the "
+            "scene better guesses"
+        )
+
+    def residual(self, y: Real) -> Real:
+        """Return the residuals; infinite where there is no scene, so that a step is taken back."""
         try:
-            return seen(u)
+            return self.seen(self.start + self.basis @ y)[0] / self.size
         except (SceneError, SolveError):
-            return np.full(rows, np.inf), np.zeros((rows, len(u)))
+            return np.full(len(self.seen(self.start)[0]), np.inf)
 
-    return ask
+    def slope(self, y: Real) -> Real:
+        """Return the slopes at the end of a step, unless it is the last.
+
+        It is where a linear step would gain too little: SciPy would take it, and more where
+        rounding hides what it gains.
+        """
+        residual, slope = self.seen(self.start + self.basis @ y)
+        residual, slope = residual / self.size, slope @ self.basis / self.size
+        gain = slope @ np.linalg.lstsq(slope, residual, rcond=BLIND)[0]
+        enough = self.digits["ftol"] * (residual @ residual) + self.digits["gtol"] ** 2
+        if gain @ gain <= enough:
+            self.at = y
+            raise _Arrived
+        return slope
