@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .answer import Cost
+from .answer import Answer, Cost
 from .outcome import Errand, Failure, Outcome, outcome_of
 from .progress import Progress, reporter
 from .table import Table, numbers
@@ -90,8 +90,8 @@ class Sweep(Sequence[Result | None], Generic[Result]):
     def table(self) -> Table:
         """Return one row for each scene.
 
-        Numbers, rows of a few numbers and mappings have columns of their own, other results are
-        named; a scene that failed says why.
+        Numbers, rows of a few numbers, mappings and what a `Fit` found have columns of their own,
+        other results are named; a scene that failed says why.
 
         Examples
         --------
@@ -336,9 +336,10 @@ def _gathered(
 
 def _cells(result: Any) -> dict[str, Any]:
     """Return the columns of a result."""
-    if hasattr(result, "keys"):
-        names = list(result.keys())
-        return {str(name): _cell(result[name]) for name in names}
+    named: Any = getattr(result, "value", None) if isinstance(result, Answer) else result
+    if hasattr(named, "keys"):
+        names = list(named.keys())
+        return {str(name): _cell(named[name]) for name in names}
     row = isinstance(result, np.ndarray) and result.ndim == 1
     if row or isinstance(result, (list, tuple)):
         cells = [_cell(one) for one in result]
