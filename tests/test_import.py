@@ -6,6 +6,7 @@ import sys
 import pytest
 
 LATER = ("scipy", "matplotlib", "pandas", "xarray", "h5netcdf", "h5py", "pyuff", "tomli_w", "pint")
+LATER += ("dask", "distributed", "cloudpickle", "multiprocessing")
 ROPE = "rd.Rope(1.0, 0.1, bending_stiffness=1.0)"
 WORK = {
     "import": "",
@@ -16,6 +17,7 @@ WORK = {
     "effects": f"rd.effect_cost(rd.Scene({ROPE}), rd.ask.modes(1)).table()",
     "static": f"rd.Scene({ROPE}).compile(elements=4).static({{('z', 0.5): 1.0}})",
     "peaks": "str(rd.Peaks([1.0, 2.0]))",
+    "sweep": "rd.sweep(abs, [-1.0]).table()",
 }
 
 
