@@ -42,6 +42,14 @@ class Curves(Answer):
         ------
         TypeError, SceneError
             If a number is none of those there are.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> frf = model.frf([0.0, 5.0], drive=("z", 0.5), response=[("z", 0.25), ("z", 0.5)])
+        >>> frf.curve(1).real.round(6)
+        array([0.0025  , 0.002728])
         """
         check.count(response, "response", least=0, most=len(self.response) - 1)
         check.count(drive, "drive", least=0, most=len(self.drive) - 1)
@@ -96,6 +104,16 @@ class Curves(Answer):
         ------
         TypeError, SceneError
             If the drive is none of those there are.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ModalDamping(0.01))
+        >>> frf = scene.compile(elements=64).frf(np.arange(1.0, 60.0, 0.1), drive=("z", 0.3))
+        >>> (peaks,) = frf.peaks()
+        >>> peaks.frequency.round(1), peaks.damping_ratio.round(3)
+        (array([15.8, 31.6, 47.4]), array([0.01, 0.01, 0.01]))
         """
         check.count(drive, "drive", least=0, most=len(self.drive) - 1)
         return tuple(

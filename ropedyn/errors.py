@@ -57,4 +57,17 @@ class SolveError(RopedynError, ArithmeticError):
 
 
 class IdentifyWarning(UserWarning):
-    """What was measured does not tell all that was asked; the message says what it does tell."""
+    """What was measured does not tell all that was asked; the message says what it does tell.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.2), tension=500.0)
+    >>> peaks = rd.Peaks([25.0, 50.0], std=0.1)
+    >>> with warnings.catch_warnings(record=True) as told:
+    ...     warnings.simplefilter("always")
+    ...     fit = rd.identify(scene, peaks, ["tension", "linear_density"])
+    >>> told[0].category is rd.IdentifyWarning, len(fit.notes)
+    (True, 1)
+    """

@@ -58,6 +58,18 @@ class Plan(Answer):
         What damage was asked for; empty for none.
     shift : ndarray, shape (k,), or None
         What that changes of each frequency [Hz].
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, damping=rd.ModalDamping(0.01))
+    >>> plan = rd.plan_measurement(scene, modes=3)
+    >>> plan.drive[0], plan.mode, plan.frequency.round(6)
+    ('z', array([1, 2, 3]), array([25., 50., 75.]))
+    >>> round(plan.record_length * plan.line_spacing, 9), round(plan.rate / plan.highest, 9)
+    (1.0, 2.56)
+    >>> len(plan.lines) == int(plan.highest / plan.line_spacing), plan.shift_in_lines
+    (True, None)
     """
 
     drive: tuple[str, float]
@@ -128,7 +140,15 @@ class Plan(Answer):
         return Table.of(f"plan: drive {place(self.drive)}", columns)
 
     def report(self) -> str:
-        """Return the plan in sentences."""
+        """Return the plan in sentences.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, damping=rd.ModalDamping(0.01))
+        >>> print(rd.plan_measurement(scene, modes=3).report().splitlines()[2])
+        Record 8 s, lines 0.125 Hz apart: 4 lines in the half-power bandwidth of mode 1, 0.5 Hz.
+        """
         where = " and ".join(place(response) for response in self.response)
         worst = int(self.seen.argmin())
         text = [

@@ -108,7 +108,14 @@ class Prior(Mapping[str, tuple[float, float]]):
         return self.table()._repr_html_()
 
     def table(self) -> Table:
-        """Return one row for each number."""
+        """Return one row for each number.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Prior({"tension": (300.0, 15.0)}).table().column("std")
+        (15.0,)
+        """
         value, std = zip(*self.known.values())
         return Table.of("known before", {"path": tuple(self.known), "value": value, "std": std})
 

@@ -22,7 +22,19 @@ Real = NDArray[np.float64]
 
 
 class StaticTest(Answer):
-    """Base of tests: reading = offset + factor load/stiffness, by least squares."""
+    """Base of tests: reading = offset + factor load/stiffness, by least squares.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> test = rd.TorsionTest(0.5, [0.0, 0.01, 0.02], [0.0, 0.034, 0.067])
+    >>> test.load, test.reading, test.factor
+    (array([0.  , 0.01, 0.02]), array([0.   , 0.034, 0.067]), 0.5)
+    >>> print(test.title)
+    torsional stiffness C = 0.149254 +- 0.0013 N m^2
+    >>> (test.residual * 1e3).round(2), round(test.line.slope, 3)
+    (array([-0.17,  0.33, -0.17]), 3.35)
+    """
 
     stiffness_name: ClassVar[str]
     symbol: ClassVar[str]
@@ -91,6 +103,13 @@ class StaticTest(Answer):
             If it is not a number.
         SceneError
             If it is not between 0 and 1.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> test = rd.TorsionTest(0.5, [0.0, 0.01, 0.02], [0.0, 0.034, 0.067], reading_std=1e-3)
+        >>> [round(bound, 4) for bound in test.interval(0.95)]
+        [0.1433, 0.1557]
         """
         share = check.number(confidence, "confidence", sign="positive")
         if not share < 1:

@@ -189,6 +189,12 @@ def solid_rod_stiffness() -> float:
     """Return the bending stiffness of a solid steel rod as thick as the rope, E pi d^4/64 [N m^2].
 
     No rope of such wires is stiffer.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> round(rd.study2015.solid_rod_stiffness(), 2)
+    2.64
     """
     return STEEL * float(np.pi) * DIAMETER**4 / 64
 
