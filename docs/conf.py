@@ -41,5 +41,6 @@ html_theme = "pydata_sphinx_theme"
 html_title = "ropedyn"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_theme_options = {"secondary_sidebar_items": {"**": ["page-toc"], "gallery/*": []}}
 html_copy_source = False
 html_show_sourcelink = False
