@@ -122,18 +122,18 @@ class Curves(Answer):
                 self.curve(r, drive),
                 self.quantity,
                 self.labels[r],
-                self._noise(r),
-                known=self._is_noise_known,
+                self._noise_around(r),
+                known=self._noise(r),
             )
             for r in range(len(self.response))
         )
 
-    @property
-    def _is_noise_known(self) -> bool:
-        return False
+    def _noise_around(self, response: int) -> NDArray[np.float64] | None:
+        """Return the noise out of which peaks stand at each line, None where there is none."""
+        return None
 
     def _noise(self, response: int) -> NDArray[np.float64] | None:
-        """Return the standard deviation of real and imaginary part at each line, None for none."""
+        """Return the standard deviation of real and imaginary part, where that is known."""
         return None
 
     def write(self, path: str | os.PathLike[str], *, binary: bool = False) -> None:

@@ -207,16 +207,13 @@ class Measured(Curves):
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from error
 
-    @property
-    def _is_noise_known(self) -> bool:
-        return self.coherence is not None and self.averages is not None
+    def _noise_around(self, response: int) -> NDArray[np.float64] | None:
+        return by_differences(self.value[response])
 
     def _noise(self, response: int) -> NDArray[np.float64] | None:
-        """Return the noise of each line: by coherence and averages, or as differences show it."""
-        value = self.value[response]
         if self.coherence is None or self.averages is None:
-            return by_differences(value)
-        return by_coherence(value, self.coherence[response], self.averages)
+            return None
+        return by_coherence(self.value[response], self.coherence[response], self.averages)
 
     def _columns(self) -> dict[str, Any]:
         columns = super()._columns()

@@ -50,7 +50,8 @@ class Resonances(Answer):
     amplitude : ndarray, shape (k,)
         Largest computed or measured amplitude.
     damping_ratio : ndarray, shape (k,)
-        Of the one-mode fit.
+        Of the one-mode fit. A window over time makes measured peaks as wide as a few lines: the
+        ratio is then too large.
     std, damping_ratio_std : ndarray, shape (k,)
         Standard uncertainty of frequency [Hz] and damping ratio: standard error of the fit to the
         lines, which grows with their spacing, with the noise and with what other modes bend. Where
@@ -101,7 +102,7 @@ def resonances(
     label: str,
     noise: Real | None = None,
     *,
-    known: bool = False,
+    known: Real | None = None,
 ) -> Resonances:
     """Find local maxima of the amplitude and fit one mode to each.
 
@@ -116,9 +117,10 @@ def resonances(
     label : str
         Its name.
     noise : ndarray, shape (f,), optional
-        Standard deviation of its real and imaginary parts: what does not stand out is no peak.
-    known : bool, optional
-        Whether the noise is good for errors too, and not an estimate to tell peaks by.
+        Standard deviation of real and of imaginary part as it is around each line: what does not
+        stand out of it is no peak.
+    known : ndarray, shape (f,), optional
+        That of the lines themselves, for the uncertainty.
 
     Returns
     -------
@@ -128,18 +130,22 @@ def resonances(
 
     frequency, first = np.unique(frequency, return_index=True)
     value = value[first]
-    noise = None if noise is None else noise[first]
+    noise, known = (None if each is None else each[first] for each in (noise, known))
     omega, size = 2 * np.pi * frequency, np.abs(value)
     at, _ = find_peaks(size, prominence=None if noise is None else (STANDING * noise, None))
     found: list[tuple[int, _Peak | one_mode.OneMode]] = []
     for k, (start, stop) in zip(at.tolist(), _windows(size, at)):
         lines = slice(start, stop + 1)
-        each = None if noise is None else noise[lines]
-        mode = _fitted(omega[lines], value[lines], each if known else None)
-        if mode is None and (each is None or len(omega[lines]) < one_mode.LEAST):
+        is_enough = stop - start + 1 >= one_mode.LEAST
+        mode = None
+        if is_enough:
+            each = None if known is None else known[lines]
+            mode = one_mode.fit(omega[lines], value[lines], each)
+        if mode is not None:
+            if noise is None or _stands_out(mode, noise[k] / size[lines].max()):
+                found.append((k, mode))
+        elif noise is None or not is_enough:
             found.append((k, _by_three(omega, value, quantity, k)))
-        elif mode is not None and (each is None or _stands_out(mode, each / size[lines].max())):
-            found.append((k, mode))
     return Resonances(
         label=label,
         frequency=np.array([peak.omega for _, peak in found]) / (2 * np.pi),
@@ -165,15 +171,9 @@ def _windows(size: Real, at: NDArray[np.intp]) -> list[tuple[int, int]]:
     return windows
 
 
-def _fitted(omega: Real, value: Complex, noise: Real | None) -> one_mode.OneMode | None:
-    """Fit a mode where lines are enough."""
-    return one_mode.fit(omega, value, noise) if len(omega) >= one_mode.LEAST else None
-
-
-def _stands_out(mode: one_mode.OneMode, noise: Real) -> bool:
+def _stands_out(mode: one_mode.OneMode, noise: float) -> bool:
     """Whether a mode explains more than noise, in parts of the largest line, may be."""
-    explains = mode.gain > GAIN * float(np.mean(noise**2))
-    return explains and mode.ratio >= NEGATIVE * mode.ratio_std
+    return mode.gain > GAIN * noise**2 and mode.ratio >= NEGATIVE * mode.ratio_std
 
 
 def _by_three(omega: Real, value: Complex, quantity: str, k: int) -> _Peak:
