@@ -20,6 +20,9 @@ CLOSE = 1e-3
 ACCEPTED = 0.02
 """Share of the growth that a linear step may take off: what it leaves is its square."""
 
+OTHERS = (-0.9, 9.0)
+"""Relative changes that others are guessed to have."""
+
 
 @dataclass(frozen=True, eq=False)
 class Profile:
@@ -37,14 +40,21 @@ class Profile:
         The number.
     path : ndarray, shape (p,)
         Change of the best others, linearly, for a change of 1 of it.
+    by_factor : ndarray of bool, shape (p,)
+        Numbers whose variables are logarithms: these are followed by their relative changes, in
+        which frequencies squared are linear.
+    limit : float
+        Largest distance, of a logarithm or another variable.
     """
 
     misfit: Misfit
     minimum: Minimum
     i: int
     path: Real
+    by_factor: NDArray[np.bool_]
+    limit: float
 
-    def bound(self, side: int, root: float, step: float, limit: float) -> float:
+    def bound(self, side: int, root: float, step: float) -> float:
         """Return u_i where the root of the growth has a value.
 
         Parameters
@@ -53,9 +63,7 @@ class Profile:
         root : float
             That value > 0.
         step : float
-            Guess of the distance.
-        limit : float
-            Largest distance.
+            Guess of the distance, of a number by factor its relative change.
 
         Returns
         -------
@@ -66,8 +74,23 @@ class Profile:
         def off(distance: float) -> float:
             return self._root(side * distance, ACCEPTED * root**2)
 
-        distance = _crossing(off, root, min(step, 1.0), limit)
-        return float(self.minimum.u[self.i]) + side * distance
+        most = self.limit
+        if self.by_factor[self.i]:
+            most = 1.0 if side < 0 else float(np.expm1(self.limit))
+        distance = _crossing(off, root, min(step, 1.0), most)
+        if np.isinf(distance):
+            return side * np.inf
+        return float(self._at(side * distance)[self.i])
+
+    def _at(self, distance: float) -> Real:
+        """Return the variables at a distance, the others next to where they are best."""
+        change = np.where(self.by_factor, np.clip(distance * self.path, *OTHERS), 0.0)
+        change[self.i] = 0.0
+        moved = np.where(self.by_factor, np.log1p(change), distance * self.path)
+        if self.by_factor[self.i]:
+            least = np.expm1(-self.limit)
+            moved[self.i] = np.log1p(max(distance, least))
+        return self.minimum.u + moved
 
     def _root(self, distance: float, accepted: float) -> float:
         """Return the root of the growth at a distance, infinite where there is no scene.
@@ -76,7 +99,7 @@ class Profile:
         there is to take, to second order in that.
         """
         others = np.delete(np.eye(len(self.path)), self.i, axis=1)
-        start = self.minimum.u + distance * self.path
+        start = self._at(distance)
         try:
             residual, slope = self.misfit(start)
             free = slope @ others
@@ -92,7 +115,7 @@ class Profile:
 def _crossing(root: Callable[[float], float], target: float, step: float, limit: float) -> float:
     """Return where an increasing function that is 0 at 0 is `target`, infinite beyond a limit."""
     low, at_low, high, at_high = 0.0, 0.0, np.inf, np.inf
-    below = above = 0
+    below, above, leap = 0, 0, 3.0
     while True:
         value = root(step)
         if abs(value - target) <= CLOSE * target:
@@ -105,20 +128,14 @@ def _crossing(root: Callable[[float], float], target: float, step: float, limit:
             if high - low <= 1e-6 * high:
                 return high if np.isfinite(at_high) else np.inf
             halve = max(below, above) > 2 or not np.isfinite(at_high)
-            part = 0.5 if halve else _secant(at_low, at_high, target)
-            step = low + part * (high - low)
+            step = low + (high - low) * (0.5 if halve else _secant(at_low, at_high, target))
         elif low >= limit:
             return np.inf
         else:
             ahead = low * target / at_low if at_low > 0 else np.inf
-            step = min(max(ahead, 1.1 * low), 3 * low, limit)
+            step, leap = min(max(ahead, 1.1 * low), leap * low, limit), min(leap**2, 1e4)
 
 
 def _secant(low: float, high: float, target: float) -> float:
-    """Return the part of the way from low to high where a function crosses, a straight line.
-
-    Over a decade and more it rather grows as an exponential: what acts by its logarithm.
-    """
-    if low > 0 and high > 10 * low:
-        low, high, target = np.log(low), np.log(high), np.log(target)
+    """Return the part of the way from low to high where a straight line is `target`."""
     return min(max((target - low) / (high - low), 0.02), 0.98)

@@ -116,15 +116,14 @@ class Solution:
         side, uncertainty = self.side[i], self.uncertainty
         if side == 0 and uncertainty.blind[i]:
             return self._nothing()[i]
-        path, step = np.zeros(len(self.unknowns)), 1.0
+        path, step, limit = np.zeros(len(self.unknowns)), 1.0, 3 * FARTHEST
         path[i] = 1.0
         if side == 0:
             path = uncertainty.unit[:, i] / uncertainty.unit[i, i]
-            step = root * float(uncertainty.std[i])
-        profile = Profile(self.misfit, self.minimum, i, path)
-        limit = FARTHEST if side == 0 else 3 * FARTHEST
+            step, limit = root * float(uncertainty.std[i]), FARTHEST
+        profile = Profile(self.misfit, self.minimum, i, path, self.unknowns.by_factor, limit)
         u = [
-            way * np.inf if way == side else profile.bound(way, root * self.noise, step, limit)
+            way * np.inf if way == side else profile.bound(way, root * self.noise, step)
             for way in (-1, 1)
         ]
         return np.sort([self._number(one, i) for one in u])
