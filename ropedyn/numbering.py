@@ -149,7 +149,7 @@ def numbered(seen: Real, none: Real, missing: int, spurious: int) -> tuple[Whole
 def _traced_back(V: Real, none: Real) -> tuple[Whole, Real]:
     peaks, many = len(V) - 1, V.shape[1]
     each = np.arange(many)
-    last = V[-1].reshape(many, -1)
+    last = V[-1].reshape(many, V.shape[2] * V.shape[3])
     end = last.argmin(axis=1)
     m, s = np.unravel_index(end, V.shape[2:])
     orders = np.zeros((many, peaks), dtype=np.int64)

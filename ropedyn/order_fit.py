@@ -21,7 +21,7 @@ ROUNDS = 8
 """Calculations for one fit, at most."""
 
 HOPELESS = 50.0
-"""How much dearer than the best an assignment is whose fit is given up."""
+"""How much dearer than the second best an assignment is whose fit is given up."""
 
 STRIDE = 4.0
 """Factor that a parameter may change by at once."""
@@ -115,19 +115,20 @@ class OrderFits:
         Its error is of second order in the changes of the frequencies, taken without their signs.
         """
         likelihood, real = self.likelihood, orders > 0
-        best = min((one.cost for one in self.made.values() if one), default=np.inf)
+        second = self.ranked()[1].cost if len(self.ranked()) > 1 else np.inf
         for left in range(ROUNDS, 0, -1):
             parameters, quotients = tangent.parameters, tangent.quotients
             if len(quotients.frequency) < orders.max():
                 return None
             ratio = self._ratio(orders, tangent)
             frequency = quotients.at(ratio)
-            change = np.abs(quotients.share[orders[real] - 1] * (ratio - 1)).sum(axis=-1) / 2
+            moved = np.abs(ratio**quotients.power - 1)
+            change = (np.abs(quotients.share[orders[real] - 1]) * moved).sum(axis=-1) / 2
             error = np.zeros(len(orders))
             error[real] = change**2
             sigma = likelihood.coarser(error)
             cost = likelihood.cost(frequency, orders, sigma)
-            if cost > best + HOPELESS:
+            if cost > second + HOPELESS:
                 return None
             tight = SETTLED * likelihood.sigma
             if left == 1 or (error * likelihood.frequency <= tight).all():

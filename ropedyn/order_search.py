@@ -22,6 +22,9 @@ OVERLOOKED = 0.1
 STRAY = 0.5
 """Peaks that are no mode, on average, unless told."""
 
+FINEST = 1e-6
+"""Relative standard uncertainty that measured frequencies have at least."""
+
 CANDIDATES = 8
 """Numberings of the grid that are fitted to the calculation itself."""
 
@@ -59,7 +62,7 @@ def search(
     calculated: Calculated,
     start: Real,
     *,
-    missing: int = 2,
+    missing: int | None = None,
     spurious: int = 1,
     reach: float | Real = 30.0,
     band: tuple[float, float] | None = None,
@@ -86,7 +89,8 @@ def search(
     start : ndarray, shape (p,)
         Parameters to start from, positive.
     missing, spurious : int
-        At most so many modes below the highest one seen are missing, and peaks are no modes.
+        At most so many modes below the highest one seen are missing, as many as there are peaks
+        where left out, and at most so many peaks are no modes.
     reach : float or ndarray of shape (p,)
         How many times larger or smaller than `start` each may be; 1 where it is known.
     band : tuple of float, optional
@@ -120,12 +124,13 @@ def search(
     >>> peaks = np.array([10.01, 19.99, 40.0, 50.02])
     >>> best, *others = search(peaks, 0.002 * peaks, string, np.array([30.0]))
     >>> best.orders, best.parameters.round(1)
-    (array([1, 2, 4, 5]), array([100.1]))
+    (array([1, 2, 4, 5]), array([100.]))
     """
     order = np.argsort(measured, kind="stable")
+    missing = len(measured) if missing is None else missing
     likelihood = Likelihood(
         frequency=measured[order],
-        sigma=std[order],
+        sigma=np.maximum(std, FINEST * measured)[order],
         band=band or (0.0, float(measured.max())),
         overlooked=overlooked,
         stray=stray,
@@ -175,7 +180,7 @@ def _guesses(likelihood: Likelihood, modes: int, parameters: int) -> Whole:
     """Return orders of two peaks, or of one where there is one parameter, shape (g, k)."""
     k, missing, spurious = len(likelihood.frequency), likelihood.missing, likelihood.spurious
     guesses = []
-    for some in combinations(range(k), min(2, k, parameters)):
+    for some in _subsets(k, min(2, k, parameters), spurious):
         ranges = [range(max(1, i + 1 - spurious), min(modes, i + 1 + missing) + 1) for i in some]
         for orders in product(*ranges):
             rise = np.diff(orders)
@@ -183,7 +188,13 @@ def _guesses(likelihood: Likelihood, modes: int, parameters: int) -> Whole:
                 guess = np.zeros(k, dtype=np.int64)
                 guess[list(some)] = orders
                 guesses.append(guess)
-    return np.array(guesses)
+    return np.array(guesses, dtype=np.int64).reshape(-1, k)
+
+
+def _subsets(peaks: int, size: int, spurious: int) -> list[tuple[int, ...]]:
+    """Return sets of peaks, far apart, of which one has no spurious peak."""
+    nested = [(i, peaks - 1 - i)[:size] for i in range(peaks // 2)]
+    return nested if len(nested) > spurious else list(combinations(range(peaks), size))
 
 
 def _once_each(at: NDArray[np.intp], orders: Whole) -> tuple[NDArray[np.intp], Whole]:
@@ -200,7 +211,7 @@ def _fitted(
 ) -> Real:
     """Return parameters near points of the grid that fit peaks of these orders, shape (h, p)."""
     peaks, point = likelihood.frequency, grid.parameters[at]
-    centre = np.repeat(grid.centre(at, peaks, orders)[:, None], point.shape[1], axis=1)
+    centre = grid.centre(at, peaks, orders)
     bounds = (
         np.maximum(limits[0] / point, centre / STEP),
         np.minimum(limits[1] / point, centre * STEP),

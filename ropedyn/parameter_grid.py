@@ -31,36 +31,38 @@ MOST = 81
 """Points of the grid; more parameters have wider steps."""
 
 COMMON = 1e-6
-"""Relative difference of the sums of shares that are the same."""
+"""Of the largest share: less is none."""
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Points around a start with Rayleigh's quotients of their shapes.
 
-    Where a common factor of all parameters changes all frequencies alike (tension and all
-    stiffnesses together), one point stands for all that differ by such a factor. So it is, by
-    Euler, where the sum of a mode's shares is the same for all modes.
+    Directions in which all frequencies change by a common factor, or none does, need no points:
+    tension and all stiffnesses together, or tension and all masses. A mode's shares s tell them, by
+    Euler: steps v of the logarithms change all ln(f^2) alike where s v is the same for all modes.
 
     Attributes
     ----------
     parameters : ndarray, shape (points, p)
     quotients : Quotients
         Of each point.
-    power : float
-        Of the common factor that f^2 follows; 0 if there is none.
+    lift : ndarray, shape (p,)
+        Shortest step of the logarithms that adds 1 to all ln(f^2); 0 where there is none.
     """
 
     parameters: Real
     quotients: Quotients
-    power: float
+    lift: Real
 
     @classmethod
     def of(cls, calculated: Calculated, start: Real, reach: Real, count: int) -> Grid:
         """Calculate; points where that fails are left out."""
-        power = _common_power(quotients_at(calculated, start, count))
+        first = quotients_at(calculated, start, count)
+        common = np.zeros((0, len(start))) if first is None else _common(first.share)
+        steep = np.ones(len(start)) if first is None else first.power
         points, found = [], []
-        for factors in _factors(reach, common=power > 0):
+        for factors in _factors(reach, common, steep):
             quotients = quotients_at(calculated, start * factors, count)
             if quotients is not None:
                 points.append(start * factors)
@@ -68,20 +70,20 @@ class Grid:
         if not found:
             raise SolveError("no frequencies could be calculated at any of the parameters tried")
         fewest = min(len(one.frequency) for one in found)
-        stacked = Quotients(
-            np.stack([one.frequency[:fewest] for one in found]),
-            np.stack([one.share[:fewest] for one in found]),
-        )
-        return cls(np.stack(points), stacked, power)
+        lift = np.zeros(len(start))
+        if first is not None and len(common):
+            # the modes agree: their mean is what each does
+            rise = common @ first.share.mean(axis=0)
+            if np.abs(rise).max() > COMMON:
+                lift = common.T @ rise / (rise @ rise)
+        return cls(np.stack(points), Quotients.stack(found, fewest), lift)
 
     def centre(self, at: NDArray[np.intp], measured: Real, orders: Whole) -> Real:
-        """Return the ratio to expect at points `at`, from peaks of these orders, shape (h,)."""
-        if self.power == 0:
-            return np.ones(len(at))
+        """Return ratios to expect at points `at`, from peaks of these orders, shape (h, p)."""
         used, mode = orders > 0, np.maximum(orders - 1, 0)
         calculated = np.take_along_axis(self.quotients.frequency[at], mode, axis=-1)
-        lift = np.where(used, np.log(measured / calculated), 0.0).sum(axis=-1)
-        return np.exp(2 * lift / (self.power * np.maximum(used.sum(axis=-1), 1)))
+        rise = np.where(used, 2 * np.log(measured / calculated), 0.0).sum(axis=-1)
+        return np.exp(np.outer(rise / np.maximum(used.sum(axis=-1), 1), self.lift))
 
 
 def quotients_at(calculated: Calculated, parameters: Real, count: int) -> Quotients | None:
@@ -95,25 +97,23 @@ def quotients_at(calculated: Calculated, parameters: Real, count: int) -> Quotie
     return Quotients.of(parameters, frequency, jacobian)
 
 
-def _common_power(quotients: Quotients | None) -> float:
-    if quotients is None:
-        return 0.0
-    total = quotients.share.sum(axis=-1)
-    same = np.ptp(total) <= COMMON * np.abs(total).max()
-    return float(total[0]) if same else 0.0
+def _common(share: Real) -> Real:
+    """Return orthonormal steps that change all modes alike, shape (directions, p)."""
+    _, size, direction = np.linalg.svd(share - share.mean(axis=0))
+    rank = int((size > COMMON * np.abs(share).max()).sum())
+    return direction[rank:]
 
 
-def _factors(reach: Real, common: bool) -> Real:
+def _factors(reach: Real, common: Real, steep: Real) -> Real:
     """Return ratios of the grid's points to the start, shape (points, p), nearest first."""
-    step = np.log(STEP)
+    step = np.log(STEP) / steep
     while True:
         # half a step beyond the last point is within reach
         halves = np.ceil(np.log(reach) / step - 0.5 - 1e-9).astype(int)
-        points = np.array(list(product(*[step * np.arange(-h, h + 1) for h in halves])))
-        if common:
-            shifted = points - points.mean(axis=1, keepdims=True)
-            points = np.unique(np.round(shifted, 9), axis=0)
+        lines = [one * np.arange(-h, h + 1) for one, h in zip(step, halves)]
+        points = np.array(list(product(*lines)))
+        points = np.unique(np.round(points - points @ common.T @ common, 9), axis=0)
         if len(points) <= MOST:
             break
-        step *= 1.2
+        step = 1.2 * step
     return np.exp(points[np.argsort((points**2).sum(axis=1), kind="stable")])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,15 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
+
+STEPS = 3
+"""Of Gauss and Newton; for stiffnesses alone the first is exact."""
+
+STEEPEST = 4.0
+"""Power of a parameter that f^2 may follow: of the length of a beam."""
+
+LEAST = 0.01
+"""Of a changed side of the quotient; less is beyond what the shapes tell."""
 
 FIRM = 1e4
 """How much narrower the pull is that holds a ratio at its bound."""
@@ -23,32 +33,46 @@ class Quotients:
         f(r)^2/f(1)^2 = (1 + sum_stiff s_j (r_j - 1))/(1 + sum_inert |s_j| (r_j - 1)).
 
     First order for every parameter, and more: exact where shapes do not change, as along a common
-    factor of all stiffnesses, or for the pinned rope. For r given f it is linear.
+    factor of all stiffnesses, or for the pinned rope. For r given f it is linear. Of parameters
+    with a share beyond 1, such as a length, r is a power.
 
     Attributes
     ----------
     frequency : ndarray, shape (..., m)
         f(1) [Hz], positive.
     share : ndarray, shape (..., m, p)
+        Of the power.
+    power : ndarray, shape (..., p)
+        From 1 to 4.
     """
 
     frequency: Real
     share: Real
+    power: Real
 
     @classmethod
     def of(cls, parameters: Real, frequency: Real, jacobian: Real) -> Quotients:
         """Take the derivatives of frequencies, shape (m, p), at parameters of shape (p,)."""
-        return cls(frequency, 2 * parameters * jacobian / frequency[:, None])
+        share = 2 * parameters * jacobian / frequency[:, None]
+        power = np.clip(np.abs(share).max(axis=0), 1.0, STEEPEST)
+        return cls(frequency, share / power, power)
+
+    @classmethod
+    def stack(cls, some: Sequence[Quotients], modes: int) -> Quotients:
+        """Join those of several parameters, of the lowest modes."""
+        return cls(
+            np.stack([one.frequency[:modes] for one in some]),
+            np.stack([one.share[:modes] for one in some]),
+            np.stack([one.power for one in some]),
+        )
 
     def take(self, which: NDArray[np.intp]) -> Quotients:
         """Return those of some of the calculated parameters."""
-        return Quotients(self.frequency[which], self.share[which])
+        return Quotients(self.frequency[which], self.share[which], self.power[which])
 
     def at(self, ratio: Real) -> Real:
         """Return frequencies at ratios of shape (..., p); infinite where the quotient has none."""
-        change = ratio[..., None, :] - 1
-        stiff = 1 + (np.maximum(self.share, 0) * change).sum(axis=-1)
-        inert = 1 + (np.maximum(-self.share, 0) * change).sum(axis=-1)
+        stiff, inert = self._sides(self.share, ratio**self.power)
         fit = (stiff > 0) & (inert > 0)
         quotient = np.divide(stiff, inert, out=np.full(fit.shape, np.inf), where=fit)
         return self.frequency * np.sqrt(quotient)
@@ -63,7 +87,7 @@ class Quotients:
     ) -> Real:
         """Return ratios whose frequencies are the measured ones, by weighted least squares.
 
-        With stiff and inert as above f^2 inert(r) = f(1)^2 stiff(r) for each peak, in r linear.
+        By Gauss-Newton for f(r)^2/measured^2 - 1, which of stiffnesses alone is linear.
 
         Parameters
         ----------
@@ -81,27 +105,44 @@ class Quotients:
         mode = np.maximum(orders - 1, 0)
         calculated = np.take_along_axis(self.frequency, mode, axis=-1)
         share = np.take_along_axis(self.share, mode[..., None], axis=-2)
-        # f^2/f(1)^2, so that all is of the order of 1
-        square = ((measured / calculated) ** 2)[..., None]
-        scale = np.where(orders > 0, weight / 2, 0.0)[..., None] / square
-        rows = scale * (np.maximum(share, 0) - square * np.maximum(-share, 0))
-        right = scale[..., 0] * (square[..., 0] - 1) + rows.sum(axis=-1)
-        centre, width = pull
-        tight = 1 / (centre * width)
-        ratio = _solved(rows, right, centre, tight)
-        low, high = (np.broadcast_to(bound, ratio.shape) for bound in bounds)
-        held = np.clip(ratio, low, high)
-        if (held == ratio).all():
-            return ratio
-        # once more for the others, with those at a bound there
-        firm = np.where(held == ratio, tight, FIRM * (tight + np.abs(rows).max(axis=-2)))
-        ratio = _solved(rows, right, np.where(held == ratio, centre, held), firm)
-        return np.clip(ratio, low, high)
+        stiff, inert = np.maximum(share, 0), np.maximum(-share, 0)
+        lift = (calculated / measured) ** 2
+        scale = np.where(orders > 0, weight / 2, 0.0)
+        centre, low, high = (one**self.power for one in (pull[0], *bounds))
+        tight = 1 / (centre * pull[1])
+        ratio = np.clip(centre, low, high)
+        for _ in range(STEPS):
+            a, b = (np.maximum(side, LEAST) for side in self._sides(share, ratio))
+            square = lift * a / b
+            rows = (scale * lift / b)[..., None] * (stiff - inert * (a / b)[..., None])
+            right = scale * (1 - square) + (rows * ratio[..., None, :]).sum(axis=-1)
+            ratio = _solved(rows, right, (centre, tight), (low, high))
+        return ratio ** (1 / self.power)
+
+    @staticmethod
+    def _sides(share: Real, ratio: Real) -> tuple[Real, Real]:
+        """Return stiff(r) and inert(r)."""
+        change = ratio[..., None, :] - 1
+        stiff = 1 + (np.maximum(share, 0) * change).sum(axis=-1)
+        return stiff, 1 + (np.maximum(-share, 0) * change).sum(axis=-1)
 
 
-def _solved(rows: Real, right: Real, centre: Real, tight: Real) -> Real:
-    """Minimise |rows r - right|^2 + |tight (r - centre)|^2."""
-    normal = np.einsum("...kp,...kq->...pq", rows, rows)
-    normal += (tight**2)[..., None] * np.eye(rows.shape[-1])
-    vector = np.einsum("...kp,...k->...p", rows, right) + tight**2 * centre
-    return np.linalg.solve(normal, vector[..., None])[..., 0]
+def _solved(rows: Real, right: Real, pull: tuple[Real, Real], bounds: tuple[Real, Real]) -> Real:
+    """Minimise |rows r - right|^2 + |tight (r - centre)|^2 within bounds."""
+    (centre, tight), (low, high) = pull, bounds
+    ratio = _minimum(rows, right, centre, tight)
+    held = np.clip(ratio, low, high)
+    if (held == ratio).all():
+        return ratio
+    # once more for the others, with those at a bound there
+    firm = np.where(held == ratio, tight, FIRM * (tight + np.abs(rows).max(axis=-2)))
+    ratio = _minimum(rows, right, np.where(held == ratio, centre, held), firm)
+    return np.clip(ratio, low, high)
+
+
+def _minimum(rows: Real, right: Real, centre: Real, tight: Real) -> Real:
+    rows = rows / tight[..., None, :]
+    off = right - (rows * (tight * centre)[..., None, :]).sum(axis=-1)
+    normal = np.einsum("...kp,...kq->...pq", rows, rows) + np.eye(rows.shape[-1])
+    vector = np.einsum("...kp,...k->...p", rows, off)
+    return centre + np.linalg.solve(normal, vector[..., None])[..., 0] / tight
