@@ -38,7 +38,7 @@ def identify(
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
-    missing: int = 2,
+    missing: int | None = None,
     spurious: int = 1,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
@@ -53,7 +53,7 @@ def identify(
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
-    missing: int = 2,
+    missing: int | None = None,
     spurious: int = 1,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
@@ -67,7 +67,7 @@ def identify(
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
-    missing: int = 2,
+    missing: int | None = None,
     spurious: int = 1,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
@@ -95,8 +95,11 @@ def identify(
         where they do not the lowest modes, if these fit so well that no others can be likelier;
         else they are searched. None: they are searched in any case. A search moves all but
         positions by a factor of 30, about their guesses and about what the lowest modes tell.
-    missing, spurious : int
-        Of a search: at most so many modes are not among the peaks, so many peaks are no modes.
+    missing : int, optional
+        Of a search: at most so many modes below the highest peak are not among the peaks, as many
+        as there are peaks where left out.
+    spurious : int
+        Of a search: at most so many peaks are no modes.
     prior : Prior or mapping from str to (float, float), optional
         What is known beforehand: value and standard deviation by path. Of a `Prior` what is not
         sought does not matter.
@@ -142,7 +145,7 @@ def identify(
     how = Options(
         paths=checked.paths,
         orders=orders,
-        missing=check.count(missing, "missing", least=0, most=MOST),
+        missing=None if missing is None else check.count(missing, "missing", least=0, most=MOST),
         spurious=check.count(spurious, "spurious", least=0, most=MOST),
         prior=_prior(prior, checked.paths),
         elements=elements,
@@ -160,7 +163,7 @@ class Options(NamedTuple):
 
     paths: tuple[str, ...]
     orders: Any
-    missing: int
+    missing: int | None
     spurious: int
     prior: Mapping[str, tuple[float, float]]
     elements: int | None

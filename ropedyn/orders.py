@@ -121,7 +121,7 @@ def found_orders(
     frequency: Real,
     std: Real | None,
     *,
-    missing: int,
+    missing: int | None,
     spurious: int,
 ) -> tuple[Orders, RunnerUp | None]:
     """Search the modes of the peaks.
@@ -136,8 +136,8 @@ def found_orders(
         Of the peaks [Hz].
     std : ndarray, shape (k,), or None
         Their standard deviations [Hz].
-    missing, spurious : int
-        At most so many modes are not among the peaks, and so many peaks are none.
+    missing, spurious
+        As `order_search.search` takes them.
 
     Returns
     -------
