@@ -106,6 +106,19 @@ class Fit(Answer):
         ------
         SceneError
             If the fit was read from a file.
+
+        Examples
+        --------
+        A cord that hangs on 1.97 N:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.08, 0.0022, bending_stiffness=1e-4)
+        >>> scene = rd.Scene(rope, tension=1.0, ends=("pinned", "pinned"))
+        >>> peaks = [13.88, 27.89, 42.13, 56.85, 71.87]
+        >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+        >>> (other,) = fit.alternatives
+        >>> other.ends, other.verdict, round(other.change["tension"], 3)
+        ('clamped', 'as well', -0.069)
         """
         if self.identification is None:
             raise SceneError("a fit from a file has no scene: identify again")
@@ -157,6 +170,18 @@ class Fit(Answer):
         References
         ----------
         D. M. Bates, D. G. Watts, Nonlinear Regression Analysis (1988), section 6.1.
+
+        Examples
+        --------
+        Of a bending stiffness that six peaks hardly show the interval begins at 0:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(2.0, 0.5, bending_stiffness=1.0)
+        >>> scene = rd.Scene(rope, tension=900.0, ends=("pinned", "pinned"))
+        >>> peaks = rd.Peaks([11.19, 22.33, 33.58, 44.72, 55.94, 67.19], std=0.1)
+        >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+        >>> print(fit.interval()["bending_stiffness"].round(2))
+        [0.   0.18]
         """
         level = check.number(level, "level", sign="positive")
         if level >= 1:
@@ -191,6 +216,10 @@ class Fit(Answer):
         """Return values, peaks and all that limits what they mean, as text.
 
         Intervals are those of 95 %; a fit from a file has none, and no alternatives.
+
+        Returns
+        -------
+        str
         """
         numbers = self.table() if self.solution is None else self._with_intervals()
         lines = [str(numbers), "", str(self.peaks), ""]
