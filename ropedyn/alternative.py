@@ -9,6 +9,7 @@ import numpy as np
 
 from .errors import RopedynError
 from .scene import Scene
+from .solution import LEAST_NOISE
 
 if TYPE_CHECKING:
     from .fit import Fit
@@ -96,7 +97,7 @@ def _verdict(fit: Fit, other: Fit) -> str:
     if fit.freedom < 0.5:
         return "as well"
     most = float(fdtri(fit.freedom, fit.freedom, LEVEL))
-    return _said((other.rms / fit.rms) ** 2, 1 / most, most)
+    return _said((other.rms / max(fit.rms, LEAST_NOISE)) ** 2, 1 / most, most)
 
 
 def _said(value: float, low: float, high: float) -> str:

@@ -21,8 +21,11 @@ Real = NDArray[np.float64]
 NOMINAL = 1e-3
 """Relative noise that is thought of where nothing tells it."""
 
-LEAST_NOISE = 1e-12
+LEAST_NOISE = float(np.finfo(float).eps)
 """Of relative residuals: less is the rounding of frequencies."""
+
+ROUNDING = 1e-12
+"""Noise that frequencies themselves may have, which does not settle."""
 
 UNFELT = 100.0
 """Standard deviation of a logarithm from which on the number is gone to 0 or infinity."""
@@ -192,7 +195,8 @@ def _noise_of(minimum: Minimum, rows: int) -> tuple[float, float]:
     freedom = freedom_of(minimum, rows)
     if freedom < 0.5:
         return np.inf, 0.0
-    return float(np.linalg.norm(minimum.residual[:rows]) / np.sqrt(freedom)), freedom
+    noise = float(np.linalg.norm(minimum.residual[:rows]) / np.sqrt(freedom))
+    return max(noise, LEAST_NOISE), freedom
 
 
 def _weighed(measured: Misfit, known: Known, start: Real, rows: int) -> tuple[Together, Minimum]:
@@ -203,13 +207,13 @@ def _weighed(measured: Misfit, known: Known, start: Real, rows: int) -> tuple[To
         minimum = minimise(misfit, start)
         evaluations += minimum.evaluations
         start, before = minimum.u, noise
-        noise = max(_noise_of(minimum, rows)[0], LEAST_NOISE)
+        noise = _noise_of(minimum, rows)[0]
         if np.isinf(noise):
             raise SceneError(
                 "measured must have a std where what is known beforehand is needed to tell the "
                 f"unknown, got {rows} peaks without: nothing is left to estimate it from"
             )
-        if abs(noise / before - 1) < 1e-3 or noise == LEAST_NOISE:
+        if abs(noise / before - 1) < 1e-3 or noise < ROUNDING:
             return misfit, replace(minimum, evaluations=evaluations)
     raise SolveError(f"the noise of the peaks must settle, it was {noise:.3g} after 50 fits")
 
