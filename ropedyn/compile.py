@@ -239,7 +239,7 @@ def _chain(
     term = term[present]
     del nodes, present
     is_lumped = kind != CONTINUOUS
-    along = np.tile(_drag(scene), (len(length), 1))
+    along = np.tile(drag(scene.dampings) * dragged(scene), (len(length), 1))
     mass = _at_nodes(lumped(kind, scene.coordinates, inertia, length), which, inside)
     damping = _at_nodes(_halves(kind, along, length), which, inside)
     stiffness, held, hinge = _terms(scene, stations, mass, damping)
@@ -416,11 +416,10 @@ def has_inertia(scene: Scene) -> NDArray[np.bool_]:
     return np.array([c not in still for c in scene.coordinates])
 
 
-def _drag(scene: Scene) -> NDArray[np.float64]:
-    """Return the damping per length of each coordinate [N s/m^2]."""
-    along = drag(scene.dampings)
-    dragged = ("x", "z") if scene.gravity is None else ("z",)
-    return np.array([along if c in dragged else 0.0 for c in scene.coordinates])
+def dragged(scene: Scene) -> NDArray[np.float64]:
+    """Return 1 for each coordinate that damping along the rope acts on, else 0, shape (width,)."""
+    along = ("x", "z") if scene.gravity is None else ("z",)
+    return np.array([float(c in along) for c in scene.coordinates])
 
 
 def standing_at(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:

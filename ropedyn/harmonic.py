@@ -8,7 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +26,9 @@ from .place import observed, points
 from .port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
 from .reaction import at_start, first_left_end, tellers
 from .unit import QUANTITIES
+
+if TYPE_CHECKING:
+    from .frf_rate import FrequencyRates
 
 LANES = 16
 """Frequencies that the sweep solves side by side."""
@@ -179,7 +182,16 @@ def solve_frf(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh_source=mesh,
+        rates_source=partial(_rates, model, f, drives, responses),
     )
+
+
+def _rates(
+    model: Model, frequency: Real, drives: tuple[Point, ...], responses: tuple[Point, ...]
+) -> FrequencyRates:
+    from .frf_rate import FrequencyRates
+
+    return FrequencyRates(model, frequency, drives, responses)
 
 
 class Receptance(NamedTuple):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,8 @@ from .stretch import KINDS as STRETCHES
 from .stretch import Change, Stretch, changed_by, changes, rope_rate, ropes, stretch_rate
 
 Real = NDArray[np.float64]
+
+_Any = TypeVar("_Any")
 
 STEP = 2.0**-100
 """Of an imaginary step: its square is nothing beside 1, so that derivatives are exact."""
@@ -108,6 +111,8 @@ class Weights:
         Stiffness of hinges.
     node, mass : ndarray, shape (stretches, width, width)
         Springs and inertia.
+    dashpot : ndarray, shape (stretches, width)
+        Damping of each coordinate to the ground, which undamped modes do not feel.
     stiffer, heavier : ndarray, shape (attached,)
         Relative changes of stiffness and mass of the structures that nodes carry.
     foot : ndarray, shape (attached, 2, width)
@@ -119,6 +124,7 @@ class Weights:
     jump: Real
     node: Real
     mass: Real
+    dashpot: Real
     stiffer: Real
     heavier: Real
     foot: Real
@@ -226,7 +232,7 @@ class Rate:
     tension : ndarray, shape (spans,)
     length : ndarray, shape (spans,)
         Of each element.
-    mass, stiffness, hinge : ndarray, shape (stations, width)
+    mass, stiffness, dashpot, hinge : ndarray, shape (stations, width)
         Of what stands there on each coordinate; of the spring across a hinge.
     stiffer, heavier, foot : ndarray
         Of the structures that nodes carry, see `Weights`.
@@ -239,6 +245,7 @@ class Rate:
         self.tension, self.length = np.zeros(spans), np.zeros(spans)
         self.mass = np.zeros((spans + 1, width))
         self.stiffness, self.hinge = np.zeros_like(self.mass), np.zeros_like(self.mass)
+        self.dashpot = np.zeros_like(self.mass)
         rows = places.model.chain.attached_row
         carried = 0 if rows is None else len(rows)
         self.stiffer, self.heavier = np.zeros(carried), np.zeros(carried)
@@ -261,8 +268,9 @@ class Rate:
         mass += np.where((station < len(given))[:, None, None], given[right, 0], 0.0)
         mass += np.where((inside | (station > 0))[:, None, None], given[left, 1], 0.0)
         jump = np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]])
+        dashpot = np.where(inside[:, None], 0.0, self.dashpot[station])
         carried = (self.stiffer, self.heavier, self.foot)
-        return Weights(element[span], inertia[span], jump, node, mass, *carried)
+        return Weights(element[span], inertia[span], jump, node, mass, dashpot, *carried)
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
@@ -299,7 +307,7 @@ class Rate:
 
 
 def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
-    """Return the numbers of a scene that modes have derivatives by, with their paths.
+    """Return the numbers of a scene that answers have derivatives by, with their paths.
 
     Parameters
     ----------
@@ -333,6 +341,18 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
             for c in (c for c in values if c in model.coordinates):
                 found[f"ends[{i}].{kind}.{c}"] = partial(_of_end, places, i, kind, c)
     return found
+
+
+def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _Any]:
+    """Return what a path names, checked."""
+    if not isinstance(path, str):
+        raise TypeError(f'path must be a string such as "tension", got {path!r}')
+    if path not in rates:
+        words = ", ".join(f'"{name}"' for name in rates)
+        raise SceneError(
+            f"path must be a number that acts in this scene, one of {words}, got {path!r}"
+        )
+    return rates[path]
 
 
 def _acting(model: Model) -> set[str]:
@@ -423,11 +443,10 @@ def _of_stretch(places: Places, part: Stretch, name: str) -> Rate:
 
 
 def _of_end(places: Places, i: int, kind: str, coordinate: str) -> Rate:
-    """Return that of what stands at an end; undamped modes do not feel its dashpots."""
+    """Return that of what stands at an end."""
     rate = Rate(places)
-    into = {"spring": rate.stiffness, "mass": rate.mass}
-    if kind in into:
-        into[kind][-i, places.model.coordinates.index(coordinate)] = 1.0
+    into = {"spring": rate.stiffness, "mass": rate.mass, "dashpot": rate.dashpot}
+    into[kind][-i, places.model.coordinates.index(coordinate)] = 1.0
     return rate
 
 
@@ -439,6 +458,7 @@ def _of_part(places: Places, i: int, of: NodeRate) -> Rate:
     for c, k in ((c, k) for k, c in enumerate(places.model.coordinates)):
         rate.mass[station, k] = of.mass.get(c, 0.0)
         rate.stiffness[station, k] = of.stiffness.get(c, 0.0)
+        rate.dashpot[station, k] = of.damping.get(c, 0.0)
         if c in of.hinge:
             others = sum(t.hinge.get(c, 0.0) for s, t in terms if s == station and t is not term)
             rate.hinge[station, k] = of.hinge[c] * _share(term.hinge[c], others) ** 2

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from .chain import Chain
-from .errors import SceneError, SolveError
+from .errors import SolveError
 from .model import Model
-from .rate import Places, Rate, Weights, rates_of
+from .rate import Places, Rate, Weights, asked, rates_of
 
 Real = NDArray[np.float64]
 
@@ -212,15 +212,7 @@ class Sensitivity:
 
     def rate(self, path: str) -> Rate:
         """Return the rate of a path, checked."""
-        rates = rates_of(self.places)
-        if not isinstance(path, str):
-            raise TypeError(f'path must be a string such as "tension", got {path!r}')
-        if path not in rates:
-            words = ", ".join(f'"{name}"' for name in rates)
-            raise SceneError(
-                f"path must be a number that acts in this scene, one of {words}, got {path!r}"
-            )
-        return rates[path]()
+        return asked(rates_of(self.places), path)()
 
     def eigenvalue(self, path: str) -> Real:
         """Return dlambda/dp; increasing within a cluster.

@@ -1,0 +1,121 @@
+"""Waves of a continuous span: what its fields are made of, and integrals of their products."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .hamiltonian import generator
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LONG = 0.5
+"""Radians of every wave on a stretch, below which their sum cancels."""
+
+APART = 1e3
+"""Condition of their shapes, each coordinate in units of its own, beyond which they are one."""
+
+LEAST = 1e-12
+"""Determinant of shapes that are apart."""
+
+SMALL = 0.1
+"""Radians below which exp(s) - 1 is a series."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpanWaves:
+    """y = sum over j of shape_j amplitude_j(x), amplitude_j' = rate_j amplitude_j.
+
+    Attributes
+    ----------
+    rate : ndarray of complex, shape (f, 2 width)
+        By their real parts, increasing: the first half decays to the right.
+    shape, inverse : ndarray of complex, shape (f, 2 width, 2 width)
+        In columns, and what makes amplitudes of y.
+    condition : ndarray, shape (f,)
+        Of the shapes, each coordinate in units of its own.
+    """
+
+    rate: Complex
+    shape: Complex
+    inverse: Complex
+    condition: Real
+
+    @classmethod
+    def of(cls, form: Complex) -> SpanWaves:
+        """Take apart what a Hamiltonian, shape (f, 2 width, 2 width), says."""
+        rate, shape = np.linalg.eig(generator(form))
+        order = np.argsort(rate.real, axis=1)
+        rate = np.take_along_axis(rate, order, axis=1)
+        shape = np.take_along_axis(shape, order[:, None], axis=2)
+        unit = np.abs(shape).max(axis=2, keepdims=True)
+        plain = shape / np.where(unit > 0, unit, 1.0)
+        apart = np.abs(np.linalg.det(plain)) > LEAST
+        plain[~apart] = np.eye(plain.shape[1])
+        inverse = np.linalg.inv(plain)
+        size = np.linalg.norm(plain, axis=(1, 2)) * np.linalg.norm(inverse, axis=(1, 2))
+        inverse = inverse / np.where(unit > 0, unit, 1.0).swapaxes(1, 2)
+        return cls(rate, shape, inverse, np.where(apart, size, np.inf))
+
+    def at(self, lines: NDArray[np.intp]) -> SpanWaves:
+        """Return those of some frequencies, by their numbers."""
+        return SpanWaves(
+            self.rate[lines], self.shape[lines], self.inverse[lines], self.condition[lines]
+        )
+
+    def tell(self, reach: float) -> NDArray[np.bool_]:
+        """Whether waves can be told apart on a stretch of this length [m], shape (f,)."""
+        long = (np.abs(self.rate) * reach > LONG).all(axis=1)
+        return np.asarray(long & (self.condition < APART))
+
+    def amplitudes(self, y: Complex, near: float, reach: float) -> tuple[Complex, Complex]:
+        """Return the amplitudes at both ends of a stretch, (loads, f, 2 width) each.
+
+        Parameters
+        ----------
+        y : ndarray of complex, shape (loads, 2, 2 width, f)
+            At two places within.
+        near : float
+            How far these are from the ends [m].
+        reach : float
+            Length of the stretch [m].
+        """
+        left, right = (np.einsum("fij,ljf->lfi", self.inverse, y[:, k]) for k in (0, 1))
+        falls, grows = np.split(self.rate, 2, axis=1)
+        half = falls.shape[1]
+        # each is told where it is largest
+        left, right = left[..., :half], right[..., half:]
+        far = reach - near
+        first = [left * np.exp(-falls * near), right * np.exp(-grows * far)]
+        last = [left * np.exp(falls * far), right * np.exp(grows * near)]
+        return np.concatenate(first, axis=-1), np.concatenate(last, axis=-1)
+
+    def products(
+        self, r: tuple[Complex, Complex], d: tuple[Complex, Complex], reach: float
+    ) -> Complex:
+        """Integrate y_r y_d^T over a stretch.
+
+        Parameters
+        ----------
+        r, d : pairs of ndarray
+            Amplitudes at both ends, (responses, f, 2 width) and (drives, f, 2 width).
+        reach : float
+            Length of the stretch [m].
+
+        Returns
+        -------
+        ndarray, shape (drives, responses, f, 2 width, 2 width)
+        """
+        first, last = (np.einsum("rfi,dfj->drfij", a, b) for a, b in zip(r, d))
+        grows = self.rate[:, :, None] + self.rate[:, None, :]
+        s = grows * reach
+        small = np.abs(s) < SMALL
+        with np.errstate(divide="ignore", invalid="ignore"):
+            whole = (last - first) / grows
+        series = 1 + s / 2 * (1 + s / 3 * (1 + s / 4 * (1 + s / 5 * (1 + s / 6 * (1 + s / 7)))))
+        integral = np.where(small, first * (series * reach), whole)
+        back = np.swapaxes(self.shape, 1, 2)
+        return np.asarray(self.shape @ integral @ back)
