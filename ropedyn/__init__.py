@@ -41,6 +41,7 @@ from .planning import plan_measurement
 from .prior import Prior
 from .resonance import Resonances
 from .resonator import Resonator
+from .response_fit import ResponseFit
 from .ringdown import RingDown
 from .rope import Rope
 from .scene import Scene
@@ -95,6 +96,7 @@ __all__ = [
     "RayleighDamping",
     "Resonances",
     "Resonator",
+    "ResponseFit",
     "RingDown",
     "Rope",
     "RopedynError",

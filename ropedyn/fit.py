@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import check
-from .answer import TRANSIENT, Answer, Cost, axes
+from .answer import TRANSIENT, Cost, axes
 from .errors import SceneError
+from .identified import Identified
 from .named import Named
 from .orders import RunnerUp
-from .scene import Scene
 from .table import Table, numbers
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit(Answer):
+class Fit(Identified):
     """Numbers of a scene that make its natural frequencies those of measured peaks.
 
     Attributes
@@ -74,8 +73,6 @@ class Fit(Answer):
     identification: Identification | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     def __post_init__(self) -> None:
-        for name in ("value", "std"):
-            object.__setattr__(self, name, Named(getattr(self, name), self.unknown))
         if self.runner_up is not None:
             object.__setattr__(self, "runner_up", RunnerUp(*self.runner_up))
         super().__post_init__()
@@ -125,80 +122,6 @@ class Fit(Answer):
         from .alternative import alternatives_of
 
         return alternatives_of(self)
-
-    @property
-    def scene(self) -> Scene:
-        """The scene with the numbers that were found."""
-        return self._solution.scene
-
-    @property
-    def _solution(self) -> Solution:
-        if self.solution is None:
-            raise SceneError("a fit from a file has no scene: identify again")
-        return self.solution
-
-    def interval(self, level: float = 0.95, *, method: str = "profile") -> Named:
-        """Find confidence intervals.
-
-        Parameters
-        ----------
-        level : float
-            With which the truth is covered, between 0 and 1.
-        method : {"profile", "linear"}
-            ``"profile"``: where the sum of squares, least over the others, has grown by the square
-            of the quantile: right also where the numbers act in a curved way, such as a bending
-            stiffness that hardly shows, whose interval begins at 0. It takes some solutions for
-            each bound. ``"linear"``: the quantile times the standard deviation to either side.
-
-        Returns
-        -------
-        Named, shape (p, 2)
-            The bounds; 0 or infinite where there is none.
-
-        Raises
-        ------
-        TypeError
-            If the level is not a number.
-        SceneError
-            If an argument has no meaning, or the fit was read from a file.
-
-        Notes
-        -----
-        The quantile is the normal one where peaks were given a standard deviation, and Student's t
-        where that was estimated.
-
-        References
-        ----------
-        D. M. Bates, D. G. Watts, Nonlinear Regression Analysis (1988), section 6.1.
-
-        Examples
-        --------
-        Of a bending stiffness that six peaks hardly show the interval begins at 0:
-
-        >>> import ropedyn as rd
-        >>> rope = rd.Rope(2.0, 0.5, bending_stiffness=1.0)
-        >>> scene = rd.Scene(rope, tension=900.0, ends=("pinned", "pinned"))
-        >>> peaks = rd.Peaks([11.19, 22.33, 33.58, 44.72, 55.94, 67.19], std=0.1)
-        >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
-        >>> print(fit.interval()["bending_stiffness"].round(2))
-        [0.   0.18]
-        """
-        level = check.number(level, "level", sign="positive")
-        if level >= 1:
-            raise SceneError(f"level must be between 0 and 1, got {level!r}")
-        check.one_of(method, "method", ("profile", "linear"))
-        solution = self._solution
-        by = solution.interval if method == "profile" else solution.linear_interval
-        return Named(by(level), self.unknown)
-
-    def table(self) -> Table:
-        """Return one row for each number."""
-        columns: dict[str, Any] = {
-            "unknown": self.unknown,
-            "value": self.value,
-            "std": self.std,
-        }
-        return Table.of("identified", columns)
 
     @property
     def peaks(self) -> Table:

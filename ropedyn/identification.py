@@ -67,12 +67,7 @@ class Identification:
     @property
     def known(self) -> Known | None:
         """What is known of the unknown beforehand."""
-        paths = self.unknowns.paths
-        at = [i for i, path in enumerate(paths) if path in self.prior]
-        if not at:
-            return None
-        value, std = zip(*(self.prior[paths[i]] for i in at))
-        return Known(self.unknowns, np.array(at, dtype=np.intp), np.array(value), np.array(std))
+        return Known.of(self.unknowns, self.prior)
 
     def instead(self, scene: Scene) -> Identification:
         """Return the same questions to another scene."""

@@ -14,14 +14,18 @@ from . import check
 from .calculated import Calculated
 from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .fit import Fit
+from .fit_frf import fit_response
 from .fits import Fits
 from .identification import Identification
 from .measured import Measured
+from .misfit import Known
 from .orders import found_orders, given_orders, likelier_is_none, lowest_orders, search_std
 from .path import with_values
 from .peaks import Peaks
 from .prior import Prior
 from .resonance import Resonances
+from .response_fit import ResponseFit
+from .response_misfit import Response
 from .scene import Scene
 from .unknown import Unknowns
 
@@ -34,7 +38,20 @@ MOST = 64
 @overload
 def identify(
     scene: Scene,
-    measured: Peaks | Measured | Resonances | Sequence[Resonances] | ArrayLike,
+    measured: Measured,
+    unknown: str | Sequence[str],
+    *,
+    scale: bool = False,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> ResponseFit: ...
+
+
+@overload
+def identify(
+    scene: Scene,
+    measured: Peaks | Resonances | Sequence[Resonances] | ArrayLike,
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
@@ -69,27 +86,32 @@ def identify(
     orders: str | Sequence[int] | None = "auto",
     missing: int | None = None,
     spurious: int = 1,
+    scale: bool = False,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
     element: str | None = None,
-) -> Fit | Fits:
-    """Find the numbers of a scene that make its natural frequencies those that were measured.
+) -> Fit | Fits | ResponseFit:
+    """Find the numbers of a scene that make its answers those that were measured.
 
-    Weighted least squares with exact derivatives. Numbers keep the sign of their guess in the
-    scene; the guess may be wrong by powers of ten.
+    Weighted least squares with exact derivatives, of natural frequencies or of a whole frequency
+    response. Numbers keep the sign of their guess in the scene; the guess may be wrong by powers of
+    ten.
 
     Parameters
     ----------
     scene : Scene
-        With what is known, and guesses of what is not; a tension of 0 is no guess.
-    measured : Peaks, Measured, Resonances or array_like of shape (k,), or a list of Peaks
-        Peaks [Hz], or responses that have some, which `Peaks.of` finds. Their standard deviations
-        are weights; without any the relative noise is taken to be the same for all and estimated
-        from the residuals. A list has one for each of many ropes, which the scene describes alike.
+        With what is known, and guesses of what is not; of peaks, a tension of 0 is no guess.
+    measured : Peaks, Resonances, array_like of shape (k,), a list of Peaks, or Measured
+        Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
+        to be the same for all and estimated from the residuals. A list has one for each of many
+        ropes, which the scene describes alike; responses in it stand for their peaks. Or one
+        whole response, which tells damping too; to use its peaks alone give `Peaks.of` it. Its
+        noise is estimated from the residuals, for each point a part that is equal on all lines
+        and one in proportion to the amplitude; of measured coherence the first is what that tells.
     unknown : str or sequence of str
         Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
         ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
-        takes.
+        takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``.
     orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
         where they do not the lowest modes, if these fit so well that no others can be likelier;
@@ -100,6 +122,9 @@ def identify(
         as there are peaks where left out.
     spurious : int
         Of a search: at most so many peaks are no modes.
+    scale : bool
+        Of a whole response: whether its calibration is unknown too, one real factor on all of it,
+        of either sign.
     prior : Prior or mapping from str to (float, float), optional
         What is known beforehand: value and standard deviation by path. Of a `Prior` what is not
         sought does not matter.
@@ -108,7 +133,7 @@ def identify(
 
     Returns
     -------
-    Fit, or Fits of a list of Peaks
+    Fit, Fits of a list, or ResponseFit of a whole response
 
     Raises
     ------
@@ -123,8 +148,9 @@ def identify(
     Warns
     -----
     IdentifyWarning
-        If the peaks do not tell all numbers: tension and linear density from peaks alone, say. The
-        warning names what they do tell.
+        If what was measured does not tell all numbers: tension and linear density from peaks
+        alone, say. The warning names what is told. And if a response differs from the model by more
+        than noise.
 
     Examples
     --------
@@ -141,6 +167,7 @@ def identify(
     bending_stiffness  2.05243  0.0277407
     """
     check.instance(scene, "scene", Scene, "a Scene")
+    check.instance(scale, "scale", bool, "True or False")
     checked = Unknowns.of(_tensed(scene, 1.0), unknown)
     how = Options(
         paths=checked.paths,
@@ -151,6 +178,12 @@ def identify(
         elements=elements,
         element=element,
     )
+    if isinstance(measured, Measured):
+        whole = _response(scene, measured, how, scale=scale)
+        _warn(whole.notes)
+        return whole
+    if scale:
+        raise SceneError("scale must be False of peaks, which have no amplitude, got True")
     if _is_of_many(measured):
         return _fits(scene, measured, how)
     fit = _fit(scene, _peaks(measured, "measured"), how)
@@ -222,6 +255,20 @@ def _fits(scene: Scene, measured: Sequence[Any], how: Options) -> Fits:
             failed[i] = error
     _warn([f"rope {i}: {note}" for i, fit in enumerate(fits) if fit for note in fit.notes])
     return Fits.of(how.paths, fits, failed)
+
+
+def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
+    """Identify one rope by a whole response."""
+    if not isinstance(how.orders, str) or how.orders != "auto":
+        raise SceneError(
+            'orders must be "auto" of a whole response, got '
+            f"{check.shown(how.orders)}: give its peaks to say which modes they are"
+        )
+    unknowns = Unknowns.of(scene, how.paths)
+    if scale:
+        unknowns = unknowns.with_calibration(1.0)
+    response = Response(unknowns, measured, how.elements, how.element)
+    return fit_response(response, Known.of(unknowns, how.prior))
 
 
 def _warn(notes: Sequence[str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,6 +74,15 @@ class Known:
     at: NDArray[np.intp]
     value: Real
     std: Real
+
+    @classmethod
+    def of(cls, unknowns: Unknowns, prior: Mapping[str, tuple[float, float]]) -> Known | None:
+        """Return what is known of these unknowns, if anything is."""
+        at = [i for i, path in enumerate(unknowns.paths) if path in prior]
+        if not at:
+            return None
+        value, std = zip(*(prior[unknowns.paths[i]] for i in at))
+        return cls(unknowns, np.array(at, dtype=np.intp), np.array(value), np.array(std))
 
     def __call__(self, u: Real) -> tuple[Real, Real]:
         """Return (p - value)/std and its slopes."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from .fit import Fit
     from .fits import Fits
+    from .response_fit import ResponseFit
 
 
 def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
@@ -45,5 +46,18 @@ def plot_fits(fits: Fits, ax: Axes | None, unknown: str | None) -> Axes:
     error = np.where(np.isfinite(std), std, 0.0)
     ax.errorbar(np.arange(len(fits)), fits.value[:, at], yerr=error, fmt="o", capsize=3)
     ax.set(xlabel="rope", ylabel=path)
+    ax.grid(True, color="0.92")
+    return ax
+
+
+def plot_response_fit(fit: ResponseFit, ax: Axes | None) -> Axes:
+    """Plot measured amplitudes as dots and calculated ones as lines over frequency."""
+    ax = new_axes(ax)
+    for name, measured, calculated in zip(fit.labels, fit.measured, fit.calculated):
+        (line,) = ax.semilogy(fit.frequency, np.abs(calculated), label=name)
+        ax.semilogy(fit.frequency, np.abs(measured), ".", color=line.get_color(), markersize=3)
+    ax.set(xlabel="frequency [Hz]", ylabel=f"amplitude of the {fit.quantity}")
+    ax.set_title("identified: " + ", ".join(f"{p} {v:.5g}" for p, v in fit.value.items()))
+    ax.legend(title="line calculated, dots measured", fontsize="small")
     ax.grid(True, color="0.92")
     return ax

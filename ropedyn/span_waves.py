@@ -52,12 +52,12 @@ class SpanWaves:
         rate = np.take_along_axis(rate, order, axis=1)
         shape = np.take_along_axis(shape, order[:, None], axis=2)
         unit = np.abs(shape).max(axis=2, keepdims=True)
-        plain = shape / np.where(unit > 0, unit, 1.0)
+        plain = np.asarray(shape / np.where(unit > 0, unit, 1.0), dtype=np.complex128)
         apart = np.abs(np.linalg.det(plain)) > LEAST
         plain[~apart] = np.eye(plain.shape[1])
-        inverse = np.linalg.inv(plain)
+        inverse = np.asarray(np.linalg.inv(plain), dtype=np.complex128)
         size = np.linalg.norm(plain, axis=(1, 2)) * np.linalg.norm(inverse, axis=(1, 2))
-        inverse = inverse / np.where(unit > 0, unit, 1.0).swapaxes(1, 2)
+        inverse /= np.where(unit > 0, unit, 1.0).swapaxes(1, 2)
         return cls(rate, shape, inverse, np.where(apart, size, np.inf))
 
     def at(self, lines: NDArray[np.intp]) -> SpanWaves:

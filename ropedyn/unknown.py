@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from .path import value_at, with_values
 from .scene import Scene
 
 Real = NDArray[np.float64]
+
+CALIBRATION = "scale"
+"""Among the paths: the factor on a calculated response that makes it the one that was measured."""
 
 _PLACE = re.compile(r"parts\[\d+\]\.(x|start|stop)")
 _ANGLE = "gravity.inclination"
@@ -90,7 +93,30 @@ class Unknowns:
 
     def at(self, u: Real) -> Scene:
         """Return the scene with these numbers."""
-        return with_values(self.scene, dict(zip(self.paths, self.value(u).tolist())))
+        values = dict(zip(self.paths, self.value(u).tolist()))
+        values.pop(CALIBRATION, None)
+        return with_values(self.scene, values)
+
+    def with_calibration(self, start: float) -> Unknowns:
+        """Return the same with a start of the factor of the calibration, the last one."""
+        others = self.only(np.array([path != CALIBRATION for path in self.paths]))
+        return replace(
+            others,
+            paths=(*others.paths, CALIBRATION),
+            start=np.append(others.start, start),
+            scale=np.append(others.scale, 0.0),
+        )
+
+    def calibration(self, u: Real) -> float:
+        """Return the factor of the calibration, 1 where it is not sought."""
+        if CALIBRATION not in self.paths:
+            return 1.0
+        return float(self.value(u)[self.paths.index(CALIBRATION)])
+
+    def only(self, wanted: NDArray[np.bool_]) -> Unknowns:
+        """Return some of them, chosen by shape (p,)."""
+        paths = tuple(path for path, one in zip(self.paths, wanted) if one)
+        return replace(self, paths=paths, start=self.start[wanted], scale=self.scale[wanted])
 
 
 def _start(scene: Scene, path: str, i: int) -> float:

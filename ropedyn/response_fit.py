@@ -1,0 +1,105 @@
+"""What the fit of a whole frequency response found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .answer import TRANSIENT, Cost, axes
+from .identified import Identified
+from .named import Named
+from .port import Point
+from .table import Table
+from .unit import label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseFit(Identified):
+    """Numbers of a scene that make its frequency response the one that was measured.
+
+    Attributes
+    ----------
+    unknown : tuple of str
+        Paths of the numbers; the last is ``"scale"`` where the calibration was sought.
+    value, std : Named, shape (p,)
+        Each number, ``fit.value["tension"]``, and its standard deviation by the exact derivatives;
+        infinite where the response does not tell it.
+    correlation : ndarray, shape (p, p)
+        NaN where one of both is not told.
+    drive, response : tuple of points
+        What the force acted on and what was watched.
+    quantity : {"receptance", "mobility", "accelerance"}
+    frequency : ndarray, shape (f,)
+        [Hz].
+    measured, calculated : ndarray of complex, shape (responses, f)
+        [as `Measured.value`]; the calculated one with the scale that was found.
+    measured_std : ndarray, shape (responses, f)
+        Of real and imaginary part of each line, estimated from what is left; infinite where a line
+        was not used.
+    freedom : float
+        Degrees of freedom the noise was estimated with.
+    chi_square : float
+        Sum of the squared residuals in units of `measured_std`.
+    notes : tuple of str
+        What the response cannot tell, and where it differs from the model by more than noise.
+    cost : Cost
+    """
+
+    unknown: tuple[str, ...]
+    value: Named = field(metadata=axes("unknown"))
+    std: Named = field(metadata=axes("unknown"))
+    correlation: NDArray[np.float64] = field(metadata=axes("unknown", "other"))
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str
+    frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
+    measured: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
+    calculated: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
+    measured_std: NDArray[np.float64] = field(metadata=axes("response", "frequency"))
+    freedom: float | None
+    chi_square: float
+    notes: tuple[str, ...]
+    cost: Cost
+    solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
+
+    @property
+    def residual(self) -> NDArray[np.complex128]:
+        """Calculated less measured response, shape (responses, f)."""
+        return self.calculated - self.measured
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What each response is, with its unit."""
+        return tuple(label(r, self.drive[0], self.quantity) for r in self.response)
+
+    @property
+    def lines(self) -> Table:
+        """One row for each response: how far it is off."""
+        size, off = np.abs(self.measured), np.abs(self.residual)
+        level = 20 * np.abs(np.log10(np.abs(self.calculated) / np.where(size > 0, size, np.nan)))
+        whole = np.sqrt(np.sum(off**2, axis=1) / np.sum(size**2, axis=1))
+        columns: dict[str, Any] = {
+            "response": self.labels,
+            "off, rms over rms": tuple(whole.tolist()),
+            "median [dB]": tuple(np.nanmedian(level, axis=1).tolist()),
+        }
+        return Table.of("calculated against measured response", columns)
+
+    def report(self) -> str:
+        """Return values, how far responses are off, and notes as text."""
+        notes = [f"note: {note}" for note in self.notes]
+        return "\n".join([str(self.table()), "", str(self.lines), *notes])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the amplitudes of both, measured as dots and calculated as lines."""
+        from .plotting_fit import plot_response_fit
+
+        return plot_response_fit(self, ax)
