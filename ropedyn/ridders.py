@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-WIDEST, SHRINK, LEVELS = 0.02, 4.0, 8
-"""The first step over the size of the number, by what it shrinks, and how often."""
+WIDEST, SHRINK, LEVELS = 0.02, 4.0, 12
+"""The first step over the size of the number, by what it shrinks, and how often at most."""
+
+SETTLED = 1e-6
+"""Of the largest derivative: estimated error from which on less may be rounding."""
 
 
 def frf_difference(
@@ -32,9 +35,9 @@ def frf_difference(
 ) -> Complex:
     """Return the derivative of receptances by Ridders' method.
 
-    Central differences over ever smaller steps, extrapolated to none; of each line and level the
-    one that changed least counts. Near resonances of a damping ratio z steps below z of the number
-    are needed, which they reach down to 1e-6.
+    Central differences over ever smaller steps, extrapolated to none; of each line the one that
+    changed least counts. Near resonances of a damping ratio z steps below z of the number are
+    needed; the least is 1e-9 of it.
 
     Parameters
     ----------
@@ -54,7 +57,7 @@ def frf_difference(
     Raises
     ------
     SceneError
-        If the number is 0: there is nothing on its other side.
+        If the number is 0, or its scene is another to either side.
 
     References
     ----------
@@ -71,7 +74,12 @@ def frf_difference(
 
     def at(value: float) -> Complex:
         other = with_values(scene, {path: value})
-        there = divided(other, model.element, stations_of(other), counts)
+        stations = stations_of(other)
+        if len(stations) != len(counts) + 1:
+            raise SceneError(
+                f"{path} must be free to change to both sides for a derivative by differences"
+            )
+        there = divided(other, model.element, stations, counts)
         return there.frf(frequency, drive=list(drives), response=list(responses)).value
 
     def quotient(h: float) -> Complex:
@@ -91,7 +99,7 @@ def frf_difference(
             improved |= bool(better.any())
             best = np.where(better, row[k + 1], best)
             error = np.where(better, off, error)
-        if not improved:
+        if not improved and error.max(initial=0.0) <= SETTLED * np.abs(best).max(initial=0.0):
             break
     return best
 
