@@ -82,6 +82,16 @@ class Comparison(Answer):
         Its width [Hz].
     mac : ndarray, shape (k, m), or None
         Modal assurance criterion of each measured and each calculated shape, from 0 to 1.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile()
+    >>> found = rd.compare(model.modes(3), rd.Peaks([24.8, 75.5], std=0.1))
+    >>> found.order, found.residual.round(3), found.missed
+    (array([1, 3]), array([ 0.2, -0.5]), array([2]))
+    >>> found.score.round(1)
+    array([ 2., -5.])
     """
 
     order: NDArray[np.int64] = field(metadata=axes("peak"))

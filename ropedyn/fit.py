@@ -54,6 +54,22 @@ class Fit(Identified):
     notes : tuple of str
         What the peaks cannot tell, and what they tell instead.
     cost : Cost
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+    >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
+    >>> [round(float(one["tension"]), 1) for one in (fit.value, fit.std)], fit.orders
+    ([999.4, 2.1], array([1, 2, 3]))
+    >>> fit.interval(0.95)["tension"].round(1), fit.value_is_bound
+    (array([ 995.2, 1003.6]), False)
+    >>> fit.residual.round(3), round(fit.rms, 4)
+    (array([-0.107,  0.086, -0.021]), 0.0027)
+    >>> round(fit.scene.tension, 1), fit.alternatives
+    (999.4, ())
+    >>> print(fit.report().splitlines()[-1])
+    rms residual 0.266 %; chi-square 1.93 of 3 peaks
     """
 
     unknown: tuple[str, ...]

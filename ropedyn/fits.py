@@ -34,6 +34,15 @@ class Fits(Answer, Sequence[Fit | None]):
         Root mean square of relative residuals.
     failure : tuple of str
         Why one failed; empty of the others.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+    >>> peaks = [rd.Peaks([f, 2 * f], std=0.1) for f in (25.0, 30.0)]
+    >>> fits = rd.identify(scene, peaks, "tension")
+    >>> len(fits), fits.value.round(3).tolist()
+    (2, [[1000.0], [1440.0]])
     """
 
     unknown: tuple[str, ...]
@@ -51,7 +60,16 @@ class Fits(Answer, Sequence[Fit | None]):
         fits: Sequence[Fit | None],
         failed: Mapping[int, RopedynError],
     ) -> Fits:
-        """Gather the numbers."""
+        """Gather the numbers.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> fit = rd.identify(scene, rd.Peaks([25.0, 50.0], std=0.1), "tension")
+        >>> rd.Fits.of(("tension",), [fit, None], {1: rd.SolveError("too few modes")}).failure
+        ('', 'too few modes')
+        """
         nothing = np.full(len(unknown), np.nan)
         return cls(
             unknown=unknown,
