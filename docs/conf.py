@@ -41,6 +41,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "ropedyn"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_theme_options = {"secondary_sidebar_items": {"**": ["page-toc"], "gallery/*": []}}
+# code of notebooks needs the width
+html_theme_options = {"secondary_sidebar_items": {"gallery/*": [], "[!g]**": ["page-toc"]}}
 html_copy_source = False
 html_show_sourcelink = False

@@ -1,6 +1,7 @@
 """The notebooks as pages of the gallery, executed: by the tests where they just were, else here."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import nbformat
 from nbclient import NotebookClient
@@ -43,8 +44,10 @@ def _is_newer(executed, source, changed):
 
 def _execute(path):
     notebook = nbformat.read(path, as_version=4)
+    with TemporaryDirectory() as folder:
+        resources = {"metadata": {"path": folder}}
+        NotebookClient(notebook, timeout=600, resources=resources).execute()
     EXECUTED.mkdir(parents=True, exist_ok=True)
-    NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(EXECUTED)}}).execute()
     nbformat.write(notebook, EXECUTED / path.name)
 
 
