@@ -257,8 +257,8 @@ def _bytes(dataset: Fields) -> int:
 def _state_bytes(file: Path, sizes: Sequence[int]) -> None:
     """Correct the number of bytes that the header of each binary function says.
 
-    pyuff, up to 2.5.8, counts 8 for each value, complex or with its abscissa too; readers that go by the
-    header would stop there.
+    pyuff, up to 2.5.8, counts 8 for each value, complex or with its abscissa too; readers that go
+    by the header would stop there.
     """
     content = bytearray(file.read_bytes())
     at = 0
