@@ -169,6 +169,41 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
     return array
 
 
+def matrix(value: Any, name: str, shape: tuple[int, int], rows: str, kind: type[Any]) -> Any:
+    """Return a new matrix of finite real or complex numbers; one row may be given alone.
+
+    Parameters
+    ----------
+    value : array_like
+        What the user gave.
+    name : str
+        For the message.
+    shape : tuple of int
+        That it must have.
+    rows : str
+        What rows and columns are, for the message.
+    kind : {numpy.float64, numpy.complex128}
+        Of the numbers.
+
+    Raises
+    ------
+    TypeError
+        If these are no such numbers.
+    SceneError
+        If one is not finite or the shape is another one.
+    """
+    what = f"finite numbers of shape {shape}, as {rows}"
+    try:
+        array = np.array(value, ndmin=2)
+    except ValueError as error:
+        raise SceneError(_expected(name, what, "", value)) from error
+    if array.size and array.dtype.kind not in ("iufc" if kind is np.complex128 else "iuf"):
+        raise TypeError(_expected(name, what, "", value))
+    if array.shape != shape or not np.isfinite(array).all():
+        raise SceneError(_expected(name, what, "", value) + f" of {array.shape}")
+    return array.astype(kind)
+
+
 def frequencies(value: Any) -> NDArray[np.float64]:
     """Return frequencies [Hz] whose squares do not overflow."""
     f = numbers(value, "frequency", "Hz", sign="nonnegative")

@@ -361,7 +361,8 @@ def _mac(
         )
     if shapes is not None:
         where = found.checked(points, "points")
-        measured = _checked_shapes(shapes, (len(seen.frequency), len(where)))
+        size = (len(seen.frequency), len(where))
+        measured = check.matrix(shapes, "shapes", size, "peak and point", np.complex128)
     else:
         curves = seen.curves
         if curves is None or len(seen.frequency) == 0 or not found.has_shapes:
@@ -379,16 +380,3 @@ def _mac(
         )
     calculated = found.shapes(where, drive)
     return None if calculated is None else mac(measured, calculated)
-
-
-def _checked_shapes(shapes: ArrayLike, shape: tuple[int, int]) -> Complex:
-    what = f"finite numbers of shape {shape}, as peak and point"
-    try:
-        array = np.asarray(shapes)
-    except ValueError as error:
-        raise SceneError(f"shapes must be {what}, got {check.shown(shapes)}") from error
-    if array.size and array.dtype.kind not in "iufc":
-        raise TypeError(f"shapes must be {what}, got {check.shown(shapes)}")
-    if array.shape != shape or not np.isfinite(array).all():
-        raise SceneError(f"shapes must be {what}, got {check.shown(shapes)} of {array.shape}")
-    return array.astype(np.complex128)

@@ -8,7 +8,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import check
 from .answer import axes
@@ -17,6 +17,8 @@ from .errors import SceneError
 from .line_noise import by_coherence, by_differences
 from .port import Point
 from .unit import QUANTITIES
+
+ROWS = "response and frequency"
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +81,11 @@ class Measured(Curves):
         object.__setattr__(self, "frequency", frequency)
         object.__setattr__(self, "drive", drive)
         object.__setattr__(self, "response", response)
-        object.__setattr__(self, "value", _matrix(self.value, "value", shape, np.complex128))
+        object.__setattr__(
+            self, "value", check.matrix(self.value, "value", shape, ROWS, np.complex128)
+        )
         if self.coherence is not None:
-            coherence = _matrix(self.coherence, "coherence", shape, np.float64)
+            coherence = check.matrix(self.coherence, "coherence", shape, ROWS, np.float64)
             if (coherence < 0).any() or (coherence > 1).any():
                 raise SceneError(
                     f"coherence must lie between 0 and 1, got {check.shown(self.coherence)}"
@@ -227,17 +231,3 @@ def _points(given: Any, name: str) -> tuple[Any, ...]:
     """Return points on any rope; a point alone is a tuple of it."""
     found = check.points(given, name, forces=name == "response")
     return (found,) if isinstance(found[0], str) else found
-
-
-def _matrix(given: ArrayLike, name: str, shape: tuple[int, int], kind: Any) -> Any:
-    """Return finite numbers, a row for each response."""
-    what = f"finite numbers of shape {shape}, as response and frequency"
-    try:
-        array = np.array(given, ndmin=2)
-    except ValueError as error:
-        raise SceneError(f"{name} must be {what}, got {check.shown(given)}") from error
-    if array.size and array.dtype.kind not in ("iufc" if kind == np.complex128 else "iuf"):
-        raise TypeError(f"{name} must be {what}, got {check.shown(given)}")
-    if array.shape != shape or not np.isfinite(array).all():
-        raise SceneError(f"{name} must be {what}, got {check.shown(given)} of {array.shape}")
-    return array.astype(kind)

@@ -235,7 +235,6 @@ row(
     {"text": "ab", "words": [["a", "b"]], "bools": [[True, False]], "object": object()},
     {
         "none": None,
-        "flat": [1.0, 2.0],
         "one_point": [[1.0]],
         "two_peaks": [[1.0, 2.0]] * 2,
         "ragged": [[1.0], [1.0, 2.0]],
