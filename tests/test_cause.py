@@ -104,6 +104,34 @@ def test_a_free_chain_with_rigid_motion_has_its_hint():
     assert "tension" not in text
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"linear_density": 0.103}, ["linear_density 1.03 times", "All shifts are alike"]),
+        ({"tension": 104.0}, ["tension 1.04 times"]),
+        ({"bending_stiffness": 0.06}, ["bending_stiffness 1.2 times", "grow with the order"]),
+        ({}, []),
+        ({"tension": 104.0, "bending_stiffness": 0.04}, []),
+    ],
+    ids=["density", "tension", "bending", "none", "two"],
+)
+def test_noisy_responses_show_the_cause(change, words):
+    scene = STIFF.replace(damping=rd.RayleighDamping(1.0, 1e-6))
+    points = (("z", 0.1), ("z", 0.23), ("z", 0.37))
+    f, random = np.arange(4.0, 150.0, 0.05), np.random.default_rng(3)
+    frf = with_values(scene, change).compile().frf(f, drive=points[0], response=list(points))
+    # a thousandth of the highest peak: uncertainties of some 1e-5 of each frequency
+    noise = random.normal(size=(2, *frf.value.shape)) * np.abs(frf.value).max() * 1e-3
+    value = frf.value + noise[0] + 1j * noise[1]
+    measured = rd.Measured(f, value, drive=points[0], response=points)
+    comparison = rd.compare(scene.compile(), measured)
+    assert comparison.order.tolist() == list(range(1, len(comparison.order) + 1))
+    assert bool(comparison.hint) == bool(words)
+    for one in words:
+        assert one in comparison.hint
+    assert comparison.hint.count("times the scene's") == min(len(words), 1)
+
+
 # silence
 
 
@@ -167,8 +195,8 @@ def test_random_shifts_have_no_cause(count, spread):
 @pytest.mark.parametrize("count", [3, 5, 8])
 @pytest.mark.parametrize("spread", [1.0, 2.0, 5.0, 20.0])
 def test_many_random_shifts_have_no_cause(count, spread):
-    # 1 of 1000 expected at most: 5 of 500 have a chance of 2e-4
-    assert silent_share(count, 500, spread) >= 0.99
+    # one of 1000 expected at most: 3 of 200 have a chance of 1e-3
+    assert silent_share(count, 200, spread) >= 0.99
 
 
 def found_share(change, path, trials):
