@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from .errors import SolveError
 from .numbering import Likelihood
-from .order_fit import OrderFits
+from .order_fit import OrderFit, OrderFits
 from .parameter_grid import COARSE, STEP, Calculated, Grid
 
 Real = NDArray[np.float64]
@@ -21,6 +22,10 @@ OVERLOOKED = 0.1
 
 STRAY = 0.5
 """Peaks that are no mode, on average, unless told."""
+
+NOISES = (0.0005, 0.002, 0.008)
+"""Relative standard uncertainties that are tried where none is given: of good peaks of a rope the
+model describes, to those of one it describes by a per cent."""
 
 FINEST = 1e-6
 """Relative standard uncertainty that measured frequencies have at least."""
@@ -48,17 +53,20 @@ class Assignment:
     misfit : float
         The part that peaks alone say, sum of ((calculated - measured)/std)^2: where two
         assignments do not differ in it, only how likely modes are missed decides.
+    noise : float or None
+        Relative standard uncertainty that makes the peaks likeliest, where none was given.
     """
 
     orders: Whole
     parameters: Real
     cost: float
     misfit: float
+    noise: float | None
 
 
 def search(
     measured: Real,
-    std: Real,
+    std: Real | None,
     calculated: Calculated,
     start: Real,
     *,
@@ -81,8 +89,9 @@ def search(
     ----------
     measured : ndarray, shape (k,)
         Frequencies of the peaks in any order [Hz], positive.
-    std : ndarray, shape (k,)
-        Their standard uncertainties [Hz], positive.
+    std : ndarray, shape (k,), or None
+        Their standard uncertainties [Hz]. None: unknown, but of one relative size for all peaks,
+        for which `NOISES` are tried.
     calculated : callable
         ``calculated(parameters, count)`` returns the lowest `count` frequencies, shape (count,) or
         fewer where there are no more, positive [Hz], and their derivatives, shape (count, p).
@@ -127,31 +136,70 @@ def search(
     (array([1, 2, 4, 5]), array([100.]))
     """
     order = np.argsort(measured, kind="stable")
-    missing = len(measured) if missing is None else missing
+    frequency = measured[order]
+    known = NOISES[-1] * frequency if std is None else np.maximum(std[order], FINEST * frequency)
     likelihood = Likelihood(
-        frequency=measured[order],
-        sigma=np.maximum(std, FINEST * measured)[order],
+        frequency=frequency,
+        sigma=known,
         band=band or (0.0, float(measured.max())),
         overlooked=overlooked,
         stray=stray,
-        missing=missing,
+        missing=len(measured) if missing is None else missing,
         spurious=min(spurious, len(measured) - 1),
     )
     reach = np.broadcast_to(reach, start.shape)
     limits = start / reach, start * reach
-    grid = Grid.of(calculated, start, reach, len(measured) + missing)
-    fits = OrderFits(likelihood, calculated, limits)
-    for orders, parameters in _candidates(grid, likelihood, limits):
-        fits.settle(orders, parameters)
-    fits.look_around()
-    ranked = fits.ranked()[:keep]
-    if not ranked:
-        raise SolveError(
-            f"no orders of the {len(measured)} peaks fit with at most {missing} modes missing and "
-            f"{spurious} peaks that are none"
-        )
+    calculated = _remembered(calculated)
+    grid = Grid.of(calculated, start, reach, len(measured) + likelihood.missing)
+    candidates = _candidates(grid, likelihood, limits)
     back = np.argsort(order, kind="stable")
-    return [Assignment(one.orders[back], one.parameters, one.cost, one.misfit) for one in ranked]
+    found: dict[bytes, Assignment] = {}
+    for noise in (None,) if std is not None else NOISES:
+        fits = OrderFits(_with(likelihood, noise), calculated, limits)
+        for orders, parameters in candidates:
+            fits.settle(orders, parameters)
+        fits.look_around()
+        for one in fits.ranked():
+            _keep(found, one, back, noise)
+    if not found:
+        raise SolveError(
+            f"no orders of the {len(measured)} peaks fit with at most {likelihood.missing} modes "
+            f"missing and {spurious} peaks that are none"
+        )
+    return sorted(found.values(), key=lambda one: one.cost)[:keep]
+
+
+def _remembered(calculated: Calculated) -> Calculated:
+    """Return the same that calculates nothing twice."""
+    known: dict[tuple[bytes, int], tuple[Real, Real]] = {}
+
+    def remembered(parameters: Real, count: int) -> tuple[Real, Real]:
+        key = parameters.tobytes(), count
+        if key not in known:
+            known[key] = calculated(parameters, count)
+        return known[key]
+
+    return remembered
+
+
+def _with(likelihood: Likelihood, noise: float | None) -> Likelihood:
+    """Return the likelihood with a relative noise."""
+    if noise is None:
+        return likelihood
+    return dataclasses.replace(likelihood, sigma=noise * likelihood.frequency)
+
+
+def _keep(
+    found: dict[bytes, Assignment], fit: OrderFit, back: NDArray[np.intp], noise: float | None
+) -> None:
+    """Keep an assignment with the noise that makes it likeliest."""
+    orders, cost = fit.orders[back], fit.cost
+    if noise is not None:
+        # each peak that no parameter was fitted to has a density of 1/noise
+        cost += 2 * max(0, len(orders) - len(fit.parameters)) * float(np.log(noise))
+    key = orders.tobytes()
+    if key not in found or cost < found[key].cost:
+        found[key] = Assignment(orders, fit.parameters, cost, fit.misfit, noise)
 
 
 def _candidates(

@@ -287,6 +287,19 @@ def test_where_a_string_may_show_every_second_mode_the_runner_up_says_so():
     assert second.cost - found[0].cost == pytest.approx(-8 * math.log(0.1), rel=1e-6)
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.0005, 0.01])
+def test_orders_do_not_need_to_know_the_noise(noise):
+    """Peaks 1 % off make no peak spurious, and small noise leaves none that is not seen to be."""
+    true = np.array([1000.0, 1.0])
+    f = pinned(true, 8)[0][[0, 1, 3, 4, 5, 7]]
+    peaks = f * (1 + noise * np.array([0.9, -1.1, 0.6, 1.2, -0.7, -0.8]))
+    best = search(peaks, None, pinned, 4 * true)[0]
+    assert best.orders.tolist() == [1, 2, 4, 5, 6, 8]
+    assert best.noise == (0.008 if noise == 0.01 else 0.0005)
+    peaks = np.append(peaks, 0.52 * (f[3] + f[4]))
+    assert search(peaks, None, pinned, 4 * true)[0].orders.tolist() == [1, 2, 4, 5, 6, 8, 0]
+
+
 def test_peaks_may_come_in_any_order():
     peaks = pinned(np.array([1000.0, 1.0]), 6)[0]
     shuffled = [3, 0, 5, 1, 4]
