@@ -20,7 +20,7 @@ Real = NDArray[np.float64]
 Orders = NDArray[np.intp]
 
 NOISE = 0.005
-"""Relative standard deviation of peaks that have none, for the search alone."""
+"""Relative standard deviation of peaks that have none, to judge the lowest modes alone."""
 
 
 class RunnerUp(NamedTuple):
@@ -111,7 +111,7 @@ def likelier_is_none(misfit: float) -> bool:
 
 
 def search_std(frequency: Real, std: Real | None) -> Real:
-    """Return the standard deviations that orders are searched with [Hz]."""
+    """Return the standard deviations that the lowest modes are judged with [Hz]."""
     return NOISE * frequency if std is None else std
 
 
@@ -152,14 +152,16 @@ def found_orders(
     """
     ranked: dict[tuple[int, ...], float] = {}
     failure: SolveError | None = None
-    for centre in centres:
-        factors = Factors.of(calculated, centre, len(frequency))
-        if not len(factors.which):
+    about = [Factors.of(calculated, centre, len(frequency)) for centre in centres]
+    most = max(len(factors.which) for factors in about)
+    for factors in about:
+        # likelihoods of fewer numbers do not compare: a stiffness at 0 is none
+        if len(factors.which) < max(1, most):
             continue
         try:
             found = search(
                 frequency,
-                search_std(frequency, std),
+                std,
                 factors,
                 np.ones(len(factors.which)),
                 missing=missing,

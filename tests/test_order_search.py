@@ -339,3 +339,35 @@ def test_search_says_when_nothing_fits():
     peaks = 10.0 * np.arange(1, 7)
     with pytest.raises(rd.SolveError, match="no orders of the 6 peaks"):
         search(peaks, 0.01 * peaks, two_modes, np.array([1000.0, 1.0]))
+
+
+# a measured cord
+
+CORD = np.array([13.88, 27.89, 42.13, 56.85, 71.87])
+"""Modes 1 to 5 of a cord [Hz], 1.08 m long, 2.19691 g/m, hung with 1.9728 N: M. Ali, D. Broggi and
+G. Cantarini, Propagazione delle onde su una corda vibrante, LabI-Dynamics-Thermodynamics."""
+
+
+def cord(measured):
+    """Identify with a guess of five times the tension, and none of the noise."""
+    rope = rd.Rope(1.08, 0.00219691, bending_stiffness=1e-3)
+    scene = rd.Scene(rope, tension=10.0, ends=("pinned", "pinned"))
+    return rd.identify(scene, measured, PATHS, orders=None)
+
+
+@pytest.mark.parametrize("missing", range(1, 6))
+def test_a_measured_cord_is_identified_whatever_mode_is_missing(missing):
+    fit = cord(np.delete(CORD, missing - 1))
+    assert fit.orders.tolist() == [n for n in range(1, 6) if n != missing]
+    # half a per cent, as with all five
+    assert fit.value["tension"] == pytest.approx(1.9728, rel=0.005)
+    # calling the worst of four peaks none is next, and costs its density at least
+    assert fit.runner_up.worse > 5
+
+
+def test_three_peaks_of_a_measured_cord_hardly_tell_their_modes():
+    """Two fit exactly any two modes: the third alone speaks for 2, 4, 5."""
+    fit = cord(CORD[[1, 3, 4]])
+    assert fit.orders.tolist() == [2, 4, 5]
+    assert fit.runner_up.orders == (1, 2, 0)
+    assert fit.runner_up.worse < 5
