@@ -160,7 +160,7 @@ def plan_measurement(
         frequency=wanted.frequency,
         damping_ratio=wanted.damping_ratio,
         visibility=visibility,
-        amplitude=visibility * wanted.highest_peak,
+        amplitude=_amplitude(visibility, wanted.highest_peak),
         separation=wanted.separation,
         line_spacing=need[reason],
         reason=reason,
@@ -247,9 +247,15 @@ def _refuse_unseen(wanted: Wanted, visibility: Real) -> None:
     unseen = wanted.mode[visibility.max(axis=0) <= UNSEEN].tolist()
     if unseen:
         raise SceneError(
-            f"drive and response must be able to see mode {unseen[0]}, which has its node at every "
-            "place that is allowed or fixed"
+            f"drive and response must be able to see mode {unseen[0]}: no place that is allowed or "
+            "fixed shows it together with the other modes"
         )
+
+
+def _amplitude(visibility: Real, highest: Real) -> Real:
+    """Return peaks, 0 where a mode is not seen at all, whatever its damping."""
+    seen = visibility > 0
+    return np.multiply(visibility, highest, out=np.zeros_like(visibility), where=seen)
 
 
 def _needs(wanted: Wanted, std: float | None) -> dict[str, float]:

@@ -190,6 +190,13 @@ def test_without_damping_only_distances_tell_the_record():
     assert "Record 0.08 s" in plan.report()
 
 
+def test_what_is_not_seen_has_no_peak_without_damping_either():
+    undamped = STRING.replace(damping=None)
+    plan = rd.plan_measurement(undamped, 2, drive=("z", 0.3), response=[("z", 0.0), ("z", 0.3)])
+    assert plan.amplitude[0].tolist() == [0.0, 0.0]
+    assert np.isinf(plan.amplitude[1]).all()
+
+
 def test_modes_within_their_bandwidth_are_said():
     damped = STRING.replace(damping=rd.ModalDamping(0.3))
     report = rd.plan_measurement(damped, 3).report()
