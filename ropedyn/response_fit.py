@@ -51,6 +51,23 @@ class ResponseFit(Identified):
     notes : tuple of str
         What the response cannot tell, and where it differs from the model by more than noise.
     cost : Cost
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import ropedyn as rd
+    >>> rope, damping = rd.Rope(2.0, 0.1), rd.ViscousDamping(1.0)
+    >>> true = rd.Scene(rope, tension=1000.0, damping=damping).compile()
+    >>> lines, drive = np.arange(20.0, 60.0, 0.5), ("z", 0.7)
+    >>> noise = 3e-5 * np.random.default_rng(1).normal(size=(1, len(lines), 2)) @ [1, 1j]
+    >>> value = true.frf(lines, drive=drive).value + noise
+    >>> measured = rd.Measured(lines, value, drive=drive, response=drive, quantity="receptance")
+    >>> fit = rd.identify(rd.Scene(rope, tension=900.0, damping=damping), measured, "tension")
+    >>> low, high = fit.interval(0.95)["tension"]
+    >>> round(float(fit.value["tension"])), bool(low < 1000.0 < high)
+    (1000, True)
+    >>> print(fit.report().splitlines()[0])
+    identified
     """
 
     unknown: tuple[str, ...]
