@@ -71,7 +71,7 @@ class Animation(Frozen):
         --------
         >>> import ropedyn as rd
         >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
-        >>> modes.animate(1, frames=2).to_html().count("data:image/png;base64")
+        >>> modes.animate(0, frames=2).to_html().count("data:image/png;base64")
         2
         """
         from tempfile import TemporaryDirectory
@@ -105,7 +105,7 @@ class Animation(Frozen):
         >>> import ropedyn as rd
         >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
         >>> with TemporaryDirectory() as folder:
-        ...     modes.animate(1, frames=2).save(Path(folder, "mode.gif"))
+        ...     modes.animate(0, frames=2).save(Path(folder, "mode.gif"))
         ...     Path(folder, "mode.gif").read_bytes()[:6]
         b'GIF89a'
         """
@@ -143,24 +143,24 @@ class Animation(Frozen):
 
 def animated(
     modes: Modes | DampedModes,
-    mode: int,
+    k: int,
     *,
     path: str | os.PathLike[str] | None,
     frames: int,
     seconds: float,
 ) -> Animation:
     """Make the animation of one mode; see `FreeMotion.animate`."""
-    k = check.count(mode, "mode", most=len(modes.frequency)) - 1
+    check.count(k, "k", least=0, most=len(modes.frequency) - 1)
     count = check.count(frames, "frames", least=2, most=1000)
     duration = check.number(seconds, "seconds", "s", sign="positive")
     f = modes.frequency[k]
     if not f > 0:
-        raise SceneError(f"mode must be one that oscillates, got {mode}, whose frequency is 0")
+        raise SceneError(f"k must be that of a mode that oscillates, got {k}, whose frequency is 0")
     shown = _shown(modes, k)
     shape = modes.shape[k][:, [modes.coordinates.index(c) for c in shown]]
     turn = np.exp(2j * np.pi * np.arange(count) / count)
     animation = Animation(
-        f"mode {mode}: {f:.4g} Hz, {modes.family[k]}",
+        f"mode {k + 1}: {f:.4g} Hz, {modes.family[k]}",
         shown,
         modes.x,
         (turn[:, None, None] * shape).real,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from . import ask, study2015
+from . import ask, check, study2015
 from .accuracy import accuracy_cost
 from .cli_compare import compare_command
 from .cli_identify import identify_command
@@ -170,7 +170,9 @@ def _modes(options: argparse.Namespace) -> None:
         model.modes(options.modes, damped=True) if options.damped else model.modes(options.modes)
     )
     if options.animate is not None:
-        modes.animate(1 if options.mode is None else options.mode, path=options.animate)
+        number = 1 if options.mode is None else options.mode
+        check.count(number, "--mode", most=len(modes.frequency))
+        modes.animate(number - 1, path=options.animate)
     show(options, modes)
 
 

@@ -104,7 +104,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
 
     def animate(
         self,
-        mode: int = 1,
+        k: int = 0,
         *,
         path: str | os.PathLike[str] | None = None,
         frames: int = 30,
@@ -116,8 +116,8 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
 
         Parameters
         ----------
-        mode : int
-            Its number, from 1 as in the table.
+        k : int
+            Which mode, from 0 as in ``modes.frequency[k]``.
         path : path, optional
             Of a file to write: ``.gif``, ``.html`` or, where ffmpeg is installed, ``.mp4``.
         frames : int
@@ -143,7 +143,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         --------
         >>> import ropedyn as rd
         >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
-        >>> animation = modes.animate(2, frames=4)
+        >>> animation = modes.animate(1, frames=4)
         >>> animation
         <Animation of mode 2: 50 Hz, transverse, 4 frames>
         >>> animation.motion.shape == (4, len(modes.x), 1)
@@ -152,7 +152,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         from .animation import animated
 
         modes = cast("Modes | DampedModes", self)
-        return animated(modes, mode, path=path, frames=frames, seconds=seconds)
+        return animated(modes, k, path=path, frames=frames, seconds=seconds)
 
     @property
     def _shares(self) -> dict[str, NDArray[np.float64]]:

@@ -189,7 +189,7 @@ def test_animate_writes_a_mode_in_motion(scene_file, tmp_path, capsys, monkeypat
         (["modes", "{}", "--plot", "/nowhere/figure.png"], 2, "nowhere"),
         (["modes", "{}", "--animate", "mode.png"], 2, "path must end in .gif, .html, .mp4"),
         (["modes", "{}", "--mode", "2"], 2, "--animate must be given with --mode"),
-        (["modes", "{}", "--mode", "0", "--animate", "mode.gif"], 2, "mode must be"),
+        (["modes", "{}", "--mode", "0", "--animate", "mode.gif"], 2, "--mode must be"),
         (["modes", "{}", "--element", "rigid"], 2, "elements must be given"),
         (["accuracy", "nowhere.toml"], 2, "nowhere.toml"),
         (["accuracy", "{}", "--elements", "16,x"], 2, "--elements"),
