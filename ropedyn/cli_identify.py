@@ -1,4 +1,4 @@
-"""Command that identifies numbers of a scene from peaks."""
+"""The command that identifies numbers of a scene."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ import sys
 import warnings
 from typing import Any
 
+from .cli_measured import OF_FILES, file_options, measured_of, refuse
 from .cli_options import compile_options, numbers, output_options, show, whole_numbers
 from .errors import IdentifyWarning, SceneError
 from .fit import Fit
 from .identify import identify
+from .measured import Measured
 from .peaks import Peaks
+from .response_fit import ResponseFit
 from .scene import Scene
 
 WORDS = {"auto": "auto", "search": None}
@@ -22,12 +25,23 @@ def identify_command(commands: Any) -> None:
     """Add the command."""
     parser = commands.add_parser(
         "identify",
-        help="tension, stiffness and other numbers from measured peaks",
-        description="Tension, stiffness and other numbers of the scene from measured peaks; what "
-        "the scene says of them is a guess.",
+        help="tension, stiffness and other numbers from measured peaks or responses",
+        description="Tension, stiffness and other numbers of the scene from measured peaks, or a "
+        "measured frequency response; what the scene says of them is a guess.",
     )
     parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    parser.add_argument("--peaks", required=True, help="measured peaks, comma list [Hz]")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--peaks", help="measured peaks, comma list [Hz]")
+    what.add_argument("--measured", metavar="FILE", help="measured response, universal file or CSV")
+    parser.add_argument(
+        "--only-peaks",
+        action="store_true",
+        default=None,
+        help="of the FILE, not all of it",
+    )
+    parser.add_argument(
+        "--scale", action="store_true", default=None, help="seek the calibration of the FILE too"
+    )
     parser.add_argument(
         "--std", help="of the peaks, one number or a comma list [Hz]; estimated without it"
     )
@@ -49,35 +63,49 @@ def identify_command(commands: Any) -> None:
         help="what is known of an unknown beforehand; may be repeated",
     )
     compile_options(parser)
+    file_options(parser)
     output_options(parser)
     parser.set_defaults(run=_identify)
 
 
 def _identify(options: argparse.Namespace) -> None:
-    std = None if options.std is None else numbers(options.std, "--std")
-    peaks = Peaks(numbers(options.peaks, "--peaks"), std=std)
+    measured: Any = _peaks(options) if options.peaks is not None else _measured(options)
+    given: dict[str, Any] = {}
+    if options.scale is not None:
+        given["scale"] = True
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", IdentifyWarning)
-        fit = identify(
+        found: Fit | ResponseFit = identify(
             Scene.load(options.scene),
-            peaks,
+            measured,
             options.unknown.split(","),
             orders=_orders(options.orders),
             prior=dict(_known(text) for text in options.prior) or None,
             elements=options.elements,
             element=options.element,
+            **given,
         )
-    _tell(options, fit)
+    _tell(options, found)
 
 
-def _tell(options: argparse.Namespace, fit: Fit) -> None:
+def _peaks(options: argparse.Namespace) -> Peaks:
+    refuse(options, (*OF_FILES, "only_peaks", "scale"), "--measured")
+    std = None if options.std is None else numbers(options.std, "--std")
+    return Peaks(numbers(options.peaks, "--peaks"), std=std)
+
+
+def _measured(options: argparse.Namespace) -> Peaks | Measured:
+    refuse(options, ("std",), "--peaks")
+    measured = measured_of(options)
+    return measured if options.only_peaks is None else Peaks.of(measured)
+
+
+def _tell(options: argparse.Namespace, found: Fit | ResponseFit) -> None:
     """Print the report, or the table alone with what limits it beside it."""
     if options.json or options.csv:
-        for note in fit.notes:
+        for note in found.notes:
             print(f"ropedyn: {note}", file=sys.stderr)
-        show(options, fit)
-    else:
-        show(options, fit, text=fit.report())
+    show(options, found, found.report())
 
 
 def _orders(text: str) -> Any:

@@ -173,9 +173,32 @@ def test_command_says_what_peaks_do_not_tell_beside_its_numbers(cord_file, capsy
     assert "as many unknown as peaks" in printed.err
 
 
+def test_command_reads_a_file_as_a_whole_or_its_peaks(tmp_path, capsys):
+    damped = CORD.replace(tension=1.97, damping=rd.RayleighDamping(2.0, 0.0))
+    drive, lines = ("z", 0.3), np.arange(5.0, 80.0, 0.05)
+    frf = damped.compile().frf(lines, drive=drive)
+    measured = rd.Measured(lines, frf.value, drive=drive, response=drive)
+    measured.write(tmp_path / "run.csv")
+    damped.replace(tension=1.5).save(tmp_path / "guess.toml")
+    command = ["identify", str(tmp_path / "guess.toml"), "--measured", str(tmp_path / "run.csv")]
+    command += ["--unknown", "tension,bending_stiffness"]
+    values = []
+    for more in ([], ["--only-peaks"]):
+        assert main([*command, *more, "--json"]) == 0
+        rows = json.loads(capsys.readouterr().out)["rows"]
+        values.append([row["value"] for row in rows])
+    # exact to the digits of the file; peaks to what others add to them between the lines
+    np.testing.assert_allclose(values[0], [1.97, 1e-4], rtol=1e-6)
+    assert values[1][0] == pytest.approx(1.97, rel=1e-3)
+    assert main(command) == 0
+    assert "calculated against measured response" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (["--drive", "z@0.1"], "--measured must be given with --drive, got none"),
+        (["--only-peaks"], "--measured must be given with --only-peaks, got none"),
         (["--prior", "tension=3"], "--prior must be path=value:std"),
         (["--orders", "one"], "--orders must be a comma list of whole numbers"),
         (["--unknown", "mass"], r"unknown[0]"),
