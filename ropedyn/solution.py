@@ -185,7 +185,9 @@ def solve(
 def _back(solution: Solution) -> Real:
     """Return variables with numbers that went to 0 or infinity where a tenth hangs on each."""
     felt = np.linalg.norm(solution.minimum.slope, axis=0)
-    share = np.maximum(felt / felt.max(), np.exp(-FARTHEST))
+    # where none is felt any more, as with the lowest peak spurious and far down, all go back as far
+    largest = felt.max() or 1.0
+    share = np.maximum(felt / largest, np.exp(-FARTHEST))
     back = np.maximum(np.log(BACK / share), 0.0)
     return solution.minimum.u - solution.side * back
 

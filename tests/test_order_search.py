@@ -342,6 +342,19 @@ def test_search_says_when_nothing_fits():
         search(peaks, 0.01 * peaks, two_modes, np.array([1000.0, 1.0]))
 
 
+def test_a_spurious_peak_far_below_the_first_mode_is_none():
+    """The lowest modes do not fit at all: tension and stiffness go to 0 with them."""
+    rope = rd.Rope(LENGTH, DENSITY, bending_stiffness=0.4122)
+    f = rd.Scene(rope, tension=TENSION).compile().modes(7).frequency[[0, 1, 2, 3, 4, 6]]
+    peaks = np.append(f, 0.08396)
+    guess = rd.Rope(LENGTH, DENSITY, bending_stiffness=0.06496)
+    fit = rd.identify(
+        rd.Scene(guess, tension=5036.3), rd.Peaks(peaks, std=0.001 * peaks), PATHS, orders=None
+    )
+    assert fit.orders.tolist() == [1, 2, 3, 4, 5, 7, 0]
+    np.testing.assert_allclose(fit.value, [TENSION, 0.4122], rtol=1e-5)
+
+
 # a measured cord
 
 CORD = np.array(CORD_FREQUENCY)
