@@ -44,7 +44,7 @@ def _expected(name: str, what: str, unit: str, value: object) -> str:
 
 
 def _plain(quantity: Any, name: str, what: str, unit: str) -> Any:
-    """Return the number, or the array, of a quantity in our unit."""
+    """Return the number, or the array, of a quantity of pint in our unit."""
     try:
         return magnitude(quantity, unit)
     except ValueError as error:
@@ -169,7 +169,15 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
     return array
 
 
-def matrix(value: Any, name: str, shape: tuple[int, int], rows: str, kind: type[Any]) -> Any:
+def matrix(
+    value: Any,
+    name: str,
+    shape: tuple[int, int],
+    rows: str,
+    kind: type[Any],
+    *,
+    unit: str = "",
+) -> Any:
     """Return a new matrix of finite real or complex numbers; one row may be given alone.
 
     Parameters
@@ -184,6 +192,8 @@ def matrix(value: Any, name: str, shape: tuple[int, int], rows: str, kind: type[
         What rows and columns are, for the message.
     kind : {numpy.float64, numpy.complex128}
         Of the numbers.
+    unit : str
+        That a quantity of pint is converted to.
 
     Raises
     ------
@@ -193,6 +203,8 @@ def matrix(value: Any, name: str, shape: tuple[int, int], rows: str, kind: type[
         If one is not finite or the shape is another one.
     """
     what = f"finite numbers of shape {shape}, as {rows}"
+    if is_quantity(value):
+        value = _plain(value, name, what, unit)
     try:
         array = np.array(value, ndmin=2)
     except ValueError as error:

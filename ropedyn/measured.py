@@ -16,7 +16,8 @@ from .curves import Curves
 from .errors import SceneError
 from .line_noise import by_coherence, by_differences
 from .port import Point
-from .unit import QUANTITIES
+from .quantity import is_quantity
+from .unit import QUANTITIES, curve_unit
 
 ROWS = "response and frequency"
 
@@ -81,9 +82,7 @@ class Measured(Curves):
         object.__setattr__(self, "frequency", frequency)
         object.__setattr__(self, "drive", drive)
         object.__setattr__(self, "response", response)
-        object.__setattr__(
-            self, "value", check.matrix(self.value, "value", shape, ROWS, np.complex128)
-        )
+        object.__setattr__(self, "value", _value(self, shape))
         if self.coherence is not None:
             coherence = check.matrix(self.coherence, "coherence", shape, ROWS, np.float64)
             if (coherence < 0).any() or (coherence > 1).any():
@@ -231,3 +230,14 @@ def _points(given: Any, name: str) -> tuple[Any, ...]:
     """Return points on any rope; a point alone is a tuple of it."""
     found = check.points(given, name, forces=name == "response")
     return (found,) if isinstance(found[0], str) else found
+
+
+def _value(measured: Measured, shape: tuple[int, int]) -> NDArray[np.complex128]:
+    """Return the values; of a quantity of pint in the unit that all responses have."""
+    units = {curve_unit(r, measured.drive[0], measured.quantity) for r in measured.response}
+    if len(units) > 1 and is_quantity(measured.value):
+        raise SceneError(
+            "value must be plain numbers where responses have different units "
+            f"({', '.join(sorted(units))}), got {check.shown(measured.value)}"
+        )
+    return check.matrix(measured.value, "value", shape, ROWS, np.complex128, unit=units.pop())

@@ -45,14 +45,18 @@ def label(
     quantity: str = "receptance",
 ) -> str:
     """Say what a response is, such as ``z at 0.500 m [m/N]``; per motion of an end ``[m/m]``."""
+    return f"{place(response)} [{curve_unit(response, drive, quantity)}]"
+
+
+def curve_unit(response: tuple[str, float], drive: tuple[Any, ...] | None, quantity: str) -> str:
+    """Return the unit of a response such as ``m/N``, of motion over time where nothing drives."""
     name = response[0]
     unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT.get(name, UNIT["z"])
     unit += ("", "/s", "/s^2")[(QUANTITIES | MOTIONS)[quantity]]
     if drive is None:
-        return f"{place(response)} [{unit}]"
+        return unit
     cause = push_unit(drive)
-    per = f"{unit}/{cause}" if " " not in cause else f"{unit}/({cause})"
-    return f"{place(response)} [{per}]"
+    return f"{unit}/{cause}" if " " not in cause else f"{unit}/({cause})"
 
 
 def power(value: float) -> str:

@@ -379,6 +379,32 @@ def test_questions_take_quantities(what):
     np.testing.assert_allclose(given, plain, rtol=1e-9, atol=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("drive", "response", "quantity", "given", "plain"),
+    [
+        ("z", "z", "receptance", Q([3 + 1j, 2j], "um/N"), 1e-6),
+        ("z", "z", "mobility", Q([3 + 1j, 2j], "mm/s/N"), 1e-3),
+        ("z", "alpha", "accelerance", Q([3 + 1j, 2j], "deg/s^2/N"), math.pi / 180),
+        ("alpha", "z", "receptance", Q([3 + 1j, 2j], "1/kN"), 1e-3),
+    ],
+)
+def test_measured_responses_are_in_any_unit_of_theirs(drive, response, quantity, given, plain):
+    points = {"drive": (drive, 0.5), "response": (response, 0.5), "quantity": quantity}
+    measured = rd.Measured([1.0, 2.0], given, **points)
+    np.testing.assert_allclose(measured.value, [plain * given.magnitude], rtol=1e-14)
+    with pytest.raises(rd.SceneError, match="value must be finite numbers"):
+        rd.Measured([1.0, 2.0], Q([3.0, 2.0], "kg"), **points)
+    several = points | {"response": [("z", 0.5), ("beta", 0.5)]}
+    with pytest.raises(rd.SceneError, match="must be plain numbers where responses have"):
+        rd.Measured([1.0, 2.0], Q([[3.0, 2.0]] * 2, "um/N"), **several)
+
+
+def test_measured_frequencies_are_in_any_unit():
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=900.0)
+    fit = rd.identify(scene, Q([3000.0, 6000.0], "rpm"), ["tension"])
+    assert fit.value["tension"] == pytest.approx(1000.0, rel=1e-9)
+
+
 def test_units_of_a_drive_are_those_of_its_coordinate():
     with pytest.raises(rd.SceneError, match=r"force must be .*\[N\]"):
         CHAIN.transient(TIME, drive=("z", 0.3), force=Q(np.cos(TIME), "N m"))
