@@ -1,14 +1,17 @@
 """The directive that shows what the command line says about itself."""
 
+import contextlib
+import io
 import os
 import re
-import subprocess
-import sys
+from unittest import mock
 
 from docutils import nodes
 from docutils.parsers.rst import Directive
 
-ENVIRONMENT = {**os.environ, "COLUMNS": "88", "NO_COLOR": "1"}
+from ropedyn import cli
+
+ENVIRONMENT = {"COLUMNS": "88", "NO_COLOR": "1"}
 
 
 class CommandHelp(Directive):
@@ -24,13 +27,18 @@ class CommandHelp(Directive):
 def setup(app):
     """Offer it to the pages."""
     app.add_directive("command-help", CommandHelp)
-    return {"parallel_read_safe": True, "env_version": 1}
+    return {"parallel_read_safe": True}
 
 
 def _help(*command):
-    call = [sys.executable, "-m", "ropedyn", *command, "--help"]
-    said = subprocess.run(call, env=ENVIRONMENT, check=True, capture_output=True, text=True)
-    return said.stdout
+    said = io.StringIO()
+    with (
+        mock.patch.dict(os.environ, ENVIRONMENT),
+        contextlib.redirect_stdout(said),
+        contextlib.suppress(SystemExit),
+    ):
+        cli.main([*command, "--help"])
+    return said.getvalue()
 
 
 def _block(text):
