@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .answer import Cost
 from .errors import SceneError
+from .minimum import minimise
 from .misfit import Known
 from .notes import notes_of
 from .residual_noise import line_std
@@ -21,8 +22,14 @@ from .unknown import Unknowns
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+ROUGH = {"ftol": 1e-4, "xtol": 1e-6, "gtol": 1e-8}
+"""Tolerances of what only leads on."""
+
 ROUNDS = 4
 """Of noise and fit, in turn."""
+
+SETTLED = 0.1
+"""Standard deviations that another round need not move by."""
 
 EXACT = 1e-8
 """Of the root mean square: differences that no measurement shows."""
@@ -51,24 +58,22 @@ def fit_response(response: Response, known: Known | None) -> ResponseFit:
     response, u = start_of_response(response)
     unknowns, logarithm = response.unknowns, LogMisfit(response)
     _refuse_unseen(logarithm, u, known)
-    solution = solve(unknowns, logarithm, u, rows=3 * lines, known=known, noise=None)
-    evaluations = solution.minimum.evaluations
+    near = minimise(logarithm, u, digits=ROUGH)
+    u, evaluations = near.u, near.evaluations
     for _ in range(ROUNDS):
-        value, _ = response(solution.minimum.u)
+        value, _ = response(u)
         std = line_std(measured, value - measured.value)
-        rows = 2 * measured.value.size
-        before = solution
         solution = solve(
             unknowns,
             LineMisfit(response, std),
-            before.minimum.u,
-            rows=rows,
+            u,
+            rows=2 * measured.value.size,
             known=known,
             noise=None,
         )
         evaluations += solution.minimum.evaluations
-        moved = np.abs(solution.minimum.u - before.minimum.u)
-        if (moved <= 0.01 * solution.uncertainty.std).all():
+        u, before = solution.minimum.u, u
+        if (np.abs(u - before) <= SETTLED * solution.uncertainty.std).all():
             break
     return _answer(response, solution, std, evaluations, time.perf_counter() - started)
 

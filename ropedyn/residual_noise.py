@@ -13,8 +13,11 @@ Complex = NDArray[np.complex128]
 LEAST = 1e-12
 """Of a line: less is rounding."""
 
-TURNS = 100
-"""Most of the iterations."""
+LIKELIER = 2.0
+"""Logarithm by which two kinds of noise must be likelier than one (Akaike: 1)."""
+
+FAINT = 1e-12
+"""Part of a kind that is none."""
 
 
 def line_std(measured: Measured, off: Complex) -> Real:
@@ -57,33 +60,50 @@ def line_std(measured: Measured, off: Complex) -> Real:
 def _most_likely(kinds: Real, square: Real) -> Real:
     """Return the sizes of kinds of variance, (2,), that make squares of differences most likely.
 
-    Expectation and maximisation: each square is shared out as its variances are. The squares are
-    means of two, those of the real and of the imaginary part.
+    One kind alone if both are not much likelier: a second one that is not there would be found
+    where few high lines happen to be off by more, and take their weight away.
 
     Parameters
     ----------
     kinds : ndarray, shape (2, m)
     square : ndarray, shape (m,)
+        Means of the squares of real and imaginary part.
     """
-    present = kinds.max(axis=1, initial=0.0) > 0
-    size = np.where(present, 1.0, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = np.where(kinds > 0, 1 / kinds, 0.0)
-    size *= np.array([np.median(square * one) for one in inverse]) if square.size else 0.0
-    least = LEAST**2
-    size = np.where(present, np.maximum(size, least), 0.0)
-    for _ in range(TURNS):
-        parts = size[:, None] * kinds
-        total = parts.sum(axis=0)
-        share = parts / total
-        # of each kind: what of the square is its own, and what its own variance leaves open
-        own = share**2 * square + share * (total - parts)
-        counted = kinds > 0
-        with np.errstate(divide="ignore", invalid="ignore"):
-            each = np.where(counted, own / kinds, 0.0)
-        after = each.sum(axis=1) / np.maximum(counted.sum(axis=1), 1)
-        after = np.where(present, np.maximum(after, least), 0.0)
-        if np.allclose(after, size, rtol=1e-3):
-            break
-        size = after
-    return size
+    each = np.array([_alone(kind, square) for kind in kinds])
+    alone = [np.array([each[0], 0.0]), np.array([0.0, each[1]])]
+    likeliest = min(alone, key=lambda size: _unlikely(size, kinds, square)[0])
+    both = _together(kinds, square, each)
+    gain = _unlikely(likeliest, kinds, square)[0] - _unlikely(both, kinds, square)[0]
+    return both if gain > LIKELIER else likeliest
+
+
+def _alone(kind: Real, square: Real) -> float:
+    """Return the likeliest size of one kind."""
+    there = kind > 0
+    return max(float(np.mean(square[there] / kind[there])), LEAST**2) if there.any() else 0.0
+
+
+def _together(kinds: Real, square: Real, start: Real) -> Real:
+    """Return the likeliest sizes of both, sought by their logarithms from less than either."""
+    from scipy.optimize import minimize
+
+    if not start.all():
+        return start
+
+    def of(u: Real) -> tuple[float, Real]:
+        size = start * np.exp(u)
+        value, slope = _unlikely(size, kinds, square)
+        return value, slope * size
+
+    bounds = [(np.log(FAINT), 0.0)] * 2
+    found = minimize(of, np.full(2, -1.0), jac=True, method="L-BFGS-B", bounds=bounds)
+    return np.asarray(start * np.exp(found.x))
+
+
+def _unlikely(size: Real, kinds: Real, square: Real) -> tuple[float, Real]:
+    """Return -ln of the likelihood, sum of ln v + square/v, and its slopes by the sizes."""
+    variance = size @ kinds
+    if not (variance > 0).all():
+        return np.inf, np.zeros(2)
+    slope = kinds @ (1 / variance - square / variance**2)
+    return float(np.sum(np.log(variance) + square / variance)), slope

@@ -105,6 +105,9 @@ def _starts(response: Response) -> tuple[list[Start], SceneError | SolveError | 
                 found.append(Start(float(off @ off), one, start))
             except (SceneError, SolveError) as error:
                 failure = failure or error
+            else:
+                if found[-1].cost <= CLOSE**2 * len(off):
+                    return found, failure
     return found, failure
 
 

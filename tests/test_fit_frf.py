@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import slow
 
 import ropedyn as rd
 from ropedyn.residual_noise import line_std
@@ -23,6 +24,8 @@ def rope(tension, bending, gamma, **more):
 
 TRUTH = rope(1000.0, 5.0, 3e-4)
 GUESS = rope(300.0, 20.0, 3e-5)
+NEAR = rope(980.0, 5.5, 2e-4)
+"""Where what is tested is not how the way is found."""
 
 
 def measured(scene, *, lines=LINES, response=POINTS, quantity="accelerance", noise=None, factor=1):
@@ -49,7 +52,7 @@ def off(fit, scene, paths=UNKNOWN):
     reference="what it was computed with",
     accepted=1e-8,
 )
-@pytest.mark.parametrize("quantity", ["receptance", "mobility", "accelerance"])
+@pytest.mark.parametrize("quantity", ["receptance", *slow("mobility", "accelerance")])
 def test_numbers_are_found_from_an_exact_response(quantity, claim):
     fit = rd.identify(GUESS, measured(TRUTH, quantity=quantity), UNKNOWN)
     claim(off(fit, TRUTH))
@@ -76,7 +79,7 @@ def test_modes_with_a_node_where_it_is_watched_do_not_mislead():
     assert off(rd.identify(GUESS, data, UNKNOWN), TRUTH) < 1e-8
 
 
-@pytest.mark.parametrize("factor", [2.5e-4, -30.0])
+@pytest.mark.parametrize("factor", [-30.0, *slow(2.5e-4)])
 def test_calibration_may_be_unknown(factor):
     fit = rd.identify(GUESS, measured(TRUTH, factor=factor), UNKNOWN, scale=True)
     assert off(fit, TRUTH) < 1e-8
@@ -112,12 +115,14 @@ def both(rng):
     return lambda value: equal(rng)(value) + proportional(rng)(value)
 
 
-@pytest.mark.parametrize("noise", [equal, proportional, both])
-@pytest.mark.parametrize("trials", [pytest.param(4), pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("noise", "trials"),
+    [(both, 4), *(pytest.param(one, 60, marks=pytest.mark.slow) for one in (equal, proportional))],
+)
 def test_standard_deviations_are_those_of_many_trials(noise, trials):
     """Of the errors of n trials and 2 numbers over their std the rms is 1 +- 1/sqrt(4 n)."""
     truth = rd.Scene(rd.Rope(2.0, 0.3), tension=1e3, damping=rd.ViscousDamping(2.0))
-    guess = truth.replace(tension=900.0, damping=rd.ViscousDamping(3.0))
+    guess = truth.replace(tension=990.0, damping=rd.ViscousDamping(3.0))
     lines, paths = np.linspace(5.0, 120.0, 80), ["tension", "damping.coefficient"]
     z = []
     for seed in range(trials):
@@ -165,7 +170,7 @@ def test_coherence_tells_which_lines_are_noisy():
         )
         for told in (None, coherence)
     )
-    fits = [rd.identify(GUESS, data, UNKNOWN) for data in (plain, weighted)]
+    fits = [rd.identify(NEAR, data, UNKNOWN) for data in (plain, weighted)]
     assert np.isinf(fits[1].measured_std[0, 40])
     assert fits[1].std["tension"] < fits[0].std["tension"] / 3
     z = (np.asarray(fits[1].value) - [1000.0, 5.0, 3e-4]) / np.asarray(fits[1].std)
@@ -176,7 +181,7 @@ def test_what_is_no_noise_is_noted():
     """A mass that the model knows nothing of."""
     truth = rope(1000.0, 5.0, 3e-4, parts=[rd.PointMass(0.7, 0.05)])
     with pytest.warns(rd.IdentifyWarning, match="response 1 differs from the model by more than"):
-        fit = rd.identify(GUESS, measured(truth), UNKNOWN)
+        fit = rd.identify(NEAR, measured(truth), UNKNOWN)
     assert fit.notes
 
 
@@ -186,7 +191,7 @@ def test_what_is_known_beforehand_counts():
     data = measured(TRUTH, noise=equal(rng), factor=2.0)
     paths = [*UNKNOWN, "linear_density"]
     prior = {"linear_density": (0.3, 1e-4)}
-    fit = rd.identify(GUESS, data, paths, scale=True, prior=prior)
+    fit = rd.identify(NEAR, data, paths, scale=True, prior=prior)
     assert abs(fit.value["linear_density"] - 0.3) < 1e-6
     assert fit.std["linear_density"] == pytest.approx(1e-4, rel=1e-2)
     assert abs(fit.value["scale"] / 2 - 1) < 4 * fit.std["scale"] / 2
@@ -198,7 +203,7 @@ def test_what_is_known_beforehand_counts():
 @pytest.fixture(scope="module")
 def noisy():
     """A fit of a response with noise."""
-    return rd.identify(GUESS, measured(TRUTH, noise=equal(np.random.default_rng(4))), UNKNOWN)
+    return rd.identify(NEAR, measured(TRUTH, noise=equal(np.random.default_rng(4))), UNKNOWN)
 
 
 def test_intervals_are_symmetric_where_numbers_are_well_told(noisy):
