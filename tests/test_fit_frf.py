@@ -97,6 +97,17 @@ def test_numbers_of_ends_and_parts_are_found():
     assert off(rd.identify(guess, measured(truth), paths), truth, paths) < 1e-8
 
 
+def test_chain_is_fitted_as_it_is():
+    """By differences, which chains have in place of exact derivatives."""
+    truth = rd.Scene(rd.Rope(2.0, 0.3), tension=1e3, damping=rd.ViscousDamping(1.0))
+    lines = np.linspace(5.0, 60.0, 40)
+    value = truth.compile(elements=12).frf(lines, drive=POINTS[0]).value
+    data = rd.Measured(lines, value, drive=POINTS[0], response=POINTS[0])
+    guess = truth.replace(tension=900.0, damping=rd.ViscousDamping(3.0))
+    paths = ["tension", "damping.coefficient"]
+    assert off(rd.identify(guess, data, paths, elements=12), truth, paths) < 1e-8
+
+
 # --- noise ------------------------------------------------------------------------------------
 
 
