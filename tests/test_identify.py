@@ -226,9 +226,9 @@ def covered(count, *, known, seed, level=0.95, bending=2.0):
     for _ in range(count):
         f = exact * (1 + 2e-3 * random.normal(size=6))
         peaks = rd.Peaks(f, std=2e-3 * exact if known else None)
-        fit = rd.identify(scene(TENSION, 2.0), peaks, BOTH, orders=[1, 2, 3, 4, 5, 6])
-        bounds = fit.interval(level)
-        inside += (bounds[:, 0] <= [TENSION, 2.0]) & (bounds[:, 1] >= [TENSION, 2.0])
+        fit = rd.identify(scene(TENSION, bending), peaks, BOTH, orders=[1, 2, 3, 4, 5, 6])
+        low, high = fit.interval(level).T
+        inside += (low <= [TENSION, bending]) & (high >= [TENSION, bending])
     return inside / count
 
 
@@ -255,12 +255,13 @@ def test_intervals_cover_the_truth_as_often_as_they_say(known, claim):
 @pytest.mark.filterwarnings("ignore::ropedyn.IdentifyWarning")
 @pytest.mark.parametrize("known", [True, False])
 def test_intervals_of_a_stiffness_that_hardly_shows_cover_it_at_least_as_often(known):
-    """B is 1.1 standard deviations from 0, where profiles have one bound: 500 samples, to 3.5 %.
+    """B is 1.1 standard deviations from 0, where profiles have one bound: 300 samples, to 4 %.
 
     Of a number at its bound the statistic is less than chi-square, so that more is covered.
     """
-    share = covered(500, known=known, seed=7, bending=0.06)
-    assert (share >= 0.95 - 0.035).all()
+    share = covered(300, known=known, seed=7, bending=0.06)
+    # three standard deviations of a share of 95 %
+    assert (share >= 0.95 - 0.04).all()
 
 
 # --- what peaks do not tell -------------------------------------------------------------------
