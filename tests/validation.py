@@ -29,6 +29,8 @@ SLOW = """
 Run by `python tests/validation.py --slow`; kept from the last such run otherwise.
 
 """
+MARKS = {False: "claim and not slow", True: "claim"}
+"""What is run, without and with the large samples."""
 COLUMNS = ["claim", "reference", "measured", "accepted", "test"]
 ROW = re.compile(r"^\| .*\| (?P<measured>\S+) \| (?P<accepted>\S+) \| `(?P<test>\S+)`.*\|$", re.M)
 
@@ -148,6 +150,7 @@ def differences(recorder, page):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--slow", action="store_true", help="run the large samples too")
+    parser.add_argument("--only", default="", help="those of such names, as pytest's -k has them")
     parser.add_argument("--check", action="store_true", help="compare the page with the claims")
     given = parser.parse_args()
     old = PAGE.read_text(encoding="utf-8") if PAGE.exists() else ""
@@ -155,7 +158,7 @@ def main():
         # -m "" : the slow ones too
         found = list(differences(collected("--collect-only", "-qq", "-m", ""), old))
         sys.exit("\n".join(["VALIDATION.md is out of date:", *found]) if found else 0)
-    recorder = collected("-m", "claim" if given.slow else "claim and not slow")
+    recorder = collected("-m", MARKS[given.slow], "-k", given.only)
     PAGE.write_text(written(recorder, old), encoding="utf-8")
 
 
