@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from .cli_measured import OF_FILES, file_options, measured_of, refuse
-from .cli_options import compile_options, compiled, numbers, output_options, show, whole_numbers
+from .cli_measured import OF_FILES, file_options, measured_of, measured_options, refuse
+from .cli_options import compiled, numbers, scene_command, show, whole_numbers
 from .compare import compare
 from .measured import Measured
 from .peaks import Peaks
@@ -17,18 +17,20 @@ OF_PEAKS = ("std", "order")
 
 def compare_command(commands: Any) -> None:
     """Add the command."""
-    parser = commands.add_parser(
+    scene_command(
+        commands,
         "compare",
-        help="calculated against measured peaks or responses",
+        _compare,
+        _options,
+        text="calculated against measured peaks or responses",
         description="Calculated against measured peaks, or a measured frequency response: pairs of "
         "peaks, likeness of responses (FRAC), and what their differences prove of their cause.",
     )
-    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    compile_options(parser)
+
+
+def _options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--modes", type=int, help="compare with so many (as many as are needed)")
-    what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--peaks", help="measured peaks, comma list [Hz]")
-    what.add_argument("--measured", metavar="FILE", help="measured response, universal file or CSV")
+    measured_options(parser)
     parser.add_argument("--std", help="of the peaks, one number or a comma list [Hz]")
     parser.add_argument("--order", help="which mode each peak is, comma list of whole numbers")
     parser.add_argument(
@@ -36,8 +38,6 @@ def compare_command(commands: Any) -> None:
     )
     group = file_options(parser)
     group.add_argument("--band", type=float, help="that FRAC is taken over at each line [Hz]")
-    output_options(parser)
-    parser.set_defaults(run=_compare)
 
 
 def _compare(options: argparse.Namespace) -> None:

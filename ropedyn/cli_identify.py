@@ -7,8 +7,8 @@ import sys
 import warnings
 from typing import Any
 
-from .cli_measured import OF_FILES, file_options, measured_of, refuse
-from .cli_options import compile_options, numbers, output_options, show, whole_numbers
+from .cli_measured import OF_FILES, file_options, measured_of, measured_options, refuse
+from .cli_options import numbers, scene_command, show, whole_numbers
 from .errors import IdentifyWarning, SceneError
 from .fit import Fit
 from .identify import identify
@@ -23,16 +23,19 @@ WORDS = {"auto": "auto", "search": None}
 
 def identify_command(commands: Any) -> None:
     """Add the command."""
-    parser = commands.add_parser(
+    scene_command(
+        commands,
         "identify",
-        help="tension, stiffness and other numbers from measured peaks or responses",
+        _identify,
+        _options,
+        text="tension, stiffness and other numbers from measured peaks or responses",
         description="Tension, stiffness and other numbers of the scene from measured peaks, or a "
         "measured frequency response; what the scene says of them is a guess.",
     )
-    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--peaks", help="measured peaks, comma list [Hz]")
-    what.add_argument("--measured", metavar="FILE", help="measured response, universal file or CSV")
+
+
+def _options(parser: argparse.ArgumentParser) -> None:
+    measured_options(parser)
     parser.add_argument(
         "--only-peaks",
         action="store_true",
@@ -62,10 +65,7 @@ def identify_command(commands: Any) -> None:
         metavar="PATH=VALUE:STD",
         help="what is known of an unknown beforehand; may be repeated",
     )
-    compile_options(parser)
     file_options(parser)
-    output_options(parser)
-    parser.set_defaults(run=_identify)
 
 
 def _identify(options: argparse.Namespace) -> None:

@@ -25,7 +25,14 @@ OF_FILES = (
 """Options that only files take."""
 
 
-def file_options(parser: Any) -> Any:
+def measured_options(parser: argparse.ArgumentParser) -> None:
+    """Add what was measured: peaks, or a file."""
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--peaks", help="measured peaks, comma list [Hz]")
+    what.add_argument("--measured", metavar="FILE", help="measured response, universal file or CSV")
+
+
+def file_options(parser: argparse.ArgumentParser) -> Any:
     """Add what a file may not say itself, and return the group of it."""
     group = parser.add_argument_group("of a FILE, where it does not say so itself")
     group.add_argument("--drive", help="coordinate@position [m], such as z@0.5, or end:0:z")

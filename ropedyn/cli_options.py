@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,42 @@ def output_options(parser: argparse.ArgumentParser) -> None:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print the table as JSON")
     form.add_argument("--csv", action="store_true", help="print the table as CSV")
+
+
+def scene_command(
+    commands: Any,
+    name: str,
+    run: Callable[[argparse.Namespace], None],
+    options: Callable[[argparse.ArgumentParser], object],
+    *,
+    text: str,
+    description: str | None = None,
+    elements: Callable[[argparse.ArgumentParser], object] = compile_options,
+) -> None:
+    """Add a command about a scene: beside its own options elements and the form of its answer.
+
+    The description is the text as a sentence where left out, the elements are those of a model.
+    """
+    if description is None:
+        description = f"{text[0].upper()}{text[1:]}."
+    parser = commands.add_parser(name, help=text, description=description)
+    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
+    elements(parser)
+    options(parser)
+    output_options(parser)
+    parser.set_defaults(run=run)
+
+
+def modes_option(parser: argparse.ArgumentParser) -> None:
+    """Add how many modes carry the motion."""
+    parser.add_argument(
+        "--modes", type=int, default=4, help="with transverse motion, the lowest (%(default)s)"
+    )
+
+
+def progress_option(parser: argparse.ArgumentParser) -> None:
+    """Add the wish to see progress."""
+    parser.add_argument("--progress", action="store_true", help="say on stderr how far it is")
 
 
 def compiled(options: argparse.Namespace) -> Model:

@@ -1,4 +1,4 @@
-"""Commands about motion over time and its stability."""
+"""The command that finds motion over time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .check import shown
-from .cli_options import compile_options, compiled, drive, output_options, point, show, spaced
+from .cli_options import compiled, drive, point, progress_option, scene_command, show, spaced
 from .errors import SceneError
 from .force import Chirp, Impulse, Sine, Step
 from .transient import METHODS
@@ -37,21 +37,19 @@ FORCE_HELP = (
 )
 
 
-def time_commands(commands: Any) -> None:
-    """Add the commands."""
-    _transient_command(commands)
-    _floquet_command(commands)
-    _stability_command(commands)
-
-
-def _transient_command(commands: Any) -> None:
-    parser = commands.add_parser(
+def transient_command(commands: Any) -> None:
+    """Add the command."""
+    scene_command(
+        commands,
         "transient",
-        help="motion over time",
+        _transient,
+        _options,
+        text="motion over time",
         description="Motion over time, driven by forces or moved ends, or let go from a load.",
     )
-    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    compile_options(parser)
+
+
+def _options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time", required=True, help="start:stop:count or a comma list [s]")
     parser.add_argument(
         "--drive",
@@ -77,49 +75,7 @@ def _transient_command(commands: Any) -> None:
     parser.add_argument("--method", choices=METHODS, default="auto", help="(%(default)s)")
     parser.add_argument("--step", type=float, help="of the direct method, at most [s]")
     parser.add_argument("--tolerance", type=float, help="instead: of the error that steps cause")
-    _progress_option(parser)
-    output_options(parser)
-    parser.set_defaults(run=_transient)
-
-
-def _floquet_command(commands: Any) -> None:
-    parser = commands.add_parser(
-        "floquet",
-        help="growth of free motion under the pulsating tension of the scene",
-        description="Growth of free motion under the pulsating tension of the scene.",
-    )
-    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    compile_options(parser)
-    _modes_option(parser)
-    output_options(parser)
-    parser.set_defaults(run=_floquet)
-
-
-def _stability_command(commands: Any) -> None:
-    parser = commands.add_parser(
-        "stability",
-        help="frequencies and amplitudes of the tension at which motion grows",
-        description="Frequencies and amplitudes of the tension at which motion grows.",
-    )
-    parser.add_argument("scene", metavar="SCENE.toml", help="the scene")
-    compile_options(parser)
-    what = "of the tension, start:stop:count or a comma list"
-    parser.add_argument("--frequency", required=True, help=f"{what} [Hz]")
-    parser.add_argument("--amplitude", required=True, help=f"{what} [N]")
-    _modes_option(parser)
-    _progress_option(parser)
-    output_options(parser)
-    parser.set_defaults(run=_stability)
-
-
-def _modes_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--modes", type=int, default=4, help="with transverse motion, the lowest (%(default)s)"
-    )
-
-
-def _progress_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--progress", action="store_true", help="say on stderr how far it is")
+    progress_option(parser)
 
 
 def _transient(options: argparse.Namespace) -> None:
@@ -142,20 +98,6 @@ def _transient(options: argparse.Namespace) -> None:
         progress=options.progress,
     )
     show(options, history)
-
-
-def _floquet(options: argparse.Namespace) -> None:
-    show(options, compiled(options).floquet(modes=options.modes))
-
-
-def _stability(options: argparse.Namespace) -> None:
-    chart = compiled(options).stability_map(
-        spaced(options.frequency, "--frequency", "Hz"),
-        spaced(options.amplitude, "--amplitude", "N"),
-        modes=options.modes,
-        progress=options.progress,
-    )
-    show(options, chart)
 
 
 def _force(text: str, time: Real) -> Any:
