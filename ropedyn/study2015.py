@@ -24,7 +24,7 @@ from .scene import Scene
 from .table import Table
 
 if TYPE_CHECKING:
-    from .implied import Implied
+    from .study_implied import Implied
 
 ELEMENTS = 8
 """Elements of the study's chain."""
@@ -180,9 +180,9 @@ def implied(peaks: Peaks = measured) -> Implied:
     >>> print(rd.study2015.implied().fits["clamped"].value["tension"].round())
     2960.0
     """
-    from . import implied as fits
+    from . import study_implied
 
-    return fits.implied(peaks)
+    return study_implied.implied(peaks)
 
 
 def solid_rod_stiffness() -> float:
