@@ -1,4 +1,4 @@
-"""What was measured does not tell, in words."""
+"""What measurements do not tell about what is sought, in words."""
 
 from __future__ import annotations
 

@@ -15,7 +15,6 @@ from .scene import Scene
 from .tension import Tension
 
 _TENSION = re.compile(r"tension(?:\.(?P<number>\w+))?")
-_ROPE = re.compile(r"(?:rope\.)?(?P<number>\w+)")
 _GRAVITY = re.compile(r"gravity\.(?P<number>\w+)")
 _LISTED = re.compile(r"(?P<list>parts|damping)\[(?P<at>\d+)\]\.(?P<number>\w+)")
 _DAMPING = re.compile(r"damping\.(?P<number>\w+)")

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 
 TIE = 1e-6
 """Weight of the mean over modes beside the least: of equals the one that sees more is taken."""
