@@ -8,15 +8,19 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .eigen import solve_modes
+from .eigen import solve_modes, solve_shapes
 from .errors import SceneError
-from .modes import Modes
+from .model import Model
+from .sensitivity import Sensitivity, Shapes
 from .unknown import Unknowns
 
 Real = NDArray[np.float64]
 
 REMEMBERED = 8
 """Answers."""
+
+MARGIN = 1.5
+"""How much larger the highest eigenvalue is thought to be than the last one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +41,7 @@ class Calculated:
     asked: OrderedDict[tuple[bytes, int], tuple[Real, Real]] = field(
         default_factory=OrderedDict, init=False, repr=False
     )
+    highest: dict[int, float] = field(default_factory=dict, init=False, repr=False)
 
     def __call__(self, u: Real, count: int) -> tuple[Real, Real]:
         """Find the lowest frequencies, rigid motion and growth left out, or all there are.
@@ -63,24 +68,41 @@ class Calculated:
         return self.asked[key]
 
     def _solve(self, u: Real, count: int) -> tuple[Real, Real]:
-        modes, kept = self._modes(u, count)
-        slope = [self._derivative(modes, i)[kept] for i in range(len(u))]
-        return modes.frequency[kept], np.column_stack(slope) * self.unknowns.slope(u)
+        shapes, kept = self._shapes(u, count)
+        found = Sensitivity(shapes)
+        slope = [self._derivative(found, i)[kept] for i in range(len(u))]
+        frequency = np.sqrt(shapes.eigenvalue[kept]) / (2 * np.pi)
+        return frequency, np.column_stack(slope) * self.unknowns.slope(u)
 
-    def _derivative(self, modes: Modes, i: int) -> Real:
+    def _derivative(self, found: Sensitivity, i: int) -> Real:
         try:
-            return modes.derivative(self.unknowns.paths[i])
+            return found.frequency(self.unknowns.paths[i])
         except SceneError as error:
             raise SceneError(f"unknown[{i}] must change natural frequencies: {error}") from error
 
-    def _modes(self, u: Real, count: int) -> tuple[Modes, NDArray[np.intp]]:
+    def _shapes(self, u: Real, count: int) -> tuple[Shapes, NDArray[np.intp]]:
         """Return modes among which so many vibrate, or all there are, and which they are."""
         model = self.unknowns.at(u).compile(elements=self.elements, element=self.element)
-        still = 0
+        asked = count
         while True:
-            asked = count + still
-            modes = solve_modes(model, asked, below=None, solver="sweep", strict=False)
-            kept = np.flatnonzero(modes.frequency > 0)[:count]
-            if len(kept) == count or len(modes.frequency) < asked:
-                return modes, kept
-            still = asked - len(kept)
+            shapes = self._lowest(model, asked)
+            kept = np.flatnonzero(shapes.eigenvalue[:asked] > 0)[:count]
+            if len(kept) == count or len(shapes.eigenvalue) < asked:
+                return shapes, kept
+            asked += count - len(kept)
+
+    def _lowest(self, model: Model, number: int) -> Shapes:
+        """Return the lowest modes, by one solution where the highest is not above what is thought.
+
+        That was a little more than the highest of the last ones.
+        """
+        thought = self.highest.get(number)
+        if thought is not None:
+            shapes = solve_shapes(model, "sweep", np.full(number, thought))
+            highest = float(shapes.eigenvalue.max(initial=0.0))
+            self.highest[number] = MARGIN * highest
+            if highest <= thought:
+                return shapes
+        found = solve_modes(model, number, below=None, solver="sweep", strict=False).eigenvalue
+        self.highest[number] = MARGIN * float(found.max(initial=0.0))
+        return solve_shapes(model, "sweep", found)

@@ -117,7 +117,7 @@ def solve_modes(
         cost=_cost(model, solver, seconds, found),
         source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
         mesh_source=mesh,
-        solve_shapes=partial(_shapes, model, solver, eigenvalue),
+        solve_shapes=partial(solve_shapes, model, solver, eigenvalue),
     )
 
 
@@ -438,10 +438,11 @@ def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, NDArr
     return divided(model.scene, model.element, stations, counts), edges
 
 
-def _shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = None) -> Shapes:
-    """Solve once more, with the shapes that sensitivities need.
+def solve_shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = None) -> Shapes:
+    """Solve as many modes as there are eigenvalues, with the shapes that sensitivities need.
 
-    Modes that coincide with the last one belong to them.
+    Modes that coincide with the last one belong to them. Of eigenvalues of continuous spans the
+    largest tells how short elements must be.
     """
     check_points(model, points)
     edges = np.arange(len(model.x))
