@@ -24,8 +24,8 @@ from .peaks import Peaks
 from .port import Point
 from .predicted import Predicted, is_motion, predicted_of
 from .resonance import Resonances
+from .response_shape import residues
 from .seen import Seen, seen_in
-from .shape_at import residues
 from .table import Table, numbers
 
 if TYPE_CHECKING:

@@ -16,8 +16,9 @@ from .frf import FRF
 from .model import Model
 from .modes import Modes
 from .port import Point
+from .response_shape import residues
 from .seen import peaks_in
-from .shape_at import residues, shapes_at
+from .shape_at import shapes_at
 
 Real = NDArray[np.float64]
 

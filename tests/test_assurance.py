@@ -8,7 +8,8 @@ from conftest import EPS
 
 import ropedyn as rd
 from ropedyn.assurance import frac, frac_over, mac
-from ropedyn.shape_at import residues, shapes_at
+from ropedyn.response_shape import residues
+from ropedyn.shape_at import shapes_at
 
 RANDOM = np.random.default_rng(7)
 CURVES = RANDOM.normal(size=(2, 40)) + 1j * RANDOM.normal(size=(2, 40))
