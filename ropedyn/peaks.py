@@ -101,7 +101,7 @@ class Peaks(Answer):
         >>> print(rd.Peaks.of(frf).frequency.round(2))
         [15.81 31.62]
         """
-        from .merge import merge
+        from .merge_peaks import merge_peaks
 
         given = (measured,) if isinstance(measured, Resonances) else measured
         what = "responses such as a Measured, or the Resonances of some"
@@ -109,7 +109,7 @@ class Peaks(Answer):
         if not isinstance(given, Curves):
             for k, one in enumerate(given):
                 check.instance(one, f"measured[{k}]", Resonances, "Resonances")
-        found = merge(given)
+        found = merge_peaks(given)
         return cls(found.frequency, std=found.std, damping_ratio=found.damping_ratio)
 
     def table(self) -> Table:

@@ -14,7 +14,7 @@ from . import check
 from .curves import Curves
 from .errors import SceneError
 from .measured import Measured
-from .merge import Merged, merge
+from .merge_peaks import Merged, merge_peaks
 from .peaks import Peaks
 from .quantity import is_quantity
 from .resonance import Resonances
@@ -76,7 +76,7 @@ def seen_in(measured: Any) -> Seen:
 def peaks_in(source: Curves | Sequence[Resonances]) -> Merged:
     """Return the peaks of all responses, which may be none."""
     try:
-        return merge(source)
+        return merge_peaks(source)
     except SceneError:
         none = np.zeros(0)
         return Merged(none, none, none)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import check
 from .answer import Answer
 from .errors import SceneError
-from .line import Line
+from .straight_line import Line
 from .table import Table
 
 if TYPE_CHECKING:

@@ -38,7 +38,7 @@ class _Seen(NamedTuple):
     """Another response may have the same peak so far from here [Hz]."""
 
 
-def merge(source: Curves | Sequence[Resonances]) -> Merged:
+def merge_peaks(source: Curves | Sequence[Resonances]) -> Merged:
     """Return the peaks of all responses, those of one mode as their weighted mean.
 
     Peaks of different responses are of one mode if they are nearer than a line, or than half the
