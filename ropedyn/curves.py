@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -184,14 +185,9 @@ class Curves(Answer):
 
     def _columns(self) -> dict[str, Any]:
         columns: dict[str, Any] = {"frequency [Hz]": self.frequency}
-        for d, drive in enumerate(self.drive):
-            for r, point in enumerate(self.response):
-                name = label(point, drive, self.quantity)
-                if len(self.drive) > 1:
-                    name += f" driven in {place(drive)}"
-                curve = self.curve(r, d)
-                columns[f"|{name}|" if name not in columns else name] = np.abs(curve)
-                columns[f"phase of {name} [deg]"] = np.degrees(np.angle(curve))
+        for name, _, curve in named_curves(self):
+            columns[f"|{name}|" if name not in columns else name] = np.abs(curve)
+            columns[f"phase of {name} [deg]"] = np.degrees(np.angle(curve))
         return columns
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -199,3 +195,13 @@ class Curves(Answer):
         from .plotting import plot_curves
 
         return plot_curves(self, ax)
+
+
+def named_curves(curves: Curves) -> Iterator[tuple[str, int, NDArray[np.complex128]]]:
+    """Yield each response to each drive: its name, which response it is, and the curve."""
+    for d, drive in enumerate(curves.drive):
+        for r, point in enumerate(curves.response):
+            name = label(point, drive, curves.quantity)
+            if len(curves.drive) > 1:
+                name += f" driven in {place(drive)}"
+            yield name, r, curves.curve(r, d)

@@ -7,19 +7,17 @@ import io
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import check
 from .atomic import write_bytes
+from .curves import Curves, named_curves
 from .errors import SceneError
 from .motion_unit import EXAMPLES, scale, stated
-from .unit import QUANTITIES, label, place
-
-if TYPE_CHECKING:
-    from .curves import Curves
+from .unit import QUANTITIES
 
 OWN = "# ropedyn "
 """How a file begins that `write` has written: JSON of what is in it follows."""
@@ -309,17 +307,12 @@ def write(curves: Curves, path: Path) -> None:
         "averages": getattr(curves, "averages", None),
     }
     names, columns = ["frequency [Hz]"], [curves.frequency]
-    for d, drive in enumerate(curves.drive):
-        for r, response in enumerate(curves.response):
-            name = label(response, drive, curves.quantity)
-            if len(curves.drive) > 1:
-                name += f" driven in {place(drive)}"
-            curve = curves.curve(r, d)
-            names += [f"real {name}", f"imag {name}"]
-            columns += [curve.real, curve.imag]
-            if coherence is not None:
-                names.append(f"coherence of {name}")
-                columns.append(coherence[r])
+    for name, r, curve in named_curves(curves):
+        names += [f"real {name}", f"imag {name}"]
+        columns += [curve.real, curve.imag]
+        if coherence is not None:
+            names.append(f"coherence of {name}")
+            columns.append(coherence[r])
     text = io.StringIO()
     text.write(f"{OWN}{json.dumps(head)}\n")
     writer = csv.writer(text, lineterminator="\n")

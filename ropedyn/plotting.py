@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .unit import NAME, UNIT, label, place, power
+from .curves import Curves, named_curves
+from .unit import NAME, UNIT, place, power
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from .accuracy import AccuracyCost
-    from .curves import Curves
     from .damage import Damage
     from .damped_modes import DampedModes
     from .deflection import Deflection
@@ -87,14 +87,9 @@ def plot_damage(damage: Damage, ax: Axes | None, of: str | None) -> Axes:
 def plot_curves(curves: Curves, ax: Axes | None) -> Axes:
     """Plot amplitudes over frequency on a logarithmic scale."""
     ax = new_axes(ax)
-    for d, drive in enumerate(curves.drive):
-        for r, response in enumerate(curves.response):
-            name = label(response, drive, curves.quantity)
-            if len(curves.drive) > 1:
-                name += f", driven in {place(drive)}"
-            amplitude = np.abs(curves.curve(r, d))
-            if amplitude.any():
-                ax.semilogy(curves.frequency, amplitude, label=name)
+    for name, _, curve in named_curves(curves):
+        if curve.any():
+            ax.semilogy(curves.frequency, np.abs(curve), label=name)
     drives = ", ".join(map(place, curves.drive))
     ax.set(xlabel="frequency [Hz]", ylabel=f"{curves.quantity}, amplitude")
     ax.set_title(f"frequency response, driven in {drives}")
