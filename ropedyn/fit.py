@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .alternative import Alternative
-    from .identification import Identification
+    from .fit_peaks import Identification
     from .solution import Solution
 
 

@@ -1,4 +1,4 @@
-"""Find numbers of a scene from measured peaks."""
+"""Find numbers of a scene from measured peaks or a whole response."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import check
-from .calculated import Calculated
 from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .fit import Fit
 from .fit_frf import fit_response
+from .fit_peaks import Identification
 from .fits import Fits
-from .identification import Identification
 from .measured import Measured
 from .misfit import Known
+from .natural_frequencies import NaturalFrequencies
 from .orders import found_orders, given_orders, likelier_is_none, lowest_orders, search_std
 from .path import with_values
 from .peaks import Peaks
@@ -210,7 +210,7 @@ def _fit(scene: Scene, peaks: Peaks, how: Options) -> Fit:
         # a string whose lowest peak is its first mode
         wave = 2 * scene.rope.length * float(frequency.min())
         scene = _tensed(scene, scene.rope.linear_density * wave**2)
-    calculated = Calculated(Unknowns.of(scene, how.paths), how.elements, how.element)
+    calculated = NaturalFrequencies(Unknowns.of(scene, how.paths), how.elements, how.element)
     orders = given_orders(how.orders, peaks)
     lowest = Identification(calculated, frequency, std, lowest_orders(frequency), how.prior)
     if orders is not None:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .numbering import Likelihood
-from .parameter_grid import Calculated, quotients_at
+from .order_grid import Calculated, quotients_at
+from .order_likelihood import Likelihood
 from .rayleigh import Quotients
 
 Real = NDArray[np.float64]

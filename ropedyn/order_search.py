@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SolveError
-from .numbering import Likelihood
 from .order_fit import OrderFit, OrderFits
-from .parameter_grid import COARSE, STEP, Calculated, Grid
+from .order_grid import COARSE, STEP, Calculated, Grid
+from .order_likelihood import Likelihood
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -49,7 +49,7 @@ class Assignment:
         The likeliest with these orders.
     cost : float
         -2 ln of the likelihood, up to a constant all assignments share: differences of two are
-        differences of chi-square, `ropedyn.numbering.Likelihood` has the terms.
+        differences of chi-square, `ropedyn.order_likelihood.Likelihood` has the terms.
     misfit : float
         The part that peaks alone say, sum of ((calculated - measured)/std)^2: where two
         assignments do not differ in it, only how likely modes are missed decides.

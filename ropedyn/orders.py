@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import check
-from .calculated import Calculated
 from .errors import SceneError, SolveError
 from .minimum import BLIND
+from .natural_frequencies import NaturalFrequencies
 from .order_search import OVERLOOKED, search
 from .peaks import Peaks
 
@@ -61,7 +61,7 @@ class Factors:
 
     Attributes
     ----------
-    calculated : Calculated
+    calculated : NaturalFrequencies
         As functions of the variables.
     centre : ndarray, shape (p,)
         Of the variables.
@@ -69,12 +69,12 @@ class Factors:
         The numbers; the others stay.
     """
 
-    calculated: Calculated
+    calculated: NaturalFrequencies
     centre: Real
     which: Orders
 
     @classmethod
-    def of(cls, calculated: Calculated, centre: Real, count: int) -> Factors:
+    def of(cls, calculated: NaturalFrequencies, centre: Real, count: int) -> Factors:
         """Choose numbers that the lowest modes tell apart, inertia last."""
         unknowns = calculated.unknowns
         frequency, slope = calculated(centre, count)
@@ -116,7 +116,7 @@ def search_std(frequency: Real, std: Real | None) -> Real:
 
 
 def found_orders(
-    calculated: Calculated,
+    calculated: NaturalFrequencies,
     centres: Sequence[Real],
     frequency: Real,
     std: Real | None,
@@ -128,7 +128,7 @@ def found_orders(
 
     Parameters
     ----------
-    calculated : Calculated
+    calculated : NaturalFrequencies
         Frequencies of what is sought; positions stay at their guesses.
     centres : sequence of ndarray, shape (p,)
         Variables about which it is searched, within a factor of 30 each.

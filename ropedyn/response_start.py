@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .calculated import Calculated
 from .errors import SceneError, SolveError
-from .guess import start_of
 from .measured import Measured
 from .minimum import Minimum, minimise
-from .misfit import PeakMisfit
+from .natural_frequencies import NaturalFrequencies
+from .peak_misfit import PeakMisfit
+from .peak_start import start_of_peaks
 from .peaks import Peaks
 from .port import moving
 from .rate import Places, rates_of
@@ -159,7 +159,7 @@ def _candidates(response: Response) -> Iterator[Real]:
     peaks = peaks_of(response.measured)
     if not shifts.any() or len(peaks) < shifts.sum():
         return
-    calculated = Calculated(unknowns.only(shifts), response.elements, response.element)
+    calculated = NaturalFrequencies(unknowns.only(shifts), response.elements, response.element)
     try:
         seen = _seen(response, calculated, len(peaks) + HIDDEN)
     except (SceneError, SolveError):
@@ -171,7 +171,7 @@ def _candidates(response: Response) -> Iterator[Real]:
         orders = seen[hidden : hidden + count]
         misfit = PeakMisfit(calculated, peaks[: len(orders)], peaks[: len(orders)], orders)
         try:
-            first = start_of(misfit, np.zeros(int(shifts.sum())))
+            first = start_of_peaks(misfit, np.zeros(int(shifts.sum())))
             found = minimise(misfit, first, digits=ROUGH).u
         except (SceneError, SolveError):
             continue
@@ -180,7 +180,7 @@ def _candidates(response: Response) -> Iterator[Real]:
         yield u
 
 
-def _seen(response: Response, calculated: Calculated, count: int) -> Orders:
+def _seen(response: Response, calculated: NaturalFrequencies, count: int) -> Orders:
     """Return the lowest modes of the guess that the drive and some response see, from 1."""
     measured, unknowns = response.measured, response.unknowns
     model = unknowns.at(np.zeros(len(unknowns))).compile(

@@ -8,9 +8,9 @@ import pytest
 from measured_ropes import CORD_FREQUENCY, CORD_TENSION, cord
 
 import ropedyn as rd
-from ropedyn.numbering import Likelihood, numbered
+from ropedyn.order_grid import Grid
+from ropedyn.order_likelihood import Likelihood, numbered
 from ropedyn.order_search import search
-from ropedyn.parameter_grid import Grid
 from ropedyn.path import with_values
 from ropedyn.rayleigh import Quotients
 

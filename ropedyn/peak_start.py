@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .errors import SceneError, SolveError
 from .minimum import BLIND, told
-from .misfit import PeakMisfit
+from .peak_misfit import PeakMisfit
 
 Real = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ UNFELT, BACK = 1e-4, 1e-2
 """What fell until frequencies hardly feel it goes back to where they do, at most to its guess."""
 
 
-def start_of(misfit: PeakMisfit, u: Real) -> Real:
+def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
     """Return variables at which frequencies are near the measured ones.
 
     With the shapes frozen, u^T K u = lambda u^T M u is linear in what stiffness and inertia are

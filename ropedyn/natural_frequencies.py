@@ -24,7 +24,7 @@ MARGIN = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class Calculated:
+class NaturalFrequencies:
     """Natural frequencies of a scene with unknown numbers.
 
     Attributes

@@ -1,4 +1,4 @@
-"""What is sought in a scene, and what was measured of it."""
+"""Fit of numbers of a scene to measured peaks whose modes are known."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .answer import Cost
-from .calculated import Calculated
 from .errors import SceneError
 from .fit import Fit
-from .guess import start_of
-from .misfit import Known, PeakMisfit
+from .misfit import Known
+from .natural_frequencies import NaturalFrequencies
 from .notes import notes_of
 from .orders import Orders, RunnerUp
+from .peak_misfit import PeakMisfit
+from .peak_start import start_of_peaks
 from .scene import Scene
 from .solution import Solution, solve
 from .unknown import Unknowns
@@ -32,7 +33,7 @@ class Identification:
 
     Attributes
     ----------
-    calculated : Calculated
+    calculated : NaturalFrequencies
         Natural frequencies as functions of what is sought.
     frequency : ndarray, shape (k,)
         Of the peaks [Hz].
@@ -46,7 +47,7 @@ class Identification:
         Of the orders, where they were searched.
     """
 
-    calculated: Calculated
+    calculated: NaturalFrequencies
     frequency: Real
     std: Real | None
     orders: Orders
@@ -87,7 +88,7 @@ class Identification:
         """
         began = time.perf_counter()
         self._refuse_few()
-        start = start_of(self.misfit, np.zeros(len(self.unknowns)))
+        start = start_of_peaks(self.misfit, np.zeros(len(self.unknowns)))
         self._refuse_unseen(start)
         solution = solve(
             self.unknowns,
