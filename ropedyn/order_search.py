@@ -18,10 +18,16 @@ Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 OVERLOOKED = 0.1
-"""Probability that a mode of the band is not among the peaks, unless told."""
+"""Probability that a mode of the band is not among the peaks."""
 
 STRAY = 0.5
-"""Peaks that are no mode, on average, unless told."""
+"""Peaks that are no mode, on average."""
+
+REACH = 30.0
+"""How many times larger or smaller than its start each parameter may be."""
+
+KEPT = 5
+"""Assignments that are returned at most."""
 
 NOISES = (0.0005, 0.002, 0.008)
 """Relative standard uncertainties that are tried where none is given: of good peaks of a rope the
@@ -72,11 +78,6 @@ def search(
     *,
     missing: int | None = None,
     spurious: int = 1,
-    reach: float | Real = 30.0,
-    band: tuple[float, float] | None = None,
-    overlooked: float = OVERLOOKED,
-    stray: float = STRAY,
-    keep: int = 5,
 ) -> list[Assignment]:
     """Find which mode each peak is, and the parameters with it.
 
@@ -100,16 +101,6 @@ def search(
     missing, spurious : int
         At most so many modes below the highest one seen are missing, as many as there are peaks
         where left out, and at most so many peaks are no modes.
-    reach : float or ndarray of shape (p,)
-        How many times larger or smaller than `start` each may be; 1 where it is known.
-    band : tuple of float, optional
-        Where modes would have been seen [Hz]; from 0 to the highest peak where left out.
-    overlooked : float
-        Probability that a mode of the band is not among the peaks.
-    stray : float
-        Expected number of peaks that are no mode.
-    keep : int
-        How many assignments to return at most.
 
     Returns
     -------
@@ -141,13 +132,13 @@ def search(
     likelihood = Likelihood(
         frequency=frequency,
         sigma=known,
-        band=band or (0.0, float(measured.max())),
-        overlooked=overlooked,
-        stray=stray,
+        band=(0.0, float(measured.max())),
+        overlooked=OVERLOOKED,
+        stray=STRAY,
         missing=len(measured) if missing is None else missing,
         spurious=min(spurious, len(measured) - 1),
     )
-    reach = np.broadcast_to(reach, start.shape)
+    reach = np.full(start.shape, REACH)
     limits = start / reach, start * reach
     calculated = _remembered(calculated)
     grid = Grid.of(calculated, start, reach, len(measured) + likelihood.missing)
@@ -166,7 +157,7 @@ def search(
             f"no orders of the {len(measured)} peaks fit with at most {likelihood.missing} modes "
             f"missing and {spurious} peaks that are none"
         )
-    return sorted(found.values(), key=lambda one: one.cost)[:keep]
+    return sorted(found.values(), key=lambda one: one.cost)[:KEPT]
 
 
 def _remembered(calculated: Calculated) -> Calculated:
