@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -224,6 +224,13 @@ class Measured(Curves):
             for name, values in zip(self.labels, self.coherence):
                 columns[f"coherence of {name}"] = values
         return columns
+
+
+def lines_of(measured: Measured, which: NDArray[Any]) -> Measured:
+    """Return some of the lines, by numbers or as True and False."""
+    coherence = None if measured.coherence is None else measured.coherence[:, which]
+    frequency, value = measured.frequency[which], measured.value[:, which]
+    return replace(measured, frequency=frequency, value=value, coherence=coherence)
 
 
 def _points(given: Any, name: str) -> tuple[Any, ...]:

@@ -33,7 +33,7 @@ def plot_fit(fit: Fit, ax: Axes | None) -> Axes:
     ax.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
     ax.set(xlabel="mode", ylabel="calculated less measured [%]")
     ax.set_xticks(np.unique(fit.orders[used]))
-    ax.set_title("identified: " + ", ".join(f"{p} {v:.5g}" for p, v in fit.value.items()))
+    ax.set_title(_found(fit))
     ax.grid(True, color="0.92")
     return ax
 
@@ -57,7 +57,12 @@ def plot_response_fit(fit: ResponseFit, ax: Axes | None) -> Axes:
         (line,) = ax.semilogy(fit.frequency, np.abs(calculated), label=name)
         ax.semilogy(fit.frequency, np.abs(measured), ".", color=line.get_color(), markersize=3)
     ax.set(xlabel="frequency [Hz]", ylabel=f"amplitude of the {fit.quantity}")
-    ax.set_title("identified: " + ", ".join(f"{p} {v:.5g}" for p, v in fit.value.items()))
+    ax.set_title(_found(fit))
     ax.legend(title="line calculated, dots measured", fontsize="small")
     ax.grid(True, color="0.92")
     return ax
+
+
+def _found(fit: Fit | ResponseFit) -> str:
+    """Return what was found in a few digits."""
+    return "identified: " + ", ".join(f"{path} {value:.5g}" for path, value in fit.value.items())

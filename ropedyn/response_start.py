@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError, SolveError
-from .measured import Measured
+from .measured import Measured, lines_of
 from .minimum import Minimum, minimise
 from .natural_frequencies import NaturalFrequencies
 from .peak_misfit import PeakMisfit
@@ -138,14 +138,7 @@ def _thinned(response: Response) -> Response:
     near = np.searchsorted(measured.frequency, peaks_of(measured))
     around = (near[:, None] + np.arange(-2, 3)).ravel()
     kept = np.union1d(kept, around[(around >= 0) & (around < count)])
-    coherence = None if measured.coherence is None else measured.coherence[:, kept]
-    fewer = replace(
-        measured,
-        frequency=measured.frequency[kept],
-        value=measured.value[:, kept],
-        coherence=coherence,
-    )
-    return replace(response, measured=fewer)
+    return replace(response, measured=lines_of(measured, kept))
 
 
 def _candidates(response: Response) -> Iterator[Real]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from numbers import Real as RealNumber
 from typing import Any, NamedTuple
 
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from . import check
 from .curves import Curves
 from .errors import SceneError
-from .measured import Measured
+from .measured import Measured, lines_of
 from .merge_peaks import Merged, merge_peaks
 from .peaks import Peaks
 from .quantity import is_quantity
@@ -89,6 +88,4 @@ def _above_zero(measured: Measured) -> Measured:
         return measured
     if not lines.any():
         raise SceneError("measured must have lines above 0 Hz, got none")
-    coherence = None if measured.coherence is None else measured.coherence[:, lines]
-    frequency, value = measured.frequency[lines], measured.value[:, lines]
-    return replace(measured, frequency=frequency, value=value, coherence=coherence)
+    return lines_of(measured, lines)
