@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,7 +71,6 @@ def frf_difference(
             f"{path} must not be 0 for a derivative by differences, to both sides of it"
         )
     counts = np.diff(np.searchsorted(model.x, stations_of(scene)))
-    step = WIDEST * _free(model, path, here)
 
     def at(value: float) -> Complex:
         other = with_values(scene, {path: value})
@@ -86,8 +86,13 @@ def frf_difference(
         above, below = here + h, here - h
         return (at(above) - at(below)) / (above - below)
 
-    best, error = quotient(step), np.full((len(drives), len(responses), len(frequency)), np.inf)
-    row = [best]
+    return _extrapolated(quotient, WIDEST * _free(model, path, here))
+
+
+def _extrapolated(quotient: Callable[[float], Complex], step: float) -> Complex:
+    """Return what difference quotients tend to as their step goes to 0, of each entry the best."""
+    best = quotient(step)
+    error, row = np.full(best.shape, np.inf), [best]
     for _ in range(LEVELS):
         step /= SHRINK
         last, row, improved = row, [quotient(step)], False
