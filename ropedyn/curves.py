@@ -122,7 +122,7 @@ class Curves(Answer):
                 self.frequency,
                 self.curve(r, drive),
                 self.quantity,
-                self.labels[r],
+                label(self.response[r], self.drive[drive], self.quantity),
                 self._noise_around(r),
                 known=self._noise(r),
             )

@@ -139,3 +139,15 @@ def test_a_frequency_given_twice_is_no_nan():
     (found,) = one_bead(1e-2).frf(doubled, drive=("z", 0.5)).peaks()
     # the same mode as without the copies
     assert found.frequency == pytest.approx([NATURAL], rel=2e-4)
+
+
+def test_peaks_have_the_unit_of_the_drive_they_answer():
+    """A force moves a point by m/N, an end that is moved by m/m."""
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.StiffnessDamping(1e-4))
+    frf = scene.compile().frf(
+        np.arange(5.0, 40.0, 0.5), drive=[("z", 0.3), ("end", 0, "z")], response=("z", 0.3)
+    )
+    assert [frf.peaks(d)[0].label for d in (0, 1)] == [
+        "z at 0.300 m [m/N]",
+        "z at 0.300 m [m/m]",
+    ]
