@@ -140,7 +140,7 @@ def _each(given: Any, name: str, unit: str, sign: str, peaks: int) -> tuple[floa
 
 def _checked_order(order: Any, peaks: int) -> tuple[int, ...]:
     what = f"{peaks} different whole numbers from 1, one for each frequency"
-    check.instance(order, "order", (list, tuple, np.ndarray), what)
+    check.instance(order, "order", (list, tuple, range, np.ndarray), what)
     if len(order) != peaks:
         raise SceneError(f"order must be {what}, got {check.shown(order)}")
     most = np.iinfo(np.int32).max

@@ -26,7 +26,9 @@ def test_one_uncertainty_holds_for_every_peak(std, expected):
     assert rd.Peaks([64.0, 130.0], std=std).std == expected
 
 
-@pytest.mark.parametrize("order", [[2, 1], (2, 1), np.array([2, 1]), np.array([2, 1], np.uint8)])
+@pytest.mark.parametrize(
+    "order", [[2, 1], (2, 1), np.array([2, 1]), np.array([2, 1], np.uint8), range(2, 0, -1)]
+)
 def test_orders_are_kept_as_whole_numbers(order):
     kept = rd.Peaks([130.0, 64.0], order=order).order
     assert kept == (2, 1)
