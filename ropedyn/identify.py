@@ -27,6 +27,7 @@ from .resonance import Resonances
 from .response_fit import ResponseFit
 from .response_misfit import Response
 from .scene import Scene
+from .seen import above_zero
 from .unknown import Unknowns
 
 Real = NDArray[np.float64]
@@ -105,7 +106,8 @@ def identify(
         Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
         to be the same for all and estimated from the residuals. A list has one for each of many
         ropes, which the scene describes alike; responses in it stand for their peaks. Or one
-        whole response, which tells damping too; to use its peaks alone give `Peaks.of` it. Its
+        whole response, which tells damping too, without its line at 0 Hz; to use its peaks alone
+        give `Peaks.of` it. Its
         noise is estimated from the residuals, for each point a part that is equal on all lines
         and one in proportion to the amplitude; of measured coherence the first is what that tells.
     unknown : str or sequence of str
@@ -267,7 +269,7 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
     unknowns = Unknowns.of(scene, how.paths)
     if scale:
         unknowns = unknowns.with_calibration(1.0)
-    response = Response(unknowns, measured, how.elements, how.element)
+    response = Response(unknowns, above_zero(measured), how.elements, how.element)
     return fit_response(response, Known.of(unknowns, how.prior))
 
 

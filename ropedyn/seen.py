@@ -55,7 +55,7 @@ def seen_in(measured: Any) -> Seen:
     if not is_quantity(measured):
         check.instance(measured, "measured", given, what)
     if isinstance(measured, Measured):
-        curves = _above_zero(measured)
+        curves = above_zero(measured)
         return Seen(*peaks_in(curves), None, curves)
     if isinstance(measured, Resonances):
         return Seen(*peaks_in([measured]), None, None)
@@ -81,7 +81,7 @@ def peaks_in(source: Curves | Sequence[Resonances]) -> Merged:
         return Merged(none, none, none)
 
 
-def _above_zero(measured: Measured) -> Measured:
+def above_zero(measured: Measured) -> Measured:
     """Leave out a line at 0 Hz: velocities are 0 there and free bodies have no displacement."""
     lines = measured.frequency > 0
     if lines.all():

@@ -238,6 +238,23 @@ def test_fit_reads_as_tables_and_a_figure(noisy, tmp_path):
         again.interval()
 
 
+def test_a_line_at_0_hz_of_a_free_beam_is_left_out():
+    beam = rd.Scene(
+        rd.Rope(1.0, 0.5, bending_stiffness=20.0),
+        ends=("free", "free"),
+        damping=rd.LossFactor(0.01),
+    )
+    lines, ends = np.arange(0.0, 200.0, 2.0), ("z", 0.0)
+    value = beam.compile().frf(lines[1:], drive=ends, quantity="accelerance").value
+    data = rd.Measured(
+        lines, np.insert(value, 0, 0.1, axis=1), drive=ends, response=ends, quantity="accelerance"
+    )
+    guess = beam.replace(rope=beam.rope.replace(bending_stiffness=30.0))
+    fit = rd.identify(guess, data, ["bending_stiffness", "damping.eta"])
+    assert fit.frequency[0] == 2.0
+    assert fit.value["bending_stiffness"] == pytest.approx(20.0, rel=1e-8)
+
+
 # --- what is refused --------------------------------------------------------------------------
 
 
