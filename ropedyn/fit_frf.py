@@ -11,7 +11,7 @@ from .answer import Cost
 from .errors import SceneError
 from .minimum import minimise
 from .misfit import Known
-from .notes import notes_of
+from .notes import RESPONSE, notes_of
 from .residual_noise import line_std
 from .response_fit import ResponseFit
 from .response_misfit import LineMisfit, LogMisfit, Response
@@ -70,6 +70,7 @@ def fit_response(response: Response, known: Known | None) -> ResponseFit:
             rows=2 * measured.value.size,
             known=known,
             noise=None,
+            guess=u,
         )
         evaluations += solution.minimum.evaluations
         u, before = solution.minimum.u, u
@@ -119,7 +120,7 @@ def _answer(
         measured_std=solution.noise * std,
         freedom=solution.freedom,
         chi_square=float(np.sum((off / solution.noise) ** 2)),
-        notes=(*notes_of(solution), *_systematic(measured.value, value, std)),
+        notes=(*notes_of(solution, RESPONSE), *_systematic(measured.value, value, std)),
         cost=Cost(
             seconds=seconds,
             method="least squares",

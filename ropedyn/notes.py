@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,24 +19,37 @@ UNLIKELY = 1e-3
 """Probability of residuals as large as that by chance."""
 
 
-def notes_of(solution: Solution) -> tuple[str, ...]:
+class Data(NamedTuple):
+    """What was measured, in words."""
+
+    name: str
+    does: str
+    tells: str
+
+
+PEAKS = Data("the peaks", "do", "tell")
+RESPONSE = Data("the response", "does", "tells")
+
+
+def notes_of(solution: Solution, data: Data = PEAKS) -> tuple[str, ...]:
     """Return a sentence for each thing that was not told."""
-    return (*_gone(solution), *_blind(solution), *_noise(solution))
+    return (*_gone(solution, data), *_blind(solution, data), *_noise(solution))
 
 
-def _gone(solution: Solution) -> list[str]:
+def _gone(solution: Solution, data: Data) -> list[str]:
     """Name the numbers that went to 0 or infinity."""
     found = []
     for path, side in zip(solution.unknowns.paths, solution.side):
         if side:
             where = "0" if side < 0 else "infinity"
             found.append(
-                f"{path} goes to {where}: the peaks do not show it, its interval has one bound"
+                f"{path} goes to {where}: {data.name} {data.does} not show it, its interval has "
+                "one bound"
             )
     return found
 
 
-def _blind(solution: Solution) -> list[str]:
+def _blind(solution: Solution, data: Data) -> list[str]:
     """Name numbers that cannot be told apart, and the combinations that can."""
     uncertainty = solution.uncertainty
     blind = uncertainty.blind & (solution.side == 0)
@@ -44,12 +59,12 @@ def _blind(solution: Solution) -> list[str]:
     names = [solution.unknowns.paths[i] for i in at]
     silent = ", ".join(names[:-1]) + " and " + names[-1] if len(names) > 1 else names[0]
     if len(at) == 1:
-        return [f"the peaks do not depend on {silent}: it stays at its start"]
+        return [f"{data.name} {data.does} not depend on {silent} near the value given"]
     told = [_shown(solution, at, power) for power in combinations(solution, at)]
-    apart = f"the peaks cannot tell {silent} apart: all have an infinite std"
+    apart = f"{data.name} cannot tell {silent} apart: all have an infinite std"
     if not told:
         return [f"{apart}; another number must be known"]
-    return [f"{apart}; what the peaks tell is {', '.join(told)}"]
+    return [f"{apart}; what {data.name} {data.tells} is {', '.join(told)}"]
 
 
 def combinations(solution: Solution, at: NDArray[np.intp]) -> list[Real]:

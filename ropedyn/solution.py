@@ -148,6 +148,7 @@ def solve(
     rows: int,
     known: Known | None,
     noise: float | None,
+    guess: Real | None = None,
 ) -> Solution:
     """Make what was measured fit best, together with what was known beforehand.
 
@@ -162,6 +163,8 @@ def solve(
     known : Known, optional
     noise : float, optional
         Standard deviation of the residuals; estimated where left out.
+    guess : ndarray, shape (p,), optional
+        Where numbers come from that went to 0 or infinity, if that is not the start.
     """
 
     def attempt(start: Real) -> Solution:
@@ -172,7 +175,8 @@ def solve(
             misfit = misfit if known is None else Together(measured, known, noise or NOMINAL)
             minimum = minimise(misfit, start)
         found, freedom = _noise_of(minimum, rows) if noise is None else (noise, None)
-        side = _gone(minimum, start, unknowns, found if np.isfinite(found) else NOMINAL)
+        origin = start if guess is None else guess
+        side = _gone(minimum, origin, unknowns, found if np.isfinite(found) else NOMINAL)
         return Solution(unknowns, misfit, minimum, rows, found, freedom, side)
 
     first = attempt(start)

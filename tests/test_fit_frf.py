@@ -255,6 +255,30 @@ def test_a_line_at_0_hz_of_a_free_beam_is_left_out():
     assert fit.value["bending_stiffness"] == pytest.approx(20.0, rel=1e-8)
 
 
+def test_a_damping_that_is_not_there_has_an_upper_bound():
+    lines = np.linspace(5.0, 80.0, 80)
+    true = rope(1000.0, 3.0, 1e-3)
+    rng = np.random.default_rng(0)
+    data = measured(true, lines=lines, noise=lambda v: 1e-3 * v * rng.normal(size=v.shape))
+    both = (rd.StiffnessDamping(3e-3), rd.ViscousDamping(0.01))
+    paths = ["damping[0].gamma", "damping[1].coefficient"]
+    with pytest.warns(rd.IdentifyWarning, match="goes to 0: the response does not show it"):
+        fit = rd.identify(true.replace(damping=both), data, paths)
+    low, high = fit.interval(0.95)["damping[1].coefficient"]
+    # 0.01 N s/m^2 broadens the first peak by 5 %: far more than noise of 0.1 % hides
+    assert fit.value["damping[1].coefficient"] == low == 0
+    assert 0 < high < 0.01
+
+
+def test_notes_speak_of_the_response():
+    data = measured(TRUTH, noise=lambda value: 1e-3 * value)
+    with pytest.warns(rd.IdentifyWarning, match="the response cannot tell tension, bending"):
+        fit = rd.identify(
+            TRUTH, data, ["tension", "bending_stiffness", "linear_density"], scale=True
+        )
+    assert any("what the response tells is" in note for note in fit.notes)
+
+
 # --- what is refused --------------------------------------------------------------------------
 
 
