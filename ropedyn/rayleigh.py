@@ -20,6 +20,9 @@ STEEPEST = 4.0
 LEAST = 0.01
 """Of a changed side of the quotient; less is beyond what the shapes tell."""
 
+ROUNDING = 1e-13
+"""Of normal equations, relative."""
+
 FIRM = 1e4
 """How much narrower the pull is that holds a ratio at its bound."""
 
@@ -143,6 +146,9 @@ def _solved(rows: Real, right: Real, pull: tuple[Real, Real], bounds: tuple[Real
 def _minimum(rows: Real, right: Real, centre: Real, tight: Real) -> Real:
     rows = rows / tight[..., None, :]
     off = right - (rows * (tight * centre)[..., None, :]).sum(axis=-1)
-    normal = np.einsum("...kp,...kq->...pq", rows, rows) + np.eye(rows.shape[-1])
+    normal = np.einsum("...kp,...kq->...pq", rows, rows)
+    # rounding must not swallow the pull where rows are large and tell one direction alone
+    least = np.maximum(1.0, ROUNDING * np.trace(normal, axis1=-2, axis2=-1))
+    normal += least[..., None, None] * np.eye(rows.shape[-1])
     vector = np.einsum("...kp,...k->...p", rows, off)
     return centre + np.linalg.solve(normal, vector[..., None])[..., 0] / tight

@@ -194,6 +194,15 @@ def test_fit_of_quotients_keeps_bounds_and_fits_the_rest():
 # the grid
 
 
+def test_fit_of_quotients_ends_where_one_direction_alone_is_told():
+    """Next to buckling the pull on what is not told is beyond the rounding of the normal matrix."""
+    quotients = Quotients(np.array([1e-12, 2e-12]), np.full((2, 2), 1e9), np.ones(2))
+    pull, bounds = (np.ones(2), 2.0), (np.full(2, 0.1), np.full(2, 10.0))
+    weight = np.full(2, 1e3)
+    ratio = quotients.fit(np.ones(2) * 1e-12, weight, np.array([1, 2]), pull, bounds)
+    assert np.isfinite(ratio).all()
+
+
 def test_grid_needs_no_points_along_a_common_factor():
     """Tension and stiffness over 3 decades each are 5 ratios of them."""
     grid = Grid.of(pinned, np.array([1000.0, 1.0]), np.full(2, 30.0), 8)
