@@ -41,7 +41,10 @@ class Line(NamedTuple):
         residuals per degree of freedom (Draper and Smith, Applied Regression Analysis, 3rd ed.,
         section 1.4).
         """
-        A = x[:, None] if offset is not None else np.stack([x, np.ones_like(x)], axis=1)
+        width = float(np.abs(x).max())
+        A = (x / width)[:, None]
+        if offset is None:
+            A = np.stack([A[:, 0], np.ones_like(x)], axis=1)
         known = 0.0 if offset is None else offset
         found = np.linalg.lstsq(A, y - known)[0]
         residual = y - known - A @ found
@@ -52,9 +55,9 @@ class Line(NamedTuple):
             s = math.sqrt(residual @ residual / freedom) if freedom > 0 else math.inf
         share = np.linalg.inv(A.T @ A)[0, 0]
         return Line(
-            slope=float(found[0]),
+            slope=float(found[0]) / width,
             offset=known if offset is not None else float(found[1]),
-            std=s * math.sqrt(share),
+            std=s * math.sqrt(share) / width,
             residual=residual,
             freedom=freedom,
         )

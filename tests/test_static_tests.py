@@ -123,6 +123,15 @@ def test_an_unknown_zero_changes_nothing_but_the_offset():
     assert moved.offset - bent(noise=scatter(1)).offset == pytest.approx(0.1, rel=1e-12)
 
 
+@pytest.mark.parametrize("load", [1e-200, 1e200])
+def test_the_unit_of_the_loads_does_not_matter(load):
+    """Sums of squares of such loads are no numbers."""
+    test = rd.TorsionTest(L, [0.0, 1.0, 2.0], [0.0, 0.034, 0.067])
+    other = rd.TorsionTest(L, [0.0, load, 2 * load], [0.0, 0.034, 0.067])
+    assert other.stiffness == pytest.approx(test.stiffness * load, rel=1e-12)
+    assert other.std == pytest.approx(test.std * load, rel=1e-12)
+
+
 @pytest.mark.parametrize("zero", [None, 3e-3])
 @pytest.mark.parametrize("reading_std", [None, 1e-4])
 def test_the_interval_covers_the_truth_as_often_as_it_says(zero, reading_std):
