@@ -35,6 +35,10 @@ Real = NDArray[np.float64]
 MOST = 64
 """Modes that are missing, and peaks that are none."""
 
+SIZES = (1e-50, 1e50)
+"""Of peaks [Hz] and, relative to them, of their standard deviations; of what is known beforehand,
+relative to the guess: squares of all that is between do not overflow."""
+
 
 @overload
 def identify(
@@ -176,7 +180,7 @@ def identify(
         orders=orders,
         missing=None if missing is None else check.count(missing, "missing", least=0, most=MOST),
         spurious=check.count(spurious, "spurious", least=0, most=MOST),
-        prior=_prior(prior, checked.paths),
+        prior=_prior(prior, checked),
         elements=elements,
         element=element,
     )
@@ -207,7 +211,7 @@ class Options(NamedTuple):
 
 def _fit(scene: Scene, peaks: Peaks, how: Options) -> Fit:
     """Identify one rope."""
-    frequency, std = np.asarray(peaks.frequency, dtype=np.float64), _weights(peaks)
+    frequency, std = _frequency(peaks), _weights(peaks)
     if scene.mean_tension == 0 and "tension" in how.paths:
         # a string whose lowest peak is its first mode
         wave = 2 * scene.rope.length * float(frequency.min())
@@ -296,6 +300,26 @@ def _peaks(measured: Any, name: str) -> Peaks:
     return Peaks(check.numbers(measured, name, "Hz", sign="positive"))
 
 
+def _frequency(peaks: Peaks) -> Real:
+    """Return the frequencies, if their squares are numbers."""
+    frequency = np.asarray(peaks.frequency, dtype=np.float64)
+    _within(frequency, "measured", "Hz")
+    return frequency
+
+
+def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> None:
+    """Refuse values that are so far from a scale that sums of squares overflow."""
+    least, most = SIZES
+    bad = (values < least * scale) | (values > most * scale)
+    if bad.any():
+        at = int(np.flatnonzero(bad)[0])
+        size = float(np.broadcast_to(scale, values.shape)[at])
+        raise SceneError(
+            f"{name}[{at}] must be between {least * size:g} and {most * size:g} [{unit}], "
+            f"got {float(values[at])!r}"
+        )
+
+
 def _weights(peaks: Peaks) -> Real | None:
     """Return the standard deviations, if there are any."""
     if peaks.std is None:
@@ -307,18 +331,27 @@ def _weights(peaks: Peaks) -> Real | None:
             f"measured.std[{at}] must be a finite number > 0 [Hz] to be a weight, got 0.0: leave "
             "std out where it is not known"
         )
+    _within(std, "measured.std", "Hz", np.asarray(peaks.frequency, dtype=np.float64))
     return std
 
 
-def _prior(prior: Any, paths: tuple[str, ...]) -> Mapping[str, tuple[float, float]]:
+def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:
     """Return what is known beforehand."""
     if prior is None:
         return {}
+    paths = unknowns.paths
     if not isinstance(prior, Prior):
         check.instance(prior, "prior", Mapping, 'a mapping such as {"tension": (300.0, 15.0)}')
         for path in prior:
             check.one_of(path, "key of prior", paths)
         prior = Prior(prior)
+    for path, size in zip(paths, np.abs(unknowns.start) + unknowns.scale):
+        value, std = prior.get(path, (size, size))
+        if abs(value) > SIZES[1] * size or std < SIZES[0] * size:
+            raise SceneError(
+                f"prior[{path!r}] must be of at most {SIZES[1] * size:g} and have a std of at "
+                f"least {SIZES[0] * size:g}, got {(value, std)}: the scene's guess is {size:g}"
+            )
     return {path: prior[path] for path in prior if path in paths}
 
 

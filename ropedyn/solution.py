@@ -27,6 +27,9 @@ LEAST_NOISE = float(np.finfo(float).eps)
 ROUNDING = 1e-12
 """Noise that frequencies themselves may have, which does not settle."""
 
+NARROW = 1e-8
+"""Standard deviation of a variable below which its profile is a parabola, but for rounding."""
+
 UNFELT = 100.0
 """Standard deviation of a logarithm from which on the number is gone to 0 or infinity."""
 
@@ -124,6 +127,9 @@ class Solution:
         if side == 0:
             path = uncertainty.unit[:, i] / uncertainty.unit[i, i]
             step, limit = root * float(uncertainty.std[i]), FARTHEST
+            if not self.side.any() and (uncertainty.std[~uncertainty.blind] < NARROW).all():
+                # a profile would be that of rounding, which takes long to follow
+                return np.sort([self._number(self.minimum.u[i] + way * step, i) for way in (-1, 1)])
         profile = Profile(self.misfit, self.minimum, i, path, self.unknowns.by_factor, limit)
         u = [
             way * np.inf if way == side else profile.bound(way, root * self.noise, step)

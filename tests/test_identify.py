@@ -429,3 +429,29 @@ def test_levels_are_probabilities(level):
 def test_a_chain_with_fewer_modes_than_orders_is_refused():
     with pytest.raises(rd.SolveError, match="must have 9 modes for these orders, got 3"):
         rd.identify(STRING, [90.0], "tension", orders=[9], elements=4, element="rigid")
+
+
+# --- what is far from everything --------------------------------------------------------------
+
+
+def test_intervals_of_exact_peaks_are_those_of_rounding():
+    """A profile would follow the rounding of residuals, for many calculations."""
+    f = rd.Scene(rd.Rope(10.0, 0.5, bending_stiffness=2.0), tension=1000.0).compile().modes(8)
+    guess = rd.Scene(rd.Rope(10.0, 0.5, bending_stiffness=1.0), tension=900.0)
+    fit = rd.identify(guess, f.frequency, BOTH)
+    quantile = 2.446912  # of Student's t with 6 degrees of freedom
+    np.testing.assert_allclose(
+        np.diff(fit.interval(0.95))[:, 0], 2 * quantile * fit.std, rtol=1e-2, atol=4e-13
+    )
+
+
+@pytest.mark.parametrize("size", [1e-200, 1e200])
+def test_what_would_overflow_is_refused_by_name(size):
+    rope, f = scene(TENSION, 2.0), np.arange(1.0, 6.0)
+    with pytest.raises(rd.SceneError, match=r"measured\[0\] must be between 1e-50 and 1e\+50"):
+        rd.identify(rope, f * size, BOTH)
+    with pytest.raises(rd.SceneError, match=r"measured.std\[0\] must be between 1e-50 and 1e\+50"):
+        rd.identify(rope, rd.Peaks(f, std=f * size), BOTH)
+    known = {"tension": (1e200, 1.0) if size > 1 else (1.0, 1e-200)}
+    with pytest.raises(rd.SceneError, match=r"prior\['tension'\] must be of at most .* got \("):
+        rd.identify(rope, f, BOTH, prior=known)
