@@ -5,6 +5,8 @@
 #include "refine_left.h"
 
 #include <complex.h>
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 static double _Complex lane_of(const cv *x, int k)
@@ -18,9 +20,10 @@ static double _Complex quotient(double _Complex a, double _Complex b)
     return a * conj(b) / (creal(b) * creal(b) + cimag(b) * cimag(b));
 }
 
-/* x <- A[:, :W]^-1 A[:, W] by elimination with pivoting; A is destroyed. True where A is singular: x
-   is then what A takes to 0, very large. */
-static _Bool eliminate(double _Complex A[W][W + 1], double _Complex *x)
+/* x <- A[:, :W]^-1 A[:, W] by elimination with pivoting; A, made of numbers of a size, is destroyed.
+   True where it is singular but for their rounding: x is then what A takes to 0, very large and of any
+   phase. */
+static _Bool eliminate(double _Complex A[W][W + 1], double size, double _Complex *x)
 {
     _Bool singular = 0;
     for (int c = 0; c < W; c++) {
@@ -32,10 +35,9 @@ static _Bool eliminate(double _Complex A[W][W + 1], double _Complex *x)
         memcpy(row, A[c], sizeof row);
         memmove(A[c], A[best], sizeof row);
         memcpy(A[best], row, sizeof row);
-        if (cabs(A[c][c]) < 1e-40) {
+        singular = singular || cabs(A[c][c]) < 64 * DBL_EPSILON * size;
+        if (cabs(A[c][c]) < 1e-40)
             A[c][c] = 1e-40;
-            singular = 1;
-        }
         for (int i = 0; i < W; i++) {
             if (i == c)
                 continue;
@@ -74,6 +76,7 @@ static void end_solve(const struct left *left, const struct rate *rate, const ui
 {
     for (int k = 0; k < RD_LANES; k++) {
         double _Complex A[W][W + 1], x[W];
+        double size = 1; /* U has no larger entries */
         for (int i = 0; i < W; i++) {
             for (int j = 0; j < W; j++) {
                 const double _Complex U = lane_of(&left->U[i][j], k);
@@ -83,12 +86,13 @@ static void end_solve(const struct left *left, const struct rate *rate, const ui
             A[i][W] = held[i] ? -g : CMPLX(p[i][k] + cimag(g), -creal(g));
             for (int m = 0; m < W && !held[i]; m++) {
                 const double N = rate->V[i][m][k];
+                size = fmax(size, fabs(N));
                 for (int j = 0; j < W; j++)
                     A[i][j] += N * lane_of(&left->U[m][j], k);
                 A[i][W] -= N * lane_of(left->g + m, k);
             }
         }
-        if (eliminate(A, x))
+        if (eliminate(A, size, x))
             make_real(left, k, x);
         for (int c = 0; c < W; c++) {
             s[c].re[k] = creal(x[c]);
