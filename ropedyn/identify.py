@@ -125,7 +125,7 @@ def identify(
         positions by a factor of 30, about their guesses and about what the lowest modes tell.
     missing : int, optional
         Of a search: at most so many modes below the highest peak are not among the peaks, as many
-        as there are peaks where left out.
+        as there are peaks but no more than 32 where left out.
     spurious : int
         Of a search: at most so many peaks are no modes.
     scale : bool

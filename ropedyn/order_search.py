@@ -39,6 +39,12 @@ FINEST = 1e-6
 CANDIDATES = 8
 """Numberings of the grid that are fitted to the calculation itself."""
 
+MISSING = 32
+"""Modes that may be missing, unless told: what a search costs grows by their square."""
+
+SUBSETS = 4
+"""Of two peaks each that are taken for any two modes, unless more may be spurious."""
+
 ROUNDS = 3
 """Times that peaks are numbered on the grid, each after a fit."""
 
@@ -100,7 +106,7 @@ def search(
         Parameters to start from, positive.
     missing, spurious : int
         At most so many modes below the highest one seen are missing, as many as there are peaks
-        where left out, and at most so many peaks are no modes.
+            but no more than 32 where left out, and at most so many peaks are no modes.
 
     Returns
     -------
@@ -135,7 +141,7 @@ def search(
         band=(0.0, float(measured.max())),
         overlooked=OVERLOOKED,
         stray=STRAY,
-        missing=len(measured) if missing is None else missing,
+        missing=min(len(measured), MISSING) if missing is None else missing,
         spurious=min(spurious, len(measured) - 1),
     )
     reach = np.full(start.shape, REACH)
@@ -233,7 +239,9 @@ def _guesses(likelihood: Likelihood, modes: int, parameters: int) -> Whole:
 def _subsets(peaks: int, size: int, spurious: int) -> list[tuple[int, ...]]:
     """Return sets of peaks, far apart, of which one has no spurious peak."""
     nested = [(i, peaks - 1 - i)[:size] for i in range(peaks // 2)]
-    return nested if len(nested) > spurious else list(combinations(range(peaks), size))
+    if len(nested) > spurious:
+        return nested[: max(spurious + 1, SUBSETS)]
+    return list(combinations(range(peaks), size))
 
 
 def _once_each(at: NDArray[np.intp], orders: Whole) -> tuple[NDArray[np.intp], Whole]:

@@ -10,7 +10,7 @@ from measured_ropes import CORD_FREQUENCY, CORD_TENSION, cord
 import ropedyn as rd
 from ropedyn.order_grid import Grid
 from ropedyn.order_likelihood import Likelihood, numbered
-from ropedyn.order_search import search
+from ropedyn.order_search import _subsets, search
 from ropedyn.path import with_values
 from ropedyn.rayleigh import Quotients
 
@@ -308,6 +308,14 @@ def test_orders_do_not_need_to_know_the_noise(noise):
     assert best.noise == (0.008 if noise == 0.01 else 0.0005)
     peaks = np.append(peaks, 0.52 * (f[3] + f[4]))
     assert search(peaks, None, pinned, 4 * true)[0].orders.tolist() == [1, 2, 4, 5, 6, 8, 0]
+
+
+@pytest.mark.parametrize(("peaks", "spurious"), [(8, 1), (50, 1), (50, 6), (12, 5)])
+def test_many_peaks_are_guessed_by_few_pairs_of_which_one_is_right(peaks, spurious):
+    """A spurious peak spoils one pair at most, where no peak is in two."""
+    pairs = _subsets(peaks, 2, spurious)
+    assert len(pairs) == max(4, spurious + 1)
+    assert len({peak for pair in pairs for peak in pair}) == 2 * len(pairs)
 
 
 def test_peaks_may_come_in_any_order():
