@@ -55,8 +55,8 @@ def _options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--unknown",
-        required=True,
-        help="comma list, such as tension,bending_stiffness,ends[0].spring.beta",
+        default="tension",
+        help="comma list, such as tension,bending_stiffness,ends[0].spring.beta (%(default)s)",
     )
     parser.add_argument(
         "--prior",

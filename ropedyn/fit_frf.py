@@ -139,7 +139,8 @@ def _systematic(measured: Complex, calculated: Complex, std: Real) -> list[str]:
         if np.linalg.norm(off) <= EXACT * np.linalg.norm(true):
             continue
         one = off / each
-        alike = float(np.vdot(one[:-1], one[1:]).real / np.vdot(one, one).real)
+        size = float(np.vdot(one, one).real)
+        alike = float(np.vdot(one[:-1], one[1:]).real) / size if size > 0 else 0.0
         if alike > ALIKE:
             found.append(
                 f"response {r} differs from the model by more than noise: its residuals of "

@@ -19,7 +19,7 @@ from .fits import Fits
 from .measured import Measured
 from .misfit import Known
 from .natural_frequencies import NaturalFrequencies
-from .orders import found_orders, given_orders, likelier_is_none, lowest_orders, search_std
+from .orders import found_orders, given_orders, lowest_orders, lowest_suffice
 from .path import with_values
 from .peaks import Peaks
 from .prior import Prior
@@ -120,8 +120,8 @@ def identify(
         takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``.
     orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
-        where they do not the lowest modes, if these fit so well that no others can be likelier;
-        else they are searched. None: they are searched in any case. A search moves all but
+        where they do not the lowest modes, if these explain the peaks as well as their noise lets
+        them; else they are searched. None: they are searched in any case. A search moves all but
         positions by a factor of 30, about their guesses and about what the lowest modes tell.
     missing : int, optional
         Of a search: at most so many modes below the highest peak are not among the peaks, as many
@@ -232,8 +232,9 @@ def _likeliest(lowest: Identification, how: Options) -> Fit:
     except SolveError:
         pass
     else:
-        off = fit.residual / search_std(lowest.frequency, lowest.std)
-        if how.orders is not None and likelier_is_none(float(off @ off)):
+        freedom = len(lowest.frequency) - len(how.paths)
+        suffice = lowest_suffice(fit.residual, lowest.frequency, lowest.std, freedom)
+        if how.orders is not None and suffice:
             return fit
         assert fit.solution is not None
         centres.append(fit.solution.minimum.u)

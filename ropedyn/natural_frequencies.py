@@ -78,7 +78,10 @@ class NaturalFrequencies:
         try:
             return found.frequency(self.unknowns.paths[i])
         except SceneError as error:
-            raise SceneError(f"unknown[{i}] must change natural frequencies: {error}") from error
+            raise SceneError(
+                f"unknown[{i}] must change natural frequencies, as damping does not, which a whole "
+                f"response tells: {error}"
+            ) from error
 
     def _shapes(self, u: Real, count: int) -> tuple[Shapes, NDArray[np.intp]]:
         """Return modes among which so many vibrate, or all there are, and which they are."""

@@ -23,6 +23,10 @@ NOISE = 0.005
 """Relative standard deviation of peaks that have none, to judge the lowest modes alone."""
 
 
+UNLIKELY = 0.05
+"""Probability that noise alone puts the lowest modes off by more than what is accepted."""
+
+
 class RunnerUp(NamedTuple):
     """The second best way to see peaks as modes."""
 
@@ -97,22 +101,30 @@ class Factors:
         return frequency, slope[:, self.which] / factor
 
 
-def likelier_is_none(misfit: float) -> bool:
-    """Say whether no other orders can be likelier than the lowest modes.
+def lowest_suffice(residual: Real, frequency: Real, std: Real | None, freedom: int) -> bool:
+    """Say whether the lowest modes explain the peaks, so that no others need be looked for.
 
-    Any others have a mode missing, which costs more than what the lowest leave to gain.
+    Any others have a mode missing: where the noise is not known they must gain more than that
+    costs, where it is known the lowest must be off by more than noise would be.
 
     Parameters
     ----------
-    misfit : float
-        Sum of ((calculated - measured)/std)^2 of the lowest modes.
+    residual : ndarray, shape (k,)
+        Calculated less measured [Hz].
+    frequency : ndarray, shape (k,)
+        Of the peaks [Hz].
+    std : ndarray, shape (k,), or None
+        Their standard deviations [Hz].
+    freedom : int
+        Peaks that are more than numbers sought.
     """
-    return misfit <= -2 * np.log(OVERLOOKED)
+    from scipy.special import chdtri
 
-
-def search_std(frequency: Real, std: Real | None) -> Real:
-    """Return the standard deviations that the lowest modes are judged with [Hz]."""
-    return NOISE * frequency if std is None else std
+    off = residual / (NOISE * frequency if std is None else std)
+    limit = -2 * float(np.log(OVERLOOKED))
+    if std is not None and freedom > 0:
+        limit = max(limit, float(chdtri(freedom, UNLIKELY)))
+    return bool(off @ off <= limit)
 
 
 def found_orders(

@@ -207,3 +207,17 @@ def test_command_reads_a_file_as_a_whole_or_its_peaks(tmp_path, capsys):
 def test_command_refuses_bad_input(cord_file, capsys, options, message):
     assert main(["identify", cord_file, *PEAKS, *options]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_peaks_that_are_as_wrong_as_they_say_need_no_search():
+    # chi-square of the lowest modes is beyond what is accepted in one of 20: more than 8 of 40 in 1e-4
+    scene = rd.Scene(rd.Rope(2.0, 0.5, bending_stiffness=1.0), tension=1000.0)
+    exact = scene.compile().modes(8).frequency
+    random = np.random.default_rng(5)
+    searched = 0
+    for _ in range(40):
+        peaks = rd.Peaks(exact * (1 + 1e-3 * random.normal(size=8)), std=1e-3 * exact)
+        fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+        assert fit.orders.tolist() == list(range(1, 9))
+        searched += fit.runner_up is not None
+    assert searched <= 8
