@@ -210,7 +210,7 @@ def test_command_refuses_bad_input(cord_file, capsys, options, message):
 
 
 def test_peaks_that_are_as_wrong_as_they_say_need_no_search():
-    # chi-square of the lowest modes is beyond what is accepted in one of 20: more than 8 of 40 in 1e-4
+    # chi-square of the lowest modes is too large in one of 20: in more than 8 of 40 once in 1e4
     scene = rd.Scene(rd.Rope(2.0, 0.5, bending_stiffness=1.0), tension=1000.0)
     exact = scene.compile().modes(8).frequency
     random = np.random.default_rng(5)
