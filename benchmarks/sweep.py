@@ -127,6 +127,7 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else ROPES
     scenes = ropes(count)
     parts = [
+        "# Many ropes at once\n\n"
         f"{report.machine()} for each worker.\n\n`sweep` over {count} ropes of different tension "
         "and bending stiffness: wall time with workers that have started."
     ]
