@@ -20,9 +20,6 @@ WORDS = ("pinned", "clamped")
 LEVEL = 0.95
 """Of the test whether something fits worse."""
 
-GROWTH = 3.841458820694124
-"""Quantile of chi-square with one degree of freedom at that level."""
-
 
 @dataclass(frozen=True, eq=False)
 class Alternative:
@@ -89,11 +86,11 @@ def _guess(fit: Fit, scene: Scene, word: str) -> Scene:
 
 
 def _verdict(fit: Fit, other: Fit) -> str:
-    from scipy.special import fdtri
+    from scipy.special import chdtri, fdtri
 
     if fit.freedom is None:
-        growth = other.chi_square - fit.chi_square
-        return _said(growth, -GROWTH, GROWTH)
+        most = float(chdtri(1, 1 - LEVEL))
+        return _said(other.chi_square - fit.chi_square, -most, most)
     if fit.freedom < 0.5:
         return "as well"
     most = float(fdtri(fit.freedom, fit.freedom, LEVEL))

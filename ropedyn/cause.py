@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .compile import divided, stations_of
+from .compile import remeshed
 from .eigen import spectrum
 from .errors import SceneError, SolveError
 from .model import Model
@@ -219,11 +219,7 @@ class Tracked:
         model = self.model
         try:
             scene = with_values(model.scene, {path: factor * value_at(model.scene, path)})
-            stations = stations_of(scene)
-            counts = np.ones(len(stations) - 1, dtype=np.intp)
-            if model.element != "continuous":
-                counts = np.diff(np.searchsorted(model.x, stations_of(model.scene)))
-            changed = divided(scene, model.element, stations, counts)
+            changed = remeshed(model, scene)
             frequency = np.zeros(len(self.number))
             for component, at, number in self.parts:
                 eigenvalue, _ = spectrum(changed, component, int(number.max()) + 1)

@@ -108,11 +108,25 @@ def divided(
     )
 
 
+def station_nodes(model: Model) -> NDArray[np.intp]:
+    """Return the nodes of a model at the stations of its scene."""
+    return np.searchsorted(model.x, stations_of(model.scene))
+
+
 def finer(model: Model, points: int) -> Model:
     """Return the same continuous spans with nodes at the ends of equal parts of their elements."""
-    stations = stations_of(model.scene)
-    counts = np.diff(np.searchsorted(model.x, stations)) * points
-    return divided(model.scene, model.element, stations, counts)
+    counts = np.diff(station_nodes(model)) * points
+    return divided(model.scene, model.element, stations_of(model.scene), counts)
+
+
+def remeshed(model: Model, scene: Scene) -> Model:
+    """Compile another scene, with the elements that each span of a model has; one if continuous."""
+    stations = stations_of(scene)
+    if model.element == "continuous":
+        counts = np.ones(len(stations) - 1, dtype=np.intp)
+    else:
+        counts = np.diff(station_nodes(model))
+    return divided(scene, model.element, stations, counts)
 
 
 def check_points(model: Model, points: int | None) -> None:

@@ -17,7 +17,7 @@ from . import _core, check, damping
 from .answer import Cost, Work
 from .carried import Carried
 from .chain import CARRIED, CHANNELS, Chain
-from .compile import check_points, divided, finer, stations_of
+from .compile import check_points, divided, finer, station_nodes, stations_of
 from .errors import SceneError, SolveError
 from .mesh_error import mesh_of_modes
 from .model import MOST_POINTS, MOST_STEPS, Model
@@ -421,8 +421,7 @@ def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, NDArr
     ndarray of int, shape (parts + 1,)
         The nodes between parts: `points` of them in each element of the model, or its elements.
     """
-    stations = stations_of(model.scene)
-    at = np.searchsorted(model.x, stations)
+    at = station_nodes(model)
     chain = model.chain.undamped
     elements = [chain.between(first, first + 1) for first in at[:-1].tolist()]
     least = 2 * np.array([_pieces(model, element, highest) for element in elements])
@@ -435,7 +434,7 @@ def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, NDArr
             f"{MOST_POINTS} are: the highest ones have too short waves"
         )
     edges = np.cumsum([0, *np.repeat(each, np.diff(at) * parts)])
-    return divided(model.scene, model.element, stations, counts), edges
+    return divided(model.scene, model.element, stations_of(model.scene), counts), edges
 
 
 def solve_shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = None) -> Shapes:

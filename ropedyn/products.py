@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import damping, mesh
 from .chain import Chain
-from .compile import stations_of
+from .compile import station_nodes, stations_of
 from .hamiltonian import Span, generator, hamiltonian
 from .model import Model
 from .port import Point, locate, moving
@@ -81,7 +81,7 @@ class Loaded:
 
     @cached_property
     def _elements(self) -> list[int]:
-        begins = np.searchsorted(self.model.x, self.stations[:-1])
+        begins = station_nodes(self.model)[:-1]
         return [int(e) for e in self.chain.element_of[begins]]
 
     @cached_property

@@ -20,6 +20,7 @@ from .compile import (
     lumped,
     section,
     standing_at,
+    station_nodes,
     stations_of,
 )
 from .end import end_of
@@ -165,7 +166,7 @@ class Places:
         stations = stations_of(model.scene)
         along = stretches(model.scene.parts)
         local, which = ropes(model.scene.rope, along, stations)
-        at = np.searchsorted(model.x, stations)
+        at = station_nodes(model)
         station = np.searchsorted(at, model.chain.first, side="right") - 1
         values = {
             "counts": np.diff(at),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import mesh
-from .compile import divided, stations_of
+from .compile import remeshed, stations_of
 from .errors import SceneError
 from .path import value_at, with_values
 from .port import Point
@@ -70,16 +70,15 @@ def frf_difference(
         raise SceneError(
             f"{path} must not be 0 for a derivative by differences, to both sides of it"
         )
-    counts = np.diff(np.searchsorted(model.x, stations_of(scene)))
+    count = len(stations_of(scene))
 
     def at(value: float) -> Complex:
         other = with_values(scene, {path: value})
-        stations = stations_of(other)
-        if len(stations) != len(counts) + 1:
+        if len(stations_of(other)) != count:
             raise SceneError(
                 f"{path} must be free to change to both sides for a derivative by differences"
             )
-        there = divided(other, model.element, stations, counts)
+        there = remeshed(model, other)
         return there.frf(frequency, drive=list(drives), response=list(responses)).value
 
     def quotient(h: float) -> Complex:
