@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from . import check
 from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .fit import Fit
-from .fit_frf import fit_response
 from .fit_peaks import Identification
 from .fits import Fits
 from .measured import Measured
@@ -25,7 +24,6 @@ from .peaks import Peaks
 from .prior import Prior
 from .resonance import Resonances
 from .response_fit import ResponseFit
-from .response_misfit import Response
 from .scene import Scene
 from .seen import above_zero
 from .unknown import Unknowns
@@ -266,6 +264,9 @@ def _fits(scene: Scene, measured: Sequence[Any], how: Options) -> Fits:
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
     """Identify one rope by a whole response."""
+    from .fit_frf import fit_response
+    from .response_misfit import Response
+
     if not isinstance(how.orders, str) or how.orders != "auto":
         raise SceneError(
             'orders must be "auto" of a whole response, got '

@@ -13,7 +13,6 @@ from . import check
 from .errors import SceneError, SolveError
 from .minimum import BLIND
 from .natural_frequencies import NaturalFrequencies
-from .order_search import OVERLOOKED, search
 from .peaks import Peaks
 
 Real = NDArray[np.float64]
@@ -120,6 +119,8 @@ def lowest_suffice(residual: Real, frequency: Real, std: Real | None, freedom: i
     """
     from scipy.special import chdtri
 
+    from .order_search import OVERLOOKED
+
     off = residual / (NOISE * frequency if std is None else std)
     limit = -2 * float(np.log(OVERLOOKED))
     if std is not None and freedom > 0:
@@ -162,6 +163,8 @@ def found_orders(
     SolveError
         If no orders are within the limits.
     """
+    from .order_search import search
+
     ranked: dict[tuple[int, ...], float] = {}
     failure: SolveError | None = None
     about = [Factors.of(calculated, centre, len(frequency)) for centre in centres]
