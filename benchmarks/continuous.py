@@ -24,8 +24,8 @@ import scene
 
 import ropedyn as rd
 from ropedyn import _core
-from ropedyn.harmonic import Question
-from ropedyn.port import ports
+from ropedyn.chain.port import ports
+from ropedyn.response.harmonic import Question
 
 FREQUENCY = frf.FREQUENCY
 EXACT, FEW = slice(None, None, 10), slice(None, None, 50)

@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 
 import ropedyn as rd
-from ropedyn.chain import Chain
+from ropedyn.chain.chain import Chain
 
 mp.mp.dps = 40
 

@@ -65,7 +65,7 @@ static int execute(PyObject *module)
     import_array1(-1);
     if (openblas_set_num_threads != NULL)
         openblas_set_num_threads(1);
-    PyObject *errors = PyImport_ImportModule("ropedyn.errors");
+    PyObject *errors = PyImport_ImportModule("ropedyn.base.errors");
     if (errors == NULL)
         return -1;
     state->scene_error = PyObject_GetAttrString(errors, "SceneError");

@@ -9,7 +9,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 /* rounding of U, E and the element coefficients, in units of eps sqrt(steps); calibrated by 10^4
-   random lines: tests/test_rounding_error.py */
+   random lines: tests/response/test_rounding_error.py */
 static const double ROUNDING = 16.0;
 
 static void listen(struct sweep *s, int way, const struct tap *tap)

@@ -1,7 +1,8 @@
 """What a measurement and the model say of each other: docs/measured.png.
 
-Left: first frequencies of 35 tubes of known tension, nothing fitted (tests/measured_ropes.py has
-the source). Right: a made measurement with noise, the scene as it was drawn and as identified.
+Left: first frequencies of 35 tubes of known tension, nothing fitted (source in
+tests/support/measured_ropes.py). Right: a made measurement with noise, the scene as it was drawn
+and as identified.
 
 python docs/measured.py
 """
@@ -19,7 +20,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 import ropedyn as rd
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "tests"))
+sys.path.insert(0, str(HERE.parent / "tests" / "support"))
 from measured_ropes import (  # noqa: E402 - beside the tests
     STRAW_FREQUENCY,
     STRAW_LENGTH,

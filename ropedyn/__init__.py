@@ -8,51 +8,57 @@ unit of the dimension.
 """
 
 from . import ask, study2015
-from .accuracy import AccuracyCost, accuracy_cost
-from .animation import Animation
-from .answer import Answer, Cost, load
-from .bending_test import BendingTest
-from .broken_wire import BrokenWire
-from .choice import Choice
-from .compare import Comparison, compare
-from .damage import Damage
-from .damped_modes import DampedModes
-from .damping import LossFactor, ModalDamping, RayleighDamping, StiffnessDamping, ViscousDamping
-from .deflection import Deflection
-from .effect import EffectCost, effect_cost
-from .end import End
-from .errors import IdentifyWarning, RopedynError, SceneError, SolveError
-from .fit import Fit
-from .fits import Fits
-from .floquet import Floquet
-from .force import Chirp, Impulse, Sine, Step
-from .frf import FRF
-from .gravity import Gravity
-from .history import History
-from .identify import identify
-from .measured import Measured
+from .base.answer import Answer, Cost, load
+from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
+from .base.table import Table
+from .chain.mesh_choice import Choice
+from .curves.measured import Measured
+from .curves.peaks import Peaks
+from .curves.resonance import Resonances
+from .eigen.damage import Damage
+from .eigen.damped.damped_modes import DampedModes
+from .eigen.modes import Modes
+from .experiment.compare.compare import Comparison, compare
+from .experiment.identify.fit import Fit
+from .experiment.identify.fits import Fits
+from .experiment.identify.identify import identify
+from .experiment.identify.response_fit import ResponseFit
+from .experiment.plan.plan import Plan
+from .experiment.plan.planning import plan_measurement
 from .model import Model
-from .modes import Modes
-from .node_force import NodeForce
-from .part import Dashpot, Hinge, PointMass, Spring, Support
-from .peaks import Peaks
-from .plan import Plan
-from .planning import plan_measurement
-from .prior import Prior
-from .resonance import Resonances
-from .resonator import Resonator
-from .response_fit import ResponseFit
-from .ringdown import RingDown
-from .rope import Rope
-from .scene import Scene
-from .spectrum import Spectrum
-from .stability import StabilityMap
-from .stop import Stop
-from .stretch import AddedMass, LocalChange
-from .sweep import Sweep, sweep
-from .table import Table
-from .tension import Tension
-from .torsion_test import TorsionTest
+from .motion.history import History
+from .parametric.floquet import Floquet
+from .parametric.stability import StabilityMap
+from .plot.animation import Animation
+from .response.deflection import Deflection
+from .response.frf import FRF
+from .scene.bench.bending_test import BendingTest
+from .scene.bench.torsion_test import TorsionTest
+from .scene.damping import (
+    LossFactor,
+    ModalDamping,
+    RayleighDamping,
+    StiffnessDamping,
+    ViscousDamping,
+)
+from .scene.end import End
+from .scene.force import Chirp, Impulse, Sine, Step
+from .scene.gravity import Gravity
+from .scene.parts.broken_wire import BrokenWire
+from .scene.parts.node_force import NodeForce
+from .scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
+from .scene.parts.resonator import Resonator
+from .scene.parts.stop import Stop
+from .scene.parts.stretch import AddedMass, LocalChange
+from .scene.prior import Prior
+from .scene.rope import Rope
+from .scene.scene import Scene
+from .scene.tension import Tension
+from .signal.ringdown import RingDown
+from .signal.spectrum import Spectrum
+from .study.accuracy import AccuracyCost, accuracy_cost
+from .study.effect import EffectCost, effect_cost
+from .study.sweep import Sweep, sweep
 
 __version__ = "0.1.0"
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .chain import Chain
+from .chain.chain import Chain
 
 _Real = NDArray[np.float64]
 _Ports = tuple[NDArray[np.int32], _Real, _Real | None]

@@ -20,15 +20,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import check, eigen, harmonic
-from .answer import Frozen
-from .change import OF_FRF, OF_MODES, Change, change_of_frf, change_of_modes
-from .errors import SceneError
-from .frf import FRF
+from .base import check
+from .base.answer import Frozen
+from .base.errors import SceneError
+from .base.unit import QUANTITIES, place
+from .chain.port import Point
+from .eigen import eigen
+from .eigen.modes import Modes
 from .model import Model
-from .modes import Modes
-from .port import Point
-from .unit import QUANTITIES, place
+from .response import harmonic
+from .response.frf import FRF
+from .study.difference import OF_FRF, OF_MODES, Change, change_of_frf, change_of_modes
 
 Real = NDArray[np.float64]
 

@@ -9,27 +9,28 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, check
-from .answer import Frozen
-from .chain import Chain
-from .choice import Choice
-from .damping import having, separable
-from .errors import SceneError
-from .port import Point
-from .progress import Progress
-from .scene import Scene
-from .stretch import KINDS as STRETCHES
+from . import _core
+from .base import check
+from .base.answer import Frozen
+from .base.errors import SceneError
+from .base.progress import Progress
+from .chain.chain import Chain
+from .chain.mesh_choice import Choice
+from .chain.port import Point
+from .scene.damping import having, separable
+from .scene.parts.stretch import KINDS as STRETCHES
+from .scene.scene import Scene
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
-    from .damped_modes import DampedModes
-    from .deflection import Deflection
-    from .floquet import Floquet
-    from .frf import FRF
-    from .history import History
-    from .modes import Modes
-    from .stability import StabilityMap
+    from .eigen.damped.damped_modes import DampedModes
+    from .eigen.modes import Modes
+    from .motion.history import History
+    from .parametric.floquet import Floquet
+    from .parametric.stability import StabilityMap
+    from .response.deflection import Deflection
+    from .response.frf import FRF
 
 
 EXACT = ("tensed", "continuous")
@@ -186,7 +187,7 @@ class Model(Frozen):
         [[ 600. -300.]
          [-300.  600.]]
         """
-        from .matrices import stiffness
+        from .chain.matrices import stiffness
 
         self._refuse_matrices()
         return stiffness(self.chain)
@@ -207,7 +208,7 @@ class Model(Frozen):
         [[0.1 0. ]
          [0.  0.1]]
         """
-        from .matrices import mass
+        from .chain.matrices import mass
 
         self._refuse_matrices()
         return mass(self.chain)
@@ -245,7 +246,7 @@ class Model(Frozen):
                 "damping must scale sections and tension alike for tensed elements or a hanging "
                 f"string to have a damping matrix, got {self.scene.damping}"
             )
-        from .matrices import damping
+        from .chain.matrices import damping
 
         return damping(self.chain, self.scene.dampings)
 
@@ -342,10 +343,10 @@ class Model(Frozen):
         self._refuse_nonlinear()
         check.instance(damped, "damped", bool, "True or False")
         if damped:
-            from .damped import solve_damped
+            from .eigen.damped.damped import solve_damped
 
             return solve_damped(self, number, below=below, solver=solver, points=points)
-        from .eigen import solve_modes
+        from .eigen.eigen import solve_modes
 
         return solve_modes(self, number, below=below, solver=solver, points=points)
 
@@ -377,7 +378,7 @@ class Model(Frozen):
         2
         """
         self._refuse_nonlinear()
-        from .eigen import count_modes
+        from .eigen.eigen import count_modes
 
         return count_modes(self, below)
 
@@ -459,7 +460,7 @@ class Model(Frozen):
         0.0025
         """
         self._refuse_nonlinear()
-        from .harmonic import solve_frf
+        from .response.harmonic import solve_frf
 
         return solve_frf(
             self,
@@ -516,7 +517,7 @@ class Model(Frozen):
         [0.02]
         """
         self._refuse_nonlinear()
-        from .deflection import solve_static
+        from .response.deflection import solve_static
 
         return solve_static(self, load, solver=solver, points=points)
 
@@ -623,7 +624,7 @@ class Model(Frozen):
         >>> print(history.value[0].round(3) + 0.0)
         [ 0.01 -0.01]
         """
-        from .transient import solve_transient
+        from .motion.transient import solve_transient
 
         return solve_transient(
             self,
@@ -685,7 +686,7 @@ class Model(Frozen):
         (False, array([ 1.57, -1.57]))
         """
         self._refuse_nonlinear()
-        from .floquet import solve_floquet
+        from .parametric.floquet import solve_floquet
 
         return solve_floquet(self, modes)
 
@@ -741,7 +742,7 @@ class Model(Frozen):
         ['2 f1']
         """
         self._refuse_nonlinear()
-        from .stability import solve_stability
+        from .parametric.stability import solve_stability
 
         return solve_stability(self, frequency, amplitude, modes=modes, progress=progress)
 
@@ -811,7 +812,7 @@ class Model(Frozen):
         >>> bool(abs(stepped.value / model.frf(lines, drive=drive).value - 1).max() < 1e-8)
         True
         """
-        from .stepped_sine import solve_stepped_sine
+        from .motion.stepped_sine import solve_stepped_sine
 
         return solve_stepped_sine(
             self,

@@ -14,17 +14,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core, check
-from .damping import StiffnessDamping
-from .errors import SceneError
+from . import _core
+from .base import check
+from .base.errors import SceneError
+from .base.table import Table
+from .curves.peaks import Peaks
 from .model import Model
-from .peaks import Peaks
-from .rope import Rope
-from .scene import Scene
-from .table import Table
+from .scene.damping import StiffnessDamping
+from .scene.rope import Rope
+from .scene.scene import Scene
 
 if TYPE_CHECKING:
-    from .study_implied import Implied
+    from .study.implied import Implied
 
 ELEMENTS = 8
 """Elements of the study's chain."""
@@ -151,7 +152,7 @@ def fitted_beam() -> Scene:
     >>> round(fitted.tension), round(fitted.rope.bending_stiffness, 2)
     (2960, 0.42)
     """
-    from .identify import identify
+    from .experiment.identify.identify import identify
 
     return identify(tensed_beam(1000.0, 1.0), measured, ["tension", "bending_stiffness"]).scene
 
@@ -180,7 +181,7 @@ def implied(peaks: Peaks = measured) -> Implied:
     >>> print(rd.study2015.implied().fits["clamped"].value["tension"].round())
     2960.0
     """
-    from . import study_implied
+    from .study import implied as study_implied
 
     return study_implied.implied(peaks)
 

@@ -16,7 +16,7 @@ HEAD = """# What is validated
 One row for each physical claim: what it is measured against, the worst error measured, the error
 accepted, and the test that asserts it. `python tests/validation.py` writes this page; every number
 comes from the tests. The condition of an answer h is 1 + the sum of |d ln h/d ln p| over p =
-section, tension, springs, inertia, dashpots: `condition` in tests/exact_chain.py.
+section, tension, springs, inertia, dashpots: `condition` in tests/support/exact_chain.py.
 
 """
 LIMITS = """

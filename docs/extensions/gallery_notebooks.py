@@ -10,7 +10,7 @@ from sphinx.util.display import status_iterator
 
 ROOT = Path(__file__).parent.parent.parent
 NOTEBOOKS = ROOT / "notebooks"
-EXECUTED = ROOT / "build" / "notebooks"  # where tests/test_notebooks.py leaves them too
+EXECUTED = ROOT / "build" / "notebooks"  # where tests/project/test_notebooks.py leaves them too
 GALLERY = ROOT / "docs" / "gallery"
 
 
@@ -24,7 +24,7 @@ def _write_pages(verbosity):
     sources = sorted(NOTEBOOKS.glob("*.ipynb"))
     for stale in set(GALLERY.glob("*.ipynb")) - {GALLERY / path.name for path in sources}:
         stale.unlink()
-    package = [*(ROOT / "ropedyn").glob("*.py"), *(ROOT / "csrc").iterdir()]
+    package = [*(ROOT / "ropedyn").rglob("*.py"), *(ROOT / "csrc").rglob("*.[ch]")]
     changed = max(path.stat().st_mtime for path in package)
     stale = [path for path in sources if not _is_newer(EXECUTED / path.name, path, changed)]
     how = ("executing notebooks... ", "brown", len(stale), verbosity)

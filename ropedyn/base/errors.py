@@ -1,0 +1,73 @@
+"""The errors of ropedyn: one tree."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..motion.history import History
+
+
+class RopedynError(Exception):
+    """Whatever ropedyn refuses.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> try:
+    ...     rd.Rope(-1.0, 0.1)
+    ... except rd.RopedynError as error:
+    ...     print(error)
+    length must be a finite number > 0 [m], got -1.0
+    """
+
+
+class SceneError(RopedynError, ValueError):
+    """What the user gave has no meaning; the message names the argument and its value.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Rope(1.0, 0.1, bending_stiffness=float("nan"))
+    Traceback (most recent call last):
+    ...
+    ropedyn.errors.SceneError: bending_stiffness must be a finite number > 0 [N m^2], got nan
+    """
+
+
+class SolveError(RopedynError, ArithmeticError):
+    """What the numbers refused; the message names the frequency, the mode or the step.
+
+    Attributes
+    ----------
+    history : History or None
+        What `Model.transient` had computed before a step that does not converge.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile(elements=2)
+    >>> model.modes(5)
+    Traceback (most recent call last):
+    ...
+    ropedyn.errors.SolveError: number must be at most 1, the modes this model has, got 5
+    """
+
+    history: History | None = None
+
+
+class IdentifyWarning(UserWarning):
+    """What was measured does not tell all that was asked; the message says what it does tell.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.2), tension=500.0)
+    >>> peaks = rd.Peaks([25.0, 50.0], std=0.1)
+    >>> with warnings.catch_warnings(record=True) as told:
+    ...     warnings.simplefilter("always")
+    ...     fit = rd.identify(scene, peaks, ["tension", "linear_density"])
+    >>> told[0].category is rd.IdentifyWarning, len(fit.notes)
+    (True, 1)
+    """

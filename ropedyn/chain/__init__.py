@@ -1,0 +1,1 @@
+"""A scene compiled to plain arrays that the core reads."""

@@ -1,0 +1,275 @@
+"""The compiled chain: plain arrays that the core reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.check import COORDINATES
+
+KINDS = ("difference", "rigid", "tensed", "continuous")
+"""Kinds of element, in the core's order."""
+
+TENSED, CONTINUOUS = KINDS.index("tensed"), KINDS.index("continuous")
+
+ATTACHED = ("resonator", "broken wire")
+"""Kinds of structure that a node carries, in the core's order."""
+
+CARRIED = {kind: f"{kind} mass" for kind in ATTACHED}
+"""Names of the kinetic energy of each."""
+
+CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
+"""Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
+
+
+class Chain(NamedTuple):
+    """A chain as the core takes it; see csrc/chain.h.
+
+    Nodes with the same term and the same element on their right are a stretch; the last node is
+    one alone.
+    """
+
+    kind: int
+    coordinate: NDArray[np.int32]
+    """(width,) numbers of the coordinates."""
+    length: NDArray[np.float64]
+    """(distinct,) [m]."""
+    tension: NDArray[np.float64]
+    """(distinct,) [N]."""
+    flexibility: NDArray[np.float64]
+    """(distinct, 3, 3) of the section: axial, torsion, bending."""
+    first: NDArray[np.int32]
+    """(stretches,) first node, increasing from 0 to the last node."""
+    element: NDArray[np.int32]
+    """(stretches - 1,) which distinct element stands right of each node."""
+    mass: NDArray[np.float64]
+    """(terms, width, width)."""
+    stiffness: NDArray[np.float64]
+    """(terms, width, width)."""
+    held: NDArray[np.uint8]
+    """(terms, width)."""
+    term: NDArray[np.int32]
+    """(stretches,) which node term."""
+    hinge: NDArray[np.float64] | None = None
+    """(terms, width) compliance between the node and the element on its right, infinite where
+    free; None where nothing is hinged."""
+    inertia: NDArray[np.float64] | None = None
+    """(distinct, width) per length of continuous elements [kg/m, kg m]; None for others."""
+    damping: NDArray[np.float64] | None = None
+    """(terms, width, width) of dashpots [N s/m, N m s]; None where there are none."""
+    drag: NDArray[np.float64] | None = None
+    """(distinct, width) damping per length of continuous elements [N s/m^2, N s]; None where there
+    is none."""
+    sag: NDArray[np.float64] | None = None
+    """(distinct,) weight per length over tension [1/m]; None without gravity."""
+    attached_kind: NDArray[np.int32] | None = None
+    """(attached,) kinds of the structures that nodes carry, see csrc/attached.h; None where there
+    are none, as the rest of them."""
+    attached_term: NDArray[np.int32] | None = None
+    """(attached,) node term that carries it."""
+    attached_row: NDArray[np.float64] | None = None
+    """(attached, 2, width) displacement and rotation of its foot per motion of the node."""
+    attached_value: NDArray[np.float64] | None = None
+    """(attached, 4) its numbers, its damping last."""
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are."""
+        return int(self.first[-1]) + 1
+
+    @property
+    def element_of(self) -> NDArray[np.int32]:
+        """Which distinct element stands right of each node, shape (nodes - 1,)."""
+        return np.repeat(self.element, np.diff(self.first))
+
+    @property
+    def term_of(self) -> NDArray[np.int32]:
+        """Which node term each node has, shape (nodes,)."""
+        return np.repeat(self.term, np.diff(self.first, append=self.nodes))
+
+    @property
+    def free(self) -> int:
+        """How many coordinates can move."""
+        free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
+        return int(free_of_term[self.term] @ np.diff(self.first, append=self.nodes))
+
+    @property
+    def finite(self) -> int | None:
+        """How many modes there can be at most, None where inertia is spread along something."""
+        if self.inertia is not None and self.inertia.any():
+            return None
+        kinds = () if self.attached_kind is None else self.attached_kind
+        return None if ATTACHED.index("broken wire") in kinds else self.free + len(kinds)
+
+    @property
+    def undamped(self) -> Chain:
+        """The chain without what is in proportion to velocity."""
+        return self._replace(damping=None, drag=None)
+
+    @property
+    def carried(self) -> tuple[str, ...]:
+        """Kinds of the structures that nodes carry."""
+        kinds = () if self.attached_kind is None else set(self.attached_kind.tolist())
+        return tuple(ATTACHED[kind] for kind in sorted(kinds))
+
+    @property
+    def resists(self) -> bool:
+        """Whether structures that nodes carry have damping of their own."""
+        return bool(self._own_damping(range(len(ATTACHED))).any())
+
+    @property
+    def is_hysteretic(self) -> bool:
+        """Whether that of some, of broken wires, is a complex modulus."""
+        return bool(self._own_damping([ATTACHED.index("broken wire")]).any())
+
+    def _own_damping(self, kinds: Sequence[int]) -> NDArray[np.float64]:
+        """Return the damping of the structures of some kinds that these nodes carry."""
+        if self.attached_value is None:
+            return np.zeros(0)
+        assert self.attached_kind is not None
+        assert self.attached_term is not None
+        own = np.isin(self.attached_kind, kinds) & np.isin(self.attached_term, self.term)
+        return self.attached_value[own, -1]
+
+    @property
+    def feet(self) -> NDArray[np.intp]:
+        """Nodes that carry the structures, -1 for those of another part, shape (attached,)."""
+        if self.attached_term is None:
+            return np.zeros(0, dtype=np.intp)
+        carries = self.attached_term[:, None] == self.term
+        return np.where(carries.any(axis=1), self.first[carries.argmax(axis=1)], -1)
+
+    @property
+    def at_rest(self) -> Chain:
+        """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
+        kind = self.kind if self.inertia is None else TENSED
+        return self.undamped._replace(kind=kind, inertia=None)
+
+    def stretch(self, node: int) -> int:
+        """Return the stretch that a node belongs to."""
+        return int(np.searchsorted(self.first, node, side="right")) - 1
+
+    @property
+    def spans(self) -> tuple[tuple[int, int], ...]:
+        """First and last node of what lies between nodes where nothing can move."""
+        still: NDArray[np.bool_] = np.all(self.held, axis=1)[self.term]
+        still[[0, -1]] = False
+        nodes = [
+            np.arange(self.first[k], self.first[k + 1], dtype=np.int64)
+            for k in np.flatnonzero(still)
+        ]
+        ends = np.concatenate([[0], *nodes, [self.nodes - 1]]).tolist()
+        return tuple(pairwise(ends))
+
+    def between(self, first: int, last: int) -> Chain:
+        """Return the chain of some of the nodes."""
+        if (first, last) == (0, self.nodes - 1):
+            return self
+        begin, end = self.stretch(first), self.stretch(last - 1)
+        nodes = np.append(np.maximum(self.first[begin : end + 1], first), last) - first
+        term = np.append(self.term[begin : end + 1], self.term[self.stretch(last)])
+        return self._replace(
+            first=nodes.astype(np.int32), element=self.element[begin : end + 1], term=term
+        )
+
+    def only(self, coordinates: Sequence[str]) -> Chain:
+        """Return the chain of some of the coordinates."""
+        wanted = [COORDINATES.index(c) for c in coordinates]
+        if wanted == self.coordinate.tolist():
+            return self
+        kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
+        square = np.ix_(range(len(self.mass)), kept, kept)
+
+        def columns(array: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+            return None if array is None else np.ascontiguousarray(array[..., kept])
+
+        damping = None if self.damping is None else np.ascontiguousarray(self.damping[square])
+        return self._replace(
+            coordinate=np.array(wanted, dtype=np.int32),
+            mass=np.ascontiguousarray(self.mass[square]),
+            stiffness=np.ascontiguousarray(self.stiffness[square]),
+            held=np.ascontiguousarray(self.held[:, kept]),
+            hinge=_present(columns(self.hinge)),
+            inertia=columns(self.inertia),
+            damping=_present(damping),
+            drag=_present(columns(self.drag)),
+            sag=self.sag if {"x", "z"} <= set(coordinates) else None,
+            attached_row=columns(self.attached_row),
+        )._moving_attached
+
+    def carries(self, kind: str) -> NDArray[np.bool_]:
+        """Return which structures are of a kind of `ATTACHED`, shape (attached,)."""
+        if self.attached_kind is None:
+            return np.zeros(0, dtype=np.bool_)
+        return np.asarray(self.attached_kind == ATTACHED.index(kind))
+
+    @property
+    def _moving_attached(self) -> Chain:
+        """The chain with those structures alone whose feet its coordinates move."""
+        row = self.attached_row
+        return self if row is None else self.carrying(np.asarray(row.any(axis=(1, 2))))
+
+    def carrying(self, these: NDArray[np.bool_]) -> Chain:
+        """Return the chain with some of its structures alone, chosen by shape (attached,)."""
+        if not these.any():
+            return self._replace(
+                attached_kind=None, attached_term=None, attached_row=None, attached_value=None
+            )
+        assert self.attached_kind is not None
+        assert self.attached_term is not None
+        assert self.attached_row is not None
+        assert self.attached_value is not None
+        return self._replace(
+            attached_kind=self.attached_kind[these],
+            attached_term=self.attached_term[these],
+            attached_row=self.attached_row[these],
+            attached_value=self.attached_value[these],
+        )
+
+
+def _present(array: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+    """Return an array that has something in it, else None."""
+    return array if array is not None and array.any() else None
+
+
+def components(chain: Chain, coordinates: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    """Group the coordinates that move together.
+
+    Two coordinates are joined where the section flexibility couples their channels, a node term or
+    an attached structure couples them, or sag does x and z; z and beta are one bending motion.
+
+    Parameters
+    ----------
+    chain : Chain
+        Of all the coordinates.
+    coordinates : sequence of str
+        Their names.
+
+    Returns
+    -------
+    tuple of tuple of str
+        Each in the fixed order of coordinates.
+    """
+    width = len(coordinates)
+    channel = [CHANNELS[c] for c in coordinates]
+    coupled = (chain.mass != 0).any(axis=0) | (chain.stiffness != 0).any(axis=0)
+    if chain.damping is not None:
+        coupled |= (chain.damping != 0).any(axis=0)
+    if chain.sag is not None:
+        x, z = coordinates.index("x"), coordinates.index("z")
+        coupled[x, z] = coupled[z, x] = True
+    if chain.attached_row is not None:
+        moved = (chain.attached_row != 0).any(axis=1)
+        coupled |= (moved[:, :, None] & moved[:, None, :]).any(axis=0)
+    coupled |= (chain.flexibility != 0).any(axis=0)[np.ix_(channel, channel)]
+    group = list(range(width))
+    for i in range(width):
+        for j in range(width):
+            if coupled[i, j]:
+                group = [group[i] if g == group[j] else g for g in group]
+    members = [tuple(c for c, g in zip(coordinates, group) if g == k) for k in range(width)]
+    return tuple(sorted((m for m in members if m), key=lambda m: coordinates.index(m[0])))

@@ -1,0 +1,447 @@
+"""From a scene to a model: stations, elements, node terms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base import check
+from ..base.errors import SceneError
+from ..model import MOST_POINTS, Model
+from ..scene.damping import drag
+from ..scene.end import end_of
+from ..scene.parts.node import Attached, NodeTerm
+from ..scene.parts.part import places, standing, stretches
+from ..scene.parts.stretch import ropes
+from ..scene.rope import Rope
+from ..scene.scene import Scene
+from ..scene.stations import nearest, shares, stations_at
+from .chain import ATTACHED, CONTINUOUS, KINDS, TENSED, Chain, components
+
+MOST_ELEMENTS = 10_000_000
+
+INERTIA = {
+    "x": "linear_density",
+    "z": "linear_density",
+    "alpha": "polar_inertia",
+    "beta": "rotary_inertia",
+}
+"""Property of the rope that is the inertia per length of each coordinate."""
+
+ROUNDING = 4 * np.finfo(float).eps
+"""Positions are known to so much of the rope's length."""
+
+MOST_RADIANS = 1e10
+"""Of the boundary layers of a stiff string, L sqrt(T/B), in a continuous span."""
+
+
+def compile_scene(scene: Scene, *, elements: int | None, element: str | None) -> Model:
+    """Compile a scene; see `Scene.compile`."""
+    if element is None:
+        element = "continuous" if elements is None else "tensed"
+    check.one_of(element, "element", KINDS)
+    if elements is not None:
+        check.count(elements, "elements", most=MOST_ELEMENTS)
+    elif element != "continuous":
+        raise SceneError(f"elements must be given, how many {element!r} ones, got None")
+    stations = stations_of(scene)
+    spans = len(stations) - 1
+    counts = shares(np.diff(stations), spans if elements is None else elements)
+    return divided(scene, element, stations, counts)
+
+
+def stations_of(scene: Scene) -> NDArray[np.float64]:
+    """Return where the ends and parts of a scene stand, begin and end [m]."""
+    return stations_at(scene.rope.length, places(scene.parts))
+
+
+def divided(
+    scene: Scene, element: str, stations: NDArray[np.float64], counts: NDArray[np.intp]
+) -> Model:
+    """Compile a scene with so many elements between stations.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is compiled.
+    element : str
+        Kind of the elements.
+    stations : ndarray, shape (spans + 1,)
+        Of the scene [m].
+    counts : ndarray of int, shape (spans,)
+        Elements of each span.
+    """
+    kind = KINDS.index(element)
+    if (
+        element == "difference"
+        and scene.mean_tension != 0
+        and scene.rope.bending_stiffness is not None
+    ):
+        raise SceneError(
+            'element must not be "difference" where there is bending and tension: the '
+            "2015 study's kinematics has no geometric stiffness"
+        )
+    if not (np.diff(stations) / counts > 0).all():
+        raise SceneError(
+            f"elements must be longer than the smallest number, got {int(counts.sum())} on "
+            f"{scene.rope.length!r} m"
+        )
+    local, rope = ropes(scene.rope, stretches(scene.parts), stations)
+    if element == "continuous":
+        _check_layers(scene, local)
+    elements = _distinct(scene, local, rope, np.diff(stations), counts)
+    chain = _chain(scene, kind, stations, counts, elements)
+    groups = components(chain, scene.coordinates)
+    for array in chain:
+        if isinstance(array, np.ndarray):
+            array.flags.writeable = False
+    return Model(
+        scene=scene,
+        element=element,
+        coordinates=scene.coordinates,
+        components=groups,
+        x=_positions(stations, counts),
+        chain=chain,
+        unknowns=tuple(chain.only(group).free for group in groups),
+    )
+
+
+def station_nodes(model: Model) -> NDArray[np.intp]:
+    """Return the nodes of a model at the stations of its scene."""
+    return np.searchsorted(model.x, stations_of(model.scene))
+
+
+def finer(model: Model, points: int) -> Model:
+    """Return the same continuous spans with nodes at the ends of equal parts of their elements."""
+    counts = np.diff(station_nodes(model)) * points
+    return divided(model.scene, model.element, stations_of(model.scene), counts)
+
+
+def remeshed(model: Model, scene: Scene) -> Model:
+    """Compile another scene, with the elements that each span of a model has; one if continuous."""
+    stations = stations_of(scene)
+    if model.element == "continuous":
+        counts = np.ones(len(stations) - 1, dtype=np.intp)
+    else:
+        counts = np.diff(station_nodes(model))
+    return divided(scene, model.element, stations, counts)
+
+
+def check_points(model: Model, points: int | None) -> None:
+    """Refuse points inside the elements of a chain, and numbers of them without meaning."""
+    if points is None:
+        return
+    check.count(points, "points", most=MOST_POINTS)
+    if model.element != "continuous":
+        raise SceneError(f"points must be left out for chains, got {points}: answers are at nodes")
+
+
+def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
+    """Refuse boundary layers too thin for the rope to be halved into them."""
+    bending = [rope.bending_stiffness for rope in local if rope.bending_stiffness is not None]
+    if not bending:
+        return
+    radians = scene.rope.length * np.sqrt(abs(scene.mean_tension)) / np.sqrt(min(bending))
+    if not radians <= MOST_RADIANS:
+        raise SceneError(
+            f"bending_stiffness must leave L sqrt(T/B) at most {MOST_RADIANS:g} in continuous "
+            f"spans, got {radians:.3g}: without bending_stiffness the rope is a string"
+        )
+
+
+def section(rope: Rope) -> NDArray[np.float64]:
+    """Return the section flexibility of a rope.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        (axial strain, twist rate, curvature) per (axial force, torque, bending moment), zero where
+        the rope has no such stiffness.
+    """
+    return _core.section(
+        rope.axial_stiffness or 0.0,
+        rope.torsional_stiffness or 0.0,
+        rope.bending_stiffness or 0.0,
+        rope.lay_coupling or 0.0,
+        rope.lay_slope or 0.0,
+    )
+
+
+def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArray[np.float64]:
+    nodes, begins = np.append(counts, 1), np.append(0, np.cumsum(counts))
+    x = np.arange(begins[-1] + 1, dtype=np.float64)
+    x -= np.repeat(begins, nodes)
+    x *= np.repeat(np.append(np.diff(stations) / counts, 0.0), nodes)
+    x += np.repeat(stations, nodes)
+    x.flags.writeable = False
+    return x
+
+
+class Elements(NamedTuple):
+    """The distinct elements in the order they come in."""
+
+    length: NDArray[np.float64]
+    """(distinct,) [m]."""
+    flexibility: NDArray[np.float64]
+    """(distinct, 3, 3) of the section."""
+    inertia: NDArray[np.float64]
+    """(distinct, width) per length [kg/m, kg m]."""
+    which: NDArray[np.int32]
+    """(spans,) which of them each span has."""
+    sag: NDArray[np.float64] | None
+    """(distinct,) weight per length over tension [1/m], None without gravity."""
+
+
+def _distinct(
+    scene: Scene,
+    local: Sequence[Rope],
+    rope: NDArray[np.intp],
+    spans: NDArray[np.float64],
+    counts: NDArray[np.intp],
+) -> Elements:
+    """Tell elements of spans apart by length and by which of the local ropes they are of.
+
+    Lengths that differ by the rounding of positions are one, their mean.
+    """
+    each = spans / counts
+    order = np.argsort(each, kind="stable")
+    group = np.empty(len(each), dtype=np.intp)
+    group[order] = np.cumsum(np.diff(each[order], prepend=0.0) > ROUNDING * spans.sum())
+    length = (np.bincount(group, spans) / np.maximum(np.bincount(group, counts), 1))[group]
+    pair = group * len(local) + rope
+    _, first, pair = np.unique(pair, return_index=True, return_inverse=True)
+    which = np.argsort(np.argsort(first))[pair]
+    first = np.sort(first)
+    flexibility = np.stack([section(one) for one in local])
+    inertia = np.stack([inertia_of(scene, one) for one in local])
+    sag = None
+    if scene.gravity is not None:
+        # a rope that hangs is longer than its chord along x
+        flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
+        curvature = [scene.gravity.curvature(one, scene.mean_tension) for one in local]
+        sag = np.array(curvature)[rope[first]]
+    return Elements(
+        length=length[first],
+        flexibility=flexibility[rope[first]],
+        inertia=inertia[rope[first]],
+        which=which.astype(np.int32),
+        sag=sag,
+    )
+
+
+def _chain(
+    scene: Scene,
+    kind: int,
+    stations: NDArray[np.float64],
+    counts: NDArray[np.intp],
+    elements: Elements,
+) -> Chain:
+    """Return the chain with so many equal elements between stations."""
+    length, flexibility, inertia, which, _ = elements
+    # a station is a stretch of its own, and so are the nodes of a span if there are any
+    nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
+    nodes[1::2] = counts - 1
+    present = nodes > 0
+    inside, term_inside = np.unique(which[counts > 1], return_inverse=True)
+    term = np.empty(len(nodes), dtype=np.int32)
+    term[::2] = np.arange(len(stations))
+    term[1::2][counts > 1] = len(stations) + term_inside
+    first = (np.cumsum(nodes, dtype=np.int32) - nodes)[present]
+    element = np.repeat(which, 2)[present[:-1]]
+    term = term[present]
+    del nodes, present
+    is_lumped = kind != CONTINUOUS
+    along = np.tile(drag(scene.dampings) * dragged(scene), (len(length), 1))
+    mass = _at_nodes(lumped(kind, scene.coordinates, inertia, length), which, inside)
+    damping = _at_nodes(_halves(kind, along, length), which, inside)
+    stiffness, held, hinge = _terms(scene, stations, mass, damping)
+    chain = Chain(
+        kind=kind,
+        coordinate=np.array(
+            [check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32
+        ),
+        length=length,
+        tension=np.full(len(length), scene.mean_tension),
+        flexibility=flexibility,
+        first=first,
+        element=element,
+        mass=mass,
+        stiffness=stiffness,
+        held=held,
+        term=term,
+        hinge=hinge,
+        inertia=None if is_lumped else inertia,
+        damping=damping if damping.any() else None,
+        drag=along if along.any() and not is_lumped else None,
+        sag=elements.sag,
+    )
+    return _with_attached(scene, stations, chain)
+
+
+def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) -> Chain:
+    """Return the chain with the structures that its stations carry."""
+    carried = [(at, one) for at, _, one in carried_by(standing_at(scene, stations))]
+    if not carried:
+        return chain
+    row = np.zeros((len(carried), 2, len(scene.coordinates)))
+    for k, (station, one) in enumerate(carried):
+        for line, moves in enumerate((one.displacement, one.rotation)):
+            for coordinate, value in moves.items():
+                if coordinate in scene.coordinates:
+                    row[k, line, scene.coordinates.index(coordinate)] = value
+        if not (row[k].any(axis=0) & (chain.held[station] == 0)).any():
+            raise SceneError(
+                f"a {one.kind} must stand where its foot can move, got one at "
+                f"{float(stations[station])!r} m, where that is held"
+            )
+    return chain._replace(
+        attached_kind=np.array([ATTACHED.index(one.kind) for _, one in carried], dtype=np.int32),
+        attached_term=np.array([station for station, _ in carried], dtype=np.int32),
+        attached_row=row,
+        attached_value=np.array([one.value for _, one in carried]),
+    )
+
+
+def carried_by(
+    terms: Iterable[tuple[int, NodeTerm]],
+) -> list[tuple[int, NodeTerm, Attached]]:
+    """Return the structures of what stands at stations, in the order that the chain has them in."""
+    carried = [(at, term, one) for at, term in terms for one in term.attached]
+    carried.sort(key=lambda one: one[0])  # stable: those of a station in the order of the parts
+    return carried
+
+
+def _terms(
+    scene: Scene,
+    stations: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None]:
+    """Add masses and dashpots of parts to those of the distinct node terms, stations first.
+
+    Returns
+    -------
+    stiffness, held, hinge
+        Of the same node terms; None where nothing is hinged.
+    """
+    width = len(scene.coordinates)
+    stiffness = np.zeros(mass.shape)
+    held = np.zeros((len(mass), width), dtype=np.uint8)
+    hinge = None
+    number = {c: k for k, c in enumerate(scene.coordinates)}
+    for station, term in standing_at(scene, stations):
+        given = ((term.mass, mass), (term.stiffness, stiffness), (term.damping, damping))
+        for values, into in given:
+            for coordinate, value in values.items():
+                if value != 0.0 and coordinate in number:
+                    k = number[coordinate]
+                    into[station, k, k] += value
+        for coordinate in set(term.held) & set(number):
+            held[station, number[coordinate]] = 1
+        for coordinate, compliance in term.hinge.items():
+            hinge = np.zeros((len(mass), width)) if hinge is None else hinge
+            hinge[station, number[coordinate]] += compliance
+    return stiffness, held, hinge
+
+
+def _at_nodes(
+    given: NDArray[np.float64], which: NDArray[np.int32], inside: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Return what stations get from the elements of spans beside them, then nodes inside spans.
+
+    Parameters
+    ----------
+    given : ndarray, shape (distinct, 2, width, width)
+        By each distinct element to its left and to its right node.
+    which : ndarray of int, shape (spans,)
+        Distinct element of each span.
+    inside : ndarray of int
+        Distinct elements that have equal ones beside them.
+    """
+    none = np.zeros((1, *given.shape[2:]))
+    to_left, to_right = np.moveaxis(given[which], 1, 0)
+    stations = np.concatenate([none, to_right]) + np.concatenate([to_left, none])
+    return np.concatenate([stations, given[inside].sum(axis=1)])
+
+
+def _halves(kind: int, along: NDArray[Any], length: NDArray[Any]) -> NDArray[Any]:
+    """Return what is `along` elements, per length, half on either node: see `lumped`."""
+    count, width = along.shape
+    given = np.zeros((count, 2, width, width), dtype=np.result_type(along, length))
+    if kind != CONTINUOUS:
+        with np.errstate(over="ignore"):  # the core refuses what is no number
+            np.einsum("eskk->esk", given)[:] = (along * length[:, None] / 2)[:, None]
+    return given
+
+
+def lumped(
+    kind: int, coordinates: Sequence[str], inertia: NDArray[Any], length: NDArray[Any]
+) -> NDArray[Any]:
+    """Return the inertia that elements give to their left and to their right node.
+
+    Half of it each, and of tensed elements +-mu l^2/12 at z and beta: lumping is the trapezoidal
+    rule, this is its first error term by Euler and Maclaurin, zero inside a uniform span. With it
+    the frequencies of tensed chains converge with the fourth power of the element's length.
+
+    Parameters
+    ----------
+    kind : int
+        Of the elements.
+    coordinates : sequence of str
+        Of the nodes.
+    inertia : ndarray, shape (elements, width)
+        Per length [kg/m, kg m].
+    length : ndarray, shape (elements,)
+        [m].
+
+    Returns
+    -------
+    ndarray, shape (elements, 2, width, width)
+        Complex where an argument is, and analytic. None of continuous elements, which keep theirs.
+    """
+    given = _halves(kind, inertia, length)
+    if kind != TENSED or "beta" not in coordinates:
+        return given
+    z, beta = coordinates.index("z"), coordinates.index("beta")
+    density = inertia[:, z]
+    with np.errstate(over="ignore", invalid="ignore"):
+        correction = density * length**2 / 12
+    if not np.isfinite(correction).all():
+        raise SceneError(
+            f"elements must be short enough for linear_density length^2 to be a number [kg m], got "
+            f"{float(density.max())!r} kg/m and {float(length.max())!r} m"
+        )
+    given[:, 0, z, beta] = given[:, 0, beta, z] = correction
+    given[:, 1, z, beta] = given[:, 1, beta, z] = -correction
+    return given
+
+
+def inertia_of(scene: Scene, rope: Rope) -> NDArray[np.float64]:
+    """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
+    own = [getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
+    return np.where(has_inertia(scene), own, 0.0)
+
+
+def has_inertia(scene: Scene) -> NDArray[np.bool_]:
+    """Say on which coordinates the rope's own inertia acts, shape (width,)."""
+    still = () if scene.gravity is None else ("x",)
+    return np.array([c not in still for c in scene.coordinates])
+
+
+def dragged(scene: Scene) -> NDArray[np.float64]:
+    """Return 1 for each coordinate that damping along the rope acts on, else 0, shape (width,)."""
+    along = ("x", "z") if scene.gravity is None else ("z",)
+    return np.array([float(c in along) for c in scene.coordinates])
+
+
+def standing_at(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
+    """Return what stands at which station."""
+    for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
+        yield station, end.term()
+    parts = standing(scene.parts)
+    for station, part in zip(nearest(stations, places(parts)), parts):
+        yield station, part.term()

@@ -1,0 +1,74 @@
+"""Where users push and look, checked against a model."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..base import check
+from ..base.errors import SceneError
+from ..model import Model
+from ..scene.parts.broken_wire import BrokenWire
+from .port import Point
+
+
+def points(
+    model: Model, given: Any, name: str, *, forces: bool = True, ends: bool = False
+) -> tuple[tuple[Point, ...], bool]:
+    """Return one or several points, and whether a list of them was given.
+
+    Parameters
+    ----------
+    model : Model
+        That is asked.
+    given : object
+        What the user gave.
+    name : str
+        For messages.
+    forces : bool
+        Whether internal forces and tips of wires are allowed.
+    ends : bool
+        Whether the motion of an end is, such as ("end", 0, "z").
+    """
+    several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
+    length = model.scene.rope.length
+    wires = sum(isinstance(part, BrokenWire) for part in model.scene.parts)
+    found = []
+    for k, one in enumerate(given if several else (given,)):
+        called = f"{name}[{k}]" if several else name
+        if ends and check.is_end(one):
+            found.append(_end(model, one, called))
+            continue
+        found.append(
+            check.point(
+                one,
+                called,
+                model.coordinates,
+                length,
+                forces=forces,
+                wires=wires if forces else None,
+            )
+        )
+    return tuple(found), several
+
+
+def _end(model: Model, given: Any, name: str) -> Any:
+    """Return an end that is moved: it must hold the coordinate."""
+    from ..scene.end import end_of
+
+    _, number, coordinate = found = check.end(given, name, model.coordinates)
+    if coordinate not in end_of(model.scene.ends[number]).term().held:
+        raise SceneError(
+            f"{name} must be a coordinate that the end holds, got {coordinate!r} of "
+            f"{check.shown(model.scene.ends[number])}"
+        )
+    return found
+
+
+def observed(model: Model, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
+    """Return what is watched: the drives where nothing else is said."""
+    if given is not None:
+        return points(model, given, "response")[0]
+    if not drives or any(map(check.is_end, drives)):
+        what = "an end is moved" if drives else "nothing drives"
+        raise SceneError(f"response must be given where {what}, got None")
+    return drives

@@ -1,0 +1,504 @@
+"""How fast what a model is made of changes with one number of its scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import SceneError
+from ..model import Model
+from ..scene.end import end_of
+from ..scene.parts.node import AttachedRate, NodeRate
+from ..scene.parts.part import places as places_of
+from ..scene.parts.part import standing, stretches
+from ..scene.parts.stretch import KINDS as STRETCHES
+from ..scene.parts.stretch import (
+    Change,
+    Stretch,
+    changed_by,
+    changes,
+    rope_rate,
+    ropes,
+    stretch_rate,
+)
+from ..scene.rope import Rope
+from ..scene.scene import Scene
+from ..scene.stations import nearest
+from .compile import (
+    INERTIA,
+    carried_by,
+    has_inertia,
+    inertia_of,
+    lumped,
+    section,
+    standing_at,
+    station_nodes,
+    stations_of,
+)
+
+Real = NDArray[np.float64]
+
+_Any = TypeVar("_Any")
+
+STEP = 2.0**-100
+"""Of an imaginary step: its square is nothing beside 1, so that derivatives are exact."""
+
+ENTRIES = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])
+"""Rows and columns of the entries of the section in the core's order: aa, tt, bb, at, ab, tb."""
+
+STIFFNESS = {
+    "axial_stiffness": np.diag([1.0, 0.0, 0.0]),
+    "torsional_stiffness": np.diag([0.0, 1.0, 0.0]),
+    "bending_stiffness": np.diag([0.0, 0.0, 1.0]),
+    "lay_coupling": np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]),
+}
+"""d/dp of the section's stiffness about its own axes (axial, torsion, bending)."""
+
+SECTION = STIFFNESS.keys() | {"lay_slope"}
+"""Properties of a rope that its section depends on."""
+
+GRAVITY = ("g", "inclination")
+"""Numbers of gravity."""
+
+DENSITIES = tuple(dict.fromkeys(INERTIA.values()))
+"""Properties of a rope that are inertia per length."""
+
+
+def section_rate(rope: Rope, name: str) -> Real:
+    """Return the derivative of the section flexibility with respect to a property of the rope.
+
+    With S = R^T K^-1 R, R the turn by the angle arctan H of the lay slope in (torsion, bending):
+    dS = -S~^T dK S~ with S~ = K^-1 R, and dS/dH = (J^T S + S J)/(1 + H^2) with R' = R J.
+
+    Parameters
+    ----------
+    rope : Rope
+        Whose section it is.
+    name : str
+        A stiffness, "lay_coupling" or "lay_slope".
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+    """
+    slope = rope.lay_slope or 0.0
+    turn = np.eye(3)
+    turn[1:, 1:] = np.array([[1.0, slope], [-slope, 1.0]]) / np.hypot(1.0, slope)
+    if name == "lay_slope":
+        turned = section(rope) @ np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+        return (turned + turned.T) / (1.0 + slope * slope)
+    own = section(rope.replace(lay_slope=None)) @ turn
+    return -own.T @ STIFFNESS[name] @ own
+
+
+def inertia_rate(scene: Scene, name: str) -> Real:
+    """Return the derivative of the inertia per length of each coordinate, shape (width,)."""
+    own = np.array([float(INERTIA[c] == name) for c in scene.coordinates])
+    return np.where(has_inertia(scene), own, 0.0)
+
+
+@dataclass(frozen=True)
+class Weights:
+    """By what the slopes of a form are multiplied, see `_core.sensitivity`.
+
+    The derivative of the form is the sum of slopes times `element`, `jump` and `node`, less lambda
+    times that of slopes times `moving`, `mass` and `heavier`.
+
+    Attributes
+    ----------
+    element : ndarray, shape (stretches - 1, 9)
+        Section, tension, length, sag.
+    moving : ndarray, shape (stretches - 1, width)
+        Inertia per length of continuous elements.
+    jump : ndarray, shape (stretches - 1, width)
+        Stiffness of hinges.
+    node, mass : ndarray, shape (stretches, width, width)
+        Springs and inertia.
+    dashpot : ndarray, shape (stretches, width)
+        Damping of each coordinate to the ground, which undamped modes do not feel.
+    stiffer, heavier : ndarray, shape (attached,)
+        Relative changes of stiffness and mass of the structures that nodes carry.
+    foot : ndarray, shape (attached, 2, width)
+        Displacement and rotation of their feet.
+    """
+
+    element: Real
+    moving: Real
+    jump: Real
+    node: Real
+    mass: Real
+    dashpot: Real
+    stiffer: Real
+    heavier: Real
+    foot: Real
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the spans and stations of a model are among the stretches of its chain.
+
+    Attributes
+    ----------
+    model : Model
+        The model.
+    counts : ndarray of int, shape (spans,)
+        Elements of each span.
+    span : ndarray of int, shape (stretches - 1,)
+        To which the elements of a stretch belong.
+    station : ndarray of int, shape (stretches,)
+        The last one that is no further right.
+    inside : ndarray of bool, shape (stretches,)
+        Whether its nodes lie between stations.
+    change : ndarray, shape (spans, 5)
+        Of the rope, see `stretch.Change`.
+    ropes : tuple of Rope
+        Of each span.
+    """
+
+    model: Model
+    counts: NDArray[np.intp] = field(init=False)
+    span: NDArray[np.intp] = field(init=False)
+    station: NDArray[np.intp] = field(init=False)
+    inside: NDArray[np.bool_] = field(init=False)
+    change: Real = field(init=False)
+    ropes: tuple[Rope, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        model = self.model
+        stations = stations_of(model.scene)
+        along = stretches(model.scene.parts)
+        local, which = ropes(model.scene.rope, along, stations)
+        at = station_nodes(model)
+        station = np.searchsorted(at, model.chain.first, side="right") - 1
+        values = {
+            "counts": np.diff(at),
+            "span": station[:-1],
+            "station": station,
+            "inside": at[station] != model.chain.first,
+            "change": changes(along, stations),
+            "ropes": tuple(local[k] for k in which),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def length(self) -> Real:
+        """Of the elements of each span [m]."""
+        begins = np.flatnonzero(~self.inside)[:-1]
+        return self.model.chain.length[self.model.chain.element[begins]]
+
+    @property
+    def inertia(self) -> Real:
+        """Per length, of each span and coordinate, shape (spans, width)."""
+        return np.stack([inertia_of(self.model.scene, rope) for rope in self.ropes])
+
+    @property
+    def linear_density(self) -> Real:
+        """Of each span [kg/m], shape (spans,)."""
+        return np.array([rope.linear_density for rope in self.ropes])
+
+    @property
+    def stretch(self) -> Real:
+        """Axial flexibility of each span along its own curve [1/N], shape (spans,)."""
+        return np.array([section(rope)[0, 0] for rope in self.ropes])
+
+    @property
+    def pull(self) -> float:
+        """Curvature of the rope that hangs per linear density, g cos(inclination)/T [m/kg]."""
+        scene = self.model.scene
+        if scene.gravity is None:
+            return 0.0
+        return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
+
+    def sections(self, name: str) -> Real:
+        """Return the derivative of the section flexibility of each span, shape (spans, 3, 3)."""
+        return self.longer(np.stack([section_rate(rope, name) for rope in self.ropes]))
+
+    def longer(self, flexibility: Real) -> Real:
+        """Return sections of a rope that hangs, longer than its chord along x."""
+        scene = self.model.scene
+        if scene.gravity is not None:
+            flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
+        return flexibility
+
+
+class Rate:
+    """d/dp of what the spans and stations of a model are made of, zero where it is not said.
+
+    Attributes
+    ----------
+    rope : dict of ndarray, shape (spans,)
+        Of properties of the rope there.
+    pull, chord : float
+        Of g cos(inclination)/T, and of mu L of the scene's own rope, by which all of it is
+        lengthened.
+    tension : ndarray, shape (spans,)
+    length : ndarray, shape (spans,)
+        Of each element.
+    mass, stiffness, dashpot, hinge : ndarray, shape (stations, width)
+        Of what stands there on each coordinate; of the spring across a hinge.
+    stiffer, heavier, foot : ndarray
+        Of the structures that nodes carry, see `Weights`.
+    """
+
+    def __init__(self, places: Places) -> None:
+        spans, width = len(places.counts), len(places.model.coordinates)
+        self.rope: dict[str, Real] = {}
+        self.pull = self.chord = 0.0
+        self.tension, self.length = np.zeros(spans), np.zeros(spans)
+        self.mass = np.zeros((spans + 1, width))
+        self.stiffness, self.hinge = np.zeros_like(self.mass), np.zeros_like(self.mass)
+        self.dashpot = np.zeros_like(self.mass)
+        rows = places.model.chain.attached_row
+        carried = 0 if rows is None else len(rows)
+        self.stiffer, self.heavier = np.zeros(carried), np.zeros(carried)
+        self.foot = np.zeros((carried, 2, width))
+
+    def weights(self, places: Places) -> Weights:
+        """Return the weights that belong to it."""
+        span, station, inside = places.span, places.station, places.inside
+        section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
+        element = np.column_stack([section, self.tension, self.length, self._sag(places)])
+        inertia = self._inertia(places)
+        diagonal = np.arange(self.mass.shape[1])
+        node = np.zeros((len(station), *2 * self.mass.shape[1:]))
+        node[:, diagonal, diagonal] = np.where(inside[:, None], 0.0, self.stiffness[station])
+        mass = np.zeros_like(node)
+        mass[:, diagonal, diagonal] = np.where(inside[:, None], 0.0, self.mass[station])
+        given = self._given(places, inertia)
+        right = np.minimum(station, len(given) - 1)
+        left = np.where(inside, right, np.maximum(station - 1, 0))
+        mass += np.where((station < len(given))[:, None, None], given[right, 0], 0.0)
+        mass += np.where((inside | (station > 0))[:, None, None], given[left, 1], 0.0)
+        jump = np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]])
+        dashpot = np.where(inside[:, None], 0.0, self.dashpot[station])
+        carried = (self.stiffer, self.heavier, self.foot)
+        return Weights(element[span], inertia[span], jump, node, mass, dashpot, *carried)
+
+    def _flexibility(self, places: Places) -> Real:
+        """Return the derivative of the section flexibility of each span."""
+        flexibility = np.zeros((len(places.counts), 3, 3))
+        for name in self.rope.keys() & SECTION:
+            flexibility += self.rope[name][:, None, None] * places.sections(name)
+        flexibility[:, 0, 0] += self._lengthening(places) * places.stretch
+        return flexibility
+
+    def _lengthening(self, places: Places) -> float:
+        """Return the derivative of 1 + s^2/8, s = mu L g cos(inclination)/T."""
+        rope = places.model.scene.rope
+        own = rope.linear_density * rope.length
+        return own * places.pull * (self.chord * places.pull + own * self.pull) / 4
+
+    def _sag(self, places: Places) -> Real:
+        """Return the derivative of the curvature of each span, mu g cos(inclination)/T."""
+        density = self.rope.get("linear_density", np.zeros(len(places.counts)))
+        return density * places.pull + places.linear_density * self.pull
+
+    def _inertia(self, places: Places) -> Real:
+        """Return the derivative of the inertia per length of each span."""
+        inertia = np.zeros((len(places.counts), self.mass.shape[1]))
+        for name in self.rope.keys() & set(DENSITIES):
+            inertia += np.outer(self.rope[name], inertia_rate(places.model.scene, name))
+        return inertia
+
+    def _given(self, places: Places, inertia: Real) -> Real:
+        """Return the derivative of the inertia that elements give to their nodes."""
+        model = places.model
+        moving = places.inertia + 1j * STEP * inertia
+        length = places.length + 1j * STEP * self.length
+        return lumped(model.chain.kind, model.coordinates, moving, length).imag / STEP
+
+
+def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
+    """Return the numbers of a scene that answers have derivatives by, with their paths.
+
+    Parameters
+    ----------
+    places : Places
+        Of the model.
+
+    Returns
+    -------
+    dict
+        Functions that return the rate, or raise SceneError where there is none.
+    """
+    model = places.model
+    rope = model.scene.rope
+    found: dict[str, Callable[[], Rate]] = {}
+    if model.scene.gravity is not None:
+        found |= {f"gravity.{name}": partial(_of_gravity, places, name) for name in GRAVITY}
+    if "z" in model.coordinates and not (model.element == "difference" and _bends(model)):
+        found["tension"] = partial(_of_tension, places)
+    acting = _acting(model)
+    for name in (*STIFFNESS, "lay_slope", *DENSITIES):
+        if name in acting and getattr(rope, name) is not None:
+            found[name] = partial(_of_rope, places, name)
+    found["length"] = partial(_of_length, places)
+    for i, part in enumerate(model.scene.parts):
+        for name, of in _of_numbers(places, i, acting).items():
+            found[f"parts[{i}].{name}"] = of
+        for name in ("start", "stop") if isinstance(part, STRETCHES) else ("x",):
+            found[f"parts[{i}].{name}"] = partial(_of_position, places, i, name)
+    for i, end in enumerate(model.scene.ends):
+        for kind, values in end_of(end).standing.items():
+            for c in (c for c in values if c in model.coordinates):
+                found[f"ends[{i}].{kind}.{c}"] = partial(_of_end, places, i, kind, c)
+    return found
+
+
+def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _Any]:
+    """Return what a path names, checked."""
+    if not isinstance(path, str):
+        raise TypeError(f'path must be a string such as "tension", got {path!r}')
+    if path not in rates:
+        words = ", ".join(f'"{name}"' for name in rates)
+        raise SceneError(
+            f"path must be a number that acts in this scene, one of {words}, got {path!r}"
+        )
+    return rates[path]
+
+
+def _acting(model: Model) -> set[str]:
+    """Return the properties that a rope may have and this model's depends on."""
+    stiffness = {name for name in SECTION if getattr(model.scene.rope, name) is not None}
+    return stiffness | {c for c in DENSITIES if inertia_rate(model.scene, c).any()}
+
+
+def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[[], Rate]]:
+    """Return the rates of the numbers of a part, positions apart."""
+    part = places.model.scene.parts[i]
+    if isinstance(part, STRETCHES):
+        return {
+            name: partial(_of_stretch, places, part, name)
+            for name in Change._fields
+            if hasattr(part, name) and acting & changed_by(name)
+        }
+    return {
+        name: partial(_of_part, places, i, rate)
+        for name, rate in part.rates().items()
+        if rate.acts(places.model.coordinates)
+    }
+
+
+def _bends(model: Model) -> bool:
+    return "beta" in model.coordinates
+
+
+def _of_tension(places: Places) -> Rate:
+    rate = Rate(places)
+    rate.tension[:] = 1.0
+    if places.pull:
+        rate.pull = -places.pull / places.model.scene.mean_tension
+    return rate
+
+
+def _of_gravity(places: Places, name: str) -> Rate:
+    """Return that of g cos(inclination)/T."""
+    gravity, tension = places.model.scene.gravity, places.model.scene.mean_tension
+    assert gravity is not None
+    turned = math.cos(gravity.inclination), -gravity.g * math.sin(gravity.inclination)
+    rate = Rate(places)
+    rate.pull = turned[GRAVITY.index(name)] / tension
+    return rate
+
+
+def _of_rope(places: Places, name: str) -> Rate:
+    """Return that of a property of the rope, which stretches multiply."""
+    rate = Rate(places)
+    rate.rope[name] = rope_rate(places.change, name)
+    if name == "linear_density":
+        rate.chord = places.model.scene.rope.length
+    return rate
+
+
+def _of_length(places: Places) -> Rate:
+    """Let the last span grow: parts keep their x."""
+    rate = Rate(places)
+    rate.length[-1] = 1.0 / places.counts[-1]
+    rate.chord = places.model.scene.rope.linear_density
+    return rate
+
+
+def _of_position(places: Places, i: int, name: str) -> Rate:
+    """Let the span on the left grow by what the span on the right loses."""
+    scene = places.model.scene
+    x = getattr(scene.parts[i], name)
+    at, *others = nearest(_stations(places), [x, *places_of(scene.parts)]).tolist()
+    if at in (0, len(places.counts)) or others.count(at) > 1:
+        raise SceneError(
+            f"parts[{i}].{name} must be a place of its own for a derivative, got one at an end of "
+            "the rope or where another part stands: it would part them in one direction"
+        )
+    rate = Rate(places)
+    rate.length[at - 1] = 1.0 / places.counts[at - 1]
+    rate.length[at] = -1.0 / places.counts[at]
+    return rate
+
+
+def _of_stretch(places: Places, part: Stretch, name: str) -> Rate:
+    """Return that of what a part does to the rope between its ends."""
+    start, stop = nearest(_stations(places), [part.start, part.stop])
+    rate, rope = Rate(places), places.model.scene.rope
+    for of, change in stretch_rate(rope, places.change[start:stop], part, name).items():
+        rate.rope[of] = np.zeros(len(places.counts))
+        rate.rope[of][start:stop] = change
+    return rate
+
+
+def _of_end(places: Places, i: int, kind: str, coordinate: str) -> Rate:
+    """Return that of what stands at an end."""
+    rate = Rate(places)
+    into = {"spring": rate.stiffness, "mass": rate.mass, "dashpot": rate.dashpot}
+    into[kind][-i, places.model.coordinates.index(coordinate)] = 1.0
+    return rate
+
+
+def _of_part(places: Places, i: int, of: NodeRate) -> Rate:
+    rate = Rate(places)
+    scene = places.model.scene
+    terms = list(standing_at(scene, _stations(places)))
+    station, term = terms[2 + len(standing(scene.parts[:i]))]  # those of the ends come first
+    for c, k in ((c, k) for k, c in enumerate(places.model.coordinates)):
+        rate.mass[station, k] = of.mass.get(c, 0.0)
+        rate.stiffness[station, k] = of.stiffness.get(c, 0.0)
+        rate.dashpot[station, k] = of.damping.get(c, 0.0)
+        if c in of.hinge:
+            others = sum(t.hinge.get(c, 0.0) for s, t in terms if s == station and t is not term)
+            rate.hinge[station, k] = of.hinge[c] * _share(term.hinge[c], others) ** 2
+    if of.attached is not None:
+        own = [t is term for _, t, _ in carried_by(terms)].index(True)
+        _set_attached(rate, places, own, of.attached)
+    return rate
+
+
+def _set_attached(rate: Rate, places: Places, k: int, of: AttachedRate) -> None:
+    """Let structure k of the chain change.
+
+    A larger one is the same under a larger motion of its foot: its form is of second order there.
+    So nothing of the strain and the kinetic energy has to cancel where the foot hardly moves.
+    """
+    rows = places.model.chain.attached_row
+    assert rows is not None
+    rate.heavier[k], rate.stiffer[k] = of.mass, of.stiffness
+    rate.foot[k] = of.size / 2 * rows[k]
+    for line, moves in enumerate((of.displacement, of.rotation)):
+        for c, value in moves.items():
+            if c in places.model.coordinates:
+                rate.foot[k, line, places.model.coordinates.index(c)] += value
+
+
+def _share(own: float, others: float) -> float:
+    """Return the share of the jump that one of several hinges in series opens by."""
+    if np.isinf(others):
+        return 0.0
+    return 1.0 if np.isinf(own) else own / (own + others)
+
+
+def _stations(places: Places) -> Real:
+    return stations_of(places.model.scene)

@@ -1,0 +1,105 @@
+"""How the tips of broken wires move, from how their roots do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.unit import WIRE
+from ..model import Model
+from ..scene.parts.broken_wire import BrokenWire
+from ..scene.parts.part import standing
+from .chain import ATTACHED
+from .port import Point, locate
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+
+class Tip(NamedTuple):
+    """A tip: what is asked in its place."""
+
+    structure: int
+    """Of the model's chain."""
+    root: list[Point]
+    """The coordinates that move its root."""
+
+
+def is_tip(point: Point) -> bool:
+    """Whether the point asks for the tip of a wire, such as ("wire", 0)."""
+    return point[0] == WIRE
+
+
+def tip_of(model: Model, point: Point) -> Tip:
+    """Return the tip of the wire with this number among the broken wires of the scene."""
+    chain, scene = model.chain, model.scene
+    assert chain.attached_kind is not None
+    assert chain.attached_row is not None
+    kind = ATTACHED.index(BrokenWire.kind)
+    wires = (p for p in standing(scene.parts) if isinstance(p, BrokenWire))
+    nodes = [locate(model.x, wire.x)[0] for wire in wires]
+    # the chain has them by their place, those of one place as the scene has them
+    order = sorted(range(len(nodes)), key=nodes.__getitem__)
+    rank = order.index(int(point[1]))
+    structure = int(np.flatnonzero(chain.attached_kind == kind)[rank])
+    node = chain.feet[structure]
+    moved = chain.attached_row[structure].any(axis=0)
+    root = [(c, float(model.x[node])) for c, moves in zip(model.coordinates, moved) if moves]
+    return Tip(structure, root)
+
+
+def spread(model: Model, responses: Sequence[Point]) -> list[Point]:
+    """Return the responses with the motion of the root in place of that of each tip."""
+    asked: list[Point] = []
+    for point in responses:
+        asked += tip_of(model, point).root if is_tip(point) else [point]
+    return asked
+
+
+def gather(
+    model: Model, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
+) -> tuple[Complex, Real]:
+    """Return what was asked for from the answers to `spread`.
+
+    Parameters
+    ----------
+    model : Model
+        That was asked.
+    responses : sequence of points
+        With tips.
+    factor : ndarray, shape (5, f)
+        Of the frequencies; see `damping.factors`.
+    value, error : ndarray, shape (drives, spread responses, f)
+        Receptance and its relative error.
+
+    Returns
+    -------
+    value, error : ndarray, shape (drives, responses, f)
+    """
+    shape = (value.shape[0], len(responses), value.shape[2])
+    values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+    at = 0
+    for r, point in enumerate(responses):
+        if not is_tip(point):
+            values[:, r], errors[:, r] = value[:, at], error[:, at]
+            at += 1
+            continue
+        tip = tip_of(model, point)
+        part = slice(at, at + len(tip.root))
+        at = part.stop
+        kept = [model.coordinates.index(c) for c, _ in tip.root]
+        row = _core.tip(model.chain, tip.structure, factor)[kept]
+        share = row * value[:, part]
+        # of the row itself a few roundings; what is 0 does not move the root
+        known = np.where(share == 0, 0.0, error[:, part])
+        wrong = np.abs(share) * (known + 8 * np.finfo(float).eps)
+        values[:, r] = share.sum(axis=1)
+        size = np.abs(values[:, r])
+        ratio = np.where(share.any(axis=1), np.inf, 0.0)
+        np.divide(wrong.sum(axis=1), size, out=ratio, where=size > 0)
+        errors[:, r] = ratio
+    return values, errors

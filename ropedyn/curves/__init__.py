@@ -1,0 +1,1 @@
+"""Measured and calculated curves over frequency, and their peaks."""

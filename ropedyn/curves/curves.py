@@ -1,0 +1,207 @@
+"""Responses over frequency: what a calculated and a measured one have in common."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base import check
+from ..base.answer import Answer
+from ..base.errors import SceneError
+from ..base.table import Table
+from ..base.unit import QUANTITIES, label, place
+from ..chain.port import Point
+from .resonance import Resonances, resonances
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Curves(Answer):
+    """Base of what holds motion Re(value exp(+i omega t)) per unit force."""
+
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str
+    frequency: NDArray[np.float64]
+    value: NDArray[np.complex128]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What each response is, with its unit, for the first drive."""
+        return tuple(label(r, self.drive[0], self.quantity) for r in self.response)
+
+    def curve(self, response: int = 0, drive: int = 0) -> NDArray[np.complex128]:
+        """Return one response to one drive, shape (f,).
+
+        Raises
+        ------
+        TypeError, SceneError
+            If a number is none of those there are.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> frf = model.frf([0.0, 5.0], drive=("z", 0.5), response=[("z", 0.25), ("z", 0.5)])
+        >>> frf.curve(1).real.round(6)
+        array([0.0025  , 0.002728])
+        """
+        check.count(response, "response", least=0, most=len(self.response) - 1)
+        check.count(drive, "drive", least=0, most=len(self.drive) - 1)
+        return self.value[response] if self.value.ndim == 2 else self.value[drive, response]
+
+    def to(self, quantity: str) -> Self:
+        """Return the same response as another quantity.
+
+        Parameters
+        ----------
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration per force.
+
+        Raises
+        ------
+        SceneError
+            If the quantity is unknown, or a motion at 0 Hz would have to be integrated.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=8)
+        >>> frf = model.frf([1.0], drive=("z", 0.5)).to("mobility")
+        >>> frf.labels
+        ('z at 0.500 m [m/s/N]',)
+        """
+        check.one_of(quantity, "quantity", QUANTITIES)
+        times = QUANTITIES[quantity] - QUANTITIES[self.quantity]
+        if times < 0 and (self.frequency == 0).any():
+            raise SceneError(
+                f"quantity must be {self.quantity!r} where a frequency is 0, got {quantity!r}"
+            )
+        value = self.value * (2j * np.pi * self.frequency) ** times
+        # every kind of curves is a dataclass with these fields
+        return replace(self, quantity=quantity, value=value)  # type: ignore[type-var]
+
+    def peaks(self, drive: int = 0) -> tuple[Resonances, ...]:
+        """Find the resonances that show as peaks, for each response.
+
+        Parameters
+        ----------
+        drive : int, optional
+            Which drive.
+
+        Returns
+        -------
+        tuple of Resonances
+            Frequency [Hz] with its standard uncertainty, amplitude and damping ratio of each peak.
+            Of a measurement only what stands out of the noise is a peak.
+
+        Raises
+        ------
+        TypeError, SceneError
+            If the drive is none of those there are.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ModalDamping(0.01))
+        >>> frf = scene.compile(elements=64).frf(np.arange(1.0, 60.0, 0.1), drive=("z", 0.3))
+        >>> (peaks,) = frf.peaks()
+        >>> peaks.frequency.round(1), peaks.damping_ratio.round(3)
+        (array([15.8, 31.6, 47.4]), array([0.01, 0.01, 0.01]))
+        """
+        check.count(drive, "drive", least=0, most=len(self.drive) - 1)
+        return tuple(
+            resonances(
+                self.frequency,
+                self.curve(r, drive),
+                self.quantity,
+                label(self.response[r], self.drive[drive], self.quantity),
+                self._noise_around(r),
+                known=self._noise(r),
+            )
+            for r in range(len(self.response))
+        )
+
+    def _noise_around(self, response: int) -> NDArray[np.float64] | None:
+        """Return the noise out of which peaks stand at each line, None where there is none."""
+        return None
+
+    def _noise(self, response: int) -> NDArray[np.float64] | None:
+        """Return the standard deviation of real and imaginary part, where that is known."""
+        return None
+
+    def write(self, path: str | os.PathLike[str], *, binary: bool = False) -> None:
+        """Write the responses in SI for other programs, whole or not at all.
+
+        `Measured.read` reads them without being told more.
+
+        Parameters
+        ----------
+        path : path
+            ``.csv`` for text in columns, which keeps every bit; ``.uff`` or ``.unv`` for a
+            universal file with a dataset 58 for each response, by pyuff.
+        binary : bool, optional
+            Whether a universal file is binary and keeps every bit, or is ASCII with 12 digits of
+            each value and, where start and step do not say them all, 6 of each frequency.
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If the suffix is none of these, something is not finite, frequencies do not increase,
+            or a universal file has no words for it: internal forces, wires and moved ends, less
+            than two frequencies, ASCII ones that are the same in 6 digits.
+        ImportError
+            If pyuff is missing for a universal file.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=8)
+        >>> frf = model.frf([10.0, 11.0], drive=("z", 0.5))
+        >>> path = tempfile.mkdtemp() + "/calculated.csv"
+        >>> frf.write(path)
+        >>> bool((rd.Measured.read(path).value == frf.value).all())
+        True
+        """
+        from .files.formats import write
+
+        write(self, path, binary)
+
+    def table(self) -> Table:
+        """Return amplitude and phase of every response over frequency."""
+        return Table.of(f"{self.quantity} over frequency", self._columns())
+
+    def _columns(self) -> dict[str, Any]:
+        columns: dict[str, Any] = {"frequency [Hz]": self.frequency}
+        for name, _, curve in named_curves(self):
+            columns[f"|{name}|" if name not in columns else name] = np.abs(curve)
+            columns[f"phase of {name} [deg]"] = np.degrees(np.angle(curve))
+        return columns
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the amplitudes over frequency."""
+        from ..plot.answers import plot_curves
+
+        return plot_curves(self, ax)
+
+
+def named_curves(curves: Curves) -> Iterator[tuple[str, int, NDArray[np.complex128]]]:
+    """Yield each response to each drive: its name, which response it is, and the curve."""
+    for d, drive in enumerate(curves.drive):
+        for r, point in enumerate(curves.response):
+            name = label(point, drive, curves.quantity)
+            if len(curves.drive) > 1:
+                name += f" driven in {place(drive)}"
+            yield name, r, curves.curve(r, d)

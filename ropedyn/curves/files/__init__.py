@@ -1,0 +1,1 @@
+"""Files of curves: universal files and text in columns."""

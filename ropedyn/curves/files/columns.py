@@ -1,0 +1,321 @@
+"""Frequency responses as text in columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base import check
+from ...base.atomic import write_bytes
+from ...base.errors import SceneError
+from ...base.unit import QUANTITIES
+from ..curves import Curves, named_curves
+from ..motion_unit import EXAMPLES, scale, stated
+
+OWN = "# ropedyn "
+"""How a file begins that `write` has written: JSON of what is in it follows."""
+
+PAIRS = (("real", "imag"), ("amplitude", "phase"))
+KEYS = ("frequency", "real", "imag", "amplitude", "phase", "coherence")
+"""What columns may be; phases in degrees."""
+
+SUCH = '{"frequency": 0, "real": 1, "imag": 2}'
+
+
+class Layout(NamedTuple):
+    """How text is split; see `Measured.read`."""
+
+    delimiter: str | None
+    decimal: str
+    comments: str
+    skip: int
+
+
+class Head(NamedTuple):
+    """What the first line of a file says that `write` has written."""
+
+    drives: list[Any]
+    responses: list[Any]
+    quantity: str
+    has_coherence: bool
+    averages: float | None
+
+
+class Sheet(NamedTuple):
+    """Text in columns."""
+
+    names: tuple[str, ...] | None
+    """Of the columns; None where the first line has numbers already."""
+    numbers: NDArray[np.float64]
+    """(rows, columns)."""
+
+
+def read(
+    file: Path,
+    *,
+    drive: Any,
+    response: Any,
+    unit: Any,
+    quantity: str | None,
+    columns: Any,
+    **layout: Any,
+) -> dict[str, Any]:
+    """Read what a `Measured` is made of; see `Measured.read`."""
+    text = _text(file)
+    if columns is None and text.startswith(OWN):
+        for name, value in (("unit", unit), ("quantity", quantity), ("response", response)):
+            if value is not None:
+                raise SceneError(
+                    f"{name} must be left out for {str(file)!r}, which says it, got {value!r}"
+                )
+        return _own(file, text, drive)
+    sheet = _sheet(file, text, _layout(**layout))
+    if columns is None:
+        there = sheet.names or f"{sheet.numbers.shape[1]} without names"
+        raise SceneError(
+            f"columns must say what the columns of {str(file)!r} are ({there}), such as {SUCH}, "
+            "got None"
+        )
+    return _columns(file, sheet, columns) | _meaning(file, drive, response, unit, quantity)
+
+
+def _text(file: Path) -> str:
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError(f"path must be a text file, got {str(file)!r}: {error}") from error
+    if "\0" in text:
+        raise SceneError(f"path must be a text file, got {str(file)!r} with bytes 0")
+    return text
+
+
+def _layout(delimiter: Any, decimal: Any, comments: Any, skip: Any) -> Layout:
+    """Check what the user says of the text."""
+    if delimiter is not None:
+        check.instance(delimiter, "delimiter", str, "a character")
+        if len(delimiter) != 1 or delimiter in '\r\n"':
+            raise SceneError(f"delimiter must be a character, got {delimiter!r}")
+    check.one_of(decimal, "decimal", (".", ","))
+    check.instance(comments, "comments", str, "how a comment begins")
+    check.count(skip, "skip", least=0, most=1 << 31)
+    return Layout(delimiter, decimal, comments, skip)
+
+
+def _sheet(file: Path, text: str, layout: Layout) -> Sheet:
+    """Split text into numbers, with the number of the line for what is none."""
+    what = f"path must be a file with numbers in columns, got {str(file)!r}"
+    lines = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if k > layout.skip]
+    lines = [(k, line) for k, line in lines if line.strip() and not _is_comment(line, layout)]
+    if not lines:
+        raise SceneError(f"{what} without a line")
+    separator = _separator(layout, lines[0][1])
+    rows = [(k, _cells(line, separator)) for k, line in lines]
+    names = None
+    if any(_number(cell, layout) is None for cell in rows[0][1]):
+        names = tuple(rows.pop(0)[1])
+    if not rows:
+        raise SceneError(f"{what} with one line and no numbers: {check.shown(names)}")
+    numbers = np.empty((len(rows), len(names or rows[0][1])))
+    for at, (k, cells) in enumerate(rows):
+        found = [_number(cell, layout) for cell in cells]
+        if None in found:
+            raise SceneError(f"{what} with {check.shown(cells[found.index(None)])} in line {k}")
+        if len(cells) != numbers.shape[1]:
+            raise SceneError(f"{what} with {len(cells)} of {numbers.shape[1]} columns in line {k}")
+        numbers[at] = found
+    return Sheet(names, numbers)
+
+
+def _is_comment(line: str, layout: Layout) -> bool:
+    return bool(layout.comments) and line.lstrip().startswith(layout.comments)
+
+
+def _separator(layout: Layout, line: str) -> str | None:
+    """Return what stands between columns: white space if None."""
+    if layout.delimiter is not None:
+        return None if layout.delimiter == " " else layout.delimiter
+    return next((c for c in (";", "\t", ",") if c in line and c != layout.decimal), None)
+
+
+def _cells(line: str, separator: str | None) -> list[str]:
+    if separator is None:
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+
+
+def _number(cell: str, layout: Layout) -> float | None:
+    try:
+        return float(cell.replace(",", ".") if layout.decimal == "," else cell)
+    except ValueError:
+        return None
+
+
+def _columns(file: Path, sheet: Sheet, columns: Any) -> dict[str, Any]:
+    """Return frequency, values and coherence of the columns that the user names."""
+    check.instance(columns, "columns", Mapping, f"names or numbers of columns such as {SUCH}")
+    for key in columns:
+        check.one_of(key, "each key of columns", KEYS)
+    given = [pair for pair in PAIRS if pair[0] in columns or pair[1] in columns]
+    if "frequency" not in columns or len(given) != 1 or not all(k in columns for k in given[0]):
+        raise SceneError(
+            'columns must have "frequency", and either "real" and "imag" or "amplitude" and '
+            f'"phase", got {check.shown(dict(columns))}'
+        )
+    found = {key: _taken(file, sheet, key, columns[key]) for key in columns}
+    if (
+        len(found["frequency"]) != 1
+        or len({len(v) for k, v in found.items() if k != "frequency"}) > 1
+    ):
+        raise SceneError(
+            "columns must have one frequency and as many of each other kind, got "
+            f"{check.shown(dict(columns))}"
+        )
+    first, second = (found[key] for key in given[0])
+    turned = given[0] == PAIRS[1]
+    return {
+        "frequency": found["frequency"][0],
+        "value": first * np.exp(1j * np.radians(second)) if turned else _complex(first, second),
+        "coherence": found.get("coherence"),
+    }
+
+
+def _taken(file: Path, sheet: Sheet, key: str, chosen: Any) -> NDArray[np.float64]:
+    """Return columns by name or number, shape (columns, rows)."""
+    chosen = chosen if isinstance(chosen, (list, tuple)) else [chosen]
+    width = sheet.numbers.shape[1]
+    at = []
+    for one in chosen:
+        if isinstance(one, str):
+            if one not in (sheet.names or ()):
+                raise SceneError(
+                    f"columns[{key!r}] must be names out of {sheet.names or 'none'}, the head of "
+                    f"{str(file)!r}, got {one!r}"
+                )
+            at.append((sheet.names or ()).index(one))
+        else:
+            at.append(check.count(one, f"columns[{key!r}]", least=0, most=width - 1))
+    return sheet.numbers[:, at].T
+
+
+def _complex(real: NDArray[np.float64], imag: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Return real and imaginary parts together, every bit as it is."""
+    value = np.empty(real.shape, dtype=np.complex128)
+    value.real, value.imag = real, imag
+    return value
+
+
+def _meaning(
+    file: Path, drive: Any, response: Any, unit: Any, quantity: str | None
+) -> dict[str, Any]:
+    """Return what the user says that the numbers are; "factor" makes them SI."""
+    for name, value, what in (
+        ("drive", drive, 'what the force acts on, such as ("z", 0.5)'),
+        ("response", response, 'what is watched, such as ("z", 0.5)'),
+        ("unit", unit, f"the unit of the numbers, such as {EXAMPLES}"),
+    ):
+        if value is None:
+            raise SceneError(f"{name} must be stated for {str(file)!r}: {what}; got None")
+    cause = check.points(drive, "drive", forces=False)
+    points = check.points(response, "response", forces=True)
+    points = (points,) if isinstance(points[0], str) else points
+    if not isinstance(cause[0], str):
+        raise SceneError(f"drive must be one point, got {check.shown(drive)}")
+    units = [unit] * len(points) if isinstance(unit, str) else unit
+    check.instance(units, "unit", (list, tuple), "a unit, or one for each response")
+    if len(units) != len(points):
+        raise SceneError(f"unit must be one, or {len(points)} as response, got {len(units)}")
+    scales = [scale(stated(u), r, cause, "unit") for u, r in zip(units, points)]
+    names = {name for name, _ in scales}
+    if quantity is not None:
+        check.one_of(quantity, "quantity", QUANTITIES)
+        names.add(quantity)
+    if len(names) > 1:
+        raise SceneError(f"unit and quantity must agree, got {unit!r} and {quantity!r}")
+    return {
+        "drive": cause,
+        "response": points,
+        "quantity": names.pop(),
+        "factor": [size for _, size in scales],
+    }
+
+
+def _own(file: Path, text: str, drive: Any) -> dict[str, Any]:
+    """Read what `write` wrote."""
+    first, _, rest = text.partition("\n")
+    try:
+        head = _head(first.removeprefix(OWN))
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise SceneError(
+            f"path must be a file whose first line nobody changed, got {str(file)!r}: {error!r}"
+        ) from error
+    there = f"one of those of {str(file)!r}, {', '.join(map(repr, head.drives))}"
+    if drive is None and len(head.drives) > 1:
+        raise SceneError(f"drive must be {there}, got None")
+    wanted = head.drives[0] if drive is None else check.points(drive, "drive", forces=False)
+    if wanted not in head.drives:
+        raise SceneError(f"drive must be {there}, got {drive!r}")
+    sheet = _sheet(file, rest, Layout(",", ".", "", 0))
+    each = 3 if head.has_coherence else 2
+    if sheet.numbers.shape[1] != 1 + each * len(head.responses) * len(head.drives):
+        raise SceneError(
+            f"path must be a file that nobody changed, got {str(file)!r} with "
+            f"{sheet.numbers.shape[1]} columns"
+        )
+    shape = (len(head.drives), len(head.responses), each, -1)
+    block = sheet.numbers[:, 1:].T.reshape(shape)[head.drives.index(wanted)]
+    return {
+        "frequency": sheet.numbers[:, 0],
+        "value": _complex(block[:, 0], block[:, 1]),
+        "coherence": block[:, 2] if head.has_coherence else None,
+        "drive": wanted,
+        "response": head.responses,
+        "quantity": head.quantity,
+        "averages": head.averages,
+        "factor": None,
+    }
+
+
+def _head(text: str) -> Head:
+    """Return what the first line says."""
+    given = json.loads(text)
+    if not given["drive"] or not given["response"]:
+        raise ValueError("no point")
+    return Head(
+        [check.points(tuple(point), "drive", forces=False) for point in given["drive"]],
+        [check.points(tuple(point), "response", forces=True) for point in given["response"]],
+        check.one_of(given["quantity"], "quantity", QUANTITIES),
+        check.instance(given["coherence"], "coherence", bool, "true or false"),
+        check.optional(given["averages"], "averages", sign="positive"),
+    )
+
+
+def write(curves: Curves, path: Path) -> None:
+    """Write responses, and their coherences, with every digit; see `Curves.write`."""
+    coherence = getattr(curves, "coherence", None)
+    head = {
+        "drive": curves.drive,
+        "response": curves.response,
+        "quantity": curves.quantity,
+        "coherence": coherence is not None,
+        "averages": getattr(curves, "averages", None),
+    }
+    names, columns = ["frequency [Hz]"], [curves.frequency]
+    for name, r, curve in named_curves(curves):
+        names += [f"real {name}", f"imag {name}"]
+        columns += [curve.real, curve.imag]
+        if coherence is not None:
+            names.append(f"coherence of {name}")
+            columns.append(coherence[r])
+    text = io.StringIO()
+    text.write(f"{OWN}{json.dumps(head)}\n")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows(np.stack(columns, axis=1).tolist())
+    write_bytes(path, text.getvalue().encode())

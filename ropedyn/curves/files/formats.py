@@ -1,0 +1,76 @@
+"""Files of frequency responses, by their suffix."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base import check
+from ...base.errors import SceneError
+from . import columns as curves_csv
+from . import uff_read, uff_write
+
+if TYPE_CHECKING:
+    from ..curves import Curves
+
+UNIVERSAL = (".uff", ".unv", ".uf")
+TEXT = (".csv", ".txt", ".dat", ".tsv")
+DEFAULTS = {"reciprocal": False, "decimal": ".", "comments": "#", "skip": 0}
+"""Of options that are not None where left out."""
+
+
+def read(
+    path: str | os.PathLike[str],
+    *,
+    anything: dict[str, Any],
+    universal: dict[str, Any],
+    text: dict[str, Any],
+) -> dict[str, Any]:
+    """Read what a `Measured` is made of; options by the kind of file they are for."""
+    file = check.path(path)
+    is_universal = _is_universal(file)
+    if not file.is_file():
+        raise FileNotFoundError(f"path must be a file, got {str(file)!r}")
+    for name, value in (text if is_universal else universal).items():
+        if value != DEFAULTS.get(name):
+            kind = "text in columns" if is_universal else "a universal file"
+            raise SceneError(f"{name} is for {kind}, got {check.shown(value)} for {str(file)!r}")
+    if is_universal:
+        given = uff_read.read(file, **anything, **universal)
+    else:
+        given = curves_csv.read(file, **anything, **text)
+    factor = given.pop("factor")
+    if factor is not None:
+        given["value"] = given["value"] * np.reshape(factor, (-1, 1))
+    return given
+
+
+def write(curves: Curves, path: str | os.PathLike[str], binary: bool) -> None:
+    """Write responses; see `Curves.write`."""
+    file = check.path(path)
+    check.instance(binary, "binary", bool, "True or False")
+    is_universal = _is_universal(file)
+    if not np.isfinite(curves.value).all():
+        raise SceneError("value must be finite to be written")
+    if (np.diff(curves.frequency) <= 0).any():
+        raise SceneError("frequency must increase to be written")
+    if is_universal:
+        uff_write.write(curves, file, binary)
+    elif binary:
+        raise SceneError(f"binary is for a universal file, got {binary!r} for {str(file)!r}")
+    else:
+        curves_csv.write(curves, file)
+
+
+def _is_universal(file: Path) -> bool:
+    """Whether a file is universal, by its suffix; else it is text."""
+    suffix = file.suffix.lower()
+    if suffix not in (*UNIVERSAL, *TEXT):
+        raise SceneError(
+            f"path must end with {', '.join(UNIVERSAL)} (universal file) or {', '.join(TEXT)} "
+            f"(text in columns), got {str(file)!r}"
+        )
+    return suffix in UNIVERSAL

@@ -1,0 +1,250 @@
+"""Measured frequency response."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field, replace
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base import check
+from ..base.answer import axes
+from ..base.errors import SceneError
+from ..base.quantity import is_quantity
+from ..base.unit import QUANTITIES, curve_unit
+from ..chain.port import Point
+from .curves import Curves
+from .line_noise import by_coherence, by_differences
+
+ROWS = "response and frequency"
+
+
+@dataclass(frozen=True, eq=False)
+class Measured(Curves):
+    """A measured frequency response: motion is Re(value exp(+i omega t)) per unit force.
+
+    Parameters
+    ----------
+    frequency : array_like, shape (f,)
+        [Hz], increasing.
+    value : array_like of complex, shape (responses, f) or (f,)
+        [m/N, rad/N, m/(N m), rad/(N m), and these per s or s^2].
+    drive : point or tuple of one point
+        What the force acted on, such as ``("z", 0.5)``.
+    response : point or tuple of points
+        What was watched.
+    quantity : {"receptance", "mobility", "accelerance"}
+        Displacement, velocity or acceleration per force.
+    coherence : array_like, as value, optional
+        Share of the motion that follows from the force, from 0 to 1; None where nothing was
+        averaged.
+    averages : float, optional
+        How many independent records were averaged, where that is known.
+
+    Raises
+    ------
+    TypeError
+        If something is of the wrong type.
+    SceneError
+        If shapes do not fit, frequencies do not increase or something is not finite.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> measured = rd.Measured([10.0, 20.0], [1e-4, 2e-4], drive=("z", 0.5), response=("z", 0.5))
+    >>> measured.labels
+    ('z at 0.500 m [m/N]',)
+    """
+
+    frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
+    value: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
+    _: KW_ONLY
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str = "receptance"
+    coherence: NDArray[np.float64] | None = field(
+        default=None, metadata=axes("response", "frequency")
+    )
+    averages: float | None = None
+
+    def __post_init__(self) -> None:
+        frequency = check.frequencies(self.frequency)
+        if (np.diff(frequency) <= 0).any():
+            raise SceneError(f"frequency must increase, got {check.shown(self.frequency)}")
+        drive, response = _points(self.drive, "drive"), _points(self.response, "response")
+        if len(drive) != 1:
+            raise SceneError(f"drive must be one point, got {check.shown(self.drive)}")
+        check.one_of(self.quantity, "quantity", QUANTITIES)
+        shape = (len(response), len(frequency))
+        object.__setattr__(self, "frequency", frequency)
+        object.__setattr__(self, "drive", drive)
+        object.__setattr__(self, "response", response)
+        object.__setattr__(self, "value", _value(self, shape))
+        if self.coherence is not None:
+            coherence = check.matrix(self.coherence, "coherence", shape, ROWS, np.float64)
+            if (coherence < 0).any() or (coherence > 1).any():
+                raise SceneError(
+                    f"coherence must lie between 0 and 1, got {check.shown(self.coherence)}"
+                )
+            object.__setattr__(self, "coherence", coherence)
+        averages = check.optional(self.averages, "averages", sign="positive")
+        object.__setattr__(self, "averages", averages)
+        super().__post_init__()
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        drive: Any = None,
+        response: Any = None,
+        unit: str | Sequence[str] | None = None,
+        quantity: str | None = None,
+        positions: str | Mapping[int, float | None] | None = None,
+        coordinate: str | Mapping[str, str] | None = None,
+        reciprocal: bool = False,
+        records: int | Sequence[int] | None = None,
+        columns: Mapping[str, Any] | None = None,
+        delimiter: str | None = None,
+        decimal: str = ".",
+        comments: str = "#",
+        skip: int = 0,
+    ) -> Self:
+        r"""Read a universal file (dataset 58, ASCII or binary) or text in columns.
+
+        What `write` has written needs nothing else. Of other files, what they do not say must be
+        said here, and what is said here replaces what they say.
+
+        Parameters
+        ----------
+        path : path
+            ``.uff``, ``.unv`` or ``.uf``; ``.csv``, ``.txt``, ``.dat`` or ``.tsv``.
+        drive : point, optional
+            What the force acted on, such as ``("z", 0.5)``. Of a universal file: which of several.
+        response : point or list of points, optional
+            What was watched. Of a universal file: which of several; all where left out.
+        unit : str, optional
+            Of the values, as the file has them: motion per force such as ``"m/N"``, ``"mm/s/N"``,
+            ``"g/N"``, ``"(m/s^2)/lbf"``, ``"rad/(N m)"``; or one for each response. Of a universal
+            file where left out: by its labels, or else by dataset 164.
+        quantity : {"receptance", "mobility", "accelerance"}, optional
+            The unit says it too. Of a universal file where left out: by the type of its ordinate.
+        positions : dict or {"X", "Y", "Z"}, optional
+            Of a universal file: where on the rope each node is [m]; None leaves it out. Or the axis
+            along which the rope lies, its first end at 0, if the file has the nodes (dataset 15 or
+            2411) and their unit (164).
+        coordinate : str or dict, optional
+            Of a universal file: which coordinate of the rope each of its directions is, such as
+            ``{"Z": "z", "RY": "-beta"}``, or one where there is one direction. The signs of
+            records such as -Z are respected.
+        reciprocal : bool, optional
+            Of a universal file: exchange what was driven and what was watched, which changes no
+            response of a passive rope (Maxwell, Betti); for a hammer that roves.
+        records : int or list of int, optional
+            Of a universal file: numbers of the datasets to be read, from 0.
+        columns : dict, optional
+            Of text: names or numbers, from 0, of the columns "frequency" [Hz], "real" and "imag" or
+            "amplitude" and "phase" [deg], and "coherence"; a list has one for each response.
+        delimiter : str, optional
+            Of text; found where left out.
+        decimal : {".", ","}, optional
+            Of text.
+        comments : str, optional
+            Of text: how lines begin that are left out.
+        skip : int, optional
+            Of text: how many lines are left out first. One line of names may follow.
+
+        Returns
+        -------
+        Measured
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If something is not said, has no meaning for such a file, or the file is damaged; the
+            message names it.
+        ImportError
+            If pyuff is missing for a universal file.
+        OSError
+            If the file cannot be read.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import ropedyn as rd
+        >>> path = tempfile.mkdtemp() + "/run1.csv"
+        >>> with open(path, "w") as file:
+        ...     _ = file.write("f,re,im\n10.0,1.5,0.5\n11.0,2.5,-0.5\n")
+        >>> columns = {"frequency": "f", "real": "re", "imag": "im"}
+        >>> where = {"drive": ("z", 0.5), "response": ("z", 0.2)}
+        >>> measured = rd.Measured.read(path, columns=columns, unit="g/N", **where)
+        >>> measured.labels
+        ('z at 0.200 m [m/s^2/N]',)
+        """
+        from .files.formats import read
+
+        given = read(
+            path,
+            anything={"drive": drive, "response": response, "unit": unit, "quantity": quantity},
+            universal={
+                "positions": positions,
+                "coordinate": coordinate,
+                "reciprocal": reciprocal,
+                "records": records,
+            },
+            text={
+                "columns": columns,
+                "delimiter": delimiter,
+                "decimal": decimal,
+                "comments": comments,
+                "skip": skip,
+            },
+        )
+        try:
+            return cls(**given)
+        except SceneError as error:
+            raise SceneError(f"{path}: {error}") from error
+
+    def _noise_around(self, response: int) -> NDArray[np.float64] | None:
+        return by_differences(self.value[response])
+
+    def _noise(self, response: int) -> NDArray[np.float64] | None:
+        if self.coherence is None or self.averages is None:
+            return None
+        return by_coherence(self.value[response], self.coherence[response], self.averages)
+
+    def _columns(self) -> dict[str, Any]:
+        columns = super()._columns()
+        if self.coherence is not None:
+            for name, values in zip(self.labels, self.coherence):
+                columns[f"coherence of {name}"] = values
+        return columns
+
+
+def lines_of(measured: Measured, which: NDArray[Any]) -> Measured:
+    """Return some of the lines, by numbers or as True and False."""
+    coherence = None if measured.coherence is None else measured.coherence[:, which]
+    frequency, value = measured.frequency[which], measured.value[:, which]
+    return replace(measured, frequency=frequency, value=value, coherence=coherence)
+
+
+def _points(given: Any, name: str) -> tuple[Any, ...]:
+    """Return points on any rope; a point alone is a tuple of it."""
+    found = check.points(given, name, forces=name == "response")
+    return (found,) if isinstance(found[0], str) else found
+
+
+def _value(measured: Measured, shape: tuple[int, int]) -> NDArray[np.complex128]:
+    """Return the values; of a quantity of pint in the unit that all responses have."""
+    units = {curve_unit(r, measured.drive[0], measured.quantity) for r in measured.response}
+    if len(units) > 1 and is_quantity(measured.value):
+        raise SceneError(
+            "value must be plain numbers where responses have different units "
+            f"({', '.join(sorted(units))}), got {check.shown(measured.value)}"
+        )
+    return check.matrix(measured.value, "value", shape, ROWS, np.complex128, unit=units.pop())

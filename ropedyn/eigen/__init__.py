@@ -1,0 +1,1 @@
+"""Natural frequencies, shapes, their derivatives and their mesh error."""

@@ -1,0 +1,1 @@
+"""Complex modes of damped motion."""

@@ -1,0 +1,280 @@
+"""Complex modes of a model, from the rates of its chains."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import _core
+from ...base import check
+from ...base.answer import Cost
+from ...base.errors import SceneError, SolveError
+from ...base.unit import FAMILY
+from ...chain.chain import Chain
+from ...chain.compile import check_points, finer
+from ...model import Model
+from ...scene.damping import having
+from ..eigen import check_asked, fractions, largest, lowest, points_for, within
+from ..free_motion import Mesh, Vectors
+from .attached_energy import Carried
+from .characteristic import Complex, Rates, Real
+from .damped_modes import DampedModes
+from .damped_roots import Damped, damped_roots
+from .modal_rates import solve_modal
+from .residue import motions
+
+MORE = 4
+"""Times the modes asked for: so many undamped ones a search passes before it gives up."""
+
+DOUBLINGS = 40
+"""Of the radius beyond them: dashpots on light nodes have rates far above all frequencies."""
+
+UNSEEN = 1e-8
+"""Of the largest component of a shape: less at all points is rounding at nodes of the mode."""
+
+Part = tuple[tuple[str, ...], int, int]
+"""A component between two nodes."""
+
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Rates of all parts in order.
+
+    Attributes
+    ----------
+    parts : list of Part
+        Chains.
+    found : list of Damped
+        Their rates.
+    value, error : ndarray, shape (k,)
+        Those asked for [rad/s].
+    which, at : ndarray of int, shape (k,)
+        Of which part each is, and which of its rates.
+    radius : float
+        None of a modulus below this is missing [rad/s].
+    """
+
+    parts: list[Part]
+    found: list[Damped]
+    value: Complex
+    error: Real
+    which: Index
+    at: Index
+    radius: float
+
+    def first(self, number: int) -> _Found:
+        """Return the lowest alone."""
+        return replace(
+            self,
+            value=self.value[:number],
+            error=self.error[:number],
+            which=self.which[:number],
+            at=self.at[:number],
+            radius=float(np.abs(self.value[number - 1])),
+        )
+
+    @property
+    def sweeps(self) -> int:
+        """How often chains were walked."""
+        return sum(part.sweeps for part in self.found)
+
+
+def solve_damped(
+    model: Model, number: int | None, *, below: float | None, solver: str, points: int | None
+) -> DampedModes:
+    """Find complex modes; see `Model.modes`."""
+    check.one_of(solver, "solver", ("sweep", "lapack"))
+    if solver != "sweep":
+        raise SceneError(f'solver must be "sweep" for damped modes, got {solver!r}')
+    check_points(model, points)
+    limit = math.sqrt(check_asked(number, below))
+    if having(model.scene.dampings, "ratio"):
+        return solve_modal(model, number, below=below, points=points)
+    start = time.perf_counter()
+    answer = _find(model, model.components, number, limit)
+    seconds = time.perf_counter() - start
+    value = answer.value
+    x, finest = model.x, 1
+    mesh: Mesh | Callable[[], Mesh] = partial(_mesh, model, answer)
+    if model.element == "continuous":
+        mesh = Mesh(np.zeros(len(value)))
+        finest = points or points_for(model, np.square(np.abs(value)))
+        x = within(model.x, finest)
+    return DampedModes(
+        coordinates=model.coordinates,
+        certified=all(part.certified for part in answer.found),
+        searched=min(answer.radius, limit) / (2 * math.pi),
+        x=x,
+        eigenvalue=value,
+        rounding_error=answer.error / (2 * math.pi),
+        cost=Cost(seconds, solver, len(model.x) - 1, model.size, answer.sweeps),
+        source=partial(_vectors, model, answer, finest),
+        mesh_source=mesh,
+    )
+
+
+def _find(
+    model: Model, components: Iterable[tuple[str, ...]], number: int | None, limit: float
+) -> _Found:
+    """Find the rates of some components, those of the least modulus first."""
+    parts = [(c, *span) for c in components for span in model.chain.only(c).spans]
+    if number is None:
+        return _below(model, parts, limit)
+    omega = _undamped(model, parts, MORE * number + 4)
+    most = len(omega) + (0 if model.element == "continuous" else DOUBLINGS)
+    at, radius = number, 0.0
+    while True:
+        radius = max(_between(omega, at), 1.2 * radius)
+        answer = _below(model, parts, radius)
+        if len(answer.value) >= number:
+            return answer.first(number)
+        if at >= most or math.isinf(answer.radius):
+            raise SolveError(
+                f"number must be at most {len(answer.value)}, the damped modes "
+                f"{_where(answer.radius)}, got {number}"
+            )
+        at += number - len(answer.value)
+
+
+def _undamped(model: Model, parts: list[Part], number: int) -> Real:
+    """Return the lowest undamped frequencies [rad/s]."""
+    found = [
+        lowest(model.chain.undamped.only(c).between(first, last), number, math.inf, shaped=False)
+        for c, first, last in parts
+    ]
+    return np.sort(np.sqrt(np.abs(np.concatenate([one.eigenvalue for one in found]))))[:number]
+
+
+def _between(omega: Real, at: int) -> float:
+    """Return a radius with the first `at` of these inside; beyond the last by powers of two."""
+    if at < len(omega):
+        return float(omega[at - 1] + omega[at]) / 2
+    return float(omega[-1]) * 1.5 * 2.0 ** (at - len(omega))
+
+
+def _where(radius: float) -> str:
+    return "there are" if math.isinf(radius) else f"below {radius / (2 * math.pi):.6g} Hz"
+
+
+def _below(model: Model, parts: list[Part], limit: float) -> _Found:
+    found = [_solve(model, part, limit) for part in parts]
+    radius = min(part.radius for part in found)
+    value = np.concatenate([part.value for part in found])
+    error = np.concatenate([part.error for part in found])
+    which = np.repeat(np.arange(len(found)), [len(part.value) for part in found])
+    at = np.concatenate([np.arange(len(part.value)) for part in found])
+    order = np.argsort(np.abs(value), kind="stable")
+    order = order[np.abs(value[order]) < min(radius, limit)]
+    return _Found(parts, found, value[order], error[order], which[order], at[order], radius)
+
+
+def _solve(model: Model, part: Part, limit: float) -> Damped:
+    component, first, last = part
+    chain = model.chain.only(component).between(first, last)
+    try:
+        return damped_roots(chain, Rates.of(model.scene.dampings), limit)
+    except SolveError as refusal:
+        raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
+
+
+# --- what follows from the shapes ---------------------------------------------------------------
+
+
+def _vectors(model: Model, answer: _Found, points: int) -> Vectors[np.complex128]:
+    """Shapes at `points` parts of each element, energies with as many as the waves need."""
+    value, which, at = answer.value, answer.which, answer.at
+    more, fine = 1, model
+    if model.element == "continuous":
+        more = -(-points_for(model, np.square(np.abs(value))) // points)
+        fine = finer(model, points * more)
+    step = points * more
+    shape = np.zeros((len(which), len(fine.x), len(model.coordinates)), dtype=np.complex128)
+    mass = np.zeros(len(which), dtype=np.complex128)
+    carried = Carried.none(len(which))
+    for k, ((component, first, last), part) in enumerate(zip(answer.parts, answer.found)):
+        chain = fine.chain.only(component).between(first * step, last * step)
+        mine = np.flatnonzero(which == k)
+        nodes = np.arange(first * step, last * step + 1)
+        columns = np.array([model.coordinates.index(c) for c in component])
+        block = np.ix_(mine, nodes, columns)
+        shape[block], mass[mine], own = _shapes(chain, part, at[mine])
+        carried.energy[:, mine], carried.motion[mine] = own
+    strain, kinetic = _energy(fine.chain, shape, value)
+    own = kinetic.argmax(axis=1)
+    size = largest(shape[:, ::more], own)
+    everywhere = np.maximum(np.abs(largest(shape, own)), carried.motion)
+    # where a mode has its nodes at all points, that elsewhere
+    size = np.where(np.abs(size) < UNSEEN * everywhere, everywhere, size)
+    return Vectors(
+        family=np.array([FAMILY[model.coordinates[k]] for k in own], dtype=np.str_),
+        modal_mass=mass / size**2,
+        shape=shape[:, ::more] / size[:, None, None],
+        energy=fractions(model, np.abs(value), strain, kinetic, carried.of(model.chain)),
+    )
+
+
+def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex, Carried]:
+    """Return some motions of a chain, their modal masses and what it carries in them."""
+    shape = np.zeros((len(wanted), chain.nodes, chain.held.shape[1]), dtype=np.complex128)
+    mass = np.zeros(len(wanted), dtype=np.complex128)
+    carried = Carried.none(len(wanted))
+    value = part.value[wanted]
+    # rigid motion is that without damping
+    mode = np.cumsum(value == 0) - 1 if part.mode is None else part.mode[wanted]
+    real = (value == 0) if part.closed is None else np.ones(len(value), dtype=np.bool_)
+    if real.any():
+        found = lowest(chain.undamped, int(mode[real].max()) + 1, math.inf, shaped=True)
+        assert found.shape is not None
+        own, eigenvalue = found.shape[mode[real]], found.eigenvalue[mode[real]]
+        shape[real] = own
+        assert found.motion is not None
+        moved = found.motion[mode[real]]
+        carried.energy[:, real], carried.motion[real] = Carried.real(chain, own, moved, eigenvalue)
+        mass[real] = _core.energy(chain.undamped, own, eigenvalue)[1].sum(axis=1)
+        mass[real] += carried.energy[:, real, 1].sum(axis=0)
+        if part.closed is not None:
+            mass *= part.closed.mass_ratio(value, eigenvalue)
+    if not real.all():
+        shape[~real] = motions(chain, part, wanted[~real])
+        mass[~real] = 1 / (2 * value[~real])
+        rates = part.rates.at(value[~real])
+        carried.energy[:, ~real], carried.motion[~real] = Carried.at(chain, rates, shape[~real])
+    return shape, mass, carried
+
+
+def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
+    """Return strain and kinetic energy over a period, twice."""
+    eigenvalue = -np.square(value).real
+    real = _core.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
+    imag = _core.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
+    return real[0] + imag[0], real[1] + imag[1]
+
+
+# --- against continuous spans -------------------------------------------------------------------
+
+
+def _mesh(model: Model, answer: _Found) -> Mesh:
+    """Return the distance to the modes of continuous spans, matched so that all are near."""
+    from scipy.optimize import linear_sum_assignment
+
+    distance = np.full(len(answer.value), np.inf)
+    with suppress(SceneError, SolveError):
+        continuous = model.scene.compile()
+        for component in model.components:
+            mine = np.flatnonzero([answer.parts[k][0] == component for k in answer.which])
+            if len(mine) == 0:
+                continue
+            true = _find(continuous, [component], len(mine), math.inf)
+            apart = np.abs(answer.value[mine][:, None] - true.value[None, :])
+            row, column = linear_sum_assignment(apart)
+            distance[mine[row]] = apart[row, column] + true.error[column]
+    return Mesh(distance / (2 * math.pi))

@@ -1,0 +1,139 @@
+"""Complex modes: rates of damped motion and shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.answer import Cost, axes, nested
+from ...base.table import Table
+from ..free_motion import FreeMotion, Mesh, Vectors
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False)
+class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
+    """Rates s of free motion Re(shape e^(s t)) of a damped model, those of the least |s| first.
+
+    Of each conjugate pair the one with Im s > 0 is given (with a loss factor, whose stiffness is
+    another below the real axis, it has no partner); overdamped motion, with real s, has two
+    rates, which are modes each. Rigid-body motion, s = 0, is one mode even where it drifts on
+    undamped. A complex modulus, of a loss factor or of a broken wire with damping, is one of
+    oscillation: there only rates with Im s > 0 and rigid-body motion are modes.
+
+    What follows from the shapes (`shape`, `energy`, `family`, `modal_mass`) is computed when it is
+    first asked for, and so is `mesh_error`.
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        Of every node.
+    x : ndarray, shape (nodes,)
+        Where shapes are given [m], as in `Modes`.
+    eigenvalue : ndarray of complex, shape (k,)
+        s [rad/s].
+    frequency : ndarray, shape (k,)
+        Of the damped oscillation, Im s/2 pi [Hz]; 0 of overdamped motion.
+    natural_frequency : ndarray, shape (k,)
+        |s|/2 pi [Hz], that of the undamped mode where damping is proportional.
+    damping_ratio : ndarray, shape (k,)
+        -Re s/|s|; 1 of overdamped motion, 0 where s is 0, negative where motion grows.
+    decay_rate : ndarray, shape (k,)
+        -Re s [1/s].
+    rounding_error : ndarray, shape (k,)
+        Estimated absolute error of s/2 pi that rounding causes [Hz].
+    mesh_error : ndarray, shape (k,)
+        Absolute error of s/2 pi that the elements cause [Hz]: the distance to the damped mode of
+        the continuous spans it is matched with, and the rounding error of that. 0 for continuous
+        spans, infinite where they have no answer.
+    searched : float
+        No mode with |s|/2 pi below this is missing [Hz].
+    certified : bool
+        True: circles around the modes surround as many roots of the characteristic function as the
+        circle around all of them does, by the argument principle; where damping is proportional,
+        the undamped modes are certified by count.
+    family : ndarray of str, shape (k,)
+        "transverse", "bending rotation", "torsional" or "axial": the coordinate with the most
+        kinetic energy.
+    modal_mass : ndarray of complex, shape (k,)
+        shape^T D'(s) shape/2 s with the dynamic stiffness D [kg, kg m^2], no part conjugate: the
+        response has the poles shape shape^T/(2 s modal_mass)/(i omega - s). shape^T M shape where
+        s is 0.
+    shape : ndarray of complex, shape (k, nodes, coordinates)
+        The largest component of the family's own coordinate at `x` is 1 [m, rad].
+    energy : dict of ndarray, shape (k,)
+        Fractions, as in `Modes`, averaged over a period.
+    cost : Cost
+        What the rates cost.
+
+    Examples
+    --------
+    A string in a viscous medium loses c/2 mu per second, whatever the mode:
+
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, damping=rd.ViscousDamping(2.0))
+    >>> modes = scene.compile().modes(2, damped=True)
+    >>> modes.decay_rate.round(9), modes.natural_frequency.round(9)
+    (array([10., 10.]), array([25., 50.]))
+    >>> modes.frequency.round(3), modes.damping_ratio.round(4)
+    (array([24.949, 49.975]), array([0.0637, 0.0318]))
+    """
+
+    coordinates: tuple[str, ...]
+    certified: bool
+    searched: float
+    x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
+    eigenvalue: NDArray[np.complex128] = field(metadata=axes("mode", unit="rad/s"))
+    rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    cost: Cost
+    source: Vectors[np.complex128] | Callable[[], Vectors[np.complex128]] = field(
+        repr=False, metadata=nested(Vectors, "vectors")
+    )
+    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
+
+    @property
+    def frequency(self) -> NDArray[np.float64]:
+        """Frequency of the damped oscillation [Hz], shape (k,)."""
+        return self.eigenvalue.imag / (2 * np.pi)
+
+    @property
+    def natural_frequency(self) -> NDArray[np.float64]:
+        """Modulus of s/2 pi [Hz], shape (k,)."""
+        return np.abs(self.eigenvalue) / (2 * np.pi)
+
+    @property
+    def damping_ratio(self) -> NDArray[np.float64]:
+        """Damping ratio of each mode, shape (k,)."""
+        size = np.abs(self.eigenvalue)
+        return np.divide(self.decay_rate, size, out=np.zeros_like(size), where=size > 0)
+
+    @property
+    def decay_rate(self) -> NDArray[np.float64]:
+        """Decay rate of each mode [1/s], shape (k,)."""
+        return 0.0 - self.eigenvalue.real
+
+    def table(self) -> Table:
+        """Return one row for each mode."""
+        columns: dict[str, Any] = {
+            "mode": np.arange(1, len(self.eigenvalue) + 1),
+            "frequency [Hz]": self.frequency,
+            "natural frequency [Hz]": self.natural_frequency,
+            "damping ratio": self.damping_ratio,
+            "decay rate [1/s]": self.decay_rate,
+            "mesh error [Hz]": self.mesh_error,
+            "rounding error [Hz]": self.rounding_error,
+            "family": self.family,
+        }
+        return Table.of("damped modes", columns | self._shares)
+
+    def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
+        """Plot the real parts of the shapes of one coordinate, the first one by default."""
+        from ...plot.answers import plot_modes
+
+        return plot_modes(self, ax, coordinate)

@@ -1,0 +1,208 @@
+"""The rates s of damped motion e^(s t) of one chain: in closed form or by search."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SolveError
+from ...chain.chain import Chain
+from ..eigen import lowest
+from .characteristic import Characteristic, Complex, Rates, Real, elastic, horizon
+from .proportional import Proportional, proportional
+from .roots import Roots, find_roots
+from .winding import winding
+
+MARGIN = 0.98
+"""Of the horizon: so far motion is told apart."""
+
+NUDGES = (1.0, 1.004, 1.01, 1.03, 1.07)
+"""Of a circle on which a root lies."""
+
+
+@dataclass(frozen=True)
+class Damped:
+    """Rates of one chain, in the order of their modulus.
+
+    Attributes
+    ----------
+    rates : Rates
+        Factors of the chain's parts.
+    value : ndarray of complex, shape (k,)
+        One of each conjugate pair, that above the real axis [rad/s].
+    error : ndarray, shape (k,)
+        Estimated absolute error [rad/s].
+    certified : bool
+        Whether none is missing.
+    radius : float
+        None of a modulus below this is missing [rad/s]; infinite where there are no more.
+    sweeps : int
+        What it took.
+    nearby : ndarray of complex
+        What was found besides: the others of the pairs [rad/s].
+    closed : Proportional or None
+        How the damping is proportional.
+    mode : ndarray of int, shape (k,)
+        The undamped mode that each is of, where it is proportional.
+    """
+
+    rates: Rates
+    value: Complex
+    error: Real
+    certified: bool
+    radius: float
+    sweeps: int
+    nearby: Complex
+    closed: Proportional | None = None
+    mode: NDArray[np.intp] | None = None
+
+
+def damped_roots(chain: Chain, rates: Rates, radius: float) -> Damped:
+    """Find all rates of a chain of a modulus below some radius.
+
+    Parameters
+    ----------
+    chain : Chain
+        One component, between nodes that nothing moves.
+    rates : Rates
+        Factors of its parts.
+    radius : float
+        [rad/s].
+
+    Raises
+    ------
+    SolveError
+        If they accumulate before it, or rounding decides where they are.
+    """
+    edge = MARGIN * horizon(chain, rates)
+    closed = proportional(chain, rates)
+    if closed is not None and (radius < edge or chain.finite is not None):
+        return _closed(chain, rates, closed, radius, edge)
+    if not radius < edge:
+        raise SolveError(
+            f"damped modes can be told apart below {edge / (2 * math.pi):.6g} Hz: at the decay "
+            f"rate {edge / MARGIN:.6g} 1/s, where damping cancels stiffness, infinitely many "
+            "overdamped modes accumulate; ask for fewer modes or a lower frequency"
+        )
+    return _searched(chain, rates, radius, edge)
+
+
+# --- in closed form -----------------------------------------------------------------------------
+
+
+def _closed(chain: Chain, rates: Rates, closed: Proportional, radius: float, edge: float) -> Damped:
+    """Two rates of each undamped mode; beyond the edge the highest modes may have the lowest."""
+    if radius < edge:
+        found = lowest(chain.undamped, None, closed.highest(radius), shaped=False)
+    else:
+        found = lowest(chain.undamped, chain.finite, math.inf, shaped=False)
+    eigenvalue = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
+    whole = 2 * len(eigenvalue) == most_roots(chain.undamped, Rates.of(()))
+    s = closed.rates(eigenvalue)
+    uncertain = np.broadcast_to(found.error[:, None], s.shape)
+    # at critical damping both rates are one, sqrt(stiff dlambda) wide
+    most = np.sqrt(abs(closed.stiff) * uncertain)
+    moved = closed.sensitivity(s, eigenvalue[:, None])
+    error = np.minimum(np.multiply(moved, uncertain, out=most.copy(), where=most > 0), most)
+    error += 2 * np.finfo(float).eps * np.abs(s)
+    # of a pair the one above the axis, of rigid motion, 0 twice, one
+    kept = (s.imag >= 0) & (np.abs(s) < radius)
+    kept[:, 1] &= (s != 0).any(axis=1)
+    mode, _ = np.nonzero(kept)
+    value, error = s[kept], error[kept]
+    order = np.argsort(np.abs(value), kind="stable")
+    return Damped(
+        rates,
+        value[order],
+        error[order],
+        found.certified,
+        math.inf if whole and (np.abs(s) < radius).all() else radius,
+        found.work.sweeps,
+        np.zeros(0, dtype=np.complex128),
+        closed,
+        mode[order],
+    )
+
+
+# --- by search ----------------------------------------------------------------------------------
+
+
+def _searched(chain: Chain, rates: Rates, radius: float, edge: float) -> Damped:
+    undamped = lowest(chain.undamped, None, (1.1 * radius) ** 2, shaped=False)
+    omega = np.sqrt(np.abs(undamped.eigenvalue))
+    guess = np.stack([1j * omega, -1j * omega], axis=1).ravel()
+    sweeps = undamped.work.sweeps
+    for nudge in NUDGES:
+        wide = min(radius * nudge, edge)
+        function = Characteristic(chain, rates, min(1.5 * wide, (wide + edge / MARGIN) / 2))
+        around = winding(function, wide)
+        roots = None if around is None else find_roots(function, around, guess)
+        sweeps += function.sweeps
+        if around is not None and roots is not None and roots.certified:
+            still = int((np.abs(undamped.eigenvalue) <= undamped.error).sum())
+            value, error, nearby = _sorted(roots, around.paired, still)
+            whole = around.count == most_roots(chain, rates)
+            wide = math.inf if whole else wide
+            return Damped(rates, value, error, True, wide, sweeps, nearby)
+    raise SolveError(
+        f"damped modes below {radius / (2 * math.pi):.6g} Hz cannot be told from rounding: motion "
+        "decays there within a small part of a period, as before a dashpot that matches the rope's "
+        "impedance; ask for fewer modes or a lower frequency"
+    )
+
+
+def _sorted(roots: Roots, paired: bool, still: int) -> tuple[Complex, Real, Complex]:
+    """Return rates in order with their errors, and what lies beside; `still` meet no resistance."""
+    value, error = roots.value, roots.error
+    # what rounding cannot tell from an axis is on it
+    value = np.where(np.abs(value.real) <= error, 1j * value.imag, value)
+    value = np.where(np.abs(value.imag) <= error, value.real + 0j, value)
+    kept = value.imag >= 0 if paired else (value.imag > 0) | (value == 0)
+    nearby = value[value.imag > 0].conj() if paired else value[~kept]
+    # a motion that nothing resists has the rate 0 twice where nothing damps it either
+    kept[np.flatnonzero(value == 0)[still:]] = False
+    index = np.flatnonzero(kept)
+    order = index[np.argsort(np.abs(value[index]), kind="stable")]
+    return value[order], error[order], nearby
+
+
+def most_roots(chain: Chain, rates: Rates) -> int | None:
+    """Return how many rates a chain has in all; None where elements do not say.
+
+    The determinant of s^2 M + s C + K has the power 2 rank M + rank of C where M is nothing; masses
+    and dashpots stand at nodes, on masses of resonators and between those and their nodes.
+    """
+    if chain.finite is None or rates.linear[elastic(chain)].any():
+        return None
+    count = 0
+    each = np.bincount(chain.term_of, minlength=len(chain.mass))
+    dashpots = _dashpots(chain)
+    for term in np.flatnonzero(each):
+        free = chain.held[term] == 0
+        mass = chain.mass[term][np.ix_(free, free)]
+        size, axis = np.linalg.eigh(mass)
+        massless = axis[:, size == 0]
+        count += 2 * int((size != 0).sum()) * int(each[term])
+        rest = massless.T @ dashpots[term][np.ix_(free, free)] @ massless
+        count += int(np.linalg.matrix_rank(rest)) * int(each[term]) if rest.size else 0
+    return count + 2 * _resonators(chain)
+
+
+def _resonators(chain: Chain) -> int:
+    terms = () if chain.attached_term is None else chain.attached_term
+    return int(np.isin(terms, chain.term).sum())
+
+
+def _dashpots(chain: Chain) -> Real:
+    """Return those of node terms with those of resonators, shape (terms, width, width)."""
+    total = np.zeros_like(chain.mass) if chain.damping is None else chain.damping.copy()
+    if chain.attached_row is not None:
+        assert chain.attached_term is not None
+        assert chain.attached_value is not None
+        foot = chain.attached_row[:, 0]
+        each = chain.attached_value[:, -1, None, None] * foot[:, :, None] * foot[:, None, :]
+        np.add.at(total, chain.attached_term, each)
+    return total

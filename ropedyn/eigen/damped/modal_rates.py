@@ -1,0 +1,116 @@
+"""Complex modes where each mode has a damping ratio of its own."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError, SolveError
+from ...model import Model
+from ...scene.damping import having, ratios
+from ..eigen import solve_modes
+from ..free_motion import Mesh, Vectors
+from ..modes import Modes
+from .characteristic import Complex, Real
+from .damped_modes import DampedModes
+
+Index = NDArray[np.intp]
+
+
+def solve_modal(
+    model: Model, number: int | None, *, below: float | None, points: int | None
+) -> DampedModes:
+    """Find the rates omega (-zeta +- sqrt(zeta^2 - 1)) of undamped modes.
+
+    Raises
+    ------
+    SceneError
+        If there is other damping, which would couple the modes, or a mode has no ratio.
+    """
+    dampings, effects = model.scene.dampings, model.scene.effects
+    others = [one.kind for one in having(dampings, "rate", "loss", "drag")]
+    others += ["dashpot"] if "dashpot" in effects else []
+    others += model.chain.carried if model.chain.resists else []
+    if others:
+        raise SceneError(
+            "damping must not be modal damping beside another that is not 0 for damped modes, "
+            f"which that would couple, got {', '.join(others)}"
+        )
+    given = np.concatenate([np.ravel(one.term().ratio) for one in having(dampings, "ratio")])
+    # an overdamped mode has a rate smaller than its frequency: those may be the lowest
+    spread = float(np.exp(np.arccosh(max(1.0, float(np.sum(given))))))
+    wanted = None if number is None else number + (len(given) if spread > 1 else 0)
+    undamped = solve_modes(
+        model,
+        wanted,
+        below=None if below is None else below * spread,
+        solver="sweep",
+        points=points,
+        strict=False,
+    )
+    omega = np.sqrt(np.maximum(undamped.eigenvalue, 0.0))
+    ratio = ratios(dampings, len(omega))
+    limit = math.inf if below is None else 2 * math.pi * below
+    needed = np.abs(undamped.eigenvalue) < (spread * limit) ** 2
+    if np.isnan(ratio[needed][:number]).any():
+        known = int(np.isnan(ratio).argmax())
+        raise SceneError(
+            "damping ratio must be one number or one for each mode, got "
+            f"{known} for {int(needed.sum())} modes"
+        )
+    return _answer(undamped, omega, np.nan_to_num(ratio), number, limit)
+
+
+def _answer(
+    undamped: Modes, omega: Real, ratio: Real, number: int | None, limit: float
+) -> DampedModes:
+    root: Complex = np.sqrt(np.asarray(ratio**2 - 1, dtype=np.complex128))
+    # of an overdamped mode the slow rate as the product over the fast one
+    fast = -omega * (ratio + root)
+    slow = np.where(ratio < 1, fast.conj(), -omega / (ratio + root))
+    # what grows has no ratio
+    s = np.stack([slow + undamped.growth, fast - undamped.growth], axis=-1) + 0.0
+    kept = (s.imag >= 0) & (np.abs(s) < limit)
+    kept[:, 1] &= s[:, 1] != 0
+    mode, _ = np.nonzero(kept)
+    value = np.asarray(s[kept], dtype=np.complex128)
+    order = np.argsort(np.abs(value), kind="stable")[:number]
+    if number is not None and len(order) < number:
+        raise SolveError(
+            f"number must be at most {len(order)}, the damped modes there are, got {number}"
+        )
+    value, mode = value[order], mode[order]
+    size = np.maximum(omega, undamped.growth)[mode]
+    # the frequency is all that is not exact
+    scale = np.divide(np.abs(value), size, out=np.ones_like(size), where=size > 0)
+    searched = limit if number is None else float(np.abs(value[-1]))
+    return DampedModes(
+        coordinates=undamped.coordinates,
+        certified=undamped.certified,
+        searched=searched / (2 * math.pi),
+        x=undamped.x,
+        eigenvalue=value,
+        rounding_error=undamped.rounding_error[mode] * scale,
+        cost=replace(undamped.cost),
+        source=partial(_vectors, undamped, mode, value, (ratio * omega)[mode]),
+        mesh_source=partial(_mesh, undamped, mode, scale),
+    )
+
+
+def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> Vectors[np.complex128]:
+    """Shapes without damping; D' is m (2 s + 2 zeta omega)."""
+    share = np.divide(decay, value, out=np.zeros_like(value), where=value != 0)
+    return Vectors(
+        family=undamped.family[mode],
+        modal_mass=undamped.modal_mass[mode] * (1 + share),
+        shape=undamped.shape[mode].astype(np.complex128),
+        energy={name: part[mode] for name, part in undamped.energy.items()},
+    )
+
+
+def _mesh(undamped: Modes, mode: Index, scale: Real) -> Mesh:
+    return Mesh(undamped.mesh_error[mode] * scale)

@@ -1,0 +1,164 @@
+"""What modes are, undamped or damped: motion that nothing drives."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.answer import Answer, Frozen, axes
+from ..chain.chain import CARRIED
+
+if TYPE_CHECKING:
+    from ..plot.animation import Animation
+    from .damped.damped_modes import DampedModes
+    from .modes import Modes
+
+Number = TypeVar("Number", np.float64, np.complex128)
+
+
+@dataclass(frozen=True, eq=False)
+class Vectors(Frozen, Generic[Number]):
+    """What follows from the shapes of modes; see `Modes` and `DampedModes`."""
+
+    family: NDArray[np.str_] = field(metadata=axes("mode"))
+    modal_mass: NDArray[Number] = field(metadata=axes("mode", unit="kg or kg m^2"))
+    shape: NDArray[Number] = field(metadata=axes("mode", "node", "coordinate", unit="m or rad"))
+    energy: dict[str, NDArray[np.float64]] = field(metadata=axes("mode", keyed=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh(Frozen):
+    """What continuous spans say about the modes of a chain; see `Modes` and `DampedModes`."""
+
+    mesh_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+
+
+OfShapes = TypeVar("OfShapes", bound=Vectors[Any])
+OfMesh = TypeVar("OfMesh", bound=Mesh)
+
+
+class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
+    """Base of modes: what follows from shapes and from continuous spans is found when asked for."""
+
+    coordinates: tuple[str, ...]
+    x: NDArray[np.float64]
+    source: OfShapes | Callable[[], OfShapes]
+    mesh_source: OfMesh | Callable[[], OfMesh]
+
+    @cached_property
+    def vectors(self) -> OfShapes:
+        """What follows from the shapes.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
+        >>> modes.vectors.shape.shape == modes.shape.shape
+        True
+        """
+        return self.source if isinstance(self.source, Vectors) else self.source()
+
+    @cached_property
+    def mesh(self) -> OfMesh:
+        """What the continuous spans of the same scene say.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
+        >>> modes.mesh.mesh_error.round(3)
+        array([0.638])
+        """
+        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
+
+    @property
+    def mesh_error(self) -> NDArray[np.float64]:
+        """Error that the elements cause [Hz], shape (k,)."""
+        return self.mesh.mesh_error
+
+    @property
+    def family(self) -> NDArray[np.str_]:
+        """Family of each mode, shape (k,)."""
+        return self.vectors.family
+
+    @property
+    def modal_mass(self) -> NDArray[Number]:
+        """Modal mass, shape (k,)."""
+        return self.vectors.modal_mass
+
+    @property
+    def shape(self) -> NDArray[Number]:
+        """Shapes, shape (k, nodes, coordinates)."""
+        return self.vectors.shape
+
+    @property
+    def energy(self) -> dict[str, NDArray[np.float64]]:
+        """Fractions of strain and of kinetic energy, each shape (k,)."""
+        return self.vectors.energy
+
+    def animate(
+        self,
+        k: int = 0,
+        *,
+        path: str | os.PathLike[str] | None = None,
+        frames: int = 30,
+        seconds: float = 2.0,
+    ) -> Animation:
+        """Show one period of a mode in motion.
+
+        Complex shapes travel as they do, Re(shape e^(i omega t)); decay is left out.
+
+        Parameters
+        ----------
+        k : int
+            Which mode, from 0 as in ``modes.frequency[k]``.
+        path : path, optional
+            Of a file to write: ``.gif``, ``.html`` or, where ffmpeg is installed, ``.mp4``.
+        frames : int
+            How many there are in the period, from 2 to 1000.
+        seconds : float
+            What the period takes on the screen [s].
+
+        Returns
+        -------
+        Animation
+            A notebook shows it.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a number is out of range, the mode does not oscillate or the file is of another kind.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile().modes(2)
+        >>> animation = modes.animate(1, frames=4)
+        >>> animation
+        <Animation of mode 2: 50 Hz, transverse, 4 frames>
+        >>> animation.motion.shape == (4, len(modes.x), 1)
+        True
+        """
+        from ..plot.animation import animated
+
+        modes = cast("Modes | DampedModes", self)
+        return animated(modes, k, path=path, frames=frames, seconds=seconds)
+
+    @property
+    def _shares(self) -> dict[str, NDArray[np.float64]]:
+        """Columns of the energies, kinetic ones first [%]."""
+        moving = (*self.coordinates, *CARRIED.values())
+        kinetic = [name for name in moving if name in self.energy]
+        strain = [name for name in self.energy if name not in moving]
+        columns = {f"kinetic {name} [%]": 100 * self.energy[name] for name in kinetic}
+        return columns | {f"strain {name} [%]": 100 * self.energy[name] for name in strain}

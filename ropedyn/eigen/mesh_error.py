@@ -1,0 +1,160 @@
+"""The mesh error of a chain: its distance to the continuous spans of the same scene."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import SceneError, SolveError
+from ..chain.port import Point
+from ..response import frf
+from . import modes
+
+if TYPE_CHECKING:
+    from ..model import Model
+    from ..scene.scene import Scene
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def mesh_of_modes(
+    scene: Scene, components: tuple[tuple[str, ...], ...], which: NDArray[np.intp], eigenvalue: Real
+) -> modes.UndampedMesh:
+    """Compare the modes of a chain with those of continuous spans.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the chain.
+    components : tuple of tuple of str
+        Coordinates that move together.
+    which : ndarray of int, shape (k,)
+        The component of each mode.
+    eigenvalue : ndarray, shape (k,)
+        Of the chain, lowest first [rad^2/s^2].
+
+    Returns
+    -------
+    UndampedMesh
+        Infinite errors where the continuous spans have no answer.
+    """
+    error, limit = np.full(len(eigenvalue), np.inf), np.full(len(eigenvalue), np.nan)
+    try:
+        continuous = scene.compile()
+    except SceneError:
+        return modes.UndampedMesh(mesh_error=error, limit=limit)
+    for k, component in enumerate(components):
+        mine = np.flatnonzero(which == k)
+        true, uncertain = _lowest(continuous, component, len(mine))
+        mine = mine[: len(true)]
+        error[mine] = distance(eigenvalue[mine], true, uncertain)
+        limit[mine] = np.maximum(in_hertz(true), 0.0)
+    return modes.UndampedMesh(mesh_error=error, limit=limit)
+
+
+def _lowest(model: Model, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
+    """Return the lowest eigenvalues and their errors [rad^2/s^2].
+
+    None where they are refused or too much for the memory: the chain's own answer stands.
+    """
+    from .eigen import spectrum
+
+    if number > 0:
+        with suppress(SolveError, MemoryError):
+            return spectrum(model, component, number)
+    return np.zeros(0), np.zeros(0)
+
+
+def distance(eigenvalue: Real, true: Real, uncertain: Real) -> Real:
+    """Return how far frequencies are from true ones, and how uncertain those are [Hz].
+
+    Parameters
+    ----------
+    eigenvalue : ndarray, shape (k,)
+        [rad^2/s^2].
+    true, uncertain : ndarray, shape (k,)
+        And their errors [rad^2/s^2].
+    """
+    from .eigen import error_in_hertz
+
+    return np.abs(in_hertz(eigenvalue) - in_hertz(true)) + error_in_hertz(true, uncertain)
+
+
+def in_hertz(eigenvalue: Real) -> Real:
+    """Return frequencies, and -growth/2 pi where motion grows [Hz]."""
+    return np.copysign(np.sqrt(np.abs(eigenvalue)), eigenvalue) / (2 * np.pi)
+
+
+def mesh_of_frf(
+    scene: Scene,
+    frequency: Real,
+    drives: tuple[Point, ...],
+    responses: tuple[Point, ...],
+    *,
+    quantity: str,
+    value: Complex,
+) -> frf.Mesh:
+    """Compare the response of a chain with that of continuous spans.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the chain.
+    frequency : ndarray, shape (f,)
+        [Hz].
+    drives, responses : tuple of points
+        What was asked for.
+    quantity : str
+        What the value is.
+    value : ndarray of complex, shape (responses, f) or (drives, responses, f)
+        Of the chain.
+
+    Returns
+    -------
+    Mesh
+        Infinite where the continuous spans have no answer, or where only the value is 0.
+    """
+    try:
+        true, uncertain = _response(scene.compile(), frequency, drives, responses, quantity)
+    except SceneError:
+        return frf.Mesh(np.full(value.shape, np.inf))
+    true, uncertain = true.reshape(value.shape), uncertain.reshape(value.shape)
+    size, known = np.abs(value), np.isfinite(true)
+    rounding = np.zeros(value.shape)
+    np.multiply(uncertain, np.abs(true), out=rounding, where=known & (true != 0))
+    relative = np.full(value.shape, np.inf)
+    with np.errstate(over="ignore"):  # a value of denormal size
+        np.divide(np.abs(value - true) + rounding, size, out=relative, where=known & (size > 0))
+    return frf.Mesh(np.where(known & (size == 0) & (true == 0), 0.0, relative))
+
+
+def _response(
+    model: Model,
+    frequency: Real,
+    drives: tuple[Point, ...],
+    responses: tuple[Point, ...],
+    quantity: str,
+) -> tuple[Complex, Real]:
+    """Return value and relative error, (drives, responses, f); NaN where there is no answer.
+
+    One frequency without an answer refuses all: halves are asked until it is alone.
+    """
+    try:
+        answer = model.frf(frequency, drive=drives, response=responses, quantity=quantity)
+        # a sum over modes has an error beside rounding, continuous spans or not
+        return answer.value, answer.rounding_error + answer.mesh_error
+    except SolveError:
+        shape = (len(drives), len(responses), len(frequency))
+        if len(frequency) == 1:
+            return np.full(shape, np.nan, dtype=np.complex128), np.full(shape, np.nan)
+    half = len(frequency) // 2
+    parts = [
+        _response(model, part, drives, responses, quantity)
+        for part in (frequency[:half], frequency[half:])
+    ]
+    value, error = zip(*parts)
+    return np.concatenate(value, axis=2), np.concatenate(error, axis=2)

@@ -1,0 +1,277 @@
+"""Derivatives of eigenvalues with respect to numbers of the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.errors import SolveError
+from ..chain.chain import Chain
+from ..chain.rate import Places, Rate, Weights, asked, rates_of
+from ..model import Model
+
+Real = NDArray[np.float64]
+
+_Arrays = TypeVar("_Arrays", Weights, "Slopes")
+
+SECTIONS = 9
+"""Slopes of an element before those of its inertia: section, tension, length, sag."""
+
+SAG = 8
+"""Among them that of the sag."""
+
+NOTHING = 1e-12
+"""Of the largest change that a shape of the same size could make: less is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """Modes of a model with their shapes at its nodes, lowest first.
+
+    Attributes
+    ----------
+    model : Model
+        Of continuous spans one with elements below their own resonance.
+    eigenvalue : ndarray, shape (k,)
+        [rad^2/s^2].
+    shape : ndarray, shape (k, nodes, width)
+    motion : ndarray, shape (k, attached)
+        Of the structures that nodes carry, as y in csrc/attached.h [m].
+    clusters : tuple of ndarray of int
+        The modes in order; rounding cannot tell those of one cluster apart.
+    edges : ndarray of int, shape (parts + 1,)
+        The nodes between the parts of the rope that were asked for.
+    """
+
+    model: Model
+    eigenvalue: Real
+    shape: Real
+    motion: Real
+    clusters: tuple[NDArray[np.intp], ...]
+    edges: NDArray[np.intp]
+
+
+def clusters_of(eigenvalue: Real, error: Real) -> tuple[NDArray[np.intp], ...]:
+    """Return which of increasing eigenvalues are not further apart than their errors."""
+    if len(eigenvalue) == 0:
+        return ()
+    apart = np.diff(eigenvalue) > error[:-1] + error[1:]
+    return tuple(np.split(np.arange(len(eigenvalue)), np.flatnonzero(apart) + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class Slopes:
+    """How the form Pi of each shape changes with the numbers of each stretch.
+
+    Attributes
+    ----------
+    eigenvalue : ndarray, shape (m,)
+        Of each shape.
+    element, jump, node : ndarray
+        Shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width,
+        width): see csrc/sensitivity.h.
+    stiffer, heavier, foot : ndarray
+        Shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h.
+    """
+
+    eigenvalue: Real
+    element: Real
+    jump: Real
+    node: Real
+    stiffer: Real
+    heavier: Real
+    foot: Real
+
+    @classmethod
+    def of(cls, chain: Chain, eigenvalue: Real, shape: Real, motion: Real) -> Slopes:
+        """Ask the core."""
+        element, jump, node = _core.sensitivity(chain, shape, eigenvalue)
+        number, foot = _core.carried_slopes(chain, shape, motion, eigenvalue)
+        element = element[..., : SECTIONS + shape.shape[2]]
+        return cls(eigenvalue, element, jump, node, number[..., 1], number[..., 0], foot)
+
+    def weigh(self, weights: Weights) -> Real:
+        """Return dPi/dp, shape (m,)."""
+        moving = _sum(self.element[..., SECTIONS:], weights.moving) + _sum(self.node, weights.mass)
+        moving += _sum(self.heavier, weights.heavier)
+        return self.weigh_stiffness(weights) - self.eigenvalue * moving
+
+    def weigh_stiffness(self, weights: Weights) -> Real:
+        """Return the part of dPi/dp that is not inertia, shape (m,)."""
+        elastic = _sum(self.element[..., :SECTIONS], weights.element)
+        elastic += _sum(self.jump, weights.jump) + _sum(self.node, weights.node)
+        return elastic + _sum(self.stiffer, weights.stiffer) + _sum(self.foot, weights.foot)
+
+    def mass(self, chain: Chain) -> Real:
+        """Return shape^T M shape, shape (m,)."""
+        mass = _sum(self.node, chain.mass[chain.term]) + self.heavier.sum(axis=1)
+        if chain.inertia is not None:
+            mass += _sum(self.element[..., SECTIONS:], chain.inertia[chain.element])
+        return mass
+
+
+def _sum(slopes: Real, weights: Real) -> Real:
+    return slopes.reshape(len(slopes), weights.size) @ weights.ravel()
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Shapes, and sums and differences of those in one cluster: bilinear forms from quadratic ones.
+
+    Attributes
+    ----------
+    shapes : Shapes
+        The modes.
+    pair : ndarray of int, shape (p, 2)
+        Different modes of one cluster.
+    """
+
+    shapes: Shapes
+    pair: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, shapes: Shapes) -> Pairs:
+        """Take the modes of each cluster two by two."""
+        found = [pair for cluster in shapes.clusters for pair in combinations(cluster, 2)]
+        return cls(shapes, np.array(found, dtype=np.intp).reshape(-1, 2))
+
+    def slopes(self, chain: Chain) -> Slopes:
+        """Return those of the modes, of the sums and of the differences."""
+        value = self.shapes.eigenvalue
+        first, second = self.pair.T
+        mean = (value[first] + value[second]) / 2
+        u, y = (
+            np.concatenate([one, one[first] + one[second], one[first] - one[second]])
+            for one in (self.shapes.shape, self.shapes.motion)
+        )
+        return Slopes.of(chain, np.concatenate([value, mean, mean]), u, y)
+
+    def bilinear(self, form: Real) -> tuple[Real, Real]:
+        """Return forms of the modes themselves and of the pairs, shape (k, ...) and (p, ...)."""
+        own, plus, minus = np.split(form, np.cumsum([len(self.shapes.shape), len(self.pair)]))
+        return own, (plus - minus) / 4
+
+    def matrix(self, form: Real) -> Real:
+        """Return a bilinear form as a matrix, zero between clusters, shape (k, k)."""
+        own, cross = self.bilinear(form)
+        full = np.diag(own)
+        first, second = self.pair.T
+        full[first, second] = full[second, first] = cross
+        return full
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Derivatives of the eigenvalues of a model.
+
+    With the shape u of a mode dlambda/dp = u^T (dK/dp - lambda dM/dp) u / (u^T M u). Modes that
+    rounding cannot tell apart have the eigenvalues of that form within their cluster.
+
+    Attributes
+    ----------
+    shapes : Shapes
+        The modes.
+    """
+
+    shapes: Shapes
+
+    @cached_property
+    def places(self) -> Places:
+        """Where spans and stations are."""
+        return Places(self.shapes.model)
+
+    @cached_property
+    def pairs(self) -> Pairs:
+        """What the clusters need."""
+        return Pairs.of(self.shapes)
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """Of the modes and the pairs."""
+        return self.pairs.slopes(self.shapes.model.chain)
+
+    @cached_property
+    def mass(self) -> Real:
+        """u^T M u between the modes of each cluster, shape (k, k)."""
+        return self.pairs.matrix(self.slopes.mass(self.shapes.model.chain))
+
+    @cached_property
+    def largest(self) -> Slopes:
+        """Sizes of those of shapes as large as the modes that turn from node to node."""
+        shapes = self.shapes
+        u = np.abs(shapes.shape).max(axis=1, keepdims=True)
+        sign = 1.0 - 2.0 * (np.arange(shapes.shape.shape[1]) % 2)
+        turning = u * sign[:, None]
+        return sizes(Slopes.of(shapes.model.chain, shapes.eigenvalue, turning, shapes.motion))
+
+    def rate(self, path: str) -> Rate:
+        """Return the rate of a path, checked."""
+        return asked(rates_of(self.places), path)()
+
+    def eigenvalue(self, path: str) -> Real:
+        """Return dlambda/dp; increasing within a cluster.
+
+        Parameters
+        ----------
+        path : str
+            Of p in the scene.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        weights = self.rate(path).weights(self.places)
+        form = self.pairs.matrix(self.slopes.weigh(weights))
+        change = np.diag(form) / np.diag(self.mass)
+        for cluster in (c for c in self.shapes.clusters if len(c) > 1):
+            within = np.ix_(cluster, cluster)
+            half = np.linalg.inv(np.linalg.cholesky(self.mass[within]))
+            change[cluster] = np.linalg.eigvalsh(half @ form[within] @ half.T)
+        rigid = self.shapes.eigenvalue == 0.0
+        if rigid.any():
+            bound = self.largest.weigh_stiffness(sizes(weights)) / np.diag(self.mass)
+            change[rigid & (np.abs(change) <= NOTHING * bound.max(where=rigid, initial=0.0))] = 0.0
+        return change
+
+    def frequency(self, path: str) -> Real:
+        """Return df/dp [Hz per unit], 0 where motion grows.
+
+        Raises
+        ------
+        SolveError
+            If an eigenvalue leaves 0: its root has no derivative there.
+        """
+        return self._root(path, 1.0) / (2 * np.pi)
+
+    def growth(self, path: str) -> Real:
+        """Return d sqrt(-lambda)/dp [1/s per unit], 0 where motion does not grow.
+
+        Raises
+        ------
+        SolveError
+            As `frequency` does.
+        """
+        return self._root(path, -1.0)
+
+    def _root(self, path: str, sign: float) -> Real:
+        """Return d sqrt(sign lambda)/dp."""
+        change, value = sign * self.eigenvalue(path), sign * self.shapes.eigenvalue
+        leaving = np.flatnonzero((value == 0.0) & (change != 0.0))
+        if len(leaving):
+            raise SolveError(
+                f"mode {leaving[0] + 1} has the eigenvalue 0, which changes with {path}: the root "
+                'of it has no derivative there, ask for that of="eigenvalue"'
+            )
+        root = 2 * np.sqrt(np.maximum(value, 0.0))
+        return np.divide(change, root, out=np.zeros_like(change), where=root > 0)
+
+
+def sizes(of: _Arrays) -> _Arrays:
+    """Return the same with the sizes of all its numbers."""
+    return type(of)(*(np.abs(array) for array in vars(of).values()))

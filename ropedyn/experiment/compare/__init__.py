@@ -1,0 +1,1 @@
+"""Calculated against measured."""

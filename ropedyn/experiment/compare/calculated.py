@@ -1,0 +1,178 @@
+"""What a model, modes or a frequency response say about frequencies, for a comparison."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base import check
+from ...base.check import COORDINATES, NEAR
+from ...base.errors import SceneError
+from ...chain.port import Point
+from ...eigen.eigen import solve_modes
+from ...eigen.modes import Modes
+from ...eigen.shape_at import shapes_at
+from ...model import Model
+from ...response.frf import FRF
+from ...signal.response_shape import residues
+from .measured import peaks_in
+
+Real = NDArray[np.float64]
+
+UNSEEN = 1e-9
+"""Product of a shape at the drive and at a response: less is rounding at a node of the shape."""
+
+
+@dataclass(frozen=True, eq=False)
+class Predicted:
+    """Calculated frequencies.
+
+    Attributes
+    ----------
+    frequency : ndarray, shape (m,)
+        [Hz], increasing, each > 0.
+    error : ndarray, shape (m,)
+        Of modes by mesh and rounding, of peaks of a response that of the fit to them [Hz].
+    damping_ratio : ndarray, shape (m,)
+        NaN where nothing damps.
+    number : ndarray of int, shape (m,)
+        Which of `modes` each is, from 0.
+    modes : Modes or None
+        Rigid motion and growth among them.
+    frf : FRF or None
+        That shows the peaks.
+    """
+
+    frequency: Real
+    error: Real
+    damping_ratio: Real
+    number: NDArray[np.intp]
+    modes: Modes | None = None
+    frf: FRF | None = None
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether shapes can be asked for: modes from a file have no model."""
+        return self.modes is None or self.modes.solve_shapes is not None
+
+    def checked(self, points: Any, name: str) -> tuple[Point, ...]:
+        """Return points that the rope has, each a coordinate at a position."""
+        check.instance(points, name, (list, tuple), 'points such as [("z", 0.2), ("z", 0.5)]')
+        coordinates: tuple[str, ...] = COORDINATES
+        length = None
+        if self.modes is not None:
+            coordinates, length = self.modes.coordinates, float(self.modes.x[-1])
+        return tuple(
+            check.point(point, f"{name}[{k}]", coordinates, length)
+            for k, point in enumerate(points)
+        )
+
+    def shapes(self, points: tuple[Point, ...], drive: int) -> NDArray[np.complex128] | Real | None:
+        """Return the shapes at points, shape (m, points), or None where they are not known."""
+        if self.modes is not None:
+            return shapes_at(self.modes, points)[self.number]
+        assert self.frf is not None
+        which = [index(self.frf.response, point) for point in points]
+        if None in which:
+            return None
+        value = np.stack([self.frf.curve(r, drive) for r in which if r is not None])
+        order = np.argsort(self.frf.frequency)
+        order = order[self.frf.frequency[order] > 0]
+        return residues(
+            self.frf.frequency[order],
+            value[:, order],
+            self.frf.quantity,
+            self.frequency,
+            self.damping_ratio,
+        )
+
+    def seen(self, drive: Point, response: tuple[Point, ...]) -> NDArray[np.bool_]:
+        """Return which frequencies a drive can show in at least one response."""
+        if self.modes is None or not self.has_shapes or not all(map(is_motion, response)):
+            return np.ones(len(self.frequency), dtype=np.bool_)
+        response = self.checked(response, "measured.response")
+        drives = self.checked([drive], "measured.drive") if is_motion(drive) else ()
+        shape = np.abs(shapes_at(self.modes, (*drives, *response))[self.number])
+        moved = shape[:, len(drives) :].max(axis=1)
+        return np.asarray(moved * shape[:, 0] > UNSEEN if drives else moved > UNSEEN)
+
+
+def is_motion(point: tuple[object, ...]) -> bool:
+    """Whether a point is a coordinate at a position, and no force, wire or end that is moved."""
+    return point[0] in COORDINATES
+
+
+def index(points: tuple[Point, ...], wanted: Point) -> int | None:
+    """Return which of the points is where the wanted one is."""
+    for k, point in enumerate(points):
+        if point == wanted:
+            return k
+        if is_motion(point) and point[0] == wanted[0]:
+            x, y = point[1], wanted[1]
+            if abs(x - y) <= NEAR * max(abs(x), abs(y)):
+                return k
+    return None
+
+
+def predicted_of(
+    given: Model | Modes | FRF, highest: float, more: int, least: int, drive: int
+) -> Predicted:
+    """Return the calculated frequencies that measured ones may be.
+
+    Parameters
+    ----------
+    given : Model, Modes or FRF
+        What was calculated.
+    highest : float
+        Of the measured frequencies [Hz].
+    more, least : int
+        Modes above that, and in all, that a model is asked for.
+    drive : int
+        Of an FRF which drive counts.
+
+    Raises
+    ------
+    SceneError
+        If there is none.
+    """
+    if isinstance(given, FRF):
+        found = _of_frf(given, drive)
+    else:
+        if isinstance(given, Model):
+            given = _enough_modes(given, highest, more, least)
+        found = _of_modes(given)
+    if len(found.frequency) == 0:
+        raise SceneError("calculated must have at least one peak, got none")
+    return found
+
+
+def _enough_modes(model: Model, highest: float, more: int, least: int) -> Modes:
+    number = max(model.count(below=highest) + more, least)
+    rigid = len(model.coordinates) + 1
+    return solve_modes(model, number + rigid, below=None, solver="sweep", strict=False)
+
+
+def _of_modes(modes: Modes) -> Predicted:
+    number = np.flatnonzero(modes.frequency > 0)
+    ratio = modes.damping_ratio[number]
+    return Predicted(
+        frequency=modes.frequency[number],
+        error=(modes.mesh_error + modes.rounding_error)[number],
+        damping_ratio=ratio if ratio.any() else np.full(len(ratio), np.nan),
+        number=number,
+        modes=modes,
+    )
+
+
+def _of_frf(frf: FRF, drive: int) -> Predicted:
+    peaks = peaks_in(frf if len(frf.drive) == 1 else frf.peaks(drive))
+    return Predicted(
+        frequency=peaks.frequency,
+        error=peaks.std,
+        damping_ratio=peaks.damping_ratio,
+        number=np.arange(len(peaks.frequency)),
+        frf=frf,
+    )

@@ -1,0 +1,382 @@
+"""Calculated against measured peaks, responses and shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...base import check
+from ...base.answer import Answer, axes
+from ...base.errors import SceneError
+from ...base.table import Table, numbers
+from ...chain.port import Point
+from ...curves.assurance import frac, frac_over, mac
+from ...curves.measured import Measured
+from ...curves.peaks import Peaks
+from ...curves.resonance import Resonances
+from ...eigen.modes import Modes
+from ...model import Model
+from ...response.frf import FRF
+from ...signal.response_shape import residues
+from .calculated import Predicted, is_motion, predicted_of
+from .cause import likely_cause
+from .measured import Seen, seen_in
+from .overlay import calculated_at, drive_of
+from .pairing import partners
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+BAND = 0.1
+"""Share of the measured range that FRAC is taken over at each line, where nothing else is said."""
+
+FEWEST = 10
+"""Lines in that at least."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison(Answer):
+    """Calculated against measured peaks, responses and shapes; made by `compare`.
+
+    Attributes
+    ----------
+    order : ndarray of int, shape (k,)
+        Which calculated peak each measured one is, from 1; 0 where it has no partner. Modes are
+        counted without rigid motion and without growth.
+    measured, calculated : ndarray, shape (k,)
+        [Hz]; calculated is NaN where there is no partner, and so is all that follows from it.
+    difference : ndarray, shape (k,)
+        (calculated - measured)/measured [%].
+    std : ndarray, shape (k,)
+        Standard uncertainty of the measured peaks [Hz], NaN where it is not known.
+    error : ndarray, shape (k,)
+        Of the calculated peaks [Hz]: of modes by mesh and rounding, of peaks of a response that of
+        the fit to them.
+    damping_ratio, calculated_damping_ratio : ndarray, shape (k,)
+        NaN where it is not known or nothing damps.
+    all_calculated : ndarray, shape (m,)
+        Every calculated peak, paired or not [Hz].
+    visible : ndarray of bool, shape (m,)
+        Whether the drive of a measured response shows anything of it in any of them; True where
+        peaks alone were compared.
+    hint : str
+        What the differences show of their cause, where they prove it; else empty.
+    response : tuple of str
+        What each response is; empty where peaks alone were compared.
+    frequency : ndarray, shape (f,), or None
+        Lines of the responses [Hz].
+    measured_value, calculated_value : ndarray of complex, shape (responses, f), or None
+        The responses.
+    frac : ndarray, shape (responses,), or None
+        Frequency response assurance criterion over all lines, from 0 to 1.
+    frac_over_frequency : ndarray, shape (responses, f), or None
+        Of the lines within a band around each line.
+    band : float or None
+        Its width [Hz].
+    mac : ndarray, shape (k, m), or None
+        Modal assurance criterion of each measured and each calculated shape, from 0 to 1.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile()
+    >>> found = rd.compare(model.modes(3), rd.Peaks([24.8, 75.5], std=0.1))
+    >>> found.order, found.residual.round(3), found.missed
+    (array([1, 3]), array([ 0.2, -0.5]), array([2]))
+    >>> found.score.round(1)
+    array([ 2., -5.])
+    """
+
+    order: NDArray[np.int64] = field(metadata=axes("peak"))
+    measured: Real = field(metadata=axes("peak", unit="Hz"))
+    calculated: Real = field(metadata=axes("peak", unit="Hz"))
+    difference: Real = field(metadata=axes("peak", unit="%"))
+    std: Real = field(metadata=axes("peak", unit="Hz"))
+    error: Real = field(metadata=axes("peak", unit="Hz"))
+    damping_ratio: Real = field(metadata=axes("peak"))
+    calculated_damping_ratio: Real = field(metadata=axes("peak"))
+    all_calculated: Real = field(metadata=axes("calculated", unit="Hz"))
+    visible: NDArray[np.bool_] = field(metadata=axes("calculated"))
+    hint: str = ""
+    response: tuple[str, ...] = ()
+    frequency: Real | None = field(default=None, metadata=axes("frequency", unit="Hz"))
+    measured_value: Complex | None = field(default=None, metadata=axes("response", "frequency"))
+    calculated_value: Complex | None = field(default=None, metadata=axes("response", "frequency"))
+    frac: Real | None = field(default=None, metadata=axes("response"))
+    frac_over_frequency: Real | None = field(default=None, metadata=axes("response", "frequency"))
+    band: float | None = None
+    mac: Real | None = field(default=None, metadata=axes("peak", "calculated"))
+
+    @property
+    def residual(self) -> Real:
+        """Calculated less measured frequencies [Hz], shape (k,)."""
+        return self.calculated - self.measured
+
+    @property
+    def score(self) -> Real:
+        """Residuals over the root of std^2 + error^2, shape (k,); NaN where that is not known."""
+        spread = np.hypot(self.std, self.error)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.residual / spread
+
+    @property
+    def missed(self) -> NDArray[np.int64]:
+        """Visible calculated peaks from the lowest to the highest measured one that none is."""
+        f, low = self.all_calculated, self.measured.min(initial=np.inf)
+        within = self.visible & (f >= low) & (f <= self.measured.max(initial=0.0))
+        number = np.arange(1, len(f) + 1)
+        return np.setdiff1d(number[within], self.order)
+
+    @property
+    def peaks(self) -> Table:
+        """The pairs with their differences; columns of what is not known of any are left out."""
+        none = self.order == 0
+        columns: dict[str, Any] = {
+            "measured [Hz]": self.measured,
+            "std [Hz]": self.std,
+            "calculated [Hz]": self.calculated,
+            "error [Hz]": self.error,
+            "difference [Hz]": self.residual,
+            "difference [%]": self.difference,
+            "difference/std": self.score,
+            "damping measured": self.damping_ratio,
+            "damping calculated": self.calculated_damping_ratio,
+        }
+        always = ("measured [Hz]", "calculated [Hz]", "difference [Hz]", "difference [%]")
+        columns = {
+            name: numbers(values)
+            for name, values in columns.items()
+            if name in always or not np.isnan(values).all()
+        }
+        columns["mode"] = tuple(None if n else k for n, k in zip(none, self.order.tolist()))
+        return Table.of("calculated against measured peaks", columns)
+
+    def table(self) -> Table:
+        """Return the pairs with their differences."""
+        return self.peaks
+
+    def report(self) -> str:
+        """Return as text the pairs, FRAC of each response and the hint, as far as there are any.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=90.0).compile()
+        >>> peaks = rd.Peaks([15.81, 31.62, 47.43, 63.25], std=0.01)
+        >>> print(rd.compare(model, peaks).report().splitlines()[-1].split(":")[0])
+        All shifts are alike within their uncertainty
+        """
+        lines = [str(self.peaks)]
+        if self.frac is not None:
+            lines += [f"FRAC of {r}: {value:.4g}" for r, value in zip(self.response, self.frac)]
+        return "\n".join([*lines, self.hint] if self.hint else lines)
+
+    def plot(self, ax: Axes | None = None, *, of: str | None = None) -> Axes:
+        """Plot what was compared.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's where left out.
+        of : {"response", "phase", "frac", "mac", "peaks"}, optional
+            Amplitudes or phases of both responses over frequency with the pairs of peaks, FRAC over
+            frequency, MAC of each two shapes, or calculated over measured peaks. Where left out
+            responses, and peaks where there are none.
+
+        Raises
+        ------
+        SceneError
+            If that was not compared.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> rd.compare(model, [15.5, 31.0]).plot().get_ylabel()
+        'calculated [Hz]'
+        """
+        from ...plot.compare import plot_comparison
+
+        return plot_comparison(self, ax, of)
+
+
+def compare(
+    calculated: Model | Modes | FRF,
+    measured: Peaks | Measured | Resonances | ArrayLike,
+    *,
+    within: float | None = None,
+    band: float | None = None,
+    shapes: ArrayLike | None = None,
+    points: Sequence[Point] | None = None,
+) -> Comparison:
+    """Compare what was calculated with a measurement.
+
+    Each measured peak has the calculated partner that makes the sum of d^2, d = log(measured/
+    calculated), over all pairs smallest, where a pair that is left out costs the square of half the
+    distance to the next calculated one, in the same measure: a peak in the middle between two modes
+    says nothing about which of them it is. So a peak that is no mode and a mode that shows no peak
+    stay alone, and pairs never cross. Of a whole response, modes of which the drive shows nothing
+    in any response have no peak.
+
+    Where the uncertainties of the peaks prove that one number of the scene explains all
+    differences, and which, the `hint` of the comparison says so.
+
+    Parameters
+    ----------
+    calculated : Model, Modes or FRF
+        Of a model the modes that are needed are computed, and the response at the measured lines.
+        Of an FRF its peaks count, to the drive of the measurement or else the first one.
+    measured : Peaks, Measured, Resonances or array_like of frequencies [Hz]
+        Of a whole response the peaks of all its responses are merged, as by `Peaks.of`; its line at
+        0 Hz is not compared. With the orders of `Peaks` each is compared with that mode, however
+        far away.
+    within : float, optional
+        Largest relative error that the calculated frequencies may have: no pair is farther apart
+        than that and three standard uncertainties of the peak.
+    band : float, optional
+        Width of the band around each line that `Comparison.frac_over_frequency` is taken over [Hz];
+        a tenth of the measured range, or ten lines where that is wider, where left out.
+    shapes : array_like of real or complex, shape (k, points), optional
+        Measured shapes, one for each peak; of a whole response those that its peaks show in two
+        responses and more, where left out.
+    points : sequence of points, optional
+        Where they were measured, such as ``[("z", 0.2), ("z", 0.5)]``; of one coordinate, or MAC
+        depends on units.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If there is no calculated peak, or fewer than the orders ask for; if an FRF has other lines
+        or points than the measurement.
+    SolveError
+        If the model has no response at a measured line, as on an undamped resonance.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=64)
+    >>> comparison = rd.compare(model, rd.Peaks([15.5, 22.0, 31.0], std=0.1))
+    >>> comparison.order
+    array([1, 0, 2])
+    >>> comparison.difference.round(2)
+    array([2.  ,  nan, 1.97])
+    """
+    check.instance(calculated, "calculated", (Model, Modes, FRF), "a Model, Modes or FRF")
+    if within is not None:
+        within = check.number(within, "within", sign="positive")
+    if band is not None:
+        band = check.number(band, "band", "Hz", sign="positive")
+    seen = seen_in(measured)
+    drive = 0
+    if isinstance(calculated, FRF) and seen.curves is not None:
+        drive = drive_of(calculated, seen.curves)
+    found = predicted_of(calculated, seen.highest, max(len(seen.frequency), 2), seen.last, drive)
+    visible = np.ones(len(found.frequency), dtype=np.bool_)
+    if seen.curves is not None:
+        visible = found.seen(seen.curves.drive[0], seen.curves.response)
+    order = _order(found.frequency, visible, seen, within)
+    mine = np.where(order > 0, order - 1, len(found.frequency))
+    partner, error, damping = (
+        np.append(column, np.nan)[mine]
+        for column in (found.frequency, found.error, found.damping_ratio)
+    )
+    return Comparison(
+        order=order,
+        measured=seen.frequency,
+        calculated=partner,
+        difference=100 * (partner - seen.frequency) / seen.frequency,
+        std=seen.std,
+        error=error,
+        damping_ratio=seen.damping_ratio,
+        calculated_damping_ratio=damping,
+        all_calculated=found.frequency,
+        visible=visible,
+        hint=likely_cause(found, order, seen.frequency, seen.std),
+        mac=_mac(found, seen, shapes, points, drive),
+        **_responses(calculated, seen.curves, band),
+    )
+
+
+def _order(
+    calculated: Real, visible: NDArray[np.bool_], seen: Seen, within: float | None
+) -> NDArray[np.int64]:
+    """Return which calculated peak each measured one is."""
+    if seen.order is not None:
+        if seen.last > len(calculated):
+            raise SceneError(
+                f"measured.order must be at most {len(calculated)}, the calculated peaks there "
+                f"are, got {seen.last}"
+            )
+        return seen.order
+    order = partners(seen.frequency, calculated[visible], std=seen.std, within=within)
+    return np.append(0, np.flatnonzero(visible) + 1)[order]
+
+
+def _responses(
+    calculated: Model | Modes | FRF, measured: Measured | None, band: float | None
+) -> dict[str, Any]:
+    """Return what a comparison says about responses."""
+    if measured is None or isinstance(calculated, Modes):
+        return {}
+    value, f = calculated_at(calculated, measured), measured.frequency
+    if band is None:
+        wide = FEWEST * float(np.median(np.diff(f))) if len(f) > 1 else float(f[0])
+        band = max(BAND * float(f[-1] - f[0]), wide)
+    return {
+        "response": measured.labels,
+        "frequency": f,
+        "measured_value": measured.value,
+        "calculated_value": value,
+        "frac": frac(measured.value, value),
+        "frac_over_frequency": frac_over(measured.value, value, f, band),
+        "band": band,
+    }
+
+
+def _mac(
+    found: Predicted,
+    seen: Seen,
+    shapes: ArrayLike | None,
+    points: Sequence[Point] | None,
+    drive: int,
+) -> Real | None:
+    """Return MAC of all measured and calculated shapes, or None where there are none."""
+    if (shapes is None) != (points is None):
+        raise SceneError(
+            f"shapes must be given together with points, got {check.shown(shapes)} and points "
+            f"{check.shown(points)}"
+        )
+    if shapes is not None:
+        where = found.checked(points, "points")
+        size = (len(seen.frequency), len(where))
+        measured = check.matrix(shapes, "shapes", size, "peak and point", np.complex128)
+    else:
+        curves = seen.curves
+        if curves is None or len(seen.frequency) == 0 or not found.has_shapes:
+            return None
+        rows = [k for k, point in enumerate(curves.response) if is_motion(point)]
+        if len(rows) < 2:
+            return None
+        where = tuple(curves.response[k] for k in rows)
+        measured = residues(
+            curves.frequency,
+            curves.value[rows],
+            curves.quantity,
+            seen.frequency,
+            seen.damping_ratio,
+        )
+    calculated = found.shapes(where, drive)
+    return None if calculated is None else mac(measured, calculated)

@@ -1,0 +1,91 @@
+"""What a measurement says about frequencies, of whatever form, for a comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from numbers import Real as RealNumber
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base import check
+from ...base.errors import SceneError
+from ...base.quantity import is_quantity
+from ...curves.curves import Curves
+from ...curves.measured import Measured, lines_of
+from ...curves.merge_peaks import Merged, merge_peaks
+from ...curves.peaks import Peaks
+from ...curves.resonance import Resonances
+
+Real = NDArray[np.float64]
+
+
+class Seen(NamedTuple):
+    """What was measured."""
+
+    frequency: Real
+    """(k,) of the peaks [Hz]."""
+    std: Real
+    """(k,) [Hz], NaN where it is not known."""
+    damping_ratio: Real
+    """(k,) NaN where it is not known."""
+    order: NDArray[np.int64] | None
+    """(k,) where it is given."""
+    curves: Measured | None
+    """Without a line at 0 Hz."""
+
+    @property
+    def highest(self) -> float:
+        """Highest peak, or line where there is none [Hz]."""
+        if len(self.frequency):
+            return float(self.frequency.max())
+        return 0.0 if self.curves is None else float(self.curves.frequency[-1])
+
+    @property
+    def last(self) -> int:
+        """The highest order that is given."""
+        return 0 if self.order is None else int(self.order.max())
+
+
+def seen_in(measured: Any) -> Seen:
+    """Return what was measured, of whatever form."""
+    what = "Peaks, a Measured, Resonances or frequencies [Hz]"
+    given = (Peaks, Measured, Resonances, list, tuple, np.ndarray, RealNumber)
+    if not is_quantity(measured):
+        check.instance(measured, "measured", given, what)
+    if isinstance(measured, Measured):
+        curves = above_zero(measured)
+        return Seen(*peaks_in(curves), None, curves)
+    if isinstance(measured, Resonances):
+        return Seen(*peaks_in([measured]), None, None)
+    if not isinstance(measured, Peaks):
+        frequency = check.numbers(measured, "measured", "Hz", sign="positive")
+        unknown = np.full(len(frequency), np.nan)
+        return Seen(frequency, unknown, unknown, None, None)
+    frequency = np.asarray(measured.frequency, dtype=np.float64)
+    std, ratio = (
+        np.full(len(frequency), np.nan if given is None else given, dtype=np.float64)
+        for given in (measured.std, measured.damping_ratio)
+    )
+    order = None if measured.order is None else np.array(measured.order, dtype=np.int64)
+    return Seen(frequency, std, ratio, order, None)
+
+
+def peaks_in(source: Curves | Sequence[Resonances]) -> Merged:
+    """Return the peaks of all responses, which may be none."""
+    try:
+        return merge_peaks(source)
+    except SceneError:
+        none = np.zeros(0)
+        return Merged(none, none, none)
+
+
+def above_zero(measured: Measured) -> Measured:
+    """Leave out a line at 0 Hz: velocities are 0 there and free bodies have no displacement."""
+    lines = measured.frequency > 0
+    if lines.all():
+        return measured
+    if not lines.any():
+        raise SceneError("measured must have lines above 0 Hz, got none")
+    return lines_of(measured, lines)

@@ -1,0 +1,1 @@
+"""Least squares between a scene and what was measured."""

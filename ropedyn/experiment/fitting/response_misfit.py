@@ -1,0 +1,131 @@
+"""Differences of a calculated frequency response from a measured one, with their slopes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError
+from ...curves.measured import Measured
+from ...response.frf import FRF
+from .unknown import CALIBRATION, Unknowns
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """The response of a scene with unknown numbers, where and as it was measured.
+
+    Attributes
+    ----------
+    unknowns : Unknowns
+        What is sought; the factor of the calibration may be among it.
+    measured : Measured
+    elements, element
+        As `Scene.compile` takes them.
+    """
+
+    unknowns: Unknowns
+    measured: Measured
+    elements: int | None = None
+    element: str | None = None
+    _last: dict[bytes, tuple[Complex, Complex]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+
+    def __call__(self, u: Real) -> tuple[Complex, Complex]:
+        """Compute the response and its slopes.
+
+        Parameters
+        ----------
+        u : ndarray, shape (p,)
+            The variables.
+
+        Returns
+        -------
+        value : ndarray of complex, shape (responses, f)
+        slope : ndarray of complex, shape (responses, f, p)
+            d(value)/du.
+        """
+        key = u.tobytes()
+        if key not in self._last:
+            answer = self._solve(u)
+            self._last.clear()
+            self._last[key] = answer
+        return self._last[key]
+
+    def _solve(self, u: Real) -> tuple[Complex, Complex]:
+        measured, unknowns = self.measured, self.unknowns
+        model = unknowns.at(u).compile(elements=self.elements, element=self.element)
+        frf = model.frf(
+            measured.frequency,
+            drive=measured.drive[0],
+            response=list(measured.response),
+            quantity=measured.quantity,
+        )
+        factor = unknowns.calibration(u)
+        slope = [
+            frf.value if path == CALIBRATION else factor * _derivative(frf, path, i)
+            for i, path in enumerate(unknowns.paths)
+        ]
+        return factor * frf.value, np.stack(slope, axis=-1) * unknowns.slope(u)
+
+
+def _derivative(frf: FRF, path: str, i: int) -> Complex:
+    try:
+        return frf.derivative(path)
+    except SceneError as error:
+        raise SceneError(f"unknown[{i}] must change the response: {error}") from error
+
+
+@dataclass(frozen=True, eq=False)
+class LogMisfit:
+    """Logarithms of amplitude ratios, and how far phases are apart.
+
+    Every line counts alike, on a peak or between two, and a peak at a wrong place is off by its
+    height in decades: far from the solution that is a wide valley, where differences of the
+    responses themselves have none. Phases are compared by exp(i phi), which knows no jump of 2 pi.
+
+    Attributes
+    ----------
+    response : Response
+    """
+
+    response: Response
+
+    def __call__(self, u: Real) -> tuple[Real, Real]:
+        """Return the residuals (3 m,) and their slopes (3 m, p), m lines that are not 0."""
+        value, slope = self.response(u)
+        kept = (self.response.measured.value != 0) & (value != 0)
+        ratio = value[kept] / self.response.measured.value[kept]
+        relative = slope[kept] / value[kept][:, None]
+        turn = ratio / np.abs(ratio)
+        turns = 1j * turn[:, None] * relative.imag
+        off = np.concatenate([np.log(np.abs(ratio)), turn.real - 1, turn.imag])
+        return off, np.concatenate([relative.real, turns.real, turns.imag])
+
+
+@dataclass(frozen=True, eq=False)
+class LineMisfit:
+    """Differences of the responses over the noise of each line, real and imaginary parts.
+
+    Attributes
+    ----------
+    response : Response
+    std : ndarray, shape (responses, f)
+        Of either part; infinite where a line says nothing.
+    """
+
+    response: Response
+    std: Real
+
+    def __call__(self, u: Real) -> tuple[Real, Real]:
+        """Return the residuals (2 m,) and their slopes (2 m, p)."""
+        value, slope = self.response(u)
+        off = ((value - self.response.measured.value) / self.std).ravel()
+        by_u = (slope / self.std[..., None]).reshape(off.size, -1)
+        return np.concatenate([off.real, off.imag]), np.concatenate([by_u.real, by_u.imag])

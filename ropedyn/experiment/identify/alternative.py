@@ -1,0 +1,103 @@
+"""Other ends of a rope that its peaks may fit as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...base.errors import RopedynError
+from ...scene.scene import Scene
+from .solution import LEAST_NOISE
+
+if TYPE_CHECKING:
+    from .fit import Fit
+
+WORDS = ("pinned", "clamped")
+"""Ends that are tried in place of each other."""
+
+LEVEL = 0.95
+"""Of the test whether something fits worse."""
+
+
+@dataclass(frozen=True, eq=False)
+class Alternative:
+    """The same peaks with other ends.
+
+    Attributes
+    ----------
+    ends : str
+        The word for both.
+    fit : Fit
+        What they tell then.
+    verdict : {"better", "as well", "worse"}
+        How it fits. Where peaks have a standard deviation, "worse" is a chi-square larger by more
+        than 3.84, as that of one number off its interval of 95 %; where they have none, a sum of
+        squares more than the quantile of F as often as large.
+    change : dict from str to float
+        Of each number that is told, relative to the fit with the scene's own ends.
+    """
+
+    ends: str
+    fit: Fit
+    verdict: str
+    change: dict[str, float]
+
+    def __str__(self) -> str:
+        numbers = [f"{path} {100 * part:+.2g} %" for path, part in self.change.items()]
+        but = "but give" if self.verdict == "as well" else "and give"
+        found = f" {but} {', '.join(numbers)}" if numbers else ""
+        off = f"rms residual {100 * self.fit.rms:.2g} %"
+        return f"{self.ends} ends fit {self.verdict} ({off}){found}"
+
+
+def alternatives_of(fit: Fit) -> tuple[Alternative, ...]:
+    """Fit with both ends pinned and with both clamped, where the scene's are such words."""
+    identification = fit.identification
+    assert identification is not None
+    scene = identification.unknowns.scene
+    if "beta" not in scene.coordinates or not all(end in WORDS for end in scene.ends):
+        return ()
+    found = []
+    for word in WORDS:
+        if scene.ends != (word, word):
+            try:
+                other = identification.instead(_guess(fit, scene, word)).fit()
+            except RopedynError:
+                continue
+            found.append(Alternative(word, other, _verdict(fit, other), _change(fit, other)))
+    return tuple(found)
+
+
+def _change(fit: Fit, other: Fit) -> dict[str, float]:
+    """Return relative changes of the numbers that both tell."""
+    before, after = dict(fit.value), dict(other.value)
+    told = np.isfinite(fit.std) & np.isfinite(other.std)
+    return {
+        path: float(after[path] / before[path] - 1) for path, one in zip(fit.unknown, told) if one
+    }
+
+
+def _guess(fit: Fit, scene: Scene, word: str) -> Scene:
+    """Return the scene with other ends and, where nothing went to 0 or infinity, what was found."""
+    found = scene if fit.value_is_bound else fit.scene
+    return found.replace(ends=(word, word))
+
+
+def _verdict(fit: Fit, other: Fit) -> str:
+    from scipy.special import chdtri, fdtri
+
+    if fit.freedom is None:
+        most = float(chdtri(1, 1 - LEVEL))
+        return _said(other.chi_square - fit.chi_square, -most, most)
+    if fit.freedom < 0.5:
+        return "as well"
+    most = float(fdtri(fit.freedom, fit.freedom, LEVEL))
+    return _said((other.rms / max(fit.rms, LEAST_NOISE)) ** 2, 1 / most, most)
+
+
+def _said(value: float, low: float, high: float) -> str:
+    if value > high:
+        return "worse"
+    return "better" if value < low else "as well"

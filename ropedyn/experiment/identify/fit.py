@@ -1,0 +1,192 @@
+"""What an identification found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.answer import TRANSIENT, Cost, axes
+from ...base.errors import SceneError
+from ...base.named import Named
+from ...base.table import Table, numbers
+from ..orders.orders import RunnerUp
+from .identified import Identified
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .alternative import Alternative
+    from .fit_peaks import Identification
+    from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Fit(Identified):
+    """Numbers of a scene that make its natural frequencies those of measured peaks.
+
+    Attributes
+    ----------
+    unknown : tuple of str
+        Paths of the numbers.
+    value, std : Named, shape (p,)
+        Each number, ``fit.value["tension"]``, and its standard deviation by the exact derivatives;
+        infinite where the peaks do not tell it. A stiffness that went to 0, because the peaks do
+        not show it, is 0.
+    correlation : ndarray, shape (p, p)
+        NaN where one of both is not told.
+    orders : ndarray of int, shape (k,)
+        Which mode each peak is, from 1; 0 where it is none.
+    measured, calculated : ndarray, shape (k,)
+        [Hz]; calculated is NaN where the peak is no mode.
+    measured_std : ndarray, shape (k,)
+        Of the peaks [Hz]: as they were given; else the relative noise that the residuals show,
+        equal for all.
+    freedom : float or None
+        Degrees of freedom the noise was estimated with; None where it was given.
+    chi_square : float
+        Sum of the squared residuals in units of `measured_std`.
+    runner_up : RunnerUp or None
+        The second best orders and how much worse they are, where orders were searched.
+    notes : tuple of str
+        What the peaks cannot tell, and what they tell instead.
+    cost : Cost
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+    >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
+    >>> [round(float(one["tension"]), 1) for one in (fit.value, fit.std)], fit.orders
+    ([999.4, 2.1], array([1, 2, 3]))
+    >>> fit.interval(0.95)["tension"].round(1), fit.value_is_bound
+    (array([ 995.2, 1003.6]), False)
+    >>> fit.residual.round(3), round(fit.rms, 4)
+    (array([-0.107,  0.086, -0.021]), 0.0027)
+    >>> round(fit.scene.tension, 1), fit.alternatives
+    (999.4, ())
+    >>> print(fit.report().splitlines()[-1])
+    rms residual 0.266 %; chi-square 1.93 of 3 peaks
+    """
+
+    unknown: tuple[str, ...]
+    value: Named = field(metadata=axes("unknown"))
+    std: Named = field(metadata=axes("unknown"))
+    correlation: NDArray[np.float64] = field(metadata=axes("unknown", "other"))
+    orders: NDArray[np.int64] = field(metadata=axes("peak"))
+    measured: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    measured_std: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    calculated: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    freedom: float | None
+    chi_square: float
+    runner_up: RunnerUp | None
+    notes: tuple[str, ...]
+    cost: Cost
+    solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
+    identification: Identification | None = field(default=None, repr=False, metadata=TRANSIENT)
+
+    def __post_init__(self) -> None:
+        if self.runner_up is not None:
+            object.__setattr__(self, "runner_up", RunnerUp(*self.runner_up))
+        super().__post_init__()
+
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """Calculated less measured frequencies [Hz], shape (k,)."""
+        return self.calculated - self.measured
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the relative residuals."""
+        used = self.orders > 0
+        return float(np.sqrt(np.mean((self.residual / self.measured)[used] ** 2)))
+
+    @property
+    def value_is_bound(self) -> bool:
+        """Whether a number went to 0 or infinity."""
+        return bool(((self.value == 0) | np.isinf(self.value)).any())
+
+    @cached_property
+    def alternatives(self) -> tuple[Alternative, ...]:
+        """What other ends would tell, pinned or clamped both, where the scene's are such words.
+
+        Found when it is first asked for.
+
+        Raises
+        ------
+        SceneError
+            If the fit was read from a file.
+
+        Examples
+        --------
+        A cord that hangs on 1.97 N:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.08, 0.0022, bending_stiffness=1e-4)
+        >>> scene = rd.Scene(rope, tension=1.0, ends=("pinned", "pinned"))
+        >>> peaks = [13.88, 27.89, 42.13, 56.85, 71.87]
+        >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+        >>> (other,) = fit.alternatives
+        >>> other.ends, other.verdict, round(other.change["tension"], 3)
+        ('clamped', 'as well', -0.069)
+        """
+        if self.identification is None:
+            raise SceneError("a fit from a file has no scene: identify again")
+        from .alternative import alternatives_of
+
+        return alternatives_of(self)
+
+    @property
+    def peaks(self) -> Table:
+        """One row for each peak."""
+        columns: dict[str, Any] = {
+            "measured [Hz]": self.measured,
+            "std [Hz]": self.measured_std,
+            "mode": tuple(k or None for k in self.orders.tolist()),
+            "calculated [Hz]": numbers(self.calculated),
+            "residual [Hz]": numbers(self.residual),
+        }
+        return Table.of("calculated against measured peaks", columns)
+
+    def report(self) -> str:
+        """Return values, peaks and all that limits what they mean, as text.
+
+        Intervals are those of 95 %; a fit from a file has none, and no alternatives.
+
+        Returns
+        -------
+        str
+        """
+        numbers = self.table() if self.solution is None else self._with_intervals()
+        lines = [str(numbers), "", str(self.peaks), ""]
+        lines.append(f"rms residual {100 * self.rms:.3g} %; {self._said_of_noise}")
+        if self.runner_up is not None:
+            lines.append(f"second best orders {list(self.runner_up.orders)}: {self._worse}")
+        if self.identification is not None:
+            lines += map(str, self.alternatives)
+        return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+
+    def _with_intervals(self) -> Table:
+        columns = {name: self.table().column(name) for name in self.table().columns}
+        low, high = self.interval().T.tolist()
+        return Table.of("identified", columns | {"95 % from": low, "to": high})
+
+    @property
+    def _said_of_noise(self) -> str:
+        if self.freedom is None:
+            return f"chi-square {self.chi_square:.3g} of {int((self.orders > 0).sum())} peaks"
+        return f"noise estimated with {self.freedom:.3g} degrees of freedom"
+
+    @property
+    def _worse(self) -> str:
+        assert self.runner_up is not None
+        return f"chi-square larger by {self.runner_up.worse:.3g}"
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot residuals over orders with the uncertainty of the peaks."""
+        from ...plot.fit import plot_fit
+
+        return plot_fit(self, ax)

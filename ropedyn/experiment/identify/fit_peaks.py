@@ -1,0 +1,147 @@
+"""Fit of numbers of a scene to measured peaks whose modes are known."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.answer import Cost
+from ...base.errors import SceneError
+from ...scene.scene import Scene
+from ..fitting.misfit import Known
+from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.peak_misfit import PeakMisfit
+from ..fitting.unknown import Unknowns
+from ..orders.orders import Orders, RunnerUp
+from .fit import Fit
+from .notes import notes_of
+from .peak_start import start_of_peaks
+from .solution import Solution, solve
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """Numbers of a scene that are sought by peaks.
+
+    Attributes
+    ----------
+    calculated : NaturalFrequencies
+        Natural frequencies as functions of what is sought.
+    frequency : ndarray, shape (k,)
+        Of the peaks [Hz].
+    std : ndarray, shape (k,), or None
+        Their standard deviations [Hz].
+    orders : ndarray of int, shape (k,)
+        Which mode each is, from 1; 0 where it is none.
+    prior : mapping from str to (float, float)
+        Value and standard deviation of what is known beforehand.
+    runner_up : RunnerUp or None
+        Of the orders, where they were searched.
+    """
+
+    calculated: NaturalFrequencies
+    frequency: Real
+    std: Real | None
+    orders: Orders
+    prior: Mapping[str, tuple[float, float]]
+    runner_up: RunnerUp | None = None
+
+    @property
+    def unknowns(self) -> Unknowns:
+        """What is sought."""
+        return self.calculated.unknowns
+
+    @cached_property
+    def misfit(self) -> PeakMisfit:
+        """Differences in units of their standard deviations; relative ones where there are none."""
+        weight = self.frequency if self.std is None else self.std
+        return PeakMisfit(self.calculated, self.frequency, weight, self.orders)
+
+    @property
+    def known(self) -> Known | None:
+        """What is known of the unknown beforehand."""
+        return Known.of(self.unknowns, self.prior)
+
+    def instead(self, scene: Scene) -> Identification:
+        """Return the same questions to another scene."""
+        unknowns = Unknowns.of(scene, self.unknowns.paths)
+        calculated = dataclasses.replace(self.calculated, unknowns=unknowns)
+        return dataclasses.replace(self, calculated=calculated, runner_up=None)
+
+    def fit(self) -> Fit:
+        """Solve.
+
+        Raises
+        ------
+        SceneError
+            If there is too little, or a number does not change any of these peaks.
+        SolveError
+            If the scene has fewer modes than the orders ask for, or the solution does not converge.
+        """
+        began = time.perf_counter()
+        self._refuse_few()
+        start = start_of_peaks(self.misfit, np.zeros(len(self.unknowns)))
+        self._refuse_unseen(start)
+        solution = solve(
+            self.unknowns,
+            self.misfit,
+            start,
+            rows=len(self.frequency),
+            known=self.known,
+            noise=None if self.std is None else 1.0,
+        )
+        return self._answer(solution, time.perf_counter() - began)
+
+    def _answer(self, solution: Solution, seconds: float) -> Fit:
+        minimum = solution.minimum
+        off = minimum.residual[: solution.rows]
+        found = self.frequency + off * self.misfit.weight
+        return Fit(
+            unknown=self.unknowns.paths,
+            value=solution.value,  # type: ignore[arg-type]
+            std=solution.std,  # type: ignore[arg-type]
+            correlation=solution.uncertainty.correlation,
+            orders=self.orders.astype(np.int64),
+            measured=self.frequency,
+            measured_std=solution.noise * self.misfit.weight,
+            calculated=np.where(self.orders > 0, found, np.nan),
+            freedom=solution.freedom,
+            chi_square=float(np.sum((off / solution.noise) ** 2)),
+            runner_up=self.runner_up,
+            notes=notes_of(solution),
+            cost=Cost(
+                seconds=seconds,
+                method="least squares",
+                elements=self.calculated.elements or 0,
+                unknowns=len(self.unknowns),
+                factorisations=minimum.evaluations,
+            ),
+            solution=solution,
+            identification=self,
+        )
+
+    def _refuse_few(self) -> None:
+        peaks, prior = int((self.orders > 0).sum()), 0 if self.known is None else len(self.known.at)
+        if peaks + prior < len(self.unknowns):
+            raise SceneError(
+                f"measured must have at least {len(self.unknowns) - prior} peaks for "
+                f"{len(self.unknowns)} unknown and {prior} prior values, got {peaks}"
+            )
+
+    def _refuse_unseen(self, u: Real) -> None:
+        """Refuse numbers that no peak depends on, unless they are known beforehand."""
+        unseen = np.asarray(~self.misfit(u)[1].any(axis=0))
+        for path, is_unseen, i in zip(self.unknowns.paths, unseen, range(len(unseen))):
+            if is_unseen and path not in self.prior:
+                raise SceneError(
+                    f"unknown[{i}] must change the natural frequencies of these peaks, got "
+                    f"{path!r}, which does not"
+                )

@@ -1,0 +1,103 @@
+"""What identifications from peaks and from whole responses have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ...base import check
+from ...base.answer import Answer
+from ...base.errors import SceneError
+from ...base.named import Named
+from ...base.table import Table
+from ...scene.scene import Scene
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+
+class Identified(Answer):
+    """Base of what holds numbers of a scene, how well they are known, and their solution."""
+
+    unknown: tuple[str, ...]
+    value: Named
+    std: Named
+    solution: Solution | None
+
+    def __post_init__(self) -> None:
+        for name in ("value", "std"):
+            object.__setattr__(self, name, Named(getattr(self, name), self.unknown))
+        super().__post_init__()
+
+    @property
+    def scene(self) -> Scene:
+        """The scene with the numbers that were found."""
+        return self._solution.scene
+
+    @property
+    def _solution(self) -> Solution:
+        if self.solution is None:
+            raise SceneError("a fit from a file has no scene: identify again")
+        return self.solution
+
+    def interval(self, level: float = 0.95, *, method: str = "profile") -> Named:
+        """Find confidence intervals.
+
+        Parameters
+        ----------
+        level : float
+            With which the truth is covered, between 0 and 1.
+        method : {"profile", "linear"}
+            ``"profile"``: where the sum of squares, least over the others, has grown by the square
+            of the quantile: right also where the numbers act in a curved way, such as a bending
+            stiffness that hardly shows, whose interval begins at 0. It takes some solutions for
+            each bound. ``"linear"``: the quantile times the standard deviation to either side.
+
+        Returns
+        -------
+        Named, shape (p, 2)
+            The bounds; 0 or infinite where there is none.
+
+        Raises
+        ------
+        TypeError
+            If the level is not a number.
+        SceneError
+            If an argument has no meaning, or the fit was read from a file.
+
+        Notes
+        -----
+        The quantile is the normal one where what was measured came with a standard deviation, and
+        Student's t where that was estimated.
+
+        References
+        ----------
+        D. M. Bates, D. G. Watts, Nonlinear Regression Analysis (1988), section 6.1.
+
+        Examples
+        --------
+        Of a bending stiffness that six peaks hardly show the interval begins at 0:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(2.0, 0.5, bending_stiffness=1.0)
+        >>> scene = rd.Scene(rope, tension=900.0, ends=("pinned", "pinned"))
+        >>> peaks = rd.Peaks([11.19, 22.33, 33.58, 44.72, 55.94, 67.19], std=0.1)
+        >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+        >>> print(fit.interval()["bending_stiffness"].round(2))
+        [0.   0.18]
+        """
+        level = check.number(level, "level", sign="positive")
+        if level >= 1:
+            raise SceneError(f"level must be between 0 and 1, got {level!r}")
+        check.one_of(method, "method", ("profile", "linear"))
+        solution = self._solution
+        by = solution.interval if method == "profile" else solution.linear_interval
+        return Named(by(level), self.unknown)
+
+    def table(self) -> Table:
+        """Return one row for each number."""
+        columns: dict[str, Any] = {
+            "unknown": self.unknown,
+            "value": self.value,
+            "std": self.std,
+        }
+        return Table.of("identified", columns)

@@ -1,0 +1,362 @@
+"""Find numbers of a scene from measured peaks or a whole response."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...base import check
+from ...base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
+from ...curves.measured import Measured
+from ...curves.peaks import Peaks
+from ...curves.resonance import Resonances
+from ...scene.path import with_values
+from ...scene.prior import Prior
+from ...scene.scene import Scene
+from ..compare.measured import above_zero
+from ..fitting.misfit import Known
+from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.unknown import Unknowns
+from ..orders.orders import found_orders, given_orders, lowest_orders, lowest_suffice
+from .fit import Fit
+from .fit_peaks import Identification
+from .fits import Fits
+from .response_fit import ResponseFit
+
+Real = NDArray[np.float64]
+
+MOST = 64
+"""Modes that are missing, and peaks that are none."""
+
+SIZES = (1e-50, 1e50)
+"""Of peaks [Hz] and, relative to them, of their standard deviations; of what is known beforehand,
+relative to the guess: squares of all that is between do not overflow."""
+
+
+@overload
+def identify(
+    scene: Scene,
+    measured: Measured,
+    unknown: str | Sequence[str],
+    *,
+    scale: bool = False,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> ResponseFit: ...
+
+
+@overload
+def identify(
+    scene: Scene,
+    measured: Peaks | Resonances | Sequence[Resonances] | ArrayLike,
+    unknown: str | Sequence[str],
+    *,
+    orders: str | Sequence[int] | None = "auto",
+    missing: int | None = None,
+    spurious: int = 1,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> Fit: ...
+
+
+@overload
+def identify(
+    scene: Scene,
+    measured: Sequence[Peaks | Measured],
+    unknown: str | Sequence[str],
+    *,
+    orders: str | Sequence[int] | None = "auto",
+    missing: int | None = None,
+    spurious: int = 1,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> Fits: ...
+
+
+def identify(
+    scene: Scene,
+    measured: Any,
+    unknown: str | Sequence[str],
+    *,
+    orders: str | Sequence[int] | None = "auto",
+    missing: int | None = None,
+    spurious: int = 1,
+    scale: bool = False,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    elements: int | None = None,
+    element: str | None = None,
+) -> Fit | Fits | ResponseFit:
+    """Find the numbers of a scene that make its answers those that were measured.
+
+    Weighted least squares with exact derivatives, of natural frequencies or of a whole frequency
+    response. Numbers keep the sign of their guess in the scene; the guess may be wrong by powers of
+    ten.
+
+    Parameters
+    ----------
+    scene : Scene
+        With what is known, and guesses of what is not; of peaks, a tension of 0 is no guess.
+    measured : Peaks, Resonances, array_like of shape (k,), a list of Peaks, or Measured
+        Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
+        to be the same for all and estimated from the residuals. A list has one for each of many
+        ropes, which the scene describes alike; responses in it stand for their peaks. Or one
+        whole response, which tells damping too, without its line at 0 Hz; to use its peaks alone
+        give `Peaks.of` it. Its
+        noise is estimated from the residuals, for each point a part that is equal on all lines
+        and one in proportion to the amplitude; of measured coherence the first is what that tells.
+    unknown : str or sequence of str
+        Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
+        ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
+        takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``.
+    orders : "auto", None or sequence of int, shape (k,)
+        Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
+        where they do not the lowest modes, if these explain the peaks as well as their noise lets
+        them; else they are searched. None: they are searched in any case. A search moves all but
+        positions by a factor of 30, about their guesses and about what the lowest modes tell.
+    missing : int, optional
+        Of a search: at most so many modes below the highest peak are not among the peaks, as many
+        as there are peaks but no more than 32 where left out.
+    spurious : int
+        Of a search: at most so many peaks are no modes.
+    scale : bool
+        Of a whole response: whether its calibration is unknown too, one real factor on all of it,
+        of either sign.
+    prior : Prior or mapping from str to (float, float), optional
+        What is known beforehand: value and standard deviation by path. Of a `Prior` what is not
+        sought does not matter.
+    elements, element
+        As `Scene.compile` takes them: continuous spans where left out.
+
+    Returns
+    -------
+    Fit, Fits of a list, or ResponseFit of a whole response
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If a value has no meaning, there is no such number in the scene, natural frequencies do not
+        depend on it, or there are more unknown numbers than peaks and prior values.
+    SolveError
+        If the scene has fewer modes than the orders ask for, or the solution does not converge.
+
+    Warns
+    -----
+    IdentifyWarning
+        If what was measured does not tell all numbers: tension and linear density from peaks
+        alone, say. The warning names what is told. And if a response differs from the model by more
+        than noise.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(2.0, 0.5, bending_stiffness=1.0)
+    >>> scene = rd.Scene(rope, tension=100.0, ends=("pinned", "pinned"))
+    >>> peaks = rd.Peaks([11.21, 22.58, 34.29, 46.49], std=0.01)
+    >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+    >>> print(fit)
+    identified
+    unknown              value        std
+    -----------------  -------  ---------
+    tension            999.615   0.867523
+    bending_stiffness  2.05243  0.0277407
+    """
+    check.instance(scene, "scene", Scene, "a Scene")
+    check.instance(scale, "scale", bool, "True or False")
+    checked = Unknowns.of(_tensed(scene, 1.0), unknown)
+    how = Options(
+        paths=checked.paths,
+        orders=orders,
+        missing=None if missing is None else check.count(missing, "missing", least=0, most=MOST),
+        spurious=check.count(spurious, "spurious", least=0, most=MOST),
+        prior=_prior(prior, checked),
+        elements=elements,
+        element=element,
+    )
+    if isinstance(measured, Measured):
+        whole = _response(scene, measured, how, scale=scale)
+        _warn(whole.notes)
+        return whole
+    if scale:
+        raise SceneError("scale must be False of peaks, which have no amplitude, got True")
+    if _is_of_many(measured):
+        return _fits(scene, measured, how)
+    fit = _fit(scene, _peaks(measured, "measured"), how)
+    _warn(fit.notes)
+    return fit
+
+
+class Options(NamedTuple):
+    """How it is identified, checked; see `identify`."""
+
+    paths: tuple[str, ...]
+    orders: Any
+    missing: int | None
+    spurious: int
+    prior: Mapping[str, tuple[float, float]]
+    elements: int | None
+    element: str | None
+
+
+def _fit(scene: Scene, peaks: Peaks, how: Options) -> Fit:
+    """Identify one rope."""
+    frequency, std = _frequency(peaks), _weights(peaks)
+    if scene.mean_tension == 0 and "tension" in how.paths:
+        # a string whose lowest peak is its first mode
+        wave = 2 * scene.rope.length * float(frequency.min())
+        scene = _tensed(scene, scene.rope.linear_density * wave**2)
+    calculated = NaturalFrequencies(Unknowns.of(scene, how.paths), how.elements, how.element)
+    orders = given_orders(how.orders, peaks)
+    lowest = Identification(calculated, frequency, std, lowest_orders(frequency), how.prior)
+    if orders is not None:
+        return dataclasses.replace(lowest, orders=orders).fit()
+    return _likeliest(lowest, how)
+
+
+def _likeliest(lowest: Identification, how: Options) -> Fit:
+    """Return the fit with the likeliest orders: of the lowest modes, or as a search says."""
+    centres = [np.zeros(len(how.paths))]
+    try:
+        fit = lowest.fit()
+    except SolveError:
+        pass
+    else:
+        freedom = len(lowest.frequency) - len(how.paths)
+        suffice = lowest_suffice(fit.residual, lowest.frequency, lowest.std, freedom)
+        if how.orders is not None and suffice:
+            return fit
+        assert fit.solution is not None
+        centres.append(fit.solution.minimum.u)
+    orders, runner_up = found_orders(
+        lowest.calculated,
+        centres,
+        lowest.frequency,
+        lowest.std,
+        missing=how.missing,
+        spurious=how.spurious,
+    )
+    return dataclasses.replace(lowest, orders=orders, runner_up=runner_up).fit()
+
+
+def _fits(scene: Scene, measured: Sequence[Any], how: Options) -> Fits:
+    """Identify many ropes; those that cannot be do not stop the others."""
+    fits: list[Fit | None] = []
+    failed: dict[int, RopedynError] = {}
+    for i, one in enumerate(measured):
+        peaks = _peaks(one, f"measured[{i}]")
+        try:
+            fits.append(_fit(scene, peaks, how))
+        except RopedynError as error:
+            fits.append(None)
+            failed[i] = error
+    _warn([f"rope {i}: {note}" for i, fit in enumerate(fits) if fit for note in fit.notes])
+    return Fits.of(how.paths, fits, failed)
+
+
+def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
+    """Identify one rope by a whole response."""
+    from ..fitting.response_misfit import Response
+    from .fit_frf import fit_response
+
+    if not isinstance(how.orders, str) or how.orders != "auto":
+        raise SceneError(
+            'orders must be "auto" of a whole response, got '
+            f"{check.shown(how.orders)}: give its peaks to say which modes they are"
+        )
+    unknowns = Unknowns.of(scene, how.paths)
+    if scale:
+        unknowns = unknowns.with_calibration(1.0)
+    response = Response(unknowns, above_zero(measured), how.elements, how.element)
+    return fit_response(response, Known.of(unknowns, how.prior))
+
+
+def _warn(notes: Sequence[str]) -> None:
+    for note in notes:
+        warnings.warn(note, IdentifyWarning, stacklevel=4)
+
+
+# --- what was given ---------------------------------------------------------------------------
+
+
+def _is_of_many(measured: Any) -> bool:
+    kinds = (Peaks, Measured)
+    return isinstance(measured, (list, tuple)) and any(isinstance(m, kinds) for m in measured)
+
+
+def _peaks(measured: Any, name: str) -> Peaks:
+    """Return peaks from what they may be given as."""
+    if isinstance(measured, Peaks):
+        return measured
+    many = isinstance(measured, (list, tuple)) and any(isinstance(m, Resonances) for m in measured)
+    if many or isinstance(measured, (Measured, Resonances)):
+        return Peaks.of(measured)
+    return Peaks(check.numbers(measured, name, "Hz", sign="positive"))
+
+
+def _frequency(peaks: Peaks) -> Real:
+    """Return the frequencies, if their squares are numbers."""
+    frequency = np.asarray(peaks.frequency, dtype=np.float64)
+    _within(frequency, "measured", "Hz")
+    return frequency
+
+
+def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> None:
+    """Refuse values that are so far from a scale that sums of squares overflow."""
+    least, most = SIZES
+    bad = (values < least * scale) | (values > most * scale)
+    if bad.any():
+        at = int(np.flatnonzero(bad)[0])
+        size = float(np.broadcast_to(scale, values.shape)[at])
+        raise SceneError(
+            f"{name}[{at}] must be between {least * size:g} and {most * size:g} [{unit}], "
+            f"got {float(values[at])!r}"
+        )
+
+
+def _weights(peaks: Peaks) -> Real | None:
+    """Return the standard deviations, if there are any."""
+    if peaks.std is None:
+        return None
+    std = np.asarray(peaks.std, dtype=np.float64)
+    if (std == 0).any():
+        at = int(np.flatnonzero(std == 0)[0])
+        raise SceneError(
+            f"measured.std[{at}] must be a finite number > 0 [Hz] to be a weight, got 0.0: leave "
+            "std out where it is not known"
+        )
+    _within(std, "measured.std", "Hz", np.asarray(peaks.frequency, dtype=np.float64))
+    return std
+
+
+def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:
+    """Return what is known beforehand."""
+    if prior is None:
+        return {}
+    paths = unknowns.paths
+    if not isinstance(prior, Prior):
+        check.instance(prior, "prior", Mapping, 'a mapping such as {"tension": (300.0, 15.0)}')
+        for path in prior:
+            check.one_of(path, "key of prior", paths)
+        prior = Prior(prior)
+    for path, size in zip(paths, np.abs(unknowns.start) + unknowns.scale):
+        value, std = prior.get(path, (size, size))
+        if abs(value) > SIZES[1] * size or std < SIZES[0] * size:
+            raise SceneError(
+                f"prior[{path!r}] must be of at most {SIZES[1] * size:g} and have a std of at "
+                f"least {SIZES[0] * size:g}, got {(value, std)}: the scene's guess is {size:g}"
+            )
+    return {path: prior[path] for path in prior if path in paths}
+
+
+def _tensed(scene: Scene, tension: float) -> Scene:
+    """Return a scene with this tension in place of none."""
+    return with_values(scene, {"tension": tension}) if scene.mean_tension == 0 else scene

@@ -1,0 +1,141 @@
+"""Confidence bounds by profile likelihood."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError, SolveError
+from ..fitting.minimum import Minimum, minimise, told
+from ..fitting.misfit import Misfit
+
+Real = NDArray[np.float64]
+
+CLOSE = 1e-3
+"""Of the bound's distance in standard deviations: it changes what is covered by 1e-4."""
+
+ACCEPTED = 0.02
+"""Share of the growth that a linear step may take off: what it leaves is its square."""
+
+OTHERS = (-0.9, 9.0)
+"""Relative changes that others are guessed to have."""
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """How the least sum of squares grows when one number is held off its best value.
+
+    Where the model is linear the root of that growth is the distance in standard deviations; where
+    it is not, the interval on which the root is below a quantile still covers the truth as often
+    (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, section 6.1).
+
+    Attributes
+    ----------
+    misfit : callable
+    minimum : Minimum
+    i : int
+        The number.
+    path : ndarray, shape (p,)
+        Change of the best others, linearly, for a change of 1 of it.
+    by_factor : ndarray of bool, shape (p,)
+        Numbers whose variables are logarithms: these are followed by their relative changes, in
+        which frequencies squared are linear.
+    limit : float
+        Largest distance, of a logarithm or another variable.
+    """
+
+    misfit: Misfit
+    minimum: Minimum
+    i: int
+    path: Real
+    by_factor: NDArray[np.bool_]
+    limit: float
+
+    def bound(self, side: int, root: float, step: float) -> float:
+        """Return u_i where the root of the growth has a value.
+
+        Parameters
+        ----------
+        side : {-1, 1}
+        root : float
+            That value > 0.
+        step : float
+            Guess of the distance, of a number by factor its relative change.
+
+        Returns
+        -------
+        float
+            Infinite where there is none within the limit.
+        """
+
+        def off(distance: float) -> float:
+            return self._root(side * distance, ACCEPTED * root**2)
+
+        most = self.limit
+        if self.by_factor[self.i]:
+            most = 1.0 if side < 0 else float(np.expm1(self.limit))
+        distance = _crossing(off, root, min(step, 1.0), most)
+        if np.isinf(distance):
+            return side * np.inf
+        return float(self._at(side * distance)[self.i])
+
+    def _at(self, distance: float) -> Real:
+        """Return the variables at a distance, the others next to where they are best."""
+        change = np.where(self.by_factor, np.clip(distance * self.path, *OTHERS), 0.0)
+        change[self.i] = 0.0
+        moved = np.where(self.by_factor, np.log1p(change), distance * self.path)
+        if self.by_factor[self.i]:
+            least = np.expm1(-self.limit)
+            moved[self.i] = np.log1p(max(distance, least))
+        return self.minimum.u + moved
+
+    def _root(self, distance: float, accepted: float) -> float:
+        """Return the root of the growth at a distance, infinite where there is no scene.
+
+        Next to the least sum of squares of the others what one linear step takes off it is all
+        there is to take, to second order in that.
+        """
+        others = np.delete(np.eye(len(self.path)), self.i, axis=1)
+        start = self._at(distance)
+        try:
+            residual, slope = self.misfit(start)
+            free = slope @ others
+            along, _ = np.linalg.qr(free @ told(free))
+            left, less = float(residual @ residual), float(np.sum((along.T @ residual) ** 2))
+            if less > accepted:
+                left, less = minimise(self.misfit, start, others).cost, 0.0
+        except (SceneError, SolveError):
+            return np.inf
+        return float(np.sqrt(max(left - less - self.minimum.cost, 0.0)))
+
+
+def _crossing(root: Callable[[float], float], target: float, step: float, limit: float) -> float:
+    """Return where an increasing function that is 0 at 0 is `target`, infinite beyond a limit."""
+    low, at_low, high, at_high = 0.0, 0.0, np.inf, np.inf
+    below, above, leap = 0, 0, 3.0
+    while True:
+        value = root(step)
+        if abs(value - target) <= CLOSE * target:
+            return step
+        if value < target:
+            low, at_low, below, above = step, value, below + 1, 0
+        else:
+            high, at_high, below, above = step, value, 0, above + 1
+        if np.isfinite(high):
+            if high - low <= 1e-6 * high:
+                return high if np.isfinite(at_high) else np.inf
+            halve = max(below, above) > 2 or not np.isfinite(at_high)
+            step = low + (high - low) * (0.5 if halve else _secant(at_low, at_high, target))
+        elif low >= limit:
+            return np.inf
+        else:
+            ahead = low * target / at_low if at_low > 0 else np.inf
+            step, leap = min(max(ahead, 1.1 * low), leap * low, limit), min(leap**2, 1e4)
+
+
+def _secant(low: float, high: float, target: float) -> float:
+    """Return the part of the way from low to high where a straight line is `target`."""
+    return min(max((target - low) / (high - low), 0.02), 0.98)

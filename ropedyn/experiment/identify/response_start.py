@@ -1,0 +1,205 @@
+"""Where to start the fit of a frequency response, from where its peaks stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError, SolveError
+from ...chain.port import moving
+from ...chain.rate import Places, rates_of
+from ...curves.measured import Measured, lines_of
+from ...curves.peaks import Peaks
+from ..fitting.minimum import Minimum, minimise
+from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.peak_misfit import PeakMisfit
+from ..fitting.response_misfit import LogMisfit, Response
+from ..fitting.unknown import CALIBRATION
+from .peak_start import start_of_peaks
+
+Real = NDArray[np.float64]
+Orders = NDArray[np.intp]
+
+SEEN = 1e-3
+"""Of the largest residue: modes with less are not looked for among the peaks."""
+
+HIDDEN = 3
+"""So many of the lowest modes may be missing below the first line."""
+
+LINES = 200
+"""That starts are compared by."""
+
+CLOSE = 0.2
+"""Root mean square of logarithms that no other start has to better."""
+
+ROUGH = {"ftol": 1e-2, "xtol": 1e-3, "gtol": 1e-6}
+"""Tolerances of starts."""
+
+
+class Start(NamedTuple):
+    """Where to start."""
+
+    cost: float
+    """Sum of squares of logarithms, on a few hundred lines."""
+    response: Response
+    """That was compared."""
+    u: Real
+    """The variables, shape (p,)."""
+
+
+def start_of_response(response: Response) -> tuple[Response, Real]:
+    """Find variables from which the fit finds its way.
+
+    The logarithm of the response, compared on a few hundred lines, is fitted from the guess of the
+    scene itself, and from what makes natural frequencies those of the peaks, under several readings
+    of which modes they are. What fits best is taken.
+
+    Parameters
+    ----------
+    response : Response
+
+    Returns
+    -------
+    Response
+        The same, but for the sign of the calibration that is sought: that with which phases fit.
+    ndarray, shape (p,)
+
+    Raises
+    ------
+    SceneError, SolveError
+        If nothing of that has an answer.
+    """
+    starts, failure = _starts(response)
+    best: tuple[Minimum, Response] | None = None
+    for start in sorted(starts, key=lambda one: one.cost):
+        try:
+            found = minimise(LogMisfit(start.response), start.u, digits=ROUGH)
+        except (SceneError, SolveError) as error:
+            failure = failure or error
+            continue
+        if best is None or found.cost < best[0].cost:
+            best = found, start.response
+        if best[0].cost <= CLOSE**2 * len(found.residual):
+            break
+    if best is None:
+        assert failure is not None
+        raise failure
+    minimum, chosen = best
+    return replace(response, unknowns=chosen.unknowns), minimum.u
+
+
+def _starts(response: Response) -> tuple[list[Start], SceneError | SolveError | None]:
+    """Return what can be started from, and why something else cannot."""
+    found: list[Start] = []
+    failure: SceneError | SolveError | None = None
+    signed = _signed(_thinned(response))
+    for u in _candidates(response):
+        for one in signed:
+            try:
+                start = _calibrated(one, u)
+                off = LogMisfit(one)(start)[0]
+                found.append(Start(float(off @ off), one, start))
+            except (SceneError, SolveError) as error:
+                failure = failure or error
+            else:
+                if found[-1].cost <= CLOSE**2 * len(off):
+                    return found, failure
+    return found, failure
+
+
+def _signed(response: Response) -> list[Response]:
+    """Return the response with either sign of the calibration, if that is sought."""
+    unknowns = response.unknowns
+    if CALIBRATION not in unknowns.paths:
+        return [response]
+    both = (unknowns.with_calibration(sign) for sign in (1.0, -1.0))
+    return [replace(response, unknowns=one) for one in both]
+
+
+def peaks_of(measured: Measured) -> Real:
+    """Return the frequencies of the resonances that all responses together show [Hz]."""
+    try:
+        return np.asarray(Peaks.of(measured).frequency)
+    except SceneError:  # there are none
+        return np.zeros(0)
+
+
+def _thinned(response: Response) -> Response:
+    """Return the same on a few lines: those of peaks, and others evenly."""
+    measured = response.measured
+    count = len(measured.frequency)
+    if count <= LINES:
+        return response
+    kept = np.unique(np.linspace(0, count - 1, LINES).astype(np.intp))
+    near = np.searchsorted(measured.frequency, peaks_of(measured))
+    around = (near[:, None] + np.arange(-2, 3)).ravel()
+    kept = np.union1d(kept, around[(around >= 0) & (around < count)])
+    return replace(response, measured=lines_of(measured, kept))
+
+
+def _candidates(response: Response) -> Iterator[Real]:
+    """Yield the guess of the scene, and what fits the peaks under each reading of them."""
+    unknowns = response.unknowns
+    guess = np.zeros(len(unknowns))
+    yield guess
+    model = unknowns.at(guess).compile(elements=response.elements, element=response.element)
+    rates = rates_of(Places(model))
+    shifts = np.array([path in rates for path in unknowns.paths])
+    peaks = peaks_of(response.measured)
+    if not shifts.any() or len(peaks) < shifts.sum():
+        return
+    calculated = NaturalFrequencies(unknowns.only(shifts), response.elements, response.element)
+    try:
+        seen = _seen(response, calculated, len(peaks) + HIDDEN)
+    except (SceneError, SolveError):
+        return
+    # the lowest peaks alone: among higher ones some may be missing or no mode
+    few = max(int(shifts.sum()), len(peaks) // 2)
+    readings = [(0, few), *((hidden, len(peaks)) for hidden in range(HIDDEN + 1))]
+    for hidden, count in readings:
+        orders = seen[hidden : hidden + count]
+        misfit = PeakMisfit(calculated, peaks[: len(orders)], peaks[: len(orders)], orders)
+        try:
+            first = start_of_peaks(misfit, np.zeros(int(shifts.sum())))
+            found = minimise(misfit, first, digits=ROUGH).u
+        except (SceneError, SolveError):
+            continue
+        u = guess.copy()
+        u[shifts] = found
+        yield u
+
+
+def _seen(response: Response, calculated: NaturalFrequencies, count: int) -> Orders:
+    """Return the lowest modes of the guess that the drive and some response see, from 1."""
+    measured, unknowns = response.measured, response.unknowns
+    model = unknowns.at(np.zeros(len(unknowns))).compile(
+        elements=response.elements, element=response.element
+    )
+    modes = model.modes(2 * count)
+    vibrating = np.flatnonzero(modes.frequency > 0)
+
+    def motion(point: tuple[str, float]) -> Real:
+        at = model.coordinates.index(moving(point))
+        return np.array([np.interp(point[1], modes.x, shape[:, at]) for shape in modes.shape])
+
+    drive = motion(measured.drive[0])
+    residue = np.max([np.abs(drive * motion(point)) for point in measured.response], axis=0)
+    residue = (residue / modes.modal_mass)[vibrating]
+    return np.flatnonzero(residue > SEEN * residue.max(initial=0.0))[:count] + 1
+
+
+def _calibrated(response: Response, u: Real) -> Real:
+    """Return variables with the factor of the calibration that makes amplitudes equal."""
+    paths = response.unknowns.paths
+    if CALIBRATION not in paths:
+        return u
+    value, _ = response(u)
+    kept = (response.measured.value != 0) & (value != 0)
+    ratio = np.abs(response.measured.value[kept] / value[kept])
+    u = u.copy()
+    u[paths.index(CALIBRATION)] += np.median(np.log(ratio)) if ratio.size else 0.0
+    return u

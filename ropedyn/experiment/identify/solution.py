@@ -1,0 +1,239 @@
+"""What an identification found, with all that further questions about it need."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError, SolveError
+from ...scene.scene import Scene
+from ..fitting.minimum import FARTHEST, Minimum, minimise
+from ..fitting.misfit import Known, Misfit, Together
+from ..fitting.unknown import Unknowns
+from .profile_interval import Profile
+from .uncertainty import Uncertainty, freedom_of, quantile
+
+Real = NDArray[np.float64]
+
+NOMINAL = 1e-3
+"""Relative noise that is thought of where nothing tells it."""
+
+LEAST_NOISE = float(np.finfo(float).eps)
+"""Of relative residuals: less is the rounding of frequencies."""
+
+ROUNDING = 1e-12
+"""Noise that frequencies themselves may have, which does not settle."""
+
+NARROW = 1e-8
+"""Standard deviation of a variable below which its profile is a parabola, but for rounding."""
+
+UNFELT = 100.0
+"""Standard deviation of a logarithm from which on the number is gone to 0 or infinity."""
+
+BACK = 0.1
+"""Share of what the residuals feel most, at which such a number is tried again."""
+
+FAR = 2.0
+"""How far it has then gone from its start, as a logarithm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The best numbers and what is known of them.
+
+    Attributes
+    ----------
+    unknowns : Unknowns
+        What was sought.
+    misfit : callable
+        What was made small, with what was known beforehand.
+    minimum : Minimum
+        Where it is least.
+    rows : int
+        Of the residuals, those that were measured.
+    noise : float
+        Standard deviation of residuals; infinite where nothing tells it.
+    freedom : float or None
+        Degrees of freedom it was estimated with; None where it was given.
+    side : ndarray of int, shape (p,)
+        -1 of numbers that went to 0, 1 to infinity, else 0.
+    """
+
+    unknowns: Unknowns
+    misfit: Misfit
+    minimum: Minimum
+    rows: int
+    noise: float
+    freedom: float | None
+    side: NDArray[np.int_]
+
+    @property
+    def off(self) -> float:
+        """Sum of squares of what was measured."""
+        return float(np.sum(self.minimum.residual[: self.rows] ** 2))
+
+    @property
+    def scene(self) -> Scene:
+        """The scene with the best numbers."""
+        return self.unknowns.at(self.minimum.u)
+
+    @property
+    def value(self) -> Real:
+        """The best numbers, shape (p,)."""
+        value = self.unknowns.value(self.minimum.u)
+        return np.where(self.side < 0, 0.0, np.where(self.side > 0, np.inf, value))
+
+    @cached_property
+    def uncertainty(self) -> Uncertainty:
+        """Of the variables."""
+        return Uncertainty(np.where(self.side == 0, self.minimum.slope, 0.0), self.noise)
+
+    @property
+    def std(self) -> Real:
+        """Standard deviations of the numbers, shape (p,)."""
+        return self.uncertainty.std * np.abs(self.unknowns.slope(self.minimum.u))
+
+    def interval(self, level: float) -> Real:
+        """Return profile likelihood bounds of the numbers, shape (p, 2)."""
+        if not np.isfinite(self.noise):
+            return self._nothing()
+        root = quantile(level, self.freedom)
+        return np.array([self._bounds(i, root) for i in range(len(self.unknowns))])
+
+    def linear_interval(self, level: float) -> Real:
+        """Return bounds by the standard deviations alone, shape (p, 2)."""
+        reach = quantile(level, self.freedom) * self.std
+        return np.where(
+            np.isfinite(reach)[:, None],
+            np.column_stack([self.value - reach, self.value + reach]),
+            self._nothing(),
+        )
+
+    def _nothing(self) -> Real:
+        least = np.where(self.unknowns.by_factor & (self.unknowns.start > 0), 0.0, -np.inf)
+        most = np.where(self.unknowns.by_factor & (self.unknowns.start < 0), 0.0, np.inf)
+        return np.column_stack([least, most])
+
+    def _bounds(self, i: int, root: float) -> Real:
+        """Return both bounds of a number in increasing order."""
+        side, uncertainty = self.side[i], self.uncertainty
+        if side == 0 and uncertainty.blind[i]:
+            return self._nothing()[i]
+        path, step, limit = np.zeros(len(self.unknowns)), 1.0, 3 * FARTHEST
+        path[i] = 1.0
+        if side == 0:
+            path = uncertainty.unit[:, i] / uncertainty.unit[i, i]
+            step, limit = root * float(uncertainty.std[i]), FARTHEST
+            if not self.side.any() and (uncertainty.std[~uncertainty.blind] < NARROW).all():
+                # a profile would be that of rounding, which takes long to follow
+                return np.sort([self._number(self.minimum.u[i] + way * step, i) for way in (-1, 1)])
+        profile = Profile(self.misfit, self.minimum, i, path, self.unknowns.by_factor, limit)
+        u = [
+            way * np.inf if way == side else profile.bound(way, root * self.noise, step)
+            for way in (-1, 1)
+        ]
+        return np.sort([self._number(one, i) for one in u])
+
+    def _number(self, u: float, i: int) -> float:
+        if np.isinf(u):
+            at_infinity = 0.0 if u < 0 else np.inf
+            return float(np.sign(self.unknowns.start[i]) * at_infinity)
+        variables = np.array(self.minimum.u)
+        variables[i] = u
+        return float(self.unknowns.value(variables)[i])
+
+
+def solve(
+    unknowns: Unknowns,
+    measured: Misfit,
+    start: Real,
+    *,
+    rows: int,
+    known: Known | None,
+    noise: float | None,
+    guess: Real | None = None,
+) -> Solution:
+    """Make what was measured fit best, together with what was known beforehand.
+
+    Parameters
+    ----------
+    unknowns : Unknowns
+    measured : callable
+        Residuals of what was measured, and their slopes.
+    start : ndarray, shape (p,)
+    rows : int
+        How many residuals there are.
+    known : Known, optional
+    noise : float, optional
+        Standard deviation of the residuals; estimated where left out.
+    guess : ndarray, shape (p,), optional
+        Where numbers come from that went to 0 or infinity, if that is not the start.
+    """
+
+    def attempt(start: Real) -> Solution:
+        misfit = measured
+        if known is not None and noise is None:
+            misfit, minimum = _weighed(measured, known, start, rows)
+        else:
+            misfit = misfit if known is None else Together(measured, known, noise or NOMINAL)
+            minimum = minimise(misfit, start)
+        found, freedom = _noise_of(minimum, rows) if noise is None else (noise, None)
+        origin = start if guess is None else guess
+        side = _gone(minimum, origin, unknowns, found if np.isfinite(found) else NOMINAL)
+        return Solution(unknowns, misfit, minimum, rows, found, freedom, side)
+
+    first = attempt(start)
+    if not first.side.any():
+        return first
+    second = attempt(_back(first))
+    return min(first, second, key=lambda one: one.off)
+
+
+def _back(solution: Solution) -> Real:
+    """Return variables with numbers that went to 0 or infinity where a tenth hangs on each."""
+    felt = np.linalg.norm(solution.minimum.slope, axis=0)
+    # where none is felt any more, as with the lowest peak spurious and far down, all go back as far
+    largest = felt.max() or 1.0
+    share = np.maximum(felt / largest, np.exp(-FARTHEST))
+    back = np.maximum(np.log(BACK / share), 0.0)
+    return solution.minimum.u - solution.side * back
+
+
+def _noise_of(minimum: Minimum, rows: int) -> tuple[float, float]:
+    """Return the standard deviation of residuals and its degrees of freedom."""
+    freedom = freedom_of(minimum, rows)
+    if freedom < 0.5:
+        return np.inf, 0.0
+    noise = float(np.linalg.norm(minimum.residual[:rows]) / np.sqrt(freedom))
+    return max(noise, LEAST_NOISE), freedom
+
+
+def _weighed(measured: Misfit, known: Known, start: Real, rows: int) -> tuple[Together, Minimum]:
+    """Estimate the noise and weigh what is known beforehand by it, in turn."""
+    noise, evaluations = NOMINAL, 0
+    for _ in range(50):
+        misfit = Together(measured, known, noise)
+        minimum = minimise(misfit, start)
+        evaluations += minimum.evaluations
+        start, before = minimum.u, noise
+        noise = _noise_of(minimum, rows)[0]
+        if np.isinf(noise):
+            raise SceneError(
+                "measured must have a std where what is known beforehand is needed to tell the "
+                f"unknown, got {rows} peaks without: nothing is left to estimate it from"
+            )
+        if abs(noise / before - 1) < 1e-3 or noise < ROUNDING:
+            return misfit, replace(minimum, evaluations=evaluations)
+    raise SolveError(f"the noise of the peaks must settle, it was {noise:.3g} after 50 fits")
+
+
+def _gone(minimum: Minimum, start: Real, unknowns: Unknowns, noise: float) -> NDArray[np.int_]:
+    """Say which numbers went to 0 (-1) or infinity (1)."""
+    felt = np.linalg.norm(minimum.slope, axis=0)
+    way = minimum.u - start
+    unfelt = (felt * UNFELT < noise) & (np.abs(way) > FAR)
+    gone = unknowns.by_factor & (unfelt | (np.abs(way) >= FARTHEST))
+    return np.where(gone, np.sign(way), 0).astype(int)

@@ -1,0 +1,1 @@
+"""Which mode each measured peak is."""

@@ -1,0 +1,267 @@
+"""Search for the modes that measured peaks are, with parameters unknown."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from itertools import combinations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SolveError
+from .order_fit import OrderFit, OrderFits
+from .order_grid import COARSE, STEP, Calculated, Grid
+from .order_likelihood import Likelihood
+
+Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+OVERLOOKED = 0.1
+"""Probability that a mode of the band is not among the peaks."""
+
+STRAY = 0.5
+"""Peaks that are no mode, on average."""
+
+REACH = 30.0
+"""How many times larger or smaller than its start each parameter may be."""
+
+KEPT = 5
+"""Assignments that are returned at most."""
+
+NOISES = (0.0005, 0.002, 0.008)
+"""Relative standard uncertainties that are tried where none is given: of good peaks of a rope the
+model describes, to those of one it describes by a per cent."""
+
+FINEST = 1e-6
+"""Relative standard uncertainty that measured frequencies have at least."""
+
+CANDIDATES = 8
+"""Numberings of the grid that are fitted to the calculation itself."""
+
+MISSING = 32
+"""Modes that may be missing, unless told: what a search costs grows by their square."""
+
+SUBSETS = 4
+"""Of two peaks each that are taken for any two modes, unless more may be spurious."""
+
+ROUNDS = 3
+"""Times that peaks are numbered on the grid, each after a fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Assignment:
+    """One way to see measured peaks as modes.
+
+    Attributes
+    ----------
+    orders : ndarray of int, shape (k,)
+        Of each peak from 1; 0 where it is no mode.
+    parameters : ndarray, shape (p,)
+        The likeliest with these orders.
+    cost : float
+        -2 ln of the likelihood, up to a constant all assignments share: differences of two are
+        differences of chi-square, `ropedyn.order_likelihood.Likelihood` has the terms.
+    misfit : float
+        The part that peaks alone say, sum of ((calculated - measured)/std)^2: where two
+        assignments do not differ in it, only how likely modes are missed decides.
+    noise : float or None
+        Relative standard uncertainty that makes the peaks likeliest, where none was given.
+    """
+
+    orders: Whole
+    parameters: Real
+    cost: float
+    misfit: float
+    noise: float | None
+
+
+def search(
+    measured: Real,
+    std: Real | None,
+    calculated: Calculated,
+    start: Real,
+    *,
+    missing: int | None = None,
+    spurious: int = 1,
+) -> list[Assignment]:
+    """Find which mode each peak is, and the parameters with it.
+
+    On a grid of parameters around `start` the frequencies are calculated once; Rayleigh's quotients
+    of the shapes there give them everywhere between. Every two peaks, taken as every two modes they
+    may be, determine parameters, with which all peaks are numbered and the parameters fitted to all
+    of them. What comes out likeliest is fitted to the calculation itself.
+
+    Parameters
+    ----------
+    measured : ndarray, shape (k,)
+        Frequencies of the peaks in any order [Hz], positive.
+    std : ndarray, shape (k,), or None
+        Their standard uncertainties [Hz]. None: unknown, but of one relative size for all peaks,
+        for which `NOISES` are tried.
+    calculated : callable
+        ``calculated(parameters, count)`` returns the lowest `count` frequencies, shape (count,) or
+        fewer where there are no more, positive [Hz], and their derivatives, shape (count, p).
+    start : ndarray, shape (p,)
+        Parameters to start from, positive.
+    missing, spurious : int
+        At most so many modes below the highest one seen are missing, as many as there are peaks
+            but no more than 32 where left out, and at most so many peaks are no modes.
+
+    Returns
+    -------
+    list of Assignment
+        The likeliest first; at least one.
+
+    Raises
+    ------
+    SolveError
+        If nothing could be calculated, or no assignment is within the limits.
+
+    Examples
+    --------
+    Peaks of a string of unknown tension, f = n sqrt(T); the third mode is missing:
+
+    >>> import numpy as np
+    >>> from ropedyn.experiment.orders.order_search import search
+    >>> def string(p, count):
+    ...     n = np.arange(1, count + 1)
+    ...     return n * np.sqrt(p[0]), (n / (2 * np.sqrt(p[0])))[:, None]
+    >>> peaks = np.array([10.01, 19.99, 40.0, 50.02])
+    >>> best, *others = search(peaks, 0.002 * peaks, string, np.array([30.0]))
+    >>> best.orders, best.parameters.round(1)
+    (array([1, 2, 4, 5]), array([100.]))
+    """
+    order = np.argsort(measured, kind="stable")
+    frequency = measured[order]
+    known = NOISES[-1] * frequency if std is None else np.maximum(std[order], FINEST * frequency)
+    likelihood = Likelihood(
+        frequency=frequency,
+        sigma=known,
+        band=(0.0, float(measured.max())),
+        overlooked=OVERLOOKED,
+        stray=STRAY,
+        missing=min(len(measured), MISSING) if missing is None else missing,
+        spurious=min(spurious, len(measured) - 1),
+    )
+    reach = np.full(start.shape, REACH)
+    limits = start / reach, start * reach
+    calculated = _remembered(calculated)
+    grid = Grid.of(calculated, start, reach, len(measured) + likelihood.missing)
+    candidates = _candidates(grid, likelihood, limits)
+    back = np.argsort(order, kind="stable")
+    found: dict[bytes, Assignment] = {}
+    for noise in (None,) if std is not None else NOISES:
+        fits = OrderFits(_with(likelihood, noise), calculated, limits)
+        for orders, parameters in candidates:
+            fits.settle(orders, parameters)
+        fits.look_around()
+        for one in fits.ranked():
+            _keep(found, one, back, noise)
+    if not found:
+        raise SolveError(
+            f"no orders of the {len(measured)} peaks fit with at most {likelihood.missing} modes "
+            f"missing and {spurious} peaks that are none"
+        )
+    return sorted(found.values(), key=lambda one: one.cost)[:KEPT]
+
+
+def _remembered(calculated: Calculated) -> Calculated:
+    """Return the same that calculates nothing twice."""
+    known: dict[tuple[bytes, int], tuple[Real, Real]] = {}
+
+    def remembered(parameters: Real, count: int) -> tuple[Real, Real]:
+        key = parameters.tobytes(), count
+        if key not in known:
+            known[key] = calculated(parameters, count)
+        return known[key]
+
+    return remembered
+
+
+def _with(likelihood: Likelihood, noise: float | None) -> Likelihood:
+    """Return the likelihood with a relative noise."""
+    if noise is None:
+        return likelihood
+    return dataclasses.replace(likelihood, sigma=noise * likelihood.frequency)
+
+
+def _keep(
+    found: dict[bytes, Assignment], fit: OrderFit, back: NDArray[np.intp], noise: float | None
+) -> None:
+    """Keep an assignment with the noise that makes it likeliest."""
+    orders, cost = fit.orders[back], fit.cost
+    if noise is not None:
+        # each peak that no parameter was fitted to has a density of 1/noise
+        cost += 2 * max(0, len(orders) - len(fit.parameters)) * float(np.log(noise))
+    key = orders.tobytes()
+    if key not in found or cost < found[key].cost:
+        found[key] = Assignment(orders, fit.parameters, cost, fit.misfit, noise)
+
+
+def _candidates(
+    grid: Grid, likelihood: Likelihood, limits: tuple[Real, Real]
+) -> list[tuple[Whole, Real]]:
+    """Return the likeliest different orders over the grid, with parameters."""
+    guesses = _guesses(likelihood, grid.quotients.frequency.shape[1], grid.parameters.shape[1])
+    at = np.repeat(np.arange(len(grid.parameters)), len(guesses))
+    orders = np.tile(guesses, (len(grid.parameters), 1))
+    sigma = likelihood.coarser(COARSE)
+    for _ in range(ROUNDS):
+        at, orders = _once_each(at, orders)
+        parameters = _fitted(grid, likelihood, limits, at, orders)
+        frequency = grid.quotients.take(at).at(parameters / grid.parameters[at])
+        orders, cost = likelihood.numbered(frequency, sigma)
+    chosen: dict[bytes, tuple[Whole, Real]] = {}
+    ranked = np.argsort(cost, kind="stable")
+    for h in ranked[np.isfinite(cost[ranked])]:
+        chosen.setdefault(orders[h].tobytes(), (orders[h], parameters[h]))
+        if len(chosen) == CANDIDATES:
+            break
+    return list(chosen.values())
+
+
+def _guesses(likelihood: Likelihood, modes: int, parameters: int) -> Whole:
+    """Return orders of two peaks, or of one where there is one parameter, shape (g, k)."""
+    k, missing, spurious = len(likelihood.frequency), likelihood.missing, likelihood.spurious
+    guesses = []
+    for some in _subsets(k, min(2, k, parameters), spurious):
+        ranges = [range(max(1, i + 1 - spurious), min(modes, i + 1 + missing) + 1) for i in some]
+        for orders in product(*ranges):
+            rise = np.diff(orders)
+            if (rise > 0).all() and (np.diff(some) - rise <= spurious).all():
+                guess = np.zeros(k, dtype=np.int64)
+                guess[list(some)] = orders
+                guesses.append(guess)
+    return np.array(guesses, dtype=np.int64).reshape(-1, k)
+
+
+def _subsets(peaks: int, size: int, spurious: int) -> list[tuple[int, ...]]:
+    """Return sets of peaks, far apart, of which one has no spurious peak."""
+    nested = [(i, peaks - 1 - i)[:size] for i in range(peaks // 2)]
+    if len(nested) > spurious:
+        return nested[: max(spurious + 1, SUBSETS)]
+    return list(combinations(range(peaks), size))
+
+
+def _once_each(at: NDArray[np.intp], orders: Whole) -> tuple[NDArray[np.intp], Whole]:
+    both = np.unique(np.column_stack([at, orders]), axis=0)
+    return both[:, 0], both[:, 1:]
+
+
+def _fitted(
+    grid: Grid,
+    likelihood: Likelihood,
+    limits: tuple[Real, Real],
+    at: NDArray[np.intp],
+    orders: Whole,
+) -> Real:
+    """Return parameters near points of the grid that fit peaks of these orders, shape (h, p)."""
+    peaks, point = likelihood.frequency, grid.parameters[at]
+    centre = grid.centre(at, peaks, orders)
+    bounds = (
+        np.maximum(limits[0] / point, centre / STEP),
+        np.minimum(limits[1] / point, centre * STEP),
+    )
+    weight = np.broadcast_to(peaks / likelihood.coarser(COARSE), orders.shape)
+    return point * grid.quotients.take(at).fit(peaks, weight, orders, (centre, STEP), bounds)

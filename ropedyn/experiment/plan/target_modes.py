@@ -1,0 +1,143 @@
+"""Modes that a measurement should show, and how they move along the rope."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base import check
+from ...base.errors import SceneError, SolveError
+
+if TYPE_CHECKING:
+    from ...eigen.modes import Modes
+    from ...model import Model
+
+Real = NDArray[np.float64]
+
+GRID = 512
+"""Places along the rope that are looked at, at least."""
+
+UNMOVED = 1e-9
+"""Of the largest motion of a mode in its own coordinate: less in another is none."""
+
+MOST_MODES = 4096
+"""That are solved for, to find enough of them that move."""
+
+
+class Wanted(NamedTuple):
+    """Modes that a measurement should show.
+
+    Attributes
+    ----------
+    mode : ndarray of int, shape (k,)
+        Their numbers, from 1.
+    rank : ndarray of int, shape (k,)
+        Their numbers among those that can be seen, from 0.
+    frequency, damping_ratio, separation : ndarray, shape (k,)
+        As in `Plan`.
+    highest_peak : ndarray, shape (k,)
+        The largest that |phi(x_d) phi(x_r)|/(2 zeta m omega^2) can be.
+    x : ndarray, shape (places,)
+        [m].
+    driven, heard : ndarray, shape (k, places)
+        As in `Plan`.
+    """
+
+    mode: NDArray[np.int64]
+    rank: NDArray[np.intp]
+    frequency: Real
+    damping_ratio: Real
+    separation: Real
+    highest_peak: Real
+    x: Real
+    driven: Real
+    heard: Real
+
+
+def wanted_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> Wanted:
+    """Find modes and the next ones, among those that move both coordinates.
+
+    Parameters
+    ----------
+    model : Model
+        Continuous spans.
+    asked : int or sequence of int
+        How many of the lowest, or their numbers from 1.
+    coordinates : tuple of str
+        Of the drive and of the response.
+
+    Returns
+    -------
+    Wanted
+
+    Raises
+    ------
+    TypeError, SceneError
+        If the numbers are none, or one is that of a mode that is not seen.
+    SolveError
+        If there are not so many.
+    """
+    numbers, count = _checked(asked)
+    found, shapes, seen = _enough(model, numbers, count, coordinates)
+    chosen = np.array(numbers) - 1 if numbers else seen[:count]
+    if len(chosen) < count:
+        raise SolveError(f"modes must be at most {len(seen)}, those that can be seen, got {count}")
+    for number in chosen[~np.isin(chosen, seen)].tolist():
+        raise SceneError(
+            f"modes must be such that {' and '.join(dict.fromkeys(coordinates))} can move at a "
+            f"frequency above 0, got mode {number + 1}: {found.family[number]}, "
+            f"{found.frequency[number]:.6g} Hz"
+        )
+    rank = np.searchsorted(seen, chosen)
+    f, ratio = found.frequency[chosen], found.damping_ratio[chosen]
+    driven, heard = (shape[chosen] for shape in shapes)
+    largest = np.array([np.abs(shape).max(axis=1) for shape in (driven, heard)])
+    with np.errstate(divide="ignore"):
+        peak = largest.prod(axis=0) / (2 * ratio * found.modal_mass[chosen])
+    return Wanted(
+        mode=chosen + 1,
+        rank=rank,
+        frequency=f,
+        damping_ratio=ratio,
+        separation=_separation(found.frequency[seen])[rank],
+        highest_peak=peak / (2 * np.pi * f) ** 2,
+        x=found.x,
+        driven=driven / largest[0][:, None],
+        heard=heard / largest[1][:, None],
+    )
+
+
+def _checked(asked: Any) -> tuple[list[int], int]:
+    """Return numbers of modes, none where so many of the lowest are wanted; and how many."""
+    most = MOST_MODES // 2
+    if not isinstance(asked, (list, tuple, np.ndarray)):
+        return [], check.count(asked, "modes", most=most)
+    numbers = [check.count(k, f"modes[{i}]", most=most) for i, k in enumerate(asked)]
+    if not numbers or len(set(numbers)) < len(numbers):
+        raise SceneError(f"modes must be different whole numbers, got {check.shown(asked)}")
+    return sorted(numbers), len(numbers)
+
+
+def _enough(
+    model: Model, numbers: list[int], count: int, coordinates: tuple[str, str]
+) -> tuple[Modes, list[Real], NDArray[np.intp]]:
+    """Return modes, how they move both coordinates, and which do: one more than is wanted."""
+    size = max([count, *numbers]) + 2
+    parts = -(-GRID // (len(model.x) - 1))
+    while True:
+        found = model.modes(size, points=parts)
+        shapes = [found.shape[:, :, found.coordinates.index(c)] for c in coordinates]
+        moving = [np.abs(shape).max(axis=1) > UNMOVED for shape in shapes]
+        seen = np.flatnonzero(moving[0] & moving[1] & (found.frequency > 0))
+        last = int(np.searchsorted(seen, max(numbers) - 1, side="right")) if numbers else count
+        if len(seen) > last or size > MOST_MODES:
+            return found, shapes, seen
+        size *= 2
+
+
+def _separation(frequency: Real) -> Real:
+    """Return the distance of each frequency to its nearest neighbour."""
+    gap = np.concatenate([[np.inf], np.diff(frequency), [np.inf]])
+    return np.minimum(gap[:-1], gap[1:])

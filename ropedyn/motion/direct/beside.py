@@ -1,0 +1,80 @@
+"""What acts on a chain beside its own elements, dashpots and springs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...chain.chain import KINDS, Chain
+from ...model import Model
+from ...scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, factors
+from ...scene.tension import Tension
+
+Real = NDArray[np.float64]
+
+RIGID = KINDS.index("rigid")
+
+
+class Beside(NamedTuple):
+    """What acts beside the chain; see csrc/march.h."""
+
+    rate: Real
+    """(distinct,) damping of each element's own stiffness [s]."""
+    spring_rate: float
+    """Damping of node springs [s]."""
+    string: Real
+    """(distinct,) tension of a string in parallel to each element [N]."""
+    string_drag: Real
+    """(distinct,) that times its damping [N s]."""
+    stretching: float
+    """EA/L [N/m]."""
+    mass_rate: float
+    """Damping of the masses of resonators, of the mass [1/s]."""
+
+
+def plain(model: Model, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:
+    """Return the chain with plain lumps and dashpots, and what stands beside it."""
+    share = factors(model.scene.dampings, np.array(1.0)).imag
+    mass = np.eye(len(component)) * chain.mass
+    damping = share[INERTIA] * mass
+    if chain.damping is not None:
+        damping += share[DASHPOT] * chain.damping
+    is_string = "beta" not in component and "z" in component
+    rate = share[TENSION if is_string else SECTION]
+    apart = (
+        chain.kind == RIGID
+        and "beta" in component
+        and (share[TENSION] != rate or model.scene.mean_tension < 0)
+    )
+    string = chain.tension if apart else np.zeros_like(chain.tension)
+    return chain._replace(
+        mass=mass,
+        damping=damping if damping.any() else None,
+        tension=np.zeros_like(chain.tension) if apart else chain.tension,
+    ), Beside(
+        rate=np.full(len(chain.length), rate),
+        spring_rate=float(share[SPRING]),
+        string=string.copy(),
+        string_drag=share[TENSION] * string,
+        stretching=_stretching(model, component),
+        mass_rate=float(share[INERTIA]),
+    )
+
+
+def _stretching(model: Model, component: tuple[str, ...]) -> float:
+    """Return EA/L where motion of these coordinates adds to the tension [N/m]."""
+    scene = model.scene
+    if "z" not in component or not isinstance(scene.tension, Tension):
+        return 0.0
+    stiffness = scene.rope.axial_stiffness if scene.tension.stretching else None
+    return (stiffness or 0.0) / scene.rope.length
+
+
+def pulsation_of(model: Model, component: tuple[str, ...]) -> Callable[[Real], Real] | None:
+    """Return what is added to the tension of these coordinates [N] at times [s]."""
+    tension = model.scene.tension
+    acts = "z" in component and isinstance(tension, Tension) and tension.pulsates
+    return tension.pulsation if acts and isinstance(tension, Tension) else None

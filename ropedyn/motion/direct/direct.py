@@ -1,0 +1,132 @@
+"""Motion over time by implicit steps along the chain, linear or not."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.answer import Cost
+from ...base.errors import SceneError, SolveError
+from ...base.unit import WIRE
+from ...chain.port import is_force
+from ..history import Balance, Deviation, History
+from ..transient import Run, why_direct
+from .lumped import Lumps, lumped_chains, refuse
+from .march import stage_of
+from .run import Passage, Walk
+from .steps import Pace, halved, quiet, steps_of, within
+
+Real = NDArray[np.float64]
+
+ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")
+"""Of a passage, in its order."""
+
+STOPS = (Exception, KeyboardInterrupt)
+"""What may end a march early and leave an answer."""
+
+
+def march(run: Run) -> History:
+    """Integrate step by step; see `Model.transient`."""
+    refuse(run.model)
+    refuse_responses(run)
+    chains = lumped_chains(run)
+    g = stage_of(run.spectral_radius)
+    start = time.perf_counter()
+    pace = _paced(run, chains, g)
+    passage, seconds = pace.passage, time.perf_counter() - start
+    error = passage.error
+    if error is not None and (passage.reached == 0 or not isinstance(error, STOPS)):
+        raise error
+    history = _history(run, chains, pace, seconds)
+    if error is not None and not run.partial:
+        if isinstance(error, SolveError):
+            error.history = history
+        raise error
+    return history
+
+
+def refuse_responses(run: Run) -> None:
+    """Refuse what a march does not read."""
+    for response in run.responses:
+        if response[0] == WIRE:
+            raise SceneError('response must not be the tip of a wire where the method is "direct"')
+        if is_force(response) and run.order > 0:
+            raise SceneError(
+                'quantity must be "displacement" where an internal force is asked for and the '
+                f'method is "direct", got {response}'
+            )
+
+
+def _paced(run: Run, chains: list[Lumps], g: float) -> Pace:
+    """March with the steps that are asked for, or with as many as the tolerance needs."""
+    if run.step is None:
+        return within(run, chains, g)
+    passage = Walk(run, chains, steps_of(run, chains), g).through()
+    unknown = np.full(passage.value.shape, np.nan)
+    return Pace(passage, unknown, passage.stages, passage.factorisations)
+
+
+def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> History:
+    passage, model = pace.passage, run.model
+    kept, seen = slice(passage.reached), slice(passage.seen)
+    asked = replace(quiet(run), time=run.time[kept], snapshots=run.snapshots[seen])
+    value = passage.value[:, kept]
+    deviation = partial(_deviation, asked, value, pace.error[:, kept])
+    return History(
+        drive=run.drives,
+        response=run.responses,
+        quantity=run.quantity,
+        coordinates=model.coordinates,
+        time=asked.time,
+        value=value,
+        force=asked.push,
+        truncation_error=np.zeros(len(run.responses)),
+        snapshot_time=asked.snapshots,
+        x=model.x,
+        snapshot=passage.snapshot[seen],
+        cost=Cost(
+            seconds,
+            "direct",
+            len(model.x) - 1,
+            sum(lumps.chain.free for lumps in chains),
+            sweeps=pace.stages,
+            factorisations=pace.factorisations,
+        ),
+        balance_source=_balance(chains, passage),
+        deviation_source=deviation,
+        stopped=_reason(passage),
+    )
+
+
+def _balance(chains: list[Lumps], passage: Passage) -> Balance:
+    """Return the energies of all chains, that of laws where there are some."""
+    total = passage.energy[:, : passage.reached].sum(axis=0)
+    energy = {name: total[:, k].copy() for k, name in enumerate(ENERGIES)}
+    if all((lumps.laws.kind == 0).all() for lumps in chains):
+        del energy["laws"]
+    return Balance(energy)
+
+
+def _reason(passage: Passage) -> str:
+    """Say why a march ended."""
+    if passage.error is None:
+        return ""
+    if isinstance(passage.error, KeyboardInterrupt):
+        return "interrupted"
+    return f"{type(passage.error).__name__}: {passage.error}"
+
+
+def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
+    """Return how far the values are from those without steps and without elements."""
+    if run.step is not None and len(run.time) > 1:
+        finer = halved(run, lumped_chains(run), stage_of(run.spectral_radius)).value
+        step_error = 4 / 3 * np.abs(value - finer)
+    if why_direct(run.model):
+        return Deviation(step_error, np.full(value.shape, np.inf))
+    from ..modal.superposition import mesh_error
+
+    return Deviation(step_error, mesh_error(run, value))

@@ -1,0 +1,77 @@
+"""Laws of single points, as the core takes them and as Python does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...chain.chain import Chain
+from ...chain.port import locate, ports
+from ...model import Model
+from ...scene.parts.node import Law
+from ...scene.parts.part import standing
+
+Real = NDArray[np.float64]
+
+KINDS = ("power", "stop", "call")
+"""In the core's order."""
+
+
+class Laws(NamedTuple):
+    """Laws of single points as the core takes them; see csrc/march_law.h."""
+
+    node: NDArray[np.int32]
+    row: Real
+    kind: NDArray[np.int32]
+    value: Real
+
+
+class Call(NamedTuple):
+    """A law in Python."""
+
+    law: int
+    """Number among the laws."""
+    part: int
+    """Number among the parts."""
+    call: Callable[[float, float, float], float]
+
+
+class Standing(NamedTuple):
+    """A law of a scene."""
+
+    part: int
+    """Number among the parts."""
+    x: float
+    """Where it acts [m]."""
+    law: Law
+
+
+def standing_laws(model: Model, component: tuple[str, ...]) -> list[Standing]:
+    """Return the laws that act on a component."""
+    found = []
+    for i, part in enumerate(model.scene.parts):
+        for one in standing([part]):
+            found += [Standing(i, one.x, law) for law in one.term().laws]
+    return [one for one in found if one.law.coordinate in component]
+
+
+def laws_of(
+    chain: Chain, x: Real, component: tuple[str, ...], laws: list[Standing]
+) -> tuple[Laws, tuple[Call, ...]]:
+    """Return the laws where something can move, and those among them that Python knows."""
+    free = [one for one in laws if not _is_held(chain, x, component, one)]
+    where = ports(chain, x, component, [(law.coordinate, at) for _, at, law in free])
+    value = np.zeros((len(free), 4))
+    for k, (_, _, law) in enumerate(free):
+        value[k, : len(law.value)] = law.value
+    kind = np.array([KINDS.index(law.kind) for _, _, law in free], dtype=np.int32)
+    calls = tuple(Call(k, i, law.call) for k, (i, _, law) in enumerate(free) if law.call)
+    return Laws(where.node, where.row, kind, value), calls
+
+
+def _is_held(chain: Chain, x: Real, component: tuple[str, ...], one: Standing) -> bool:
+    node = locate(x, one.x)[0]
+    return bool(chain.held[chain.term[chain.stretch(node)], component.index(one.law.coordinate)])

@@ -1,0 +1,273 @@
+"""How many steps: so many that their error is within the tolerance.
+
+A run is marched with steps h and with steps h/m. Where errors fall as h^p, that of the finer one is
+their distance over m^p - 1 (Richardson 1911). It tells how much finer the steps must be, and the
+run with those is checked against the last one in the same way. p is 2 of smooth motion that the
+steps resolve, less where laws bend or fast motion is only just resolved: what two distances say,
+and 1 as long as there is one. Runs far apart prove little: the last two must agree themselves, as
+two do of which one has twice the steps of the other. What the errors of all steps amount to at any
+time is seen as a whole, whether they add up or die away.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SolveError
+from ...chain.port import is_force, moving
+from ...scene.force import is_sampled
+from ...scene.tension import Tension
+from ..transient import Run
+from .lumped import Lumps
+from .run import Passage, Walk
+from .timeline import Timeline, timeline
+
+Real = NDArray[np.float64]
+
+TOLERANCE = 1e-4
+"""Where neither tolerance nor step is given."""
+
+LEAST = 64
+"""Steps of a whole run."""
+
+PER_PERIOD = 16
+"""Steps in a period of what pushes."""
+
+PER_BREAK = 8
+"""Steps between two times where forces break."""
+
+MOST_STEPS = 100_000_000
+"""Of a run that is within a tolerance."""
+
+AGREE = 1 / 3
+"""Of the distance of two runs, at least, is the error of the finer one."""
+
+AIM = 2.5
+"""Error of the last but one run, of the tolerance: twice its steps are enough."""
+
+ORDERS = (0.5, 2.0)
+"""Powers of the step that errors fall with: friction and contact have less than smooth motion."""
+
+FAR = 0.05
+"""Where the error is larger than this, it says little about how fine steps must be."""
+
+RESOLVED = 0.1
+"""The shape of the whole rope must be known to this part of itself."""
+
+NOTHING = 1e-6
+"""Responses smaller than this part of the motion of any node count as so much."""
+
+ROUNDING = 1e-9
+"""The same of the motion of other coordinates, which what is 0 by symmetry is the rounding of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pace:
+    """A run with enough steps.
+
+    Attributes
+    ----------
+    passage : Passage
+        The finest.
+    error : ndarray, shape (responses, t)
+        Estimated, of the steps.
+    stages, factorisations : int
+        Of all that were marched.
+    """
+
+    passage: Passage
+    error: Real
+    stages: int
+    factorisations: int
+
+
+def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
+    """Return the steps that are asked for, or those that a tolerance begins with."""
+    functions = [f for lumps in chains for f in (*lumps.forces, *lumps.motions)]
+    breaks = [at for f in functions for at in f.breaks]
+    stops = [*breaks, *_corners(run, chains)]
+    if run.step is not None:
+        return timeline(run.time, run.snapshots, stops, _constant(run.step))
+    highest = max((f.highest for f in functions), default=0.0)
+    tension = run.model.scene.tension
+    if isinstance(tension, Tension):
+        highest = max(highest, tension.frequency)
+    span = float(run.time[-1] - run.time[0])
+    most = min(span / LEAST, 1 / (PER_PERIOD * highest) if highest > 0 else math.inf)
+    edges = np.array([run.time[0], *(b for b in breaks if run.time[0] < b < run.time[-1])])
+    edges = np.append(np.unique(edges), run.time[-1])
+
+    def between(begin: Real, end: Real) -> Real:
+        at = np.searchsorted(edges, (begin + end) / 2) - 1
+        return np.minimum(np.diff(edges)[at] / PER_BREAK, most)
+
+    return timeline(run.time, run.snapshots, stops, between)
+
+
+def _corners(run: Run, chains: list[Lumps]) -> list[float]:
+    """Return the times at which velocities jump of what follows samples at once."""
+    followed = [
+        force
+        for lumps in chains
+        for force in (*lumps.motions, *itertools.compress(lumps.forces, lumps.is_bare))
+    ]
+    return run.time[1:-1].tolist() if run.order and any(map(is_sampled, followed)) else []
+
+
+def _constant(step: float) -> Callable[[Real, Real], Real]:
+    return lambda begin, end: np.full(len(begin), step)
+
+
+def within(run: Run, chains: list[Lumps], g: float) -> Pace:
+    """March with finer and finer steps until their error is within the tolerance."""
+    line = steps_of(run, chains)
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    work = np.zeros(2, dtype=np.intp)
+    trend = Trend()
+    factor, begin = 1, 0.0
+    while True:
+        fine = line.finer(factor)
+        end = begin + (0.9 * (1 - begin) if trend.last else 0.05)
+        passage = Walk(run, chains, fine, g, (begin, end)).through()
+        begin = end
+        work += (passage.stages, passage.factorisations)
+        if isinstance(passage.error, SolveError) and fine.steps <= MOST_STEPS // 100:
+            trend = Trend()
+            factor *= 4
+            continue
+        if passage.error is not None:
+            error = np.full(passage.value.shape, np.inf)
+            break
+        error, worst = trend.add(run, factor, passage)
+        if worst <= tolerance:
+            break
+        growth = _growth(trend.error, worst, tolerance)
+        if growth * fine.steps > MOST_STEPS:
+            passage.error = SolveError(
+                f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with {fine.steps} "
+                f"the error is {worst:.3g}"
+            )
+            break
+        factor *= growth
+    run.progress(1.0)
+    return Pace(passage, error, int(work[0]), int(work[1]))
+
+
+class Trend:
+    """How the distances between runs with finer and finer steps fall.
+
+    Attributes
+    ----------
+    last : tuple of int and Passage, or None
+        How fine the last run was, and what it left.
+    error : float
+        Of the last run, relative to what is largest, as far as two runs can tell.
+    """
+
+    def __init__(self) -> None:
+        self.last: tuple[int, Passage] | None = None
+        self.error = math.inf
+        self._before: tuple[float, float] | None = None
+
+    def add(self, run: Run, factor: int, passage: Passage) -> tuple[Real, float]:
+        """Return the error of a finer run, and the largest relative to what is largest."""
+        if self.last is None:
+            self.last = (factor, passage)
+            return np.full(passage.value.shape, np.inf), np.inf
+        ratio, coarse = factor / self.last[0], self.last[1]
+        self.last = (factor, passage)
+        apart = np.abs(passage.value - coarse.value)
+        distance = _worst(run, passage, apart)
+        order, guess = 1.0, 2.0
+        if self._before is not None:
+            order = guess = _order(*self._before, ratio, distance)
+        self._before = (ratio, distance)
+        self.error = distance / (ratio**guess - 1)
+        share = max(1 / (ratio**order - 1), AGREE)
+        resolved = _is_resolved(run, passage, coarse)
+        return apart * share, max(distance * share, 0.0 if resolved else FAR)
+
+
+def _order(ratio: float, distance: float, next_ratio: float, next_distance: float) -> float:
+    """Return p of errors C h^p from the distances of three runs, within `ORDERS`."""
+    low, high = ORDERS
+
+    def fall(p: float) -> float:
+        return ratio**-p * (1 - next_ratio**-p) / (1 - ratio**-p)
+
+    if next_distance >= fall(low) * distance:
+        return low
+    if next_distance <= fall(high) * distance:
+        return high
+    for _ in range(20):
+        middle = (low + high) / 2
+        falls = next_distance < fall(middle) * distance
+        low, high = (middle, high) if falls else (low, middle)
+    return low
+
+
+def _growth(error: float, worst: float, tolerance: float) -> int:
+    """Return how much finer steps must be."""
+    if not math.isfinite(error):
+        return 2
+    wanted = math.ceil(math.sqrt(error / (AIM * tolerance)))
+    return min(max(wanted, 2), 8 if worst > FAR else 64)
+
+
+def _worst(run: Run, passage: Passage, apart: Real) -> float:
+    """Return the largest distance of any response, relative to its largest value."""
+    size = np.maximum(np.abs(passage.value).max(axis=1), _floor(run, passage))
+    most = apart.max(axis=1)
+    return float(np.divide(most, size, out=np.zeros_like(most), where=most > 0).max())
+
+
+def _is_resolved(run: Run, fine: Passage, coarse: Passage) -> bool:
+    """Whether both saw the same motion of the whole rope, however coarsely."""
+    apart = np.abs(fine.last - coarse.last).max(axis=0)
+    size = np.maximum(fine.largest, NOTHING * _others(run, fine))[0]
+    return bool((apart <= RESOLVED * size).all())
+
+
+def _floor(run: Run, passage: Passage) -> Real:
+    """Return what responses are to be known to, however small they are."""
+    floor = np.zeros(len(run.responses))
+    size = np.maximum(NOTHING * passage.largest, ROUNDING * _others(run, passage))
+    for k, response in enumerate(run.responses):
+        if not is_force(response):
+            at = run.model.coordinates.index(moving(response))
+            (u, v), least = passage.largest[:, at], size[:, at]
+            rate = v / u if run.order == 2 and u > 0 else 0.0
+            floor[k] = (*least, rate * least[1])[run.order]
+    return floor
+
+
+def _others(run: Run, passage: Passage) -> Real:
+    """Return the largest motion of what each coordinate moves with, shape (2, coordinates)."""
+    model, size = run.model, np.zeros_like(passage.largest)
+    for component in model.components:
+        at = [model.coordinates.index(c) for c in component]
+        # a rotation moves what is as far away as the rope is long
+        arm = np.array([1.0 if c in ("x", "z") else model.scene.rope.length for c in component])
+        most = (passage.largest[:, at] * arm).max(axis=1, keepdims=True)
+        size[:, at] = most / arm
+    return size
+
+
+def halved(run: Run, chains: list[Lumps], g: float) -> Passage:
+    """March with half the steps that are asked for."""
+    return Walk(run, chains, steps_of(run, chains).finer(2), g).through()
+
+
+def silent(fraction: float) -> None:
+    """Say nothing."""
+
+
+def quiet(run: Run) -> Run:
+    """Return a run that can be kept and pickled."""
+    return replace(run, progress=silent)

@@ -1,0 +1,426 @@
+"""Motion over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..base.answer import Answer, Cost, Frozen, axes, nested
+from ..base.table import Table
+from ..base.unit import label
+from ..chain.port import Point
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..curves.measured import Measured
+    from ..signal.ringdown import RingDown
+    from ..signal.spectrum import Spectrum
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Balance(Frozen):
+    """Where the energy is; see `History`."""
+
+    energy: dict[str, Real] = field(metadata=axes("time", unit="J", keyed=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Deviation(Frozen):
+    """How far the values are from those without steps and without elements; see `History`."""
+
+    step_error: Real = field(metadata=axes("response", "time"))
+    mesh_error: Real = field(metadata=axes("response", "time"))
+
+
+@dataclass(frozen=True, eq=False)
+class History(Answer):
+    """Motion over time.
+
+    What it would take other runs to know (`step_error`, `mesh_error`, of the modal method also
+    `energy`) is computed when it is first asked for.
+
+    Attributes
+    ----------
+    drive : tuple of points
+        What the forces act on, or whose motion is given.
+    response : tuple of points
+        What is watched.
+    quantity : {"displacement", "velocity", "acceleration"}
+        Of the responses.
+    time : ndarray, shape (t,)
+        [s].
+    value : ndarray, shape (responses, t)
+        [m, rad, and these per s or s^2; N, N m].
+    force : ndarray, shape (drives, t)
+        What drives, at these times [N, N m; m, rad]; of a blow at an instant nothing.
+    truncation_error : ndarray, shape (responses,)
+        Bound of the absolute error of every value that the modes cause which were left out. 0 of
+        the direct method, infinite where there is no bound.
+    step_error : ndarray, shape (responses, t)
+        Estimated absolute error that the steps of the direct method cause: by Richardson's
+        extrapolation from a run with half the steps' length, within a tolerance from the last two
+        runs. 0 of the modal method, which is exact.
+    mesh_error : ndarray, shape (responses, t)
+        Absolute error that the elements cause: the distance to the motion of the continuous spans
+        of the same scene and the error of that. 0 for continuous spans, infinite where they have no
+        answer, as where something is not linear.
+    energy : dict of ndarray, shape (t,)
+        "kinetic" and "strain", what the forces put in since t = 0 ("input") and what dampers took
+        ("dissipated") [J]: kinetic + strain - input + dissipated stays what it was at the first
+        time, but for what numerical damping takes. The modal method integrates input and dissipated
+        at 4 values for each rad of the modes and forces, 16 at least between two times: 2 s at
+        10 kHz of 126 modes take 10 s. Work of a tension that pulsates is input; of an
+        end that jumps, what stays of it. Where stops or a `NodeForce` act, what they took since
+        then is "laws" and belongs to the sum.
+    snapshot_time : ndarray, shape (s,)
+        When the whole rope was looked at [s].
+    x : ndarray, shape (nodes,)
+        Where [m].
+    coordinates : tuple of str
+        Of every node.
+    snapshot : ndarray, shape (s, nodes, coordinates)
+        Displacement of the whole rope [m, rad].
+    stopped : str
+        Why it ends before the last time that was asked for; empty where it does not.
+    cost : Cost
+        What it cost.
+
+    Examples
+    --------
+    A string that is let go keeps its energy:
+
+    >>> import numpy as np
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+    >>> time = np.linspace(0.0, 0.04, 5)
+    >>> history = model.transient(time, start={("z", 1.0): 20.0}, response=("z", 1.0))
+    >>> history.value.round(4)
+    array([[ 0.01  ,  0.0002, -0.0091,  0.0007,  0.0091]])
+    >>> (history.energy["kinetic"] + history.energy["strain"]).round(6)
+    array([0.1, 0.1, 0.1, 0.1, 0.1])
+    >>> bool((history.mesh_error < 2e-3).all()), float(history.step_error.max())
+    (True, 0.0)
+    """
+
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str
+    coordinates: tuple[str, ...]
+    time: Real = field(metadata=axes("time", unit="s"))
+    value: Real = field(metadata=axes("response", "time"))
+    force: Real = field(metadata=axes("drive", "time"))
+    truncation_error: Real = field(metadata=axes("response"))
+    snapshot_time: Real = field(metadata=axes("snapshot", unit="s"))
+    x: Real = field(metadata=axes("node", unit="m"))
+    snapshot: Real = field(metadata=axes("snapshot", "node", "coordinate", unit="m or rad"))
+    cost: Cost
+    balance_source: Balance | Callable[[], Balance] = field(
+        repr=False, metadata=nested(Balance, "balance")
+    )
+    deviation_source: Deviation | Callable[[], Deviation] = field(
+        repr=False, metadata=nested(Deviation, "deviation")
+    )
+    stopped: str = ""
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Where the energy is.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+        >>> history = model.transient([0.0, 0.01], start={("z", 1.0): 20.0}, response=("z", 1.0))
+        >>> sorted(history.balance.energy)
+        ['dissipated', 'input', 'kinetic', 'strain']
+        """
+        source = self.balance_source
+        return source if isinstance(source, Balance) else source()
+
+    @cached_property
+    def deviation(self) -> Deviation:
+        """What other runs say.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+        >>> history = model.transient([0.0, 0.01], start={("z", 1.0): 20.0}, response=("z", 1.0))
+        >>> history.deviation.step_error
+        array([[0., 0.]])
+        """
+        source = self.deviation_source
+        return source if isinstance(source, Deviation) else source()
+
+    @property
+    def energy(self) -> dict[str, Real]:
+        """Energies over time [J], each shape (t,)."""
+        return self.balance.energy
+
+    @property
+    def step_error(self) -> Real:
+        """Error that steps cause, as value."""
+        return self.deviation.step_error
+
+    @property
+    def mesh_error(self) -> Real:
+        """Error that elements cause, as value."""
+        return self.deviation.mesh_error
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What each response is, with its unit."""
+        return tuple(label(r, quantity=self.quantity) for r in self.response)
+
+    def table(self) -> Table:
+        """Return every response over time."""
+        columns: dict[str, Any] = {"time [s]": self.time}
+        columns |= dict(zip(self.labels, self.value))
+        return Table.of(f"{self.quantity} over time", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the responses over time."""
+        from ..plot.time import plot_history
+
+        return plot_history(self, ax)
+
+    def plot_snapshots(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
+        """Plot one coordinate along the rope, a line for each snapshot.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's where left out.
+        coordinate : str, optional
+            z where there is one, else the first.
+
+        Raises
+        ------
+        SceneError
+            If there are no snapshots, or no such coordinate.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
+        >>> push = {"drive": ("z", 0.5), "force": rd.Step(9.0)}
+        >>> history = model.transient([0.0, 0.01], **push, snapshots=[0.005, 0.01])
+        >>> history.plot_snapshots().get_ylabel()
+        'transverse displacement [m]'
+        """
+        from ..plot.time import plot_snapshots
+
+        return plot_snapshots(self, ax, coordinate)
+
+    def spectrum(self, *, window: str = "hann") -> Spectrum:
+        """Return the amplitudes of the responses over frequency.
+
+        Parameters
+        ----------
+        window : str
+            That weights the times; one that scipy.signal knows. What is neither 0 at both ends of
+            the record nor repeats itself after it leaks to other frequencies, less with "hann"
+            than with "boxcar" (no weights).
+
+        Returns
+        -------
+        Spectrum
+
+        Raises
+        ------
+        SceneError
+            If the times have not equal steps, to 1e-6 of one, or the window is unknown.
+
+        References
+        ----------
+        F. J. Harris, On the use of windows for harmonic analysis with the discrete Fourier
+        transform, Proceedings of the IEEE 66 (1978) 51-83.
+
+        Examples
+        --------
+        A string that is let go swings at its natural frequencies, the first at 5 Hz:
+
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=64)
+        >>> time = np.linspace(0.0, 2.0, 401)[:-1]
+        >>> history = model.transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
+        >>> spectrum = history.spectrum()
+        >>> print(spectrum.frequency[spectrum.amplitude[0].argmax()])
+        5.0
+        """
+        from ..signal.spectrum import spectrum
+
+        return spectrum(self, window)
+
+    def amplitude(
+        self, frequency: ArrayLike, *, last: float | None = None
+    ) -> NDArray[np.complex128]:
+        """Fit steady motion at one or several frequencies.
+
+        By least squares together with what stands still and what drifts steadily. Motion is
+        Re(value exp(+i omega t)), t from 0, as in `Model.frf`; a force `Sine` of amplitude A is
+        then -i A, so the receptance is the amplitude over -i A.
+
+        Parameters
+        ----------
+        frequency : float or array_like, shape (k,)
+            [Hz]; several, such as a frequency and its multiples, are fitted together.
+        last : float, optional
+            How much of the end of the record is taken [s]; all of it where left out.
+
+        Returns
+        -------
+        ndarray of complex, shape (responses,) or (responses, k)
+            Unit of the responses.
+
+        Raises
+        ------
+        TypeError
+            If something is not a number.
+        SceneError
+            If a frequency is not below half the rate of the times, or `last` is too short.
+
+        Examples
+        --------
+        What is left of a steady force when the transients have gone is the frequency response:
+
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ViscousDamping(2.0))
+        >>> model, time = scene.compile(elements=64), np.linspace(0.0, 4.0, 2001)
+        >>> drive = ("z", 0.5)
+        >>> history = model.transient(time, drive=drive, force=rd.Sine(3.0, 20.0))
+        >>> ratio = history.amplitude(20.0, last=1.0) / -3j / model.frf(20.0, drive=drive).value[0]
+        >>> print(abs(ratio).round(6))
+        [1.]
+        """
+        from ..signal.steady import amplitude
+
+        return amplitude(self, frequency, last)
+
+    def damping(
+        self,
+        near: ArrayLike | None = None,
+        *,
+        response: int = 0,
+        since: float | None = None,
+    ) -> RingDown:
+        """Estimate frequencies and damping ratios from the decay of free motion.
+
+        About each frequency the record is shifted to 0 Hz, low-passed and thinned (a record of less
+        than some 30 periods only low-passed), which leaves decaying modes what they are; the matrix
+        pencil finds their rates, least squares refine
+        them, and the noise that is left tells their standard errors. Modes close by are fitted
+        together. Exact, to rounding, of sums of decaying modes.
+
+        Parameters
+        ----------
+        near : float or array_like, shape (k,), optional
+            Where modes are looked for [Hz], to a quarter of it; the strongest line of the spectrum
+            where left out.
+        response : int
+            Of which response.
+        since : float, optional
+            From when on motion is free [s]; where left out since the force last changed (a blow at
+            an instant is not seen).
+
+        Returns
+        -------
+        RingDown
+
+        Raises
+        ------
+        TypeError
+            If something is not a number.
+        SceneError
+            If times have not equal steps, the record of free motion is too short, or `near` is not
+            below half the rate of the times.
+        SolveError
+            If nothing moves there.
+
+        References
+        ----------
+        Y. Hua, T. K. Sarkar, Matrix pencil method for estimating parameters of exponentially
+        damped/undamped sinusoids in noise, IEEE Transactions on Acoustics, Speech, and Signal
+        Processing 38 (1990) 814-824.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
+        >>> model, time = scene.compile(elements=64), np.linspace(0.0, 4.0, 2001)
+        >>> history = model.transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
+        >>> print(history.damping().damping_ratio.round(6))
+        [0.01]
+        """
+        from ..signal.ringdown import ring_down
+
+        return ring_down(self, near, response, since)
+
+    def frf(
+        self,
+        *,
+        drive: int = 0,
+        segments: int = 1,
+        window: str | None = None,
+        band: ArrayLike | None = None,
+    ) -> Measured:
+        """Estimate the responses per force, as a measurement does: H1 = S_fx / S_ff.
+
+        One segment: the ratio of the Fourier transforms of the whole record. That is exact, but
+        for what lies above half the rate of the times, if motion starts from rest and has decayed
+        at the end, as after a blow or a chirp. Several segments, each half over the next, are
+        averaged, as for noise; then there is a coherence.
+
+        Parameters
+        ----------
+        drive : int
+            To which drive; others must be at rest.
+        segments : int
+            How many.
+        window : str, optional
+            That weights each segment; "boxcar" of one and "hann" of several where left out.
+        band : pair of float, optional
+            Lowest and highest frequency [Hz]; where left out all where the force is not less than
+            1e-3 of its largest line.
+
+        Returns
+        -------
+        Measured
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If times have not equal steps, nothing drives at the times, or something else does.
+
+        References
+        ----------
+        J. S. Bendat, A. G. Piersol, Random Data: Analysis and Measurement Procedures (2010),
+        section 9.2.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
+        >>> model, time = scene.compile(elements=64), np.arange(40_000) / 2000.0
+        >>> blow = rd.Impulse(0.01, duration=0.01)
+        >>> measured = model.transient(time, drive=("z", 0.5), force=blow).frf(band=(2.0, 20.0))
+        >>> measured.peaks()[0].frequency.round(2)
+        array([ 5.  , 14.99])
+        """
+        from ..signal.estimate import estimate
+
+        return estimate(self, drive, segments, window, band)

@@ -1,0 +1,1 @@
+"""Motion over time as a sum over modes."""

@@ -1,0 +1,170 @@
+"""Motion of a sum over modes that forces cause, without steps."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError, SolveError
+from ...scene.force import Chirp, Force, Samples, Sum
+from .chirp import chirping, while_it_lasts
+from .expansion import Expansion
+from .exponentials import Complex, Exponentials, Indices, evaluate, invert, rates
+from .pair import Pairs, pairs
+from .piece import Piece, pieces, sine
+from .recurrence import straight_lines
+from .truncation import left_out
+
+__all__ = ["convolve", "left_out", "move", "release"]
+
+Real = NDArray[np.float64]
+
+LARGEST = 1e300
+"""What a growing mode may reach."""
+
+
+def move(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:
+    """Return what a force moves, or the motion after a static load [N, N m] is let go."""
+    if isinstance(given, float):
+        return release(expansion, drive, given, time, order)
+    return convolve(expansion, drive, given, time, order)
+
+
+def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: int) -> Real:
+    """Return what one force moves, from rest at the first time, shape (responses, t).
+
+    What the force did before the first time is not felt, and nothing is sampled: sines, steps and
+    blows are exponentials, chirps have Faddeeva's function, straight lines an exact recurrence.
+    Where something jumps, it is the value from the right.
+
+    Parameters
+    ----------
+    expansion : Expansion
+        Of the responses.
+    drive : int
+        Which of its drives the force acts on.
+    force : Force
+        Of absolute time.
+    time : ndarray, shape (t,)
+        [s], increasing.
+    order : {0, 1, 2}
+        How often the responses are differentiated.
+
+    Raises
+    ------
+    SolveError
+        If a growing mode leaves the numbers.
+    """
+    if isinstance(force, Sum):
+        still = np.zeros((len(expansion.rest[drive]), len(time)))
+        return sum((convolve(expansion, drive, one, time, order) for one in force.forces), still)
+    modes = pairs(expansion, drive)
+    rest = expansion.rest[drive][:, None]
+    with np.errstate(all="ignore"):  # numbers that are not finite are refused at the end
+        if isinstance(force, Chirp):
+            value = _chirp(modes, rest, force, time, order)
+        elif isinstance(force, Samples):
+            value = straight_lines(modes, rest, force, time, order)
+        else:
+            value = _sines(modes, rest, pieces(force, float(time[0])), time, order)
+    return checked(value, time)
+
+
+def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
+    """Return the motion after a static load is let go at the first time, shape (responses, t).
+
+    Raises
+    ------
+    SceneError
+        If a mode is rigid or grows: it has no rest under a load.
+    """
+    modes = pairs(expansion, drive)
+    growing = np.concatenate([expansion.square <= 0, expansion.p >= 0])
+    if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():
+        raise SceneError("start must be None where the rope has no rest under a load")
+    rest = load * np.divide(1.0, modes.square, out=np.zeros_like(modes.square), where=~growing)
+    with np.errstate(all="ignore"):  # as above
+        terms = _motion(modes, Piece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
+        value = evaluate(terms.rate, _seen(modes, terms, order), time - time[0])
+    return checked(value, time)
+
+
+def checked(value: Real, time: Real) -> Real:
+    """Refuse what has left the numbers."""
+    bad = ~(np.abs(value) <= LARGEST).all(axis=0)
+    if bad.any():
+        when = float(time[np.argmax(bad)])
+        raise SolveError(f"the motion grows beyond {LARGEST:g} until t = {when:g} s")
+    return value
+
+
+def _chirp(modes: Pairs, rest: Real, force: Chirp, time: Real, order: int) -> Real:
+    """Return the responses to a chirp: while it lasts, and free after it."""
+    begin, end = float(time[0]), force.duration
+    if begin >= end:
+        return np.zeros((len(rest), len(time)))
+    now = chirping(force, begin, min(end, float(time[-1])))
+    if now.is_steady:
+        turns = [sine(begin, now.frequency, now.amplitude, now.phase), Piece(end)]
+        return _sines(modes, rest, turns, time, order)
+    last = np.searchsorted(time, end)
+    value = np.zeros((len(rest), len(time)))
+    value[:, :last], q, v = while_it_lasts(modes, rest, now, time[:last] - begin, order)
+    if last < len(time):
+        terms = _motion(modes, Piece(end), q, v, time[-1] - end or now.span)
+        value[:, last:] = evaluate(terms.rate, _seen(modes, terms, order), time[last:] - end)
+    return value
+
+
+def _sines(modes: Pairs, rest: Real, turns: list[Piece], time: Real, order: int) -> Real:
+    """Return the responses to pieces of sines."""
+    value = np.zeros((len(rest), len(time)))
+    q = v = np.zeros_like(modes.sigma)
+    turns = [piece for piece in turns if piece.start <= time[-1]]
+    for piece, following in zip(turns, [*turns[1:], None]):
+        stop = time[-1] if following is None else following.start
+        last = len(time) if following is None else np.searchsorted(time, stop)
+        now = slice(np.searchsorted(time, piece.start), last)
+        v = v + piece.kick
+        terms = _motion(modes, piece, q, v, stop - piece.start or time[-1] - time[0])
+        value[:, now] = evaluate(terms.rate, _seen(modes, terms, order), time[now] - piece.start)
+        if rest.any():
+            value[:, now] += rest * piece.value(time[now], order)
+        if following is not None:
+            q, v = _state(terms, len(q), stop - piece.start)
+    return value
+
+
+def _motion(modes: Pairs, piece: Piece, q: Real, v: Real, span: float) -> Exponentials:
+    """Return the motion of each mode under a piece from a state.
+
+    Q(s) = ((cosine s + sine w)/(s^2 + w^2) + v + (s + 2 sigma) q)/(s^2 + 2 sigma s + square)
+    """
+    w = piece.frequency
+    acts = piece.cosine != 0 or (piece.sine != 0 and w != 0)
+    forced = np.array([] if not acts else [1j * w, -1j * w] if w else [0])
+    own = rates(modes.sigma, modes.square)
+    poles = np.concatenate([own, np.broadcast_to(forced, (len(own), len(forced)))], axis=1)
+
+    def numerator(s: Complex, k: Indices) -> Complex:
+        free = v[k] + (s + 2 * modes.sigma[k]) * q[k]
+        if not acts:
+            return free
+        force = piece.cosine * s + piece.sine * w if w else piece.cosine
+        return force + free * np.prod(s[:, None] - forced, axis=1)
+
+    return invert(poles, numerator, span)
+
+
+def _seen(modes: Pairs, terms: Exponentials, order: int) -> Complex:
+    """Return the weights of the responses, shape (responses, j)."""
+    k, s = terms.mode, terms.rate
+    return (modes.a[:, k] + modes.b[:, k] * s) * s**order * terms.weight
+
+
+def _state(terms: Exponentials, modes: int, time: float) -> tuple[Real, Real]:
+    """Return q and q' of each mode at a time."""
+    part = terms.weight * np.exp(terms.rate * time)
+    state = [part.real, (part * terms.rate).real]
+    q, v = (np.bincount(terms.mode, each, modes).astype(np.float64) for each in state)
+    return q, v

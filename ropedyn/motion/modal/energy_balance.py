@@ -1,0 +1,284 @@
+"""Where the energy of a sum over modes is.
+
+A mode that a force of 1 at the drive d moves by phi_d eta_d has r = phi_d phi_e of two drives, so
+
+    kinetic    sum of r_de eta_d' eta_e'/2,      dissipated   integral of 2 sigma r_de eta_d' eta_e'
+    strain     sum of r_de square eta_d eta_e/2 + rest_de y_d y_e/2
+    input      integral of f_d (r_de eta_e' + rest_de y_e'),
+
+y = f where what is left out of the modes follows at once, and y + gamma y' = f where stiffness is
+damped; without blows at an instant, which would put infinite energy there. Integrals are Gauss's,
+between all that jumps, of pieces below the period of the modes they are of and of the forces; what
+decays fast after a jump has pieces that grow from its time on. So a mode of omega takes 4 omega
+values of itself a second, or 16 and more between two times.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError
+from ...eigen.damped.characteristic import Rates
+from ...eigen.damped.proportional import proportional
+from ...response.moved_end import is_end
+from ...scene import damping
+from ...scene.force import Force, Sum
+from ..history import Balance
+from ..transient import Run
+from .convolution import move
+from .expansion import Expansion, Share, expand
+
+Real = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+NAMES = ("kinetic", "strain", "input", "dissipated")
+
+NODES, RADIANS = 8, 2.0
+"""Of Gauss's rule, and of mode and force in each piece: right to 1e-13."""
+
+BLOCK, ALIKE = 64, 4.0
+"""Modes that are looked at together, at most, and how far their rates may be apart in integrals."""
+
+MOST = 1 << 21
+"""Numbers at a time."""
+
+
+def balance(run: Run, resolved: float) -> Balance:
+    """Return the energies over time."""
+    _refuse(run)
+    drives = [*run.drives, *run.loads]
+    energy = {name: np.zeros(len(run.time)) for name in NAMES}
+    shares = expand(run.model, drives, drives, modes=run.modes, resolved=resolved, bound=False)
+    for share in shares:
+        for name, part in zip(NAMES, Driven.of(run, share).energies()):
+            energy[name] += part
+    return Balance(energy)
+
+
+def _refuse(run: Run) -> None:
+    why = "an end is moved" if any(map(is_end, run.drives)) else ""
+    rates, chain = Rates.of(run.model.scene.dampings), run.model.chain
+    if not damping.having(run.model.scene.dampings, "ratio"):
+        closed = [proportional(chain.only(c), rates) for c in run.model.components]
+        if any(one is None for one in closed):
+            why = "damping is not proportional"
+    if why:
+        raise SceneError(f'method must be "direct" for the energy where {why}, got "modal"')
+
+
+class Group(NamedTuple):
+    """Modes that are integrated together."""
+
+    modes: Indices
+    rate: float
+    """Highest angular frequency, or rate of slow decay or growth [rad/s]."""
+    decay: float
+    """Fastest rate of what only decays [1/s], 0 of none."""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """Modes of one component under all that drives it.
+
+    Attributes
+    ----------
+    time : ndarray, shape (t,)
+        [s].
+    given : list of Force or float
+        Forces, and loads that are let go.
+    own : Expansion
+        Of the motion where they act.
+    lag : float
+        gamma [s].
+    rest : ndarray, shape (drives, drives)
+    """
+
+    time: Real
+    given: list[Force | float]
+    own: Expansion
+    lag: float
+    rest: Real
+
+    @classmethod
+    def of(cls, run: Run, share: Share) -> Driven:
+        """Take what drives a component."""
+        every: list[Force | float] = [*run.forces, *run.loads.values()]
+        own = share.expansion
+        lag = -1 / float(own.p[0]) if len(own.p) else 0.0
+        rest = own.r[..., 0] * lag if lag else own.rest
+        return cls(run.time, [every[d] for d in share.drive], own, lag, rest)
+
+    def energies(self) -> tuple[Real, Real, Real, Real]:
+        """Return kinetic, strain, input and dissipated, each (t,)."""
+        count = len(self.own.sigma)
+        kinetic, strain = np.zeros(len(self.time)), np.zeros(len(self.time))
+        for part in _blocks(count):
+            q, v = (self._modes(part, self.time, order) for order in (0, 1))
+            r = self.own.a[..., part]
+            kinetic += np.einsum("dek,dkt,ekt->t", r, v, v, optimize=True) / 2
+            stiff = r * self.own.square[part]
+            strain += np.einsum("dek,dkt,ekt->t", stiff, q, q, optimize=True) / 2
+        y = self._rest(self.time, 0)
+        still = np.einsum("de,dt,et->t", self.rest, y, y) / 2
+        given, lost = self._blows(), np.zeros(len(self.time))
+        for group in self._groups():
+            given += self._integral(partial(self._power, group.modes), group)
+            if self.own.sigma[group.modes].any():
+                lost += self._integral(partial(self._loss, group.modes), group)
+        if self.lag:
+            rest = Group(np.zeros(0, dtype=np.intp), 0.0, 1 / self.lag)
+            given += self._integral(self._power_of_rest, rest)
+            lost += self._integral(self._loss_of_rest, rest)
+        return kinetic, strain + still, given if self.lag else given + still, lost
+
+    def _groups(self) -> list[Group]:
+        """Return modes of like rates."""
+        sigma, omega = self.own.sigma, np.sqrt(np.abs(self.own.square))
+        split = np.sqrt(np.maximum(sigma**2 - self.own.square, 0.0))
+        creeps = (sigma > omega) & (self.own.square > 0)
+        decay = np.where(creeps, sigma + split, 0.0)
+        rate = np.divide(self.own.square, decay, out=omega + np.abs(sigma), where=creeps)
+        groups, order = [], np.argsort(rate)
+        while len(order):
+            alike = rate[order[:BLOCK]] <= ALIKE * rate[order[0]]
+            modes, order = order[: alike.sum()], order[alike.sum() :]
+            groups.append(Group(modes, float(rate[modes[-1]]), float(decay[modes].max())))
+        return groups
+
+    def _power(self, modes: Indices, time: Real) -> Real:
+        """Return what forces do to some modes."""
+        velocity = self._velocity(np.append(self.time[0], time), modes)[:, 1:]
+        return np.asarray((self._force(time) * velocity).sum(axis=0))
+
+    def _loss(self, modes: Indices, time: Real) -> Real:
+        """Return what dampers take from some modes."""
+        v = self._modes(modes, np.append(self.time[0], time), 1)[..., 1:]
+        r = 2 * self.own.sigma[modes] * self.own.a[..., modes]
+        return np.asarray(np.einsum("dek,dkt,ekt->t", r, v, v, optimize=True))
+
+    def _power_of_rest(self, time: Real) -> Real:
+        """Return what forces do to what lags."""
+        y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
+        return np.asarray((self._force(time) * (self.rest @ y)).sum(axis=0))
+
+    def _loss_of_rest(self, time: Real) -> Real:
+        """Return what dampers take from what lags."""
+        y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
+        return np.asarray(self.lag * np.einsum("de,dt,et->t", self.rest, y, y))
+
+    def _velocity(self, time: Real, modes: Indices | slice) -> Real:
+        """Return what some modes have of the velocity of each drive, (drives, t)."""
+        own, shape = self.own, self.rest.shape
+        some = own._replace(
+            sigma=own.sigma[modes],
+            square=own.square[modes],
+            a=own.a[..., modes],
+            b=own.b[..., modes],
+            rest=np.zeros(shape),
+            p=np.zeros(0),
+            r=np.zeros((*shape, 0)),
+        )
+        moved = [move(some, d, one, time, 1) for d, one in enumerate(self.given)]
+        return np.asarray(np.sum(moved, axis=0))
+
+    def _modes(self, part: Indices | slice, time: Real, order: int) -> Real:
+        """Return the motion of each mode per drive, (drives, modes, t)."""
+        sigma, square = self.own.sigma[part], self.own.square[part]
+        k = len(sigma)
+        unit = _nothing(k, k)._replace(sigma=sigma, square=square, a=np.eye(k)[None])
+        unit = unit._replace(b=np.zeros((1, k, k)))
+        return np.stack([move(unit, 0, one, time, order) for one in self.given])
+
+    def _rest(self, time: Real, order: int) -> Real:
+        """Return y of each drive, (drives, t)."""
+        if not self.lag:
+            return self._force(time)
+        p = np.array([-1 / self.lag])
+        unit = _nothing(0, 1)._replace(p=p, r=np.full((1, 1, 1), 1 / self.lag))
+        return np.stack([move(unit, 0, _smooth(one), time, order)[0] for one in self.given])
+
+    def _force(self, time: Real) -> Real:
+        still = np.zeros(len(time))
+        return np.stack([still if isinstance(f, float) else f.value(time) for f in self.given])
+
+    @property
+    def _forces(self) -> list[Force]:
+        return [force for force in self.given if not isinstance(force, float)]
+
+    # --- over time ---
+
+    def _integral(self, power: Callable[[Real], Real], group: Group) -> Real:
+        """Integrate from the first time to each, shape (t,)."""
+        edges = self._edges(group.decay)
+        fastest = max([group.rate, *(2 * math.pi * force.highest for force in self._forces)])
+        parts = np.ceil(np.diff(edges) * fastest / RADIANS).astype(np.intp) + 1
+        step = np.repeat(np.diff(edges) / parts, parts)
+        first = np.repeat(np.cumsum(parts) - parts, parts)
+        begin = np.repeat(edges[:-1], parts) + step * (np.arange(len(step)) - first)
+        node, weight = np.polynomial.legendre.leggauss(NODES)
+        sums = np.zeros(len(step))
+        most = max(1, MOST // (NODES * BLOCK * max(len(self.given), 1)))
+        for k in range(0, len(step), most):
+            some = slice(k, k + most)
+            at = begin[some, None] + step[some, None] * (node + 1) / 2
+            sums[some] = power(at.ravel()).reshape(at.shape) @ weight * step[some] / 2
+        total = np.concatenate([[0.0], np.cumsum(sums)])[np.append(0, np.cumsum(parts))]
+        return np.asarray(total[np.searchsorted(edges, self.time)])
+
+    def _edges(self, decay: float) -> Real:
+        """Return times, what jumps between, and after each of them pieces that double [s]."""
+        # samples bend at the times themselves
+        breaks = [at for force in self._forces for at in force.breaks]
+        inside = [at for at in breaks if self.time[0] < at < self.time[-1]]
+        edges = np.unique(np.concatenate([self.time, inside]))
+        length = np.diff(edges)
+        doublings = math.ceil(math.log2(max(length.max() * decay / RADIANS, 1.0)))
+        after = [edges]
+        for k in range(doublings):
+            piece = 2.0**k * RADIANS / decay
+            after.append(edges[:-1][length > piece] + piece)
+        return np.unique(np.concatenate(after))
+
+    def _blows(self) -> Real:
+        """Return what blows at an instant put in: their impulse times the mean velocity."""
+        blows: dict[float, Real] = {}
+        for d, force in enumerate(self.given):
+            for when, impulse in () if isinstance(force, float) else force.blows:
+                if when >= self.time[0]:
+                    blows.setdefault(when, np.zeros(len(self.given)))[d] += impulse
+        total, r = np.zeros(len(self.time)), self.own.a.sum(axis=-1)
+        for when, kick in blows.items():
+            since = np.array([self.time[0], when]) if when > self.time[0] else self.time[:2]
+            at = int(when > self.time[0])
+            after = self._velocity(since, slice(None))[:, at]
+            total[self.time >= when] += kick @ (after - r @ kick / 2)
+        return total
+
+
+def _nothing(modes: int, responses: int) -> Expansion:
+    """Return an expansion of one drive in which nothing moves."""
+    none, still = np.zeros((1, responses, 0)), np.zeros((1, responses))
+    real = np.zeros((1, responses, modes))
+    return Expansion(
+        np.zeros(modes), np.zeros(modes), real, real, np.zeros(0), none, still, still, math.inf
+    )
+
+
+def _blocks(count: int) -> list[slice]:
+    return [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
+
+
+def _smooth(given: Force | float) -> Force | float:
+    """Return a force without blows at an instant."""
+    if isinstance(given, float) or not given.blows:
+        return given
+    if not isinstance(given, Sum):
+        return Sum(())
+    return Sum(tuple(one for one in map(_smooth, given.forces) if not isinstance(one, float)))

@@ -1,0 +1,508 @@
+"""A transfer function as a sum over modes.
+
+Residues are means over circles around the eigenvalues (see contour.py): motion, internal forces,
+tips of wires and motion of ends alike, no shape is needed. What is left is the response at one
+place, s = 0 where the rope is held, less that of the modes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.errors import SceneError, SolveError
+from ...chain import tip
+from ...chain.chain import Chain
+from ...chain.port import Point, is_force, moving
+from ...eigen.damped.characteristic import Rates, horizon
+from ...eigen.damped.damped_roots import Damped, damped_roots, most_roots
+from ...eigen.damped.proportional import Proportional, proportional
+from ...eigen.eigen import HIGHEST, count_component, spectrum
+from ...model import Model
+from ...response.harmonic import SOLVERS, Question
+from ...response.modal_sum import LEAST, REACH, ratios_of, refuse_other_damping
+from ...response.moved_end import is_end, moves_ends
+from ...scene import damping
+from ...scene.damping import DASHPOT, INERTIA
+from ...signal import contour
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Index = NDArray[np.intp]
+
+LARGEST, MANY = 1000, 400
+"""Unknowns of a chain all of whose modes are summed where no number is given; modes of others."""
+
+SEARCHED = 200
+"""The same where damping is not proportional: each of those is searched for."""
+
+EDGE = 0.8
+"""Of the rate before which overdamped modes accumulate: so far they are few."""
+
+WIDER, ATTEMPTS = 2, 4
+"""Times the radius is doubled in which all damped modes are looked for; tries with less."""
+
+
+class Expansion(NamedTuple):
+    """What responses are to drives, in the rate s of a motion e^(s t).
+
+        H(s) = rest + sum_k (a_k + b_k s)/(s^2 + 2 sigma_k s + square_k) + sum_j r_j/(s - p_j)
+
+    Pairs are conjugate rates -sigma +- i sqrt(square - sigma^2), rigid motion (sigma = square = 0),
+    modes that decay without oscillation by two rates, or grow (square < 0); p_j are real rates
+    alone.
+    """
+
+    sigma: Real
+    """(k,) [1/s]."""
+    square: Real
+    """(k,) [rad^2/s^2]."""
+    a: Real
+    """(drives, responses, k)."""
+    b: Real
+    """(drives, responses, k); 0 where damping is proportional."""
+    p: Real
+    """(j,) [1/s]."""
+    r: Real
+    """(drives, responses, j)."""
+    rest: Real
+    """(drives, responses) of what is left out: it follows at once."""
+    bound: Real
+    """(drives, responses) |H_out(0)| of the modes that are left out, at most; 0 where none is."""
+    beyond: float
+    """Angular frequency of the lowest that is left out [rad/s], infinite where none is."""
+
+
+class Share(NamedTuple):
+    """What one component has of all drives and responses; others are not coupled."""
+
+    component: tuple[str, ...]
+    drive: Index
+    """Which of the drives are on it."""
+    response: Index
+    """Which of the responses."""
+    expansion: Expansion
+
+
+def expand(
+    model: Model,
+    drives: Sequence[Any],
+    responses: Sequence[Point],
+    *,
+    modes: int | None = None,
+    resolved: float = 0.0,
+    bound: bool = True,
+) -> tuple[Share, ...]:
+    """Expand the transfer functions of each component.
+
+    Parameters
+    ----------
+    model : Model
+        Linear.
+    drives, responses : sequence of points
+        As in `Model.frf`.
+    modes : int, optional
+        Of each component; where left out all of a chain with at most 1000 unknowns, and else those
+        below eight times the highest angular frequency, 64 at least and 400 at most. Where damping
+        is not proportional 200 is the most of both.
+    resolved : float
+        Highest angular frequency that is of interest [rad/s].
+    bound : bool
+        Whether the bound of what is left out is wanted; it is infinite without.
+
+    Raises
+    ------
+    SceneError
+        If damping is a complex modulus, which has no meaning in time; modal beside another or with
+        the motion of an end; or stiffness is damped where an internal force is asked for per motion
+        of an end.
+    SolveError
+        Where `Model.modes` refuses damped ones.
+    """
+    refuse_hysteresis(model)
+    if damping.having(model.scene.dampings, "ratio"):
+        refuse_other_damping(model, drives, responses)
+    shares = []
+    for component in model.components:
+        d = [k for k, drive in enumerate(drives) if moving(drive) in component]
+        r = [k for k, point in enumerate(responses) if _coordinate(model, point) in component]
+        if d and r:
+            pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
+            asked = _Asked(model, component, pushed, watched, modes, resolved, bound)
+            shares.append(Share(component, np.array(d), np.array(r), _expansion(asked)))
+    return tuple(shares)
+
+
+def refuse_hysteresis(model: Model) -> None:
+    """Refuse what is a complex modulus: it has a meaning at each frequency, not in time."""
+    losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
+    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    if losses:
+        raise SceneError(
+            "damping must be in proportion to velocity, or modal, to have a meaning in time, got "
+            f"{', '.join(losses)}"
+        )
+
+
+def _coordinate(model: Model, point: Point) -> str:
+    return tip.tip_of(model, point).root[0][0] if tip.is_tip(point) else moving(point)
+
+
+# --- one component ------------------------------------------------------------------------------
+
+
+@dataclasses.dataclass(frozen=True)
+class _Asked:
+    """Which transfer functions of one component; see `expand`."""
+
+    model: Model
+    component: tuple[str, ...]
+    drives: list[Any]
+    responses: list[Point]
+    modes: int | None
+    resolved: float
+    bound: bool
+
+    @property
+    def chain(self) -> Chain:
+        """That of the component."""
+        return self.model.chain.only(self.component)
+
+    def at(self, factor: Complex) -> Complex:
+        """Return them at the factors (5, n) of the parts, shape (drives, responses, n)."""
+        model, asked = self.model, tip.spread(self.model, self.responses)
+        hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
+        factor = np.ascontiguousarray(factor)
+        question = Question(model, self.component, hertz, factor, self.drives, asked, 1)
+        value, error = moves_ends(SOLVERS["sweep"])(question)
+        if len(asked) > len(self.responses) or any(map(tip.is_tip, self.responses)):
+            value, error = tip.gather(model, self.responses, factor, value, error)
+        return value
+
+    def undamped(self, z: Complex) -> Complex:
+        """Return those without damping at z = -s^2."""
+        factor = np.ones((len(damping.PARTS), len(z)), dtype=np.complex128)
+        factor[INERTIA], factor[DASHPOT] = -z, 0.0
+        return self.at(factor)
+
+    def damped(self, rates: Rates, s: Complex) -> Complex:
+        """Return those at rates s."""
+        return self.at(rates.at(s))
+
+    def own(self, point: Point) -> _Asked:
+        """Return the same of one point, driven there."""
+        return dataclasses.replace(self, drives=[point], responses=[point])
+
+
+def _expansion(asked: _Asked) -> Expansion:
+    model, component = asked.model, asked.component
+    is_modal = bool(damping.having(model.scene.dampings, "ratio"))
+    rates = Rates.of(model.scene.dampings)
+    closed = proportional(model.chain.only(component), rates)
+    eigenvalue, beyond = _eigenvalues(asked, LARGEST if is_modal or closed else SEARCHED)
+    if is_modal:
+        ratio = ratios_of(model, component, eigenvalue.value)
+        known = int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])
+        if known < len(ratio):
+            beyond = float(eigenvalue.value[known])
+            eigenvalue = _Known(eigenvalue.value[:known], eigenvalue.error[:known])
+        sigma = ratio[:known] * np.sqrt(np.maximum(eigenvalue.value, 0.0))
+        return _closed(asked, eigenvalue, beyond, Proportional(1, 0, 0), sigma)
+    if closed is not None:
+        sigma = (closed.drag.real + closed.soften.real * eigenvalue.value) / 2
+        return _closed(asked, eigenvalue, beyond, closed, sigma)
+    return _searched(asked, rates, eigenvalue.value, beyond)
+
+
+class _Known(NamedTuple):
+    """Eigenvalues and their errors [rad^2/s^2]."""
+
+    value: Real
+    error: Real
+
+
+def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
+    """Return those of the undamped modes that are summed, and the next one."""
+    chain = asked.chain
+    finite = chain.finite
+    if asked.modes is not None:
+        wanted = asked.modes
+    elif finite is not None and chain.free <= most:
+        wanted = finite
+    else:
+        wanted = min(max(_below(asked), LEAST), MANY, most)
+    value, error = spectrum(asked.model, asked.component, wanted + 1)
+    beyond = float(value[wanted]) if len(value) > wanted else np.inf
+    return _Known(value[:wanted], error[:wanted]), beyond
+
+
+def _below(asked: _Asked) -> int:
+    """Return how many modes there are below eight times what is of interest."""
+    try:
+        below = min(REACH * asked.resolved, math.sqrt(HIGHEST)) ** 2
+        return count_component(asked.model, asked.component, below)
+    except SolveError:  # more than can be walked
+        return MANY
+
+
+# --- damping in proportion ----------------------------------------------------------------------
+
+
+def _closed(
+    asked: _Asked, known: _Known, beyond: float, closed: Proportional, sigma: Real
+) -> Expansion:
+    """Sum undamped modes. With stiffness g K, g = stiff + soften s, each is r/(g lambda + ..).
+
+    Internal forces are g times those of K, and so are forces that motion of an end takes.
+    """
+    eigenvalue = known.value
+    circles = contour.on_a_line(eigenvalue, known.error, beyond)
+    stiff, soften = closed.stiff.real, closed.soften.real
+    force = np.array([is_force(point) for point in asked.responses])
+    power = np.array([is_end(drive) for drive in asked.drives])[:, None] + force.astype(int)
+    if soften != 0 and (power > 1).any():
+        raise SceneError(
+            "response must not be an internal force where an end is moved and stiffness is damped: "
+            "a jump of the end would take an infinite force"
+        )
+    a, rest = _apart(asked, eigenvalue, circles)
+    b = np.where(power[:, :, None] == 1, soften, 0.0) * a
+    a *= np.where(power[:, :, None] == 0, 1.0, stiff)
+    p, r = np.zeros(0), np.zeros((*rest.shape, 0))
+    if soften != 0:
+        # what is left out of motion by forces is held by g too
+        p, r = np.array([-stiff / soften]), np.where(power == 0, rest / soften, 0.0)[:, :, None]
+        rest = np.where(power == 0, 0.0, rest)
+    bound = np.zeros(rest.shape)
+    if not np.isfinite(beyond) and _spurious(asked.chain):
+        beyond = float(eigenvalue.max(initial=0.0))
+    if np.isfinite(beyond):
+        bound = _bound(asked, lambda own: _apart(own, eigenvalue, circles)[1])
+    lowest = float(np.sqrt(max(beyond, 0.0)))
+    return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest)
+
+
+def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[Real, Real]:
+    """Return residues, (drives, responses, k), and what is left of the response at one place."""
+    shape = (len(asked.drives), len(asked.responses))
+    a = np.zeros((*shape, len(eigenvalue)))
+    if len(eigenvalue):
+        a = -contour.residues(asked.undamped, eigenvalue, circles).real
+    shift = _shift(eigenvalue)
+    whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
+    return a, whole - a @ (1 / (eigenvalue + shift))
+
+
+def _shift(eigenvalue: Real) -> float:
+    """Return -lambda where the response is compared: 0, where nothing is rigid."""
+    if not (eigenvalue == 0).any():
+        return 0.0
+    elastic = eigenvalue[eigenvalue > 0]
+    shift = float(elastic[0]) if len(elastic) else 1.0
+    while (np.abs(eigenvalue + shift) < 0.1 * shift).any():
+        shift *= 1.5
+    return shift
+
+
+def _bound(asked: _Asked, left: Any) -> Real:
+    """Return |H| of the modes that are left out, bounded as an inner product.
+
+    There is no bound of internal forces, tips and motion of ends.
+    """
+    if not asked.bound:
+        return np.full((len(asked.drives), len(asked.responses)), np.inf)
+    own: dict[Any, float] = {}
+    for point in dict.fromkeys([*asked.drives, *asked.responses]):
+        plain = not (is_end(point) or is_force(point) or tip.is_tip(point))
+        own[point] = float(np.abs(left(asked.own(point))[0, 0])) if plain else np.inf
+    d, r = ([own[point] for point in some] for some in (asked.drives, asked.responses))
+    with np.errstate(invalid="ignore"):
+        return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)
+
+
+# --- damping that couples -----------------------------------------------------------------------
+
+
+class _Poles(NamedTuple):
+    """Rates of a component with their conjugates [rad/s]."""
+
+    value: Complex
+    error: Real
+    radius: float
+    """None of a modulus below this is missing."""
+
+
+def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> Expansion:
+    """Sum damped modes, which have residues of their own."""
+    poles = _rates(asked, rates, eigenvalue, beyond)
+    circles = contour.in_the_plane(poles.value, poles.error, poles.radius)
+    terms, rest = _taken(asked, rates, poles, circles)
+    bound = np.zeros(rest.shape)
+    if np.isfinite(poles.radius):
+        bound = _bound(asked, lambda own: _taken(own, rates, poles, circles)[1])
+    far = horizon(asked.chain, rates)
+    if np.isfinite(far) and np.isfinite(poles.radius):
+        terms, rest = _relaxing(asked, terms, rest, far)
+    return Expansion(*terms, rest, bound, poles.radius)
+
+
+def _relaxing(asked: _Asked, terms: Terms, rest: Real, far: float) -> tuple[Terms, Real]:
+    """Let what is left out follow forces as overdamped motion does that accumulates at a rate.
+
+    The higher the mode, the more g lambda outweighs inertia and tension: g = 1 + s/far.
+    """
+    sigma, square, a, b, p, r = terms
+    follows = np.logical_or.outer(
+        np.array([is_end(drive) for drive in asked.drives]),
+        np.array([is_force(point) for point in asked.responses]),
+    )
+    relaxing = np.where(follows, 0.0, rest * far)[:, :, None]
+    more = np.append(p, -far), np.concatenate([r, relaxing], axis=2)
+    return (sigma, square, a, b, *more), np.where(follows, rest, 0.0)
+
+
+def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Poles:
+    """Find the rates below a radius between undamped modes; of a whole chain all there are.
+
+    Those before the place where overdamped ones accumulate, and fewer where rounding hides some.
+    """
+    chain = asked.chain
+    spans = [chain.between(*span) for span in chain.spans]
+    there_are = [_how_many(span, rates) for span in spans]
+    edge = EDGE * horizon(chain, rates)
+    radius = 1.5 * float(np.sqrt(np.abs(eigenvalue).max(initial=1.0)))
+    if np.isfinite(beyond):
+        radius = float(np.sqrt(np.abs(eigenvalue[-1])) + np.sqrt(beyond)) / 2
+    grows = not np.isfinite(beyond)
+    for attempt in range(ATTEMPTS):
+        radius = min(radius, edge)
+        try:
+            found = [_roots(asked, span, rates, radius) for span in spans]
+        except SolveError:
+            if attempt == ATTEMPTS - 1:
+                raise
+            radius, grows = radius / 2, False
+            continue
+        whole = [_count(one) >= most for one, most in zip(found, there_are)]
+        if not grows or all(whole) or attempt >= WIDER or radius == edge:
+            break
+        radius *= 2
+    value = np.concatenate([one.value for one in found])
+    error = np.concatenate([one.error for one in found])
+    if any(_spurious(span) for span in spans):
+        # masses are indefinite: what grows faster than the rope is no motion of it
+        fastest = np.sqrt(max(0.0, -float(eigenvalue.min(initial=0.0))))
+        is_motion = value.real <= 1.01 * fastest + error
+        value, error = value[is_motion], error[is_motion]
+    twin = value.imag > 0
+    return _Poles(
+        np.concatenate([value, value[twin].conj()]),
+        np.concatenate([error, error[twin]]),
+        np.inf if all(whole) else min(one.radius for one in found),
+    )
+
+
+def _how_many(span: Chain, rates: Rates) -> float:
+    """Return how many rates of motion a span has, infinitely many where elements do not say."""
+    most = most_roots(span, rates)
+    if most is None:
+        return np.inf
+    return most - 2 * _spurious(span)
+
+
+def _spurious(chain: Chain) -> int:
+    """Return how many modes of lumps there are whose mass is negative, which are no motion.
+
+    The end correction of tensed elements makes the mass matrix indefinite.
+    """
+    each = np.bincount(chain.term_of, minlength=len(chain.mass))
+    free = chain.held == 0
+    kept = free[:, :, None] & free[:, None, :]
+    negative = (np.linalg.eigvalsh(np.where(kept, chain.mass, 0.0)) < 0).sum(axis=1)
+    return int(negative @ each)
+
+
+def _count(found: Damped) -> int:
+    return len(found.value) + int((found.value.imag > 0).sum())
+
+
+def _roots(asked: _Asked, span: Chain, rates: Rates, radius: float) -> Damped:
+    try:
+        return damped_roots(span, rates, radius)
+    except SolveError as refusal:
+        raise SolveError(f"({', '.join(asked.component)}): {refusal}") from refusal
+
+
+Terms = tuple[Real, Real, Real, Real, Real, Real]
+
+
+def _taken(
+    asked: _Asked, rates: Rates, poles: _Poles, circles: contour.Circles
+) -> tuple[Terms, Real]:
+    """Return sigma, square, a, b, p, r and what is left."""
+    shape = (len(asked.drives), len(asked.responses))
+    terms = _terms(partial(asked.damped, rates), poles.value, circles, shape)
+    sigma, square, a, b, p, r = terms
+    rigid = (square == 0) & (sigma == 0)
+    elastic = np.abs(poles.value[poles.value != 0])
+    s = float(elastic.min(initial=np.inf)) if rigid.any() else 0.0
+    s = s if np.isfinite(s) else 1.0
+    whole = asked.damped(rates, np.array([s], dtype=np.complex128))[..., 0].real
+    rest = whole - ((a + b * s) / (s * s + 2 * sigma * s + square)).sum(axis=-1)
+    return terms, rest - (r / (s - p)).sum(axis=-1)
+
+
+def _terms(
+    function: contour.Function,
+    pole: Complex,
+    circles: contour.Circles,
+    shape: tuple[int, int],
+) -> Terms:
+    """Turn residues into real terms.
+
+    Two real rates, or two that are nearly one, of residues known together alone, are a pair:
+    (m_0 (s - c) + m_1 rho - m_0 (d_1 + d_2))/((s - p_1)(s - p_2)), p = c + d.
+    """
+    upper, is_pair = circles.center.imag >= 0, _is_pair(pole, circles)
+    joined, others = (np.flatnonzero(upper & one) for one in (is_pair, ~is_pair))
+    pairs: list[tuple[float, float, Real, Real]] = []
+    for k in joined:
+        one = circles.some(np.array([k]))
+        m0, m1 = contour.moments(function, one, 2, contour.TOGETHER)[0].real
+        p = pole[one.members[0]] if len(one.members[0]) == 2 else np.zeros(2)
+        total, product = float(p.sum().real), float(p.prod().real)
+        a = m1 * one.radius[0] - m0 * one.center[0].real
+        pairs.append((-total / 2, product, a, m0))
+    real: list[tuple[float, Real]] = []
+    R = contour.residues(function, pole, circles.some(others)) if len(others) else np.zeros(0)
+    for k in np.concatenate([circles.members[i] for i in others]) if len(others) else ():
+        own = R[..., k]
+        if pole[k].imag > 0:
+            a, b = -2 * (own * pole[k].conj()).real, 2 * own.real
+            pairs.append((-pole[k].real, abs(pole[k]) ** 2, a, b))
+        elif pole[k].imag == 0:
+            real.append((pole[k].real, own.real))
+
+    def stacked(arrays: list[Real]) -> Real:
+        return np.stack(arrays, axis=-1) if arrays else np.zeros((*shape, 0))
+
+    return (
+        np.array([one[0] for one in pairs]),
+        np.array([one[1] for one in pairs]),
+        stacked([one[2] for one in pairs]),
+        stacked([one[3] for one in pairs]),
+        np.array([one[0] for one in real]),
+        stacked([one[1] for one in real]),
+    )
+
+
+def _is_pair(pole: Complex, circles: contour.Circles) -> NDArray[np.bool_]:
+    """Whether each circle lies on the real axis and holds two rates, or rigid motion."""
+    still = np.array([bool((pole[one] == 0).all()) for one in circles.members], dtype=np.bool_)
+    return np.asarray((circles.center.imag == 0) & (still | (circles.size == 2)))

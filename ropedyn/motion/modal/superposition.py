@@ -1,0 +1,155 @@
+"""Motion over time as a sum over modes, each of them exact."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time as clock
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base.answer import Cost
+from ...base.errors import SceneError, SolveError
+from ...base.progress import silent
+from ...eigen.eigen import within
+from ...model import Model
+from ...response.deflection import POINTS
+from ...scene.damping import having
+from ...scene.force import Force
+from ..history import Deviation, History
+from ..transient import Run
+from .convolution import left_out, move
+from .energy_balance import balance
+from .expansion import Expansion, Share, expand
+
+Real = NDArray[np.float64]
+
+WAVE = 8
+"""Samples of a period that times resolve."""
+
+
+def superpose(run: Run) -> History:
+    """Sum up the modes of a linear model; see `Model.transient`."""
+    start = clock.perf_counter()
+    drives = [*run.drives, *run.loads]
+    resolved = fastest(run.forces, run.time)
+    shares = expand(run.model, drives, run.responses, modes=run.modes, resolved=resolved)
+    value = _responses(run, shares, len(run.responses))
+    x, snapshot = _snapshots(run, drives, resolved)
+    seconds = clock.perf_counter() - start
+    truncation = _truncation(run, shares)
+    # what is computed later says nothing, and pickles
+    run = dataclasses.replace(run, progress=silent)
+    deviation: Deviation | Callable[[], Deviation] = partial(_deviation, run, value)
+    if run.model.element == "continuous":
+        deviation = Deviation(np.zeros(value.shape), np.zeros(value.shape))
+    return History(
+        drive=run.drives,
+        response=run.responses,
+        quantity=run.quantity,
+        coordinates=run.model.coordinates,
+        time=run.time,
+        value=value,
+        force=run.push,
+        truncation_error=truncation,
+        snapshot_time=run.snapshots,
+        x=x,
+        snapshot=snapshot,
+        cost=Cost(
+            seconds,
+            "modal",
+            len(run.model.x) - 1,
+            sum(len(s.expansion.sigma) + len(s.expansion.p) for s in shares),
+        ),
+        balance_source=partial(balance, run, resolved),
+        deviation_source=deviation,
+    )
+
+
+def fastest(forces: Sequence[Force], time: Real) -> float:
+    """Return the highest angular frequency that forces have or times resolve [rad/s]."""
+    resolved = 2 * math.pi / WAVE * (len(time) - 1) / float(time[-1] - time[0])
+    return max([resolved, *(2 * math.pi * force.bandwidth for force in forces)])
+
+
+def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
+    """Return what all forces and loads move together, shape (count, t)."""
+    value = np.zeros((count, len(run.time)))
+    given = [*run.forces, *run.loads.values()]
+    for done, share in enumerate(shares):
+        for k, d in enumerate(share.drive):
+            value[share.response] += move(share.expansion, k, given[d], run.time, run.order)
+            run.progress((done + (k + 1) / len(share.drive)) / len(shares))
+    return value
+
+
+def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
+    """Bound what the modes cause that are left out, shape (responses,)."""
+    error = np.zeros(len(run.responses))
+    given = [*run.forces, *run.loads.values()]
+    for share in shares:
+        expansion = share.expansion
+        ratio = ratio_beyond(run.model, expansion)
+        for k, d in enumerate(share.drive):
+            own, one = expansion.bound[k], given[d]
+            if not own.any() or one == 0.0:
+                continue
+            if isinstance(one, float):  # let go, they swing about 0
+                most = own * abs(one) if run.order == 0 else np.full(len(own), np.inf)
+                error[share.response] += np.where(own > 0, most, 0.0)
+            else:
+                most = left_out(one, run.time, own, expansion.beyond, run.order, ratio=ratio)
+                error[share.response] += np.nan_to_num(most, nan=np.inf, posinf=np.inf)
+    return error
+
+
+def ratio_beyond(model: Model, expansion: Expansion) -> float:
+    """Return the largest damping ratio of the modes that are left out.
+
+    (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.
+    """
+    omega = np.sqrt(np.maximum(expansion.square, 0.0))
+    ratio = np.divide(expansion.sigma, omega, out=np.zeros_like(omega), where=omega > 0)
+    if having(model.scene.dampings, "ratio"):
+        return float(ratio.max(initial=0.0))
+    if not omega.any() or np.isinf(expansion.beyond):
+        return 0.0
+    k = int(omega.argmax())
+    return float(ratio[k] * expansion.beyond / omega[k])
+
+
+def _snapshots(run: Run, drives: list[Any], resolved: float) -> tuple[Real, Real]:
+    """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
+    model = run.model
+    x = within(model.x, POINTS) if model.element == "continuous" else model.x
+    width = len(model.coordinates)
+    if len(run.snapshots) == 0:
+        return x, np.zeros((0, len(x), width))
+    points = [(c, float(at)) for at in x for c in model.coordinates]
+    shares = expand(model, drives, points, modes=run.modes, resolved=resolved, bound=False)
+    time = np.unique(np.append(run.time[0], run.snapshots))
+    looks = dataclasses.replace(run, time=time, order=0, progress=silent)
+    kept = _responses(looks, shares, len(points))[:, len(time) - len(run.snapshots) :]
+    return x, np.ascontiguousarray(kept.T).reshape(-1, len(x), width)
+
+
+# --- against continuous spans -------------------------------------------------------------------
+
+
+def _deviation(run: Run, value: Real) -> Deviation:
+    """Return how far exact steps are from the motion of continuous spans."""
+    return Deviation(np.zeros(value.shape), mesh_error(run, value))
+
+
+def mesh_error(run: Run, value: Real) -> Real:
+    """Return the distance to the motion of continuous spans and the error of that, as value."""
+    try:
+        model: Model = run.model.scene.compile()
+        true = superpose(dataclasses.replace(run, model=model, modes=None, snapshots=np.zeros(0)))
+    except (SceneError, SolveError):
+        return np.full(value.shape, np.inf)
+    return np.asarray(np.abs(value - true.value) + true.truncation_error[:, None])

@@ -1,0 +1,164 @@
+"""How far modes that are left out move from where they would rest under the force of the moment."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
+
+Real = NDArray[np.float64]
+
+
+class Change(NamedTuple):
+    """How a derivative of a force changes while it acts, from nothing before it."""
+
+    jump: float
+    """Sum of the magnitudes of its jumps, that from nothing included."""
+    total: float
+    """Total variation: of the jumps and in between."""
+
+
+STILL = Change(0.0, 0.0)
+BLOW = Change(math.inf, math.inf)
+
+
+def left_out(
+    force: Force, time: Real, bound: Real, beyond: float, order: int = 0, *, ratio: float = 0.0
+) -> Real:
+    """Bound what modes above an angular frequency add to their static response, as `bound`.
+
+    With C, the motion of a mode let go at 1, |C| <= 1, and f from rest, by parts
+
+        square q - f = -f(0) C(t) - integral of C(t - s) f'(s) ds,
+        |integral of C| <= (2 ratio + sqrt(1 + 4 ratio^2))/omega,
+
+    and so on for derivatives; a sine also by its steady state. Infinite where there is no bound, as
+    for a blow at an instant.
+
+    Parameters
+    ----------
+    force : Force
+        Of absolute time.
+    time : ndarray, shape (t,)
+        [s]; the motion begins at rest at the first.
+    bound : ndarray
+        Of their static response to 1 N, each mode by its magnitude.
+    beyond : float
+        Lowest angular frequency of them [rad/s].
+    order : {0, 1, 2}
+        How often the response is differentiated.
+    ratio : float
+        Largest damping ratio of them.
+    """
+    bound = np.asarray(bound, dtype=np.float64)
+    try:
+        reach = _reach(force, (float(time[0]), float(time[-1])), beyond, order, ratio)
+    except OverflowError:  # a derivative has left the numbers
+        reach = math.inf
+    if reach == 0:  # no force: also where there is no bound
+        return np.zeros_like(bound)
+    return np.multiply(bound, reach, out=np.zeros_like(bound), where=bound != 0)
+
+
+def _reach(
+    force: Force, span: tuple[float, float], beyond: float, order: int, ratio: float
+) -> float:
+    """Return the bound for a static response of 1."""
+    if isinstance(force, Sum):
+        return sum(_reach(one, span, beyond, order, ratio) for one in force.forces)
+    begin, end = span
+    lag = (2 * ratio + math.sqrt(1 + 4 * ratio**2)) / beyond
+    changes = [_change(force, begin, end, k) for k in range(order + 2)]
+    if any(change.jump > 0 for change in changes[:order]):
+        return math.inf
+    now, after = changes[order:]
+    by_parts = min(now.total, now.jump + lag * after.total)
+    if isinstance(force, Sine):
+        return min(by_parts, _steady(force, begin, beyond, order, ratio))
+    return by_parts
+
+
+def _steady(force: Sine, begin: float, beyond: float, order: int, ratio: float) -> float:
+    """Bound by the steady state's distance and the free motion that begins with it.
+
+    With x = (w/omega)^2 the distance is |x - 2 i ratio sqrt(x)|/|1 - x + 2 i ratio sqrt(x)| of the
+    force: it grows with x, and with the ratio grows or falls throughout.
+    """
+    w = 2 * math.pi * force.frequency
+    x = (w / beyond) ** 2
+    if x >= 1:
+        return math.inf
+    lost = 4 * ratio**2 * x
+    distance = max(x / (1 - x), math.sqrt((x**2 + lost) / ((1 - x) ** 2 + lost)))
+    most = abs(force.amplitude) * w**order
+    angle = w * begin + force.phase + order * math.pi / 2
+    q, v = abs(math.sin(angle)) + distance, w / beyond * (abs(math.cos(angle)) + distance)
+    return most * (distance + math.hypot(q, v))
+
+
+def _change(force: Force, begin: float, end: float, order: int) -> Change:
+    """Return how a force changes that is differentiated `order` times."""
+    if isinstance(force, Sine):
+        return _change_of_sine(force, begin, end, order)
+    if isinstance(force, Chirp):
+        return _change_of_chirp(force, begin, end, order)
+    if isinstance(force, Step):
+        if force.time > end or force.amplitude == 0:
+            return STILL
+        return Change(*2 * (abs(force.amplitude),)) if order == 0 else BLOW
+    if isinstance(force, Samples):
+        return _change_of_samples(force, begin, end, order)
+    assert isinstance(force, Impulse)
+    return _change_of_blow(force, begin, end, order)
+
+
+def _change_of_sine(force: Sine, begin: float, end: float, order: int) -> Change:
+    w = 2 * math.pi * force.frequency
+    most = abs(force.amplitude) * w**order
+    jump = most * abs(math.sin(w * begin + force.phase + order * math.pi / 2))
+    return Change(jump, jump + min(w * (end - begin), 2 + w * (end - begin) * 2 / math.pi) * most)
+
+
+def _change_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Change:
+    """Bound the derivatives by the largest frequency and its growth."""
+    if begin >= force.duration or force.amplitude == 0:
+        return STILL
+    last = min(end, force.duration)
+    growth = (force.stop - force.start) / force.duration
+    w = [2 * math.pi * (force.start + growth * t) for t in (begin, last)]
+    c, most = abs(2 * math.pi * growth), max(w)
+    size = [1, most, most**2 + c, most**3 + 3 * most * c, most**4 + 6 * most**2 * c + 3 * c**2]
+    ends = abs(force.amplitude) * size[order]
+    jump = ends * (2 if last < end else 1)
+    return Change(jump, jump + abs(force.amplitude) * size[order + 1] * (last - begin))
+
+
+def _change_of_samples(force: Samples, begin: float, end: float, order: int) -> Change:
+    if not force.sample.any():
+        return STILL
+    if order > 1:
+        return BLOW
+    corner = np.union1d(force.time[(force.time > begin) & (force.time < end)], [begin, end])
+    value = force.value(corner)
+    if order == 0:
+        jump = abs(float(value[0]))
+        return Change(jump, jump + float(np.abs(np.diff(value)).sum()))
+    slope = np.diff(value, prepend=value[0]) / np.diff(corner, prepend=corner[0] - 1)
+    jump = float(np.abs(np.diff(slope)).sum())
+    return Change(jump, jump)
+
+
+def _change_of_blow(force: Impulse, begin: float, end: float, order: int) -> Change:
+    if force.time > end or force.time + force.duration < begin or force.impulse == 0:
+        return STILL
+    if force.duration == 0:
+        return BLOW
+    w = math.pi / force.duration
+    most = abs(force.amplitude) * w**order
+    if force.time < begin:
+        return Change(2 * most, 4 * most)
+    return Change(2 * most, 4 * most) if order % 2 else Change(0.0, 2 * most)

@@ -1,0 +1,191 @@
+"""Steady states under a stepped sine, by implicit steps along the chain."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import SolveError
+from ..scene.force import Sine
+from ..scene.tension import Tension
+from .direct.direct import refuse_responses
+from .direct.lumped import Lumps, lumped_chains, refuse
+from .direct.march import Motion, stage_of
+from .stepped_sine import Steady, Steps, amplitudes
+from .transient import Run
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FEWEST, MOST = 32, 1 << 14
+"""Steps of a period."""
+
+WINDOW = 8
+"""Periods between two looks at the amplitude, at least."""
+
+TOGETHER = 1000
+"""Periods after which drive and tension must both begin anew, at most."""
+
+BLOCK = 4096
+"""Steps of one call of the core, where a period has no more: a look for Ctrl-C."""
+
+LOOKS = 4
+"""In a row that must agree."""
+
+LONGEST = 100_000
+"""Periods after which a motion is said not to settle."""
+
+KEEPS = stage_of(1.0)
+
+
+def march_steadily(steps: Steps) -> Steady:
+    """Follow the motion through the frequencies in their order, see `Model.stepped_sine`."""
+    refuse(steps.model)
+    run = _run(steps)
+    refuse_responses(run)
+    motions = [Motion(lumps, refined=False) for lumps in lumped_chains(run)]
+    value = np.zeros((len(steps.responses), len(steps.frequency)), dtype=np.complex128)
+    error = np.zeros(value.shape)
+    for k, f in enumerate(steps.frequency.tolist()):
+        found, wrong = _converged(steps, motions, f)
+        size = np.abs(found)
+        relative = np.divide(wrong, size, out=np.zeros_like(size), where=size > 0)
+        value[:, k], error[:, k] = found / steps.amplitude, relative
+        steps.progress((k + 1) / len(steps.frequency))
+    return Steady(
+        value,
+        error,
+        "direct",
+        sum(m.lumps.chain.free for m in motions),
+        sum(m.stages for m in motions),
+        sum(m.factorisations for m in motions),
+    )
+
+
+def _run(steps: Steps) -> Run:
+    """Return a run that is pushed as the first frequency does."""
+    return Run(
+        model=steps.model,
+        time=np.array([0.0, 1.0]),
+        drives=(steps.drive,),
+        forces=(_push(steps, float(steps.frequency[0])),),
+        responses=steps.responses,
+        order=0,
+        loads={},
+        snapshots=np.zeros(0),
+        modes=None,
+        step=1.0,
+        tolerance=None,
+        spectral_radius=1.0,
+        progress=steps.progress,
+        partial=False,
+    )
+
+
+def _push(steps: Steps, frequency: float) -> Sine:
+    return Sine(steps.amplitude, frequency, phase=math.pi / 2)
+
+
+def _converged(steps: Steps, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:
+    """Return the amplitudes with ever shorter steps, extrapolated, and how far they are off."""
+    count = FEWEST
+    before = _settled(steps, motions, frequency, count)
+    while count < MOST:
+        count *= 2
+        after = _settled(steps, motions, frequency, count)
+        # of second order: a third of the change is what is left of it
+        off = np.abs(after.value - before.value) / 3
+        if (off <= steps.tolerance * np.abs(after.value).max()).all():
+            return after.value + (after.value - before.value) / 3, off + after.left
+        before = after
+    raise SolveError(
+        f"frequency {frequency!r} Hz: with {count} steps a period the amplitude is still known to "
+        f"{float((off / np.abs(after.value).max()).max()):.1e} only: ask for a larger tolerance"
+    )
+
+
+class _Settled(NamedTuple):
+    value: Complex
+    """(responses,)."""
+    left: Real
+    """(responses,) what may still change."""
+
+
+def _settled(steps: Steps, motions: list[Motion], frequency: float, count: int) -> _Settled:
+    """Follow the motion until its amplitude stays, with so many steps a period."""
+    for motion in motions:
+        motion.lumps = _pushed(motion.lumps, _push(steps, frequency))
+    periods = _together(steps, frequency)
+    seen: list[Complex] = []
+    for k in range(max(LONGEST // periods, LOOKS + 1)):
+        seen.append(
+            _window(steps, motions, frequency, count, range(k * periods, (k + 1) * periods))
+        )
+        if len(seen) <= LOOKS:
+            continue
+        changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
+        size = np.abs(seen[-1]).max()
+        left = _left(changes)
+        if left <= steps.tolerance / 2 * size:
+            return _Settled(seen[-1], np.full(len(seen[-1]), left))
+    raise SolveError(
+        f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
+        f"changes by {float(changes[-1] / size):.1e} of itself in {periods} periods"
+    )
+
+
+def _together(steps: Steps, frequency: float) -> int:
+    """Return after how many periods drive and tension both begin anew, `WINDOW` at least."""
+    tension = steps.model.scene.tension
+    if not isinstance(tension, Tension) or not tension.pulsates:
+        return WINDOW
+    turns = tension.frequency / frequency * np.arange(1, TOGETHER + 1)
+    whole = np.flatnonzero(np.abs(turns - np.rint(turns)) <= 1e-12 * np.maximum(turns, 1.0))
+    if len(whole) == 0:
+        raise SolveError(
+            f"frequency {frequency!r} Hz has no steady state: the tension pulsates at "
+            f"{tension.frequency!r} Hz, and both do not begin anew together within {TOGETHER} "
+            "periods"
+        )
+    least = int(whole[0]) + 1
+    return math.ceil(WINDOW / least) * least
+
+
+def _left(changes: Real) -> float:
+    """Return what geometric changes add up to from now on, infinite where they grow."""
+    half = len(changes) // 2
+    early, late = float(changes[:half].max()), float(changes[half:].max())
+    if late == 0:
+        return 0.0
+    ratio = math.sqrt(late / early) if early > 0 else math.inf
+    return late * ratio / (1 - ratio) if ratio < 1 else math.inf
+
+
+def _pushed(lumps: Lumps, force: Sine) -> Lumps:
+    """Return the chain under the force of another frequency."""
+    forces = (force,) * len(lumps.forces)
+    return replace(lumps, forces=forces, motions=(force,) * len(lumps.motions))
+
+
+def _window(
+    steps: Steps, motions: list[Motion], frequency: float, count: int, periods: range
+) -> Complex:
+    """Follow all chains through some periods; return the mean of their amplitudes."""
+    found = np.zeros(len(steps.responses), dtype=np.complex128)
+    most = max(BLOCK // count, 1)
+    # samples are at the ends of steps, the first one step after a period begins
+    turn = np.exp(-2j * np.pi / count) / len(periods)
+    for first in periods[::most]:
+        these = np.arange(first * count, min(first + most, periods.stop) * count + 1)
+        time = these / (frequency * count)
+        for motion in motions:
+            stride = motion.stride(time, 1 / (frequency * count), KEEPS, (0.0, 0.0))
+            if stride.error is not None:
+                raise stride.error
+            value = motion.lumps.values(stride.read, time[1:], 0).T
+            found[motion.lumps.number] += turn * amplitudes(value, count).sum(axis=1)
+    return found

@@ -1,0 +1,1 @@
+"""Growth under a tension that pulsates."""

@@ -1,0 +1,238 @@
+"""Growth of motion under the tension that pulsates."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base import check
+from ..base.answer import Answer, Cost, axes
+from ..base.errors import SceneError
+from ..base.table import Table
+from ..model import Model
+from ..scene.tension import Tension
+from .modal_system import ModalSystem, modal_system
+from .monodromy import finite, monodromy, steps_for
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+EPS = float(np.finfo(float).eps)
+
+FINE = 0.6
+"""Of the highest mode in a step at first [rad]."""
+
+CONVERGED = 1e-13
+"""Of the largest number that motion over a period has, by half as long steps."""
+
+PART = 0.1
+"""Of the energy of a motion: a mode with more takes part in it."""
+
+MOST_MODES = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Floquet(Answer):
+    """How free motion grows or decays under a tension that pulsates.
+
+    Motion is a sum of 2k motions, each of which is multiplied by its multiplier over every period
+    of the tension. Those that grow most come first.
+
+    Attributes
+    ----------
+    period : float
+        Of the tension [s].
+    multiplier : ndarray of complex, shape (2k,)
+        1.
+    growth : ndarray, shape (2k,)
+        ln|multiplier|/period [1/s], negative where motion decays.
+    rounding_error : ndarray, shape (2k,)
+        Estimated absolute error of each multiplier: what half as long steps change in the motion
+        over a period, times the condition of the multiplier. Two of them that nearly meet, as on
+        the boundary of instability, lose half of the digits.
+    stable : bool
+        Whether no |multiplier| is larger than 1 by more than its error. Without damping those of
+        stable motion are 1.
+    modes : ndarray of int, shape (k,)
+        Which of the modes with transverse motion are summed, from 1.
+    frequency : ndarray, shape (k,)
+        Of these modes at the mean tension [Hz].
+    participation : ndarray, shape (2k, k)
+        Share of each mode in the energy of each motion at the beginning of a period.
+    dominant : tuple of int
+        The modes that take part in the motion which grows most, or decays least.
+    cost : Cost
+        What it cost.
+
+    Examples
+    --------
+    A string whose tension pulsates at twice its first frequency:
+
+    >>> import ropedyn as rd
+    >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=100.0)
+    >>> floquet = rd.Scene(rd.Rope(1.0, 0.1), tension=tension).compile().floquet(1)
+    >>> floquet.stable, floquet.dominant, floquet.growth.round(2)
+    (False, (1,), array([ 7.85, -7.85]))
+    """
+
+    period: float
+    modes: NDArray[np.intp] = field(metadata=axes("mode"))
+    frequency: Real = field(metadata=axes("mode", unit="Hz"))
+    multiplier: Complex = field(metadata=axes("motion"))
+    rounding_error: Real = field(metadata=axes("motion"))
+    participation: Real = field(metadata=axes("motion", "mode"))
+    cost: Cost
+
+    @property
+    def growth(self) -> Real:
+        """Growth rates [1/s], shape (2k,)."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(np.abs(self.multiplier)) / self.period)
+
+    @property
+    def stable(self) -> bool:
+        """Whether no motion grows, as far as rounding lets that be seen."""
+        return bool((np.abs(self.multiplier) <= 1 + self.rounding_error).all())
+
+    @property
+    def dominant(self) -> tuple[int, ...]:
+        """Modes that take part in the motion that grows most."""
+        return self._taking_part(0)
+
+    def _taking_part(self, motion: int) -> tuple[int, ...]:
+        return tuple(self.modes[self.participation[motion] > PART].tolist())
+
+    def table(self) -> Table:
+        """Return one row for each motion."""
+        numbers = range(len(self.multiplier))
+        columns: dict[str, Any] = {
+            "multiplier, real": self.multiplier.real,
+            "multiplier, imaginary": self.multiplier.imag,
+            "size": np.abs(self.multiplier),
+            "error": self.rounding_error,
+            "growth [1/s]": self.growth,
+            "modes": tuple(", ".join(map(str, self._taking_part(n))) for n in numbers),
+        }
+        verdict = "stable" if self.stable else "unstable"
+        return Table.of(f"multipliers of one period, {verdict}", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the multipliers beside the unit circle."""
+        from ..plot.stability import plot_floquet
+
+        return plot_floquet(self, ax)
+
+
+def solve_floquet(model: Model, modes: int | None) -> Floquet:
+    """Find the multipliers of a model; see `Model.floquet`."""
+    tension = model.scene.tension
+    if not isinstance(tension, Tension) or not tension.pulsates:
+        raise SceneError(
+            "tension must pulsate, such as Tension(1000.0, amplitude=100.0, frequency=50.0), got "
+            f"{tension!r}"
+        )
+    start = time.perf_counter()
+    system = modal_system(model, checked_modes(model, modes))
+    count = len(system.eigenvalue)
+    multiplier: list[Complex] = []
+    error: list[Real] = []
+    share = np.zeros((2 * count, count))
+    steps = 0
+    for block in system.blocks:
+        value, off, part, made = _multipliers(
+            system.only(block), tension.frequency, tension.amplitude
+        )
+        begin = sum(map(len, multiplier))
+        share[begin : begin + len(value), block] = part
+        multiplier.append(value)
+        error.append(off)
+        steps = max(steps, made)
+    value = np.concatenate(multiplier)
+    order = _order(value)
+    return Floquet(
+        period=1 / tension.frequency,
+        modes=np.arange(1, count + 1),
+        frequency=system.omega / (2 * np.pi),
+        multiplier=value[order],
+        rounding_error=np.concatenate(error)[order],
+        participation=share[order],
+        cost=Cost(
+            time.perf_counter() - start,
+            f"composition of order 10, {steps} steps",
+            len(model.x) - 1,
+            2 * count,
+        ),
+    )
+
+
+def checked_modes(model: Model, modes: int | None) -> int | None:
+    """Return how many modes are asked for."""
+    if modes is not None:
+        return check.count(modes, "modes", most=MOST_MODES)
+    if model.element == "continuous":
+        raise SceneError("modes must be a number for continuous spans, which have no last one")
+    finite = model.chain.only(model.component_of("z")).finite if "z" in model.coordinates else 0
+    if finite is None or finite > MOST_MODES:
+        raise SceneError(f"modes must be a number for models with more than {MOST_MODES} of them")
+    return None
+
+
+def _multipliers(
+    system: ModalSystem, frequency: float, amplitude: float
+) -> tuple[Complex, Real, Real, int]:
+    """Return multipliers, their errors, shares of modes, and how many steps it took."""
+    matrix, off, steps = converged(system, frequency, amplitude)
+    value, right = np.linalg.eig(matrix)
+    k = len(system.eigenvalue)
+    part = np.abs(right[:k]) ** 2 + np.abs(right[k:]) ** 2
+    return value, _errors(matrix, off, right), (part / part.sum(axis=0)).T, steps
+
+
+def converged(system: ModalSystem, frequency: float, amplitude: float) -> tuple[Real, float, int]:
+    """Return motion over a period, its error, and the steps that were enough."""
+
+    def with_steps(count: int) -> Real:
+        given = np.array([frequency]), np.array([[amplitude]])
+        with np.errstate(over="ignore", invalid="ignore"):
+            return np.asarray(finite(monodromy(system, *given, count))[0, 0])
+
+    steps = steps_for(system, frequency, amplitude, FINE)
+    matrix, change = with_steps(steps), np.inf
+    while True:
+        steps *= 2
+        before, old = change, matrix
+        matrix = with_steps(steps)
+        size = np.abs(matrix).max()
+        change = float(np.abs(matrix - old).max() / size)
+        # where halving gains nothing rounding is what is left
+        if change <= CONVERGED or change > before / 4:
+            return matrix, size * max(change, EPS * np.sqrt(steps)), steps
+
+
+def _errors(matrix: Real, off: float, right: Complex) -> Real:
+    """Return errors of eigenvalues for one of the matrix: by their condition, at most by a root.
+
+    Two that meet part as the root of a change.
+    """
+    with np.errstate(all="ignore"):
+        try:
+            left = np.linalg.inv(right)
+        except np.linalg.LinAlgError:
+            left = np.full_like(right, np.inf)
+        condition = np.linalg.norm(left, axis=1) * np.linalg.norm(right, axis=0)
+    whole = off * len(matrix)
+    root = np.sqrt(whole * np.abs(matrix).max())
+    return np.fmin(whole * condition, root)
+
+
+def _order(multiplier: Complex) -> NDArray[np.intp]:
+    """Sort by size; of a pair of the same size the one above the real axis comes first."""
+    size = np.abs(multiplier)
+    return np.lexsort((-multiplier.imag, -np.round(size / size.max(initial=1.0), 12)))

@@ -1,0 +1,360 @@
+"""Motion in modes under a tension that pulsates."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.errors import SceneError, SolveError
+from ..chain.chain import ATTACHED, Chain
+from ..chain.compile import divided
+from ..eigen.eigen import SOLVERS, Found, pieces_of, spectrum
+from ..model import Model
+from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
+from ..signal.cluster import clusters
+
+Real = NDArray[np.float64]
+
+SLOPE_OF_TENSION = 6
+"""Among the slopes of an element, see `_core.sensitivity`."""
+
+GAUSS = 12
+"""Points in each piece of a continuous span shorter than its waves: products of two shapes are
+integrated to rounding."""
+
+ROUNDING = 1e-12
+"""Of what modes at most couple by: less is rounding, as between even and odd shapes."""
+
+RESONATOR = ATTACHED.index("resonator")
+
+
+@dataclass(frozen=True, eq=False)
+class ModalSystem:
+    """Amplitudes q of modes of unit modal mass.
+
+    While the tension is mean + a(t)
+
+        q'' + C q' + (Lambda + a(t) Gamma) q = 0.
+
+    Attributes
+    ----------
+    eigenvalue : ndarray, shape (k,)
+        Lambda, of the mean tension [rad^2/s^2].
+    geometric : ndarray, shape (k, k)
+        Gamma, the integral of the products of slopes [rad^2/(N s^2)].
+    damping : ndarray, shape (k, k)
+        C [1/s].
+    """
+
+    eigenvalue: Real
+    geometric: Real
+    damping: Real
+
+    @cached_property
+    def omega(self) -> Real:
+        """Angular frequencies [rad/s], 0 where motion grows, shape (k,)."""
+        return np.sqrt(np.maximum(self.eigenvalue, 0.0))
+
+    @cached_property
+    def blocks(self) -> tuple[NDArray[np.intp], ...]:
+        """Modes that tension or damping couple, those of each block in order."""
+        return tuple(clusters((self.geometric != 0) | (self.damping != 0)))
+
+    def only(self, modes: NDArray[np.intp]) -> ModalSystem:
+        """Return that of some modes."""
+        square = np.ix_(modes, modes)
+        return ModalSystem(self.eigenvalue[modes], self.geometric[square], self.damping[square])
+
+
+def modal_system(model: Model, number: int | None) -> ModalSystem:
+    """Reduce a model to its lowest modes with transverse motion.
+
+    Exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
+    which is not quite a straight line of the tension; the rest vanishes with the mesh.
+
+    Parameters
+    ----------
+    model : Model
+        Linear.
+    number : int or None
+        Of modes; None: all of a chain.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no transverse motion or what pulsation does to it has no such form.
+    SolveError
+        If there are fewer modes.
+    """
+    _refuse(model)
+    component = model.component_of("z")
+    basis = _Basis.of(model, component, number)
+    half = np.linalg.inv(np.linalg.cholesky(basis.mass))
+    geometric = _cut(half @ basis.geometric @ half.T)
+    damping = half @ _damping(model, basis) @ half.T + _modal(model, component, basis.eigenvalue)
+    return ModalSystem(basis.eigenvalue, geometric, _cut(damping))
+
+
+def _refuse(model: Model) -> None:
+    scene = model.scene
+    if "z" not in model.coordinates:
+        raise SceneError("rope must move transversely for a tension that pulsates to act on it")
+    if scene.gravity is not None:
+        raise SceneError(
+            "gravity must be None where the tension pulsates: the sag would pulsate with it, got "
+            f"{scene.gravity}"
+        )
+    if model.element == "difference" and "beta" in model.coordinates:
+        raise SceneError(
+            'element must not be "difference" where there is bending and tension: the kinematics '
+            "of the 2015 study has no geometric stiffness"
+        )
+    for one in having(scene.dampings, "loss"):
+        raise SceneError(f"damping must be in proportion to velocity, got {one}")
+    chain = model.chain.only(model.component_of("z"))
+    if "broken wire" not in chain.carried:
+        return
+    if chain.is_hysteretic or having(scene.dampings, "rate"):
+        raise SceneError(
+            "a broken wire must be without damping where the tension pulsates, and so must be "
+            "stiffness and inertia beside it: the form of its own motion is not known"
+        )
+    if model.element == "continuous" and "beta" not in model.coordinates:
+        raise SceneError("elements must be given where a string with a broken wire pulsates")
+
+
+def _cut(matrix: Real) -> Real:
+    """Return a symmetric matrix without couplings that are rounding."""
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    even = (matrix + matrix.T) / 2
+    return np.where(np.abs(even) <= ROUNDING * np.outer(size, size), 0.0, even)
+
+
+# --- forms of the shapes ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Basis:
+    """Forms of shapes of any size.
+
+    Attributes
+    ----------
+    tension : float
+        Mean [N].
+    eigenvalue : ndarray, shape (k,)
+    mass, geometric, dragged, carried, resisted : ndarray, shape (k, k)
+        Of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
+        structures that nodes carry.
+    """
+
+    tension: float
+    eigenvalue: Real
+    mass: Real
+    geometric: Real
+    dragged: Real
+    carried: Real
+    resisted: Real
+
+    @classmethod
+    def of(cls, model: Model, component: tuple[str, ...], number: int | None) -> _Basis:
+        """Solve for the shapes."""
+        weight = None
+        if model.element == "continuous":
+            model, weight = _at_gauss_points(model, component, number)
+        chain = model.chain.only(component)
+        found = SOLVERS["sweep"](model, component, _wanted(chain, number), math.inf, shaped=True)
+        if number is not None and len(found.eigenvalue) < number:
+            raise SolveError(
+                f"modes must be at most {len(found.eigenvalue)}, the transverse ones this model "
+                f"has, got {number}"
+            )
+        shape, motion = found.shape, found.motion
+        assert shape is not None
+        assert motion is not None
+        carried = _Carried.of(chain, shape, motion, found.eigenvalue)
+        own = _form(shape, chain.mass[chain.term_of])
+        dragged = np.zeros_like(own)
+        if chain.damping is not None:
+            dragged = _form(shape, chain.damping[chain.term_of])
+        if weight is not None:
+            own += _integral(chain, chain.inertia, weight, shape)
+            dragged += _integral(chain, chain.drag, weight, shape)
+        mass = own + carried.mass
+        if "broken wire" in chain.carried:
+            mass = np.diag(np.diag(mass))  # what is not known of wires makes modes orthogonal
+        if weight is None:
+            geometric = _of_elements(chain, shape)
+        elif "beta" in component:
+            slope = shape[:, :, component.index("beta")]
+            geometric = (slope * weight) @ slope.T
+        else:
+            geometric = _of_string(chain, found, mass, carried)
+        return cls(
+            model.scene.mean_tension,
+            _settled(found),
+            mass,
+            geometric,
+            dragged,
+            carried.stiffness,
+            carried.damping,
+        )
+
+
+def _wanted(chain: Chain, number: int | None) -> int:
+    """Return how many modes to look for."""
+    if number is not None:
+        return number
+    assert chain.finite is not None
+    return chain.finite
+
+
+def _settled(found: Found) -> Real:
+    """Return eigenvalues, exactly 0 where rounding cannot tell them from it."""
+    return np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
+
+
+def _at_gauss_points(
+    model: Model, component: tuple[str, ...], number: int | None
+) -> tuple[Model, Real]:
+    """Return continuous spans with nodes at the points of Gauss, and these points' weights [m]."""
+    eigenvalue, _ = spectrum(model, component, number)
+    highest = float(np.abs(eigenvalue).max(initial=0.0))
+    chain = model.chain.undamped.only(component)
+    place, share = np.polynomial.legendre.leggauss(GAUSS)
+    x: list[Real] = [model.x[:1]]
+    weight: list[Real] = [np.zeros(1)]
+    for k, (begin, end) in enumerate(zip(model.x, model.x[1:])):
+        span = chain.between(k, k + 1)
+        equal = np.linspace(begin, end, pieces_of(span, highest) + 1)
+        layer = _layers(span, end - begin)
+        edge = np.unique(np.concatenate([equal, begin + layer, end - layer]))
+        half = np.diff(edge)[:, None] / 2
+        x += [((edge[:-1] + edge[1:])[:, None] / 2 + half * place).ravel(), np.array([end])]
+        weight += [(half * share).ravel(), np.zeros(1)]
+    stations = np.concatenate(x)
+    counts = np.ones(len(stations) - 1, dtype=np.intp)
+    return divided(model.scene, model.element, stations, counts), np.concatenate(weight)
+
+
+def _layers(span: Chain, length: float) -> Real:
+    """Return distances from the ends that grade layers sqrt(B/T) where a string bends [m]."""
+    tension, flexibility = float(span.tension[0]), span.flexibility[span.element[0], 2, 2]
+    if tension <= 0 or flexibility == 0:
+        return np.zeros(0)
+    layer = 1 / math.sqrt(tension * flexibility)
+    return np.asarray(layer * 2.0 ** np.arange(max(math.ceil(math.log2(length / (2 * layer))), 0)))
+
+
+def _form(shape: Real, block: Real) -> Real:
+    """Return shape^T blocks shape, of blocks (nodes, width, width) on the diagonal."""
+    count = len(shape)
+    moved = np.einsum("nab,knb->kna", block, shape)
+    return np.asarray(shape.reshape(count, -1) @ moved.reshape(count, -1).T)
+
+
+def _integral(chain: Chain, along: Real | None, weight: Real, shape: Real) -> Real:
+    """Return the integral of products of shapes times what is along the rope."""
+    if along is None:
+        return np.zeros((len(shape), len(shape)))
+    beside = along[np.append(chain.element_of, chain.element_of[-1])] * weight[:, None]
+    count = len(shape)
+    return np.asarray((shape * beside).reshape(count, -1) @ shape.reshape(count, -1).T)
+
+
+def _of_elements(chain: Chain, shape: Real) -> Real:
+    """Return the derivative of the stiffness by the tension: sums of shapes give the products."""
+    size = np.sqrt(np.abs(_slope(chain, shape)))
+    unit = shape / np.where(size > 0, size, 1.0)[:, None, None]
+    form = np.diag(_slope(chain, unit))
+    for k in range(len(unit) - 1):
+        others = unit[k + 1 :]
+        product = (_slope(chain, unit[k] + others) - _slope(chain, unit[k] - others)) / 4
+        form[k, k + 1 :] = form[k + 1 :, k] = product
+    return form * np.outer(size, size)
+
+
+def _slope(chain: Chain, shape: Real) -> Real:
+    """Return d/dT of twice the strain energy of shapes of massless elements."""
+    element, _, _ = _core.sensitivity(chain, shape, np.zeros(len(shape)))
+    return np.asarray(element[:, :, SLOPE_OF_TENSION].sum(axis=1))
+
+
+def _of_string(chain: Chain, found: Found, mass: Real, carried: _Carried) -> Real:
+    """Return what is stored in tension, all that springs and structures do not store, over T."""
+    assert found.shape is not None
+    root = np.sqrt(np.diag(mass))
+    total = np.diag(found.eigenvalue * root**2)
+    springs = _form(found.shape, chain.stiffness[chain.term_of])
+    return np.asarray((total - springs - carried.stiffness) / chain.tension[0])
+
+
+@dataclass(frozen=True, eq=False)
+class _Carried:
+    """Forms of the structures that nodes carry, shape (k, k)."""
+
+    mass: Real
+    stiffness: Real
+    damping: Real
+
+    @classmethod
+    def of(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> _Carried:
+        """Of resonators all; of wires the mass that each mode has of them."""
+        count = len(shape)
+        form = cls(*(np.zeros((count, count)) for _ in range(3)))
+        if chain.attached_kind is None:
+            return form
+        assert chain.attached_row is not None
+        assert chain.attached_value is not None
+        for k, kind in enumerate(chain.attached_kind):
+            if kind != RESONATOR:
+                continue
+            node = chain.feet[k]
+            mass, stiffness, _, damping = chain.attached_value[k]
+            y = motion[:, k]
+            stretched = y - shape[:, node] @ chain.attached_row[k, 0]
+            form.mass[:] += mass * np.outer(y, y)
+            form.stiffness[:] += stiffness * np.outer(stretched, stretched)
+            form.damping[:] += damping * np.outer(stretched, stretched)
+        wires = chain.attached_kind != RESONATOR
+        if wires.any():
+            part = np.ascontiguousarray(motion[:, wires])
+            energy = _core.carried(chain.carrying(wires), shape, part, eigenvalue)
+            form.mass[np.diag_indices(count)] += energy[:, 1]
+        return form
+
+
+# --- damping ----------------------------------------------------------------------------------
+
+
+def _damping(model: Model, basis: _Basis) -> Real:
+    """Return shape^T C shape; of what bends, all stiffness but that of tension and structures."""
+    share = factors(model.scene.dampings, np.array(1.0)).imag
+    root = np.sqrt(np.diag(basis.mass))
+    string = basis.tension * basis.geometric
+    elastic = np.diag(basis.eigenvalue * root**2) - string - basis.carried
+    return np.asarray(
+        share[SECTION] * elastic
+        + share[TENSION] * string
+        + share[INERTIA] * basis.mass
+        + basis.dragged
+        + basis.resisted
+    )
+
+
+def _modal(model: Model, component: tuple[str, ...], eigenvalue: Real) -> Real:
+    """Return 2 zeta omega of damping ratios, in the order of all modes of the model."""
+    others = [spectrum(model, c, len(eigenvalue))[0] for c in model.components if c != component]
+    number = np.arange(len(eigenvalue))
+    number += sum(np.searchsorted(np.sort(one), eigenvalue) for one in others)
+    ratio = ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)[number]
+    if np.isnan(ratio).any():
+        raise SceneError(
+            "damping ratio must be one number or one for each mode, got none for mode "
+            f"{int(number[np.isnan(ratio).argmax()]) + 1}"
+        )
+    return np.diag(2 * ratio * np.sqrt(np.maximum(eigenvalue, 0.0)))

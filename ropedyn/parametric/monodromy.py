@@ -1,0 +1,247 @@
+"""How motion in modes is carried on over one period of the tension.
+
+With W = diag(w) and the state (W q, q') the modes by themselves move exactly, by the exponential of
+their rates; the pulsation kicks them, q' -= h a cos(2 pi f t) Gamma q. Kicks between half steps of
+motion are of second order and symmetric in time; a symmetric composition of 35 of them, some of
+which go backwards, is of order 10. Whatever the step, the determinant of motion over a period is
+exp(-trace(C)/f), and without damping it is symplectic: no numerical damping, no numerical growth.
+
+M. Sofroniou, G. Spaletta, Derivation of symmetric composition constants for symmetric integrators,
+Optimization Methods and Software 20 (2005) 597-613; the constants as in E. Hairer, C. Lubich, G.
+Wanner, Geometric Numerical Integration (2006), section V.3.2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import SolveError
+from .modal_system import ModalSystem
+
+Real = NDArray[np.float64]
+
+HALF = (
+    0.07879572252168641926390768,
+    0.31309610341510852776481247,
+    0.02791838323507806610952027,
+    -0.22959284159390709415121340,
+    0.13096206107716486317465686,
+    -0.26973340565451071434460973,
+    0.07497334315589143566613711,
+    0.11199342399981020488957508,
+    0.36613344954622675119314812,
+    -0.39910563013603589787862981,
+    0.10308739852747107731580277,
+    0.41143087395589023782070412,
+    -0.00486636058313526176219566,
+    -0.39203335370863990644808194,
+    0.05194250296244964703718290,
+    0.05066509075992449633587434,
+    0.04967437063972987905456880,
+    0.04931773575959453791768001,
+)
+"""Of the composition, up to the one in the middle."""
+
+SHARE = np.array(HALF + HALF[-2::-1])
+"""Of a step that each of the kicks stands for."""
+
+AT = np.cumsum(SHARE) - SHARE / 2
+"""When in the step it comes."""
+
+DRIFT = (np.append(SHARE, 0.0) + np.append(0.0, SHARE)) / 2
+"""Between kicks."""
+
+TERMS = 15
+"""Of the series of a matrix of norm 1/2: the next is 1e-18."""
+
+TOGETHER = 1 << 16
+"""Numbers of states that are carried on together: they stay in the cache."""
+
+MOST_STEPS = 200_000
+"""Over one period."""
+
+ANGLE = 1.0
+"""Of the highest mode in a step [rad]: the error of ln|multiplier| is 1e-10 where the tension
+pulsates by half of it."""
+
+
+def steps_for(system: ModalSystem, frequency: float, amplitude: float, angle: float) -> int:
+    """Return how many steps a period takes.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        What moves.
+    frequency : float
+        [Hz].
+    amplitude : float
+        [N].
+    angle : float
+        Of the fastest motion in a step [rad].
+
+    Raises
+    ------
+    SolveError
+        If there are too many.
+    """
+    stiffest = np.abs(system.eigenvalue) + amplitude * np.abs(np.diag(system.geometric))
+    rate = max(math.sqrt(stiffest.max()), float(np.abs(np.diag(system.damping)).max()))
+    count = rate / (frequency * angle)
+    if not count <= MOST_STEPS:
+        raise SolveError(
+            f"frequency {frequency!r} Hz is too low: a period would take {count:.3g} steps of the "
+            f"highest mode, at most {MOST_STEPS} are made"
+        )
+    return max(math.ceil(count), 6)
+
+
+def scales(system: ModalSystem) -> Real:
+    """Return w of the states [rad/s]: the mode's own, or the least that moves where it has none."""
+    size = np.sqrt(np.abs(system.eigenvalue))
+    least = size[size > 0].min(initial=np.inf)
+    return np.where(size > 0, size, least if np.isfinite(least) else 1.0)
+
+
+def rates(system: ModalSystem) -> Real:
+    """Return the matrix A of x' = A x without pulsation, x = (W q, q'), shape (2k, 2k) [1/s]."""
+    w, k = scales(system), len(system.eigenvalue)
+    matrix = np.zeros((2 * k, 2 * k))
+    matrix[:k, k:] = np.diag(w)
+    matrix[k:, :k] = -np.diag(system.eigenvalue / w)
+    matrix[k:, k:] = -system.damping
+    return matrix
+
+
+def exponential(matrix: Real) -> Real:
+    """Return exp(A) of many small matrices, shape (..., n, n): Taylor's series of A/2^s, squared.
+
+    Of one alone `scipy.linalg.expm` is as good; of thousands its threads take longer than its sums.
+    """
+    norm = float(np.abs(matrix).sum(axis=-1).max(initial=0.0))
+    squarings = max(math.ceil(math.log2(norm)) + 1, 0) if norm > 0 else 0
+    scaled = matrix / 2.0**squarings
+    total = term = np.broadcast_to(np.eye(matrix.shape[-1]), matrix.shape)
+    for n in range(1, TERMS + 1):
+        term = term @ scaled / n
+        total = total + term
+    for _ in range(squarings):
+        total = total @ total
+    return total
+
+
+def monodromy(system: ModalSystem, frequency: Real, amplitude: Real, steps: int) -> Real:
+    """Return how states are carried on over one period.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        What moves.
+    frequency : ndarray, shape (f,)
+        Of the pulsation [Hz].
+    amplitude : ndarray, shape (f, a)
+        [N].
+    steps : int
+        Of each period.
+
+    Returns
+    -------
+    ndarray, shape (f, a, 2k, 2k)
+    """
+    count, several = amplitude.shape
+    k = len(system.eigenvalue)
+    step = 1 / (frequency * steps)
+    drift = exponential(rates(system) * step[:, None, None] * DRIFT[: len(HALF), None, None, None])
+    between = [drift[min(j, len(SHARE) - j)] for j in range(1, len(SHARE))]
+    between.append(drift[0] @ drift[0])
+    kick = -(system.geometric / scales(system))
+    push = np.repeat(step[:, None] * amplitude, 2 * k, axis=1)[:, None, :]
+    state = drift[0] @ np.tile(np.eye(2 * k), several)
+    other = np.empty_like(state)
+    for n in range(steps):
+        if n == steps - 1:
+            between[-1] = drift[0]
+        for share, at, motion in zip(SHARE.tolist(), AT.tolist(), between):
+            force = share * math.cos(2 * math.pi * (n + at) / steps)
+            state[:, k:] += (kick @ state[:, :k]) * (force * push)
+            state, other = np.matmul(motion, state, out=other), state
+    return state.reshape(count, 2 * k, several, 2 * k).swapaxes(1, 2)
+
+
+def exponent(
+    system: ModalSystem,
+    frequency: Real,
+    amplitude: Real,
+    *,
+    angle: float = ANGLE,
+    report: Callable[[float], Any] = lambda fraction: None,
+) -> Real:
+    """Return ln|multiplier| of the motion that grows most over one period.
+
+    Parameters
+    ----------
+    system : ModalSystem
+        What moves.
+    frequency : ndarray, shape (f,)
+        Of the pulsation [Hz].
+    amplitude : ndarray, shape (f, a)
+        [N].
+    angle : float
+        Of the highest mode in a step [rad].
+    report : callable
+        Takes the fraction that is done.
+
+    Returns
+    -------
+    ndarray, shape (f, a)
+
+    Raises
+    ------
+    SolveError
+        If a period takes too many steps or motion grows out of all numbers in it.
+    """
+    largest = np.full(amplitude.shape, -np.inf)
+    for number, modes in enumerate(system.blocks):
+        done = 0
+        for these, matrix in periods(system.only(modes), frequency, amplitude, angle):
+            size = np.abs(np.linalg.eigvals(matrix)).max(axis=-1)
+            with np.errstate(divide="ignore"):
+                largest[these] = np.maximum(largest[these], np.log(size))
+            done += len(these)
+            report((number + done / len(frequency)) / len(system.blocks))
+    return largest
+
+
+def periods(
+    system: ModalSystem, frequency: Real, amplitude: Real, angle: float
+) -> Iterator[tuple[NDArray[np.intp], Real]]:
+    """Yield some of the frequencies, lowest first, and the motion over their periods.
+
+    As `exponent` takes them; the motion has the shape (some, a, 2k, 2k).
+    """
+    order = np.argsort(frequency, kind="stable")
+    highest = float(amplitude.max(initial=0.0))
+    each = max(TOGETHER // ((2 * len(system.eigenvalue)) ** 2 * amplitude.shape[1]), 1)
+    for first in range(0, len(order), each):
+        these = order[first : first + each]
+        steps = steps_for(system, float(frequency[these[0]]), highest, angle)
+        with np.errstate(over="ignore", invalid="ignore"):
+            matrix = monodromy(system, frequency[these], amplitude[these], steps)
+        yield these, finite(matrix)
+
+
+def finite(matrix: Real) -> Real:
+    """Return the same.
+
+    Raises
+    ------
+    SolveError
+        If a number in it is none.
+    """
+    if not np.isfinite(matrix).all():
+        raise SolveError("motion grows out of all numbers within one period of the tension")
+    return matrix

@@ -1,0 +1,1 @@
+"""Response to harmonic and static forces, and its derivatives."""

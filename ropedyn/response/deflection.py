@@ -1,0 +1,268 @@
+"""Static deflection."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base import check
+from ..base.answer import Answer, Cost, Work, axes
+from ..base.errors import SceneError, SolveError
+from ..base.table import Table
+from ..base.unit import FORCE, FORCE_UNIT, UNIT
+from ..chain.chain import Chain
+from ..chain.compile import check_points, finer
+from ..chain.port import Point, Ports, cut, ports, stops
+from ..chain.reaction import left_ends
+from ..model import EXACT, Model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False)
+class Deflection(Answer):
+    """Static deflection of a model.
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        Of every node.
+    x : ndarray, shape (nodes,)
+        [m].
+    displacement : ndarray, shape (nodes, coordinates)
+        [m, rad].
+    force : ndarray, shape (nodes, coordinates)
+        What the surroundings put on each node: loads, and reactions where a coordinate is held or
+        a spring stands [N, N m].
+    load : tuple of (point, float)
+        That was asked for [N, N m].
+    cost : Cost
+        What it cost.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=2)
+    >>> static = model.static({("z", 0.5): 10.0})
+    >>> static.displacement[:, 0].round(6), static.force[:, 0].round(6)
+    (array([0.   , 0.025, 0.   ]), array([-5., 10., -5.]))
+    """
+
+    coordinates: tuple[str, ...]
+    x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
+    displacement: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="m or rad"))
+    force: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="N or N m"))
+    load: tuple[tuple[Point, float], ...]
+    cost: Cost
+
+    def table(self) -> Table:
+        """Return displacement and force at every node."""
+        columns: dict[str, Any] = {"x [m]": self.x}
+        for k, c in enumerate(self.coordinates):
+            columns[f"{c} [{UNIT[c]}]"] = self.displacement[:, k]
+        for k, c in enumerate(self.coordinates):
+            columns[f"{FORCE[c]} [{FORCE_UNIT[c]}]"] = self.force[:, k]
+        return Table.of("static deflection", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the deflection along the rope, each coordinate to its largest."""
+        from ..plot.answers import plot_deflection
+
+        return plot_deflection(self, ax)
+
+
+def solve_static(
+    model: Model, load: Mapping[Point, float], *, solver: str, points: int | None = None
+) -> Deflection:
+    """Find the static deflection; see `Model.static`."""
+    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    loads = checked_loads(model, load)
+    check_points(model, points)
+    if model.element == "continuous":
+        model = finer(model, points or POINTS)
+        x = cut(model.chain, model.x, [at for _, at in loads])[1]
+    else:
+        x = model.x
+    width = len(model.coordinates)
+    displacement, force = np.zeros((len(x), width)), np.zeros((len(x), width))
+    unknowns, works = 0, []
+    start = time.perf_counter()
+    for component, free in zip(model.components, model.unknowns):
+        here = {point: value for point, value in loads.items() if point[0] in component}
+        if not here:
+            continue
+        at = [model.coordinates.index(c) for c in component]
+        try:
+            displacement[:, at], force[:, at], work = solve(model, component, here, x)
+        except SolveError as error:
+            raise SolveError(
+                f"({', '.join(component)}): the stiffness is singular to working precision: a "
+                "rigid motion is free, the compression is critical, or there are too many "
+                "elements for the assembled stiffness"
+            ) from error
+        unknowns += free
+        works.append(work)
+    seconds = time.perf_counter() - start
+    if not np.isfinite(displacement).all() or not np.isfinite(force).all():
+        raise SolveError("the numbers of the static deflection overflow: check the units")
+    return Deflection(
+        coordinates=model.coordinates,
+        x=x,
+        displacement=displacement,
+        force=force,
+        load=tuple(loads.items()),
+        cost=Cost(seconds, solver, len(model.x) - 1, unknowns, *Work.of(works)),
+    )
+
+
+POINTS = 64
+"""Parts of each continuous span that a deflection is given at."""
+
+BLOCK = 4096
+"""Nodes whose motion one sweep reports."""
+
+
+def _sweep(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    """Return motion of the nodes, what the surroundings put on them, and what it took."""
+    longer, finer, kept = _cut(model, component, loads, nodes)
+    pushed = ports(longer, finer, component, loads)
+    amount = np.array(list(loads.values()))
+    factor = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
+    asked = 0
+
+    def ask(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
+        """Return motion of nodes, or force on the right end of the elements left of them."""
+        w = len(component)
+        rows = np.zeros((len(node) * w, 2, w))
+        force = np.tile(np.eye(w), (len(node), 1)) if forces else None
+        left = node - 1 if forces else np.minimum(node, longer.nodes - 2)
+        if not forces:
+            side = np.repeat(node - left, w)
+            rows[np.arange(len(rows)), side] = np.tile(np.eye(w), (len(node), 1))
+        watched = Ports(np.repeat(left, w).astype(np.int32), rows, force)
+        nonlocal asked
+        asked += 1
+        value, _, solved = _core.sweep(longer, factor, pushed, watched)
+        if solved == 0:
+            raise SolveError("singular")
+        answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)
+        return answer.reshape(len(node), w)
+
+    def ask_all(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
+        blocks = [node[k : k + BLOCK] for k in range(0, len(node), BLOCK)]
+        return np.concatenate([ask(block, forces) for block in blocks])
+
+    u = ask_all(kept, False)
+    right = ask_all(kept[1:], True)
+    begins = ask_all(kept[:-1] + 1, True) if len(kept) < longer.nodes else right
+    return u, _on_nodes(longer, kept, u, right, begins), Work(2 * asked)
+
+
+def _band(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    chain, x, kept = _cut(model, component, loads, nodes)
+    u, force = _core.mixed_deflection(chain, nodal(chain, x, component, loads))
+    on_nodes = _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
+    return u[kept], on_nodes, Work(factorisations=1)
+
+
+def _on_nodes(
+    chain: Chain,
+    kept: NDArray[np.intp],
+    u: NDArray[np.float64],
+    right: NDArray[np.float64],
+    begins: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return f_b of the element on the left less f_a = E f_b - Q u_a + P u_b of the right one."""
+    of = left_ends(chain)
+    first = chain.element_of[kept[:-1]]
+    left_end = np.einsum("nij,nj->ni", of.E[first], begins)
+    left_end -= np.einsum("nij,nj->ni", of.Q[first], u[:-1])
+    # struts are never cut: their right end is the next node that is kept
+    left_end += np.einsum("nij,nj->ni", of.P[first], u[1:])
+    if chain.hinge is not None:
+        left_end *= _kept(chain.hinge[chain.term_of[kept[:-1]]], of.Q[first])
+    force = np.zeros_like(u)
+    force[1:] += right
+    force[:-1] -= left_end
+    return force
+
+
+def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the share 1/(1 + Q C) that a hinge leaves of f_a without it, none where it is free.
+
+    f_a = E f_b - Q (u_a + C f_a) + P u_b, and a hinge stands on the one coordinate that Q has.
+    """
+    free = np.isinf(compliance)
+    finite = np.where(free, 0.0, compliance)
+    return np.where(free, 0.0, 1 / (1 + np.einsum("nii->ni", Q) * finite))
+
+
+def _lapack(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    chain, x, kept = _cut(model, component, loads, nodes)
+    u, _ = _core.deflection(chain, nodal(chain, x, component, loads))
+    return u[kept], _held_up(chain, u)[kept], Work(factorisations=1)
+
+
+def _cut(
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
+) -> tuple[Chain, NDArray[np.float64], NDArray[np.intp]]:
+    """Return the chain with nodes under the loads, where they stand, and those of the answer."""
+    chain, x = model.chain.only(component).at_rest, model.x
+    if model.element in EXACT:
+        chain, x = cut(chain, x, [*nodes, *(point[1] for point in loads), *stops(chain, x)])
+    return chain, x, np.flatnonzero(np.isin(x, nodes))
+
+
+SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
+"""What finds motion of and forces on the nodes of one component."""
+
+
+def checked_loads(model: Model, load: Any, name: str = "load") -> dict[Point, float]:
+    """Return forces at points, those given twice as their sum."""
+    what = 'a mapping such as {("z", 0.5): 10.0}'
+    check.instance(load, name, Mapping, what)
+    if not load:
+        raise SceneError(f"{name} must be {what} with at least one entry, got {{}}")
+    loads: dict[Point, float] = {}
+    for key, value in load.items():
+        point = check.point(key, f"{name} point", model.coordinates, model.scene.rope.length)
+        unit = FORCE_UNIT[point[0]]
+        loads[point] = loads.get(point, 0.0) + check.number(value, f"{name}[{key}]", unit)
+    return loads
+
+
+def nodal(
+    chain: Chain,
+    x: NDArray[np.float64],
+    component: tuple[str, ...],
+    loads: dict[Point, float],
+) -> NDArray[np.float64]:
+    """Return the forces on the nodes that the loads amount to."""
+    node, row, _ = ports(chain, x, component, loads)
+    force = np.zeros((len(x), len(component)))
+    for left, shape, value in zip(node, row, loads.values()):
+        force[left : left + 2] += shape * value
+    return force
+
+
+def _held_up(chain: Chain, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what the elements need from outside at every node: K_elements u."""
+    elastic, elastic_beside, string, string_beside, _, _, _ = _core.assemble(chain)
+    force = np.einsum("nij,nj->ni", elastic + string, u)
+    beside = elastic_beside + string_beside
+    force[:-1] += np.einsum("nij,nj->ni", beside, u[1:])
+    force[1:] += np.einsum("nji,nj->ni", beside, u[:-1])
+    return force

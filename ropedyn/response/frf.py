@@ -1,0 +1,135 @@
+"""Frequency response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.answer import TRANSIENT, Cost, Frozen, axes, nested
+from ..base.errors import SceneError
+from ..chain.port import Point
+from ..curves.curves import Curves
+
+if TYPE_CHECKING:
+    from .frf_rate import FrequencyRates
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh(Frozen):
+    """What continuous spans say about the response of a chain; see `FRF`."""
+
+    mesh_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
+
+
+@dataclass(frozen=True, eq=False)
+class FRF(Curves):
+    """Frequency response: motion is Re(value exp(+i omega t)) per unit force.
+
+    Attributes
+    ----------
+    drive : tuple of points
+        Where and on what the forces act, or whose motion is given; one, unless a list was asked
+        for.
+    response : tuple of points
+        What is watched.
+    quantity : {"receptance", "mobility", "accelerance"}
+        Displacement, velocity or acceleration per force, or per displacement of an end.
+    frequency : ndarray, shape (f,)
+        [Hz].
+    value : ndarray of complex, shape (responses, f) or (drives, responses, f)
+        [m/N, rad/N, m/(N m), rad/(N m), of internal forces N/N and so on, per motion of an end
+        m/m, rad/m and so on; and these per s or s^2].
+    rounding_error : ndarray, as value
+        Estimated relative error that rounding causes.
+    mesh_error : ndarray, as value
+        Relative error that the elements cause, computed when it is first asked for. Not an
+        estimate: the distance to the response of the continuous spans of the same scene, and the
+        rounding error of that, over the value. 0 for continuous spans, because they have none;
+        infinite where they have no answer, as on an undamped resonance of theirs, and where only
+        the value is 0. Refined, chains of difference elements lead elsewhere; theirs is the
+        distance to the same continuous spans. With `ModalDamping`, also the bound of what the modes
+        give that were left out.
+    cost : Cost
+        What it cost.
+    """
+
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str
+    frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
+    value: NDArray[np.complex128] = field(metadata=axes("drive", "response", "frequency"))
+    rounding_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
+    cost: Cost
+    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
+    rates_source: Callable[[], FrequencyRates] | None = field(
+        default=None, repr=False, metadata=TRANSIENT
+    )
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """What the continuous spans of the same scene say."""
+        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
+
+    @property
+    def mesh_error(self) -> NDArray[np.float64]:
+        """Relative error that the elements cause, as value."""
+        return self.mesh.mesh_error
+
+    @cached_property
+    def rates(self) -> FrequencyRates:
+        """What derivatives are computed from."""
+        if self.rates_source is None:
+            raise SceneError(
+                "a response from a file or from motion over time has no model to ask for "
+                "derivatives: compile the scene again and ask it for its frf"
+            )
+        return self.rates_source()
+
+    def derivative(self, path: str) -> NDArray[np.complex128]:
+        """Find the derivative of the response with respect to a number of the scene.
+
+        Exact for continuous spans: the dynamic stiffness Z is symmetric, damped or not, so that
+        dH/dp = -u_r^T (dZ/dp) u_d with the motion that the drive causes and that which a unit load
+        on the response would. Both are solved once for all numbers.
+
+        Parameters
+        ----------
+        path : str
+            As in `Modes.derivative`; also of dampings, as ``"damping.gamma"`` or
+            ``"damping[1].eta"``, and of dashpots, as ``"ends[0].dashpot.beta"``.
+
+        Returns
+        -------
+        ndarray of complex, as value
+            In units of the value per unit of the number. To rounding, which the damping ratio
+            enlarges near resonances as it does that of the value. Chains, modal damping, numbers of
+            resonators and broken wires, the motion of ends, tips of wires and internal forces have
+            central differences extrapolated to no step (Ridders 1982), up to 26 responses each:
+            about nine digits of the largest value, fewer near resonances of damping ratios below
+            1e-3.
+
+        Raises
+        ------
+        TypeError
+            If the path is not a string.
+        SceneError
+            If the path is not that of a number that acts in the scene, or that of a part which does
+            not stand alone, or if the response was read from a file or stepped over time.
+
+        Examples
+        --------
+        Pulled tighter a string gives way less at its middle, as L/4 T:
+
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> frf = model.frf([0.0], drive=("z", 0.5))
+        >>> frf.derivative("tension").real.round(9)
+        array([[-2.5e-05]])
+        """
+        value = self.rates.of(path, self.quantity)
+        return value if self.value.ndim == 3 else value[0]

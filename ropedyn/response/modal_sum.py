@@ -1,0 +1,336 @@
+"""Harmonic response as a sum over the modes of the undamped model, each with its damping ratio.
+
+With z = omega^2, H(z) the undamped response and r_k its residues at the eigenvalues,
+
+    h = H(-s) + sum r_k g_k,   g_k = 1/(lambda_k - z + 2 i zeta_k omega sqrt(lambda_k))
+                                      - 1/(lambda_k + s)
+
+H(-s) is the exact static response, s = 0, of all modes together; where the rope can move as a rigid
+body it is the one at the imaginary frequency sqrt(-s) instead. The modes that are left out have
+g_k = 0 then. No shape is needed: a residue is the mean of (lambda_k - z) H(z) over a circle about
+lambda_k, which a few points give to all digits.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.errors import SceneError, SolveError
+from ..chain.port import Point, is_force
+from ..chain.tip import is_tip
+from ..eigen.eigen import HIGHEST, count_component, spectrum
+from ..model import Model
+from ..scene import damping
+from .moved_end import refuse_moved_ends
+
+if TYPE_CHECKING:
+    from .harmonic import Question
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Solver = Callable[["Question"], tuple[Complex, Real]]
+
+REACH, LEAST, MOST = 8.0, 64, 5_000
+"""Modes below so many times the highest frequency are summed up, at least and at most so many."""
+
+ROUND, NEAR = 16, 1 / 8
+"""Points of a circle, and its radius over the distance to the next mode: 8^-16 of that is seen."""
+
+ALIKE = 2.0**-26
+"""Eigenvalues that differ by this share, the root of eps, are one: apart they would lose more."""
+
+TOGETHER = 8
+"""Points whose own responses are computed at once."""
+
+
+class Poles(NamedTuple):
+    """Modes of one component that are summed up; equal ones are one."""
+
+    eigenvalue: Real
+    """(k,) [rad^2/s^2]."""
+    error: Real
+    """(k,) of the eigenvalue."""
+    radius: Real
+    """(k,) of a circle with no other mode in it."""
+    ratio: Real
+    """(k,) of damping."""
+    unlike: Real
+    """(k,) how far the ratios of equal modes are from that."""
+    beyond: float
+    """The first eigenvalue that is left out; infinite where none is."""
+    shift: float
+    """s."""
+    probe: float
+    """-z at which the sum is compared with the undamped response, more than s."""
+    largest: float
+    """Largest damping ratio."""
+
+
+def refuse_other_damping(model: Model, drives: Iterable[Point], responses: Iterable[Point]) -> None:
+    """Refuse modal damping beside any other, which would couple the modes, of ends and tips."""
+    scene, chain = model.scene, model.chain
+    others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
+    if "dashpot" in scene.effects:
+        others.append("dashpot")
+    others += chain.carried if chain.resists else []
+    if others:
+        raise SceneError(
+            "damping must be modal alone in a frequency response, where other damping couples the "
+            f"modes, got {', '.join(others)}"
+        )
+    refuse_moved_ends(drives)
+    if any(map(is_tip, responses)):
+        raise SceneError(
+            "damping must not be modal where the tip of a wire is asked for, whose modes are those "
+            "of rope and wire together"
+        )
+
+
+class Summed(NamedTuple):
+    """Response of one component."""
+
+    value: Complex
+    """(drives, responses, f)."""
+    rounding: Real
+    """Estimated relative error of rounding, as value."""
+    truncation: Real
+    """Bound of the relative error that the modes cause which are left out, as value."""
+    lines: int
+    """Lines of the solver that it took."""
+
+
+def modal_sum(question: Question, solver: Solver) -> Summed:
+    """Sum up the modes of one component.
+
+    Parameters
+    ----------
+    question : Question
+        What is asked, and of which component.
+    solver : callable
+        What computes the undamped response: value and relative error.
+
+    Returns
+    -------
+    Summed
+
+    Raises
+    ------
+    SceneError
+        If an internal force is asked for, or a mode below the highest frequency has no ratio.
+    SolveError
+        If there are more than 5000 modes, or a frequency lies on a resonance without damping.
+    """
+    if any(map(is_force, question.responses)):
+        raise SceneError(
+            "response must be a motion where damping is modal: the sum over modes knows no "
+            f"internal force, got {next(filter(is_force, question.responses))}"
+        )
+    poles = _poles(question)
+    static, residue, probed = _taken_apart(question, solver, poles)
+    own = _left_out(question, solver, poles)
+    d, r = ([own[point] for point in some] for some in (question.drives, question.responses))
+    size = np.sqrt(np.multiply.outer(d, r))  # the sum over modes is bounded as an inner product
+    omega = 2 * np.pi * question.frequency
+    shape = (len(question.drives), len(question.responses), len(omega))
+    value, error = np.empty(shape, dtype=np.complex128), np.empty(shape)
+    for part in _slices(len(omega), len(poles.eigenvalue)):
+        g, slope = _weights(question, poles, omega, part)
+        value[..., part] = static.value[..., None] + residue.value @ g
+        error[..., part] = static.error[..., None] + residue.error @ np.abs(g)
+        error[..., part] += np.abs(residue.value) @ slope
+    missing = _missing(poles, static, residue, probed)[..., None]
+    share = (omega**2 + poles.shift) / (poles.probe - poles.shift)
+    neglected = np.maximum(size[..., None] * _most(poles, omega), missing * share)
+    lines = (2 + ROUND // 2 * len(poles.eigenvalue)) * (1 + -(-len(own) // TOGETHER))
+    return Summed(value, _over(error, value), _over(neglected, value), lines)
+
+
+class Known(NamedTuple):
+    """Numbers and their absolute errors."""
+
+    value: Real
+    error: Real
+
+
+# --- which modes --------------------------------------------------------------------------------
+
+
+def _poles(question: Question) -> Poles:
+    """Find the modes, each with its damping ratio."""
+    model, component = question.model, question.component
+    fastest = float(question.frequency.max())
+    highest = (2 * np.pi * fastest) ** 2
+    try:
+        below = count_component(model, component, min(REACH**2 * highest, HIGHEST))
+    except SolveError as refusal:
+        raise _too_high(question, str(refusal)) from refusal
+    wanted = max(below, LEAST)
+    if wanted > MOST:
+        raise _too_high(question, f"{wanted} below {REACH:g} times it, more than {MOST}")
+    eigenvalue, error = spectrum(model, component, wanted + 1)
+    eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
+    ratio = ratios_of(model, component, eigenvalue)
+    known = int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])
+    poles = _grouped(eigenvalue, error, ratio[: min(known, wanted)], highest)
+    if not poles.beyond > highest:
+        raise SceneError(
+            "damping ratio must be one number or one for each mode up to the highest frequency, "
+            f"got {known} for those of ({', '.join(component)}) up to {fastest!r} Hz"
+        )
+    return poles
+
+
+def _too_high(question: Question, why: str) -> SolveError:
+    return SolveError(
+        f"frequency {float(question.frequency.max())!r} Hz is too high for a sum over the modes of "
+        f"({', '.join(question.component)}): {why}"
+    )
+
+
+def ratios_of(model: Model, component: tuple[str, ...], eigenvalue: Real) -> Real:
+    """Return the damping ratios: modes are numbered over all components."""
+    number = np.arange(len(eigenvalue))
+    for other in model.components:
+        if other != component:
+            below = _core.count(model.chain.only(other), np.minimum(eigenvalue, HIGHEST))
+            number = number + below.astype(np.intp)
+    last = int(number.max(initial=-1))
+    return damping.ratios(model.scene.dampings, last + 1)[number]
+
+
+def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Poles:
+    """Make one of the modes that cannot be told apart, and draw the circles.
+
+    Where not all of those that are one have a ratio, none is kept.
+    """
+    apart = np.diff(eigenvalue) > ALIKE * np.abs(eigenvalue[1:]) + 4 * (error[1:] + error[:-1])
+    group = np.append(0, np.cumsum(apart))[: len(eigenvalue)]
+    beyond = np.inf
+    if len(eigenvalue) > len(ratio):
+        ratio = ratio[: np.searchsorted(group, group[len(ratio)])]
+        beyond = float(eigenvalue[len(ratio)])
+    kept = len(ratio)
+    group, eigenvalue, error = group[:kept], eigenvalue[:kept], error[:kept]
+    members = np.bincount(group)
+    middle, mean = np.bincount(group, eigenvalue) / members, np.bincount(group, ratio) / members
+    spread, unlike = np.zeros(len(middle)), np.zeros(len(middle))
+    np.maximum.at(spread, group, np.abs(eigenvalue - middle[group]) + error)
+    np.maximum.at(unlike, group, np.abs(ratio - mean[group]))
+    gap = np.diff(np.concatenate([[-np.inf], middle, [beyond]]))
+    gap = np.minimum(gap[:-1], gap[1:])
+    elastic = middle[middle > 0]
+    first = float(elastic[0]) if len(elastic) else 1.0
+    shift = first if (middle == 0).any() else 0.0
+    radius = NEAR * np.minimum(gap, np.where(middle == 0, first, np.abs(middle)))
+    return Poles(
+        eigenvalue=middle,
+        error=spread,
+        radius=radius,
+        ratio=mean,
+        unlike=unlike,
+        beyond=beyond,
+        shift=shift,
+        probe=max(highest, 2 * shift, first),
+        largest=float(ratio.max(initial=0.0)),
+    )
+
+
+# --- what they give -----------------------------------------------------------------------------
+
+
+def _taken_apart(question: Question, solver: Solver, poles: Poles) -> tuple[Known, Known, Known]:
+    """Return H(-s), the residues, (drives, responses, k), and H at the probe."""
+    angle = np.pi * (np.arange(ROUND // 2) + 0.5) / (ROUND // 2)
+    step = np.multiply.outer(poles.radius, np.exp(1j * angle))  # H of the other half is conjugate
+    circles = poles.eigenvalue[:, None] + step
+    z = np.concatenate([circles.ravel(), [-poles.shift, -poles.probe]])
+    factor = np.ones((len(damping.PARTS), len(z)), dtype=np.complex128)
+    factor[damping.INERTIA], factor[damping.DASHPOT] = -z, 0.0
+    hertz = np.sqrt(np.abs(z)) / (2 * np.pi)
+    value, relative = solver(dataclasses.replace(question, factor=factor, frequency=hertz))
+    error = np.where(value == 0, 0.0, relative) * np.abs(value)
+    around = (*value.shape[:2], *step.shape)
+    residue = (-step * value[..., :-2].reshape(around)).real.mean(axis=-1)
+    spread = (poles.radius[:, None] * error[..., :-2].reshape(around)).mean(axis=-1)
+    static, probed = (Known(value[..., k].real, error[..., k]) for k in (-2, -1))
+    return static, Known(residue, spread), probed
+
+
+def _left_out(question: Question, solver: Solver, poles: Poles) -> dict[Point, float]:
+    """Bound H(-s) of the modes that are left out at each of all points, driven there."""
+    points = list(dict.fromkeys([*question.drives, *question.responses]))
+    own: list[float] = []
+    for k in range(0, len(points), TOGETHER):
+        some = points[k : k + TOGETHER]
+        asked = dataclasses.replace(question, drives=some, responses=some)
+        static, residue, _ = _taken_apart(asked, solver, poles)
+        softness = 1 / (poles.eigenvalue + poles.shift)
+        rest = static.value - residue.value @ softness
+        rest = np.maximum(rest, 0.0) + static.error + residue.error @ np.abs(softness)
+        own.extend(rest.diagonal().tolist())
+    return dict(zip(points, own))
+
+
+def _missing(poles: Poles, static: Known, residue: Known, probed: Known) -> Real:
+    """Return what the sum lacks at the probe beyond rounding, shape (drives, responses).
+
+    Masses of tensed elements are indefinite: their negative eigenvalues are no modes.
+    """
+    s, p = poles.shift, poles.probe
+    g = (s - p) / ((poles.eigenvalue + s) * (poles.eigenvalue + p))
+    rest = np.abs(probed.value - static.value - residue.value @ g)
+    return np.maximum(rest - probed.error - static.error - residue.error @ np.abs(g), 0.0)
+
+
+def _slices(count: int, modes: int) -> Iterator[slice]:
+    size = max(1, (1 << 20) // max(modes, 1))
+    return (slice(k, k + size) for k in range(0, count, size))
+
+
+def _weights(question: Question, poles: Poles, omega: Real, part: slice) -> tuple[Complex, Real]:
+    """Return g and what rounding of the eigenvalue makes of it, each (k, f).
+
+    g = (z + s - 2 i zeta omega sqrt(lambda))/((lambda + s) (lambda - z + the same)), without the
+    difference of two like numbers.
+    """
+    omega = omega[part]
+    z, own = omega**2, poles.eigenvalue[:, None]
+    twice = 2 * omega * np.sqrt(np.maximum(own, 0.0))
+    lost = 1j * poles.ratio[:, None] * twice
+    pole = own - z + lost
+    on_it = (np.abs(pole) <= poles.error[:, None]).any(axis=0)
+    if on_it.any():
+        raise SolveError(question.resonance(part.start + int(on_it.argmax())))
+    soft = 1 / (own + poles.shift)
+    g = (z + poles.shift - lost) * soft / pole
+    # lambda in the pole, in what it loses and in the static part; ratios of equal modes
+    change = 1 + np.abs(lost) / np.maximum(2 * np.abs(own), np.finfo(float).tiny)
+    moved = poles.error[:, None] * change + poles.unlike[:, None] * twice
+    slope = moved / np.abs(pole) ** 2 + poles.error[:, None] * soft**2
+    slope += 4 * np.finfo(float).eps * np.abs(g)
+    return np.asarray(g, dtype=np.complex128), slope
+
+
+def _most(poles: Poles, omega: Real) -> Real:
+    """Return the largest (lambda + s) |g| of the modes that are left out, shape (f,).
+
+    |z + s - 2 i zeta omega sqrt(lambda)|/|lambda - z + the same| falls where lambda > z.
+    """
+    if not np.isfinite(poles.beyond):
+        return np.zeros(len(omega))
+    lost = 2 * poles.largest * omega * np.sqrt(poles.beyond)
+    return np.hypot(omega**2 + poles.shift, lost) / (poles.beyond - omega**2)
+
+
+def _over(error: Real, value: Complex) -> Real:
+    """Return a relative error: 0 where both are 0, infinite where only the value is."""
+    size = np.abs(value)
+    ratio = np.full(size.shape, np.inf)
+    np.divide(error, size, out=ratio, where=size > 0)
+    return np.where((size == 0) & (error == 0), 0.0, ratio)

@@ -1,0 +1,127 @@
+"""Response to the motion of a held end.
+
+Let go and held by a spring and a dashpot instead, an end moves by H_ee under a unit force on it and
+the rope by H_re. So per motion of the end the rope moves by
+
+    T = H_re/H_ee,
+
+whatever the spring and the dashpot are: they only keep both away from resonances of their own.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.errors import SceneError
+from ..base.unit import END
+from ..chain.chain import Chain
+from ..chain.port import Point
+from ..model import Model
+
+if TYPE_CHECKING:
+    from .harmonic import Question
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Solver = Callable[["Question"], tuple[Complex, Real]]
+
+
+def is_end(drive: tuple[Any, ...]) -> bool:
+    """Whether the drive is the motion of an end, such as ("end", 0, "z")."""
+    return bool(drive[0] == END)
+
+
+def refuse_moved_ends(drives: Iterable[tuple[Any, ...]]) -> None:
+    """Refuse the motion of ends where damping is modal."""
+    if any(map(is_end, drives)):
+        raise SceneError(
+            "damping must not be modal where an end is moved: a ratio does not say whether it is "
+            "of motion past the ground or past the end"
+        )
+
+
+def moves_ends(solver: Solver) -> Solver:
+    """Return a solver that takes the motion of ends as drives beside forces."""
+
+    def solve(question: Question) -> tuple[Complex, Real]:
+        drives, count = question.drives, len(question.frequency)
+        ends = [k for k, drive in enumerate(drives) if is_end(drive)]
+        if not ends:
+            return solver(question)
+        shape = (len(drives), len(question.responses), count)
+        value, error = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+        forces = [k for k in range(len(drives)) if k not in ends]
+        if forces:
+            pushed = [drives[k] for k in forces]
+            value[forces], error[forces] = solver(dataclasses.replace(question, drives=pushed))
+        for k in ends:
+            value[k], error[k] = _transmitted(question, drives[k], solver)
+        return value, error
+
+    return solve
+
+
+def _transmitted(question: Question, end: Point, solver: Solver) -> tuple[Complex, Real]:
+    """Return the response per motion of one end and its relative error, (responses, f)."""
+    model, own = released(question.model, end)
+    responses = question.responses
+    asked = [own, *responses]
+    value, error = solver(dataclasses.replace(question, model=model, drives=[own], responses=asked))
+    ratio = value[0, 1:] / value[0, :1]
+    # what is 0 stays so
+    relative = np.where(value[0, 1:] == 0, 0.0, error[0, 1:] + error[0, :1])
+    relative += np.where(ratio == 0, 0.0, 2 * np.finfo(float).eps)
+    same = [k for k, point in enumerate(responses) if point == own]
+    ratio[same], relative[same] = 1.0, 0.0
+    still = dataclasses.replace(question, drives=[], responses=responses)
+    ratio.imag[:, ~still.is_damped] = 0.0  # only rounding is there
+    return ratio, relative
+
+
+def released(model: Model, end: tuple[Any, ...]) -> tuple[Model, Point]:
+    """Return the model whose end a spring and a dashpot hold, and where that end is."""
+    chain = model.chain
+    at = model.coordinates.index(end[2])
+    term = int(chain.term[-1 if end[1] else 0])
+    spring, dashpot = _hold(model, end[2])
+    held, stiffness = chain.held.copy(), chain.stiffness.copy()
+    damping = np.zeros_like(chain.mass) if chain.damping is None else chain.damping.copy()
+    held[term, at] = 0
+    stiffness[term, at, at] += spring
+    damping[term, at, at] += dashpot
+    loose = chain._replace(held=held, stiffness=stiffness, damping=damping)
+    place = (str(end[2]), float(model.x[-1 if end[1] else 0]))
+    return dataclasses.replace(model, chain=loose), place
+
+
+def _hold(model: Model, coordinate: str) -> tuple[float, float]:
+    """Return a spring as soft as the elements one after another, and a dashpot.
+
+    The rope's inertia on that spring takes as long as the dashpot on it.
+    """
+    component = model.component_of(coordinate)
+    chain = model.chain.only(component)
+    soft = _softness(chain)
+    spring = 1 / soft[component.index(coordinate)]
+    return float(spring), float(spring * np.sqrt((_inertia(chain) * soft).max()))
+
+
+def _softness(chain: Chain) -> Real:
+    """Return the flexibilities of the elements on each coordinate, added up, shape (width,)."""
+    G = _core.triples(chain.at_rest)[1]
+    sum_ = np.abs(np.einsum("eii->ei", G)[chain.element_of]).sum(axis=0)
+    return np.where(np.isfinite(sum_) & (sum_ > 0), sum_, 1.0)
+
+
+def _inertia(chain: Chain) -> Real:
+    """Return the inertia on each coordinate, shape (width,)."""
+    total = np.einsum("nii->ni", chain.mass)[chain.term_of].sum(axis=0)
+    if chain.inertia is not None:
+        total = total + (chain.inertia * chain.length[:, None])[chain.element_of].sum(axis=0)
+    return np.asarray(total)

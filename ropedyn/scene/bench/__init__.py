@@ -1,0 +1,1 @@
+"""Bench tests of a piece of rope: bending and torsion."""

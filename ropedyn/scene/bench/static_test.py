@@ -1,0 +1,171 @@
+"""What bending and torsion tests share: a stiffness is load times a factor per reading."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base import check
+from ...base.answer import Answer
+from ...base.errors import SceneError
+from ...base.table import Table
+from .straight_line import Line
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Real = NDArray[np.float64]
+
+
+class StaticTest(Answer):
+    """Base of tests: reading = offset + factor load/stiffness, by least squares.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> test = rd.TorsionTest(0.5, [0.0, 0.01, 0.02], [0.0, 0.034, 0.067])
+    >>> test.load, test.reading, test.factor
+    (array([0.  , 0.01, 0.02]), array([0.   , 0.034, 0.067]), 0.5)
+    >>> print(test.title)
+    torsional stiffness C = 0.149254 +- 0.0013 N m^2
+    >>> (test.residual * 1e3).round(2), round(test.line.slope, 3)
+    (array([-0.17,  0.33, -0.17]), 3.35)
+    """
+
+    stiffness_name: ClassVar[str]
+    symbol: ClassVar[str]
+    load_label: ClassVar[str]
+    reading_label: ClassVar[str]
+    zero: float | None
+    reading_std: float | None
+
+    @property
+    def load(self) -> Real:
+        """What was put on, shape (k,)."""
+        raise NotImplementedError
+
+    @property
+    def reading(self) -> Real:
+        """What was read, shape (k,)."""
+        raise NotImplementedError
+
+    @property
+    def factor(self) -> float:
+        """Reading per load times the stiffness."""
+        raise NotImplementedError
+
+    @cached_property
+    def line(self) -> Line:
+        """The straight line through the readings."""
+        return Line.through(self.load, self.reading, offset=self.zero, std=self.reading_std)
+
+    @property
+    def stiffness(self) -> float:
+        """The stiffness [N m^2]."""
+        return self.factor / self.line.slope
+
+    @property
+    def std(self) -> float:
+        """Standard error of the stiffness [N m^2], to first order; infinite where none is left."""
+        return self.stiffness * self.line.std / self.line.slope
+
+    @property
+    def offset(self) -> float:
+        """Reading without load [m, rad]: the fitted one, or `zero`."""
+        return self.line.offset
+
+    @property
+    def residual(self) -> Real:
+        """Reading less the line [m, rad], shape (k,)."""
+        return self.line.residual
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """Return a confidence interval of the stiffness.
+
+        Parameters
+        ----------
+        confidence : float
+            Between 0 and 1.
+
+        Returns
+        -------
+        tuple of float
+            [N m^2], from Student's t interval of the slope: not symmetric about the stiffness. The
+            upper one is infinite where the readings may as well not depend on the load.
+
+        Raises
+        ------
+        TypeError
+            If it is not a number.
+        SceneError
+            If it is not between 0 and 1.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> test = rd.TorsionTest(0.5, [0.0, 0.01, 0.02], [0.0, 0.034, 0.067], reading_std=1e-3)
+        >>> [round(bound, 4) for bound in test.interval(0.95)]
+        [0.1433, 0.1557]
+        """
+        share = check.number(confidence, "confidence", sign="positive")
+        if not share < 1:
+            raise SceneError(f"confidence must be between 0 and 1, got {confidence!r}")
+        least, most = self.line.interval(share)
+        return self.factor / most, self.factor / least if least > 0 else math.inf
+
+    def _check_readings(self) -> None:
+        """Refuse what has no line, or none that goes up."""
+        loads, readings = self.load_label.split(" [")[0], self.reading_label.split(" [")[0]
+        if len(self.load) != len(self.reading):
+            raise SceneError(
+                f"{readings} must have as many numbers as {loads}, {len(self.load)}, "
+                f"got {len(self.reading)}"
+            )
+        if self.zero is None and not np.ptp(self.load) > 0:
+            raise SceneError(
+                f"{loads} must hold two different numbers, or the reading without load must be "
+                f"given as zero, got {check.shown(self.load.tolist())}"
+            )
+        if not self.load.any():
+            raise SceneError(f"{loads} must hold a number other than 0, got all 0")
+        if not self.line.slope > 0:
+            raise SceneError(
+                f"{readings} must grow with {loads}, got the slope {self.line.slope:.6g}: check "
+                "the signs"
+            )
+
+    def table(self) -> Table:
+        """Return one row for each reading."""
+        columns: dict[str, Any] = {
+            self.load_label: self.load,
+            self.reading_label: self.reading,
+            "residual" + self.reading_label[self.reading_label.index(" [") :]: self.residual,
+        }
+        return Table.of(self.title, columns)
+
+    @property
+    def title(self) -> str:
+        """What was found, in words."""
+        error = f" +- {self.std:.2g}" if math.isfinite(self.std) else ""
+        name = self.stiffness_name.replace("_", " ")
+        return f"{name} {self.symbol} = {self.stiffness:.6g}{error} N m^2"
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot readings over loads with the straight line."""
+        from ...plot.static_test import plot_static_test
+
+        return plot_static_test(self, ax)
+
+
+def set_readings(test: Any, load: str, reading: str, units: tuple[str, str]) -> None:
+    """Check the arrays and the numbers that both tests have, and keep them."""
+    put = object.__setattr__
+    for name, unit in zip((load, reading), units):
+        put(test, name, check.numbers(getattr(test, name), name, unit))
+    put(test, "zero", check.optional(test.zero, "zero", units[1]))
+    std = check.optional(test.reading_std, "reading_std", units[1], sign="positive")
+    put(test, "reading_std", std)

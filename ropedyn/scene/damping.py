@@ -1,0 +1,337 @@
+"""Damping: complex factors on the five parts of the dynamic stiffness, drag, and modal ratios.
+
+The dynamic stiffness at the angular frequency omega is
+
+    section K_elastic + tension K_tension + spring K_springs + inertia M + dashpot C
+
+with section = tension = spring = 1, inertia = -omega^2 and dashpot = i omega where nothing else is
+damped. A kind of damping is what it adds to these factors, to C along the rope, and to the ratios
+of modes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base import check
+from ..base.errors import SceneError
+from ..base.quantity import is_quantity
+
+SECTION, TENSION, SPRING, INERTIA, DASHPOT = PARTS = range(5)
+
+NOTHING: Mapping[int, float] = MappingProxyType({})
+
+
+class DampingTerm(NamedTuple):
+    """What a damping adds."""
+
+    rate: Mapping[int, float] = NOTHING
+    """Times i omega, to the factors of these parts [s, of the inertia 1/s]."""
+    loss: Mapping[int, float] = NOTHING
+    """Times i, to the factors of these parts."""
+    drag: float = 0.0
+    """Along the rope, to C of transverse and axial motion [N s/m^2]."""
+    ratio: float | tuple[float, ...] = 0.0
+    """To the damping ratio of all modes, or of the lowest ones."""
+
+
+class Damping(Protocol):
+    """What the analyses ask of a damping."""
+
+    kind: ClassVar[str]
+    """Name of the effect."""
+
+    def term(self) -> DampingTerm:
+        """Return what it adds.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.ViscousDamping(2.0).term().drag
+        2.0
+        """
+
+
+@dataclass(frozen=True)
+class StiffnessDamping:
+    """Elastic stiffness times (1 + i omega gamma): sections and springs, not tension.
+
+    Parameters
+    ----------
+    gamma : float
+        [s].
+
+    Raises
+    ------
+    TypeError
+        If it is not a number.
+    SceneError
+        If it is not finite or is negative.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.StiffnessDamping(1e-4).gamma
+    0.0001
+    """
+
+    kind: ClassVar[str] = "stiffness damping"
+
+    gamma: float
+
+    def __post_init__(self) -> None:
+        gamma = check.number(self.gamma, "gamma", "s", sign="nonnegative")
+        object.__setattr__(self, "gamma", gamma)
+
+    def term(self) -> DampingTerm:
+        """On sections and springs."""
+        return DampingTerm(rate={SECTION: self.gamma, SPRING: self.gamma})
+
+
+@dataclass(frozen=True)
+class RayleighDamping:
+    """Damping matrix mass M + stiffness K, with the tension in K.
+
+    Parameters
+    ----------
+    mass : float
+        [1/s].
+    stiffness : float
+        [s].
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or is negative.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.RayleighDamping(0.5, 1e-4).mass
+    0.5
+    """
+
+    kind: ClassVar[str] = "rayleigh damping"
+
+    mass: float
+    stiffness: float
+
+    def __post_init__(self) -> None:
+        for name, unit in (("mass", "1/s"), ("stiffness", "s")):
+            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
+            object.__setattr__(self, name, value)
+
+    def term(self) -> DampingTerm:
+        """On all stiffness, and on inertia."""
+        stiffness = dict.fromkeys((SECTION, TENSION, SPRING), self.stiffness)
+        return DampingTerm(rate={**stiffness, INERTIA: self.mass})
+
+
+@dataclass(frozen=True)
+class LossFactor:
+    """Elastic stiffness times (1 + i eta): sections and springs, not tension.
+
+    It has a meaning at each frequency, not in time. At 0 Hz the response is
+    the complex one of the limit, and lags its force. `Model.static` is real and knows nothing of
+    it, and there is no damping matrix. Damped modes are those of the stiffness times (1 + i eta).
+
+    Parameters
+    ----------
+    eta : float
+        [1].
+
+    Raises
+    ------
+    TypeError
+        If it is not a number.
+    SceneError
+        If it is not finite or is negative.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.LossFactor(0.02).eta
+    0.02
+    """
+
+    kind: ClassVar[str] = "loss factor"
+
+    eta: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "eta", check.number(self.eta, "eta", sign="nonnegative"))
+
+    def term(self) -> DampingTerm:
+        """On sections and springs."""
+        return DampingTerm(loss={SECTION: self.eta, SPRING: self.eta})
+
+
+@dataclass(frozen=True)
+class ViscousDamping:
+    """A force per length against the velocity of the rope, transverse and axial.
+
+    Continuous spans have it along the rope; chains have it lumped at the nodes, as their mass is.
+
+    Parameters
+    ----------
+    coefficient : float
+        [N s/m^2].
+
+    Raises
+    ------
+    TypeError
+        If it is not a number.
+    SceneError
+        If it is not finite or is negative.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.ViscousDamping(0.7).coefficient
+    0.7
+    """
+
+    kind: ClassVar[str] = "viscous damping"
+
+    coefficient: float
+
+    def __post_init__(self) -> None:
+        value = check.number(self.coefficient, "coefficient", "N s/m^2", sign="nonnegative")
+        object.__setattr__(self, "coefficient", value)
+
+    def term(self) -> DampingTerm:
+        """Along the rope."""
+        return DampingTerm(drag=self.coefficient)
+
+
+@dataclass(frozen=True)
+class ModalDamping:
+    """A damping ratio for each mode of the undamped model, in the order of `Model.modes`.
+
+    A frequency response is the sum over modes with the static one of all others, see `Model.frf`.
+
+    Parameters
+    ----------
+    ratio : float or sequence of float
+        Of every mode, or of the lowest ones, one each. A response needs one for each mode below its
+        highest frequency; the ratio of a mode that none is given for is NaN.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or is negative, or there is no number.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.ModalDamping([0.01, 0.02]).ratio
+    (0.01, 0.02)
+    """
+
+    kind: ClassVar[str] = "modal damping"
+
+    ratio: float | tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ratio", _checked_ratio(self.ratio))
+
+    def term(self) -> DampingTerm:
+        """On modes."""
+        return DampingTerm(ratio=self.ratio)
+
+
+def _checked_ratio(ratio: Any) -> float | tuple[float, ...]:
+    if is_quantity(ratio) and np.ndim(ratio.magnitude):
+        return tuple(check.numbers(ratio, "ratio", sign="nonnegative").tolist())
+    several = ratio.ndim == 1 if isinstance(ratio, np.ndarray) else isinstance(ratio, (list, tuple))
+    if not several:
+        return check.number(ratio, "ratio", sign="nonnegative")
+    if len(ratio) == 0:
+        raise SceneError("ratio must be a number or one for each mode, got []")
+    return tuple(
+        check.number(one, f"ratio[{k}]", sign="nonnegative") for k, one in enumerate(ratio)
+    )
+
+
+KINDS = (StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping)
+"""Every kind of damping."""
+
+
+def factors(dampings: Sequence[Damping], omega: NDArray[Any]) -> NDArray[np.complex128]:
+    """Return the factors of a sum of dampings.
+
+    Parameters
+    ----------
+    dampings : sequence
+        Empty is no damping at all.
+    omega : ndarray
+        Angular frequency [rad/s]; complex where motion decays.
+
+    Returns
+    -------
+    ndarray, shape (..., 5)
+        On sections, tension, springs, inertia and dashpots.
+    """
+    total = np.ones((*omega.shape, len(PARTS)), dtype=np.complex128)
+    total[..., INERTIA] = -(omega**2)
+    total[..., DASHPOT] = 1j * omega
+    for term in (damping.term() for damping in dampings):
+        for part, rate in term.rate.items():
+            total[..., part] += 1j * omega * rate
+        for part, loss in term.loss.items():
+            total[..., part] += 1j * loss
+    return total
+
+
+def separable(dampings: Sequence[Damping]) -> bool:
+    """Whether sections and tension are damped alike, so that their sum has one factor."""
+    share = factors(dampings, np.array(1.0))
+    return bool(share[SECTION] == share[TENSION])
+
+
+def drag(dampings: Sequence[Damping]) -> float:
+    """Return the damping along the rope of a sum of dampings [N s/m^2]."""
+    return sum(damping.term().drag for damping in dampings)
+
+
+def ratios(dampings: Sequence[Damping], count: int) -> NDArray[np.float64]:
+    """Return what a sum of dampings adds to the damping ratios of the lowest modes.
+
+    Parameters
+    ----------
+    dampings : sequence
+        Empty is no damping at all.
+    count : int
+        How many.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+        NaN of modes that no ratio is given for.
+    """
+    total = np.zeros(count)
+    for ratio in (damping.term().ratio for damping in dampings):
+        given = np.array(ratio if isinstance(ratio, tuple) else (ratio,) * count)[:count]
+        total[: len(given)] += given
+        total[len(given) :] = np.nan
+    return total
+
+
+def having(dampings: Sequence[Damping], *fields: str) -> tuple[Damping, ...]:
+    """Return those dampings that add anything but 0 by one of these fields of their term."""
+    return tuple(one for one in dampings if any(_adds(one.term(), field) for field in fields))
+
+
+def _adds(term: DampingTerm, field: str) -> bool:
+    value = getattr(term, field)
+    return bool(np.any(tuple(value.values()) if isinstance(value, Mapping) else value))

@@ -1,0 +1,122 @@
+"""Gravity: a rope that hangs is curved, and what moves across a curve stretches it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar
+
+from ..base import check
+from ..base.errors import SceneError
+from .rope import Rope
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """Weight of the rope in the plane of z, and with it the sag between its ends.
+
+    With the chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord
+    L, the rope hangs in a parabola of the curvature w/H. A small motion, x along it and z towards
+    the centre of the curve (up, against the weight), strains the rope by
+
+        x' - (w/H) z = h/EA_e,  EA_e = EA L/L_e,  L_e = L (1 + (w L/H)^2/8)
+
+    and the tension h that this adds pulls z back by (w/H) h:
+
+        B z'''' - H z'' + mu z_tt = (w/H) h
+
+    The stretch follows at once: the rope has no inertia along x where gravity acts, so that h is
+    the same wherever nothing holds x, and there are no axial modes. With both ends held, h =
+    -(EA/L_e) (w/H) integral z dx. For a string (B = 0) symmetric modes depend on
+
+        lambda^2 = (w L/H)^2 L EA/(H L_e)
+
+    alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
+
+    It holds for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it between.
+    Along an inclined rope the weight's own change of tension is left out, and so is the weight of
+    what stands on the rope; a `PointMass` keeps its inertia along x.
+
+    Parameters
+    ----------
+    g : float
+        Acceleration [m/s^2]; negative: the rope hangs towards positive z.
+    inclination : float
+        Of the chord to the horizontal [rad], between -pi/2 and pi/2.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or the inclination is not within a right angle.
+
+    References
+    ----------
+    H. M. Irvine, T. K. Caughey, The linear theory of free vibrations of a suspended cable,
+    Proceedings of the Royal Society A 341 (1974); H. M. Irvine, Cable Structures (1981), with the
+    inclined cable.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(100.0, 2.0, axial_stiffness=2e7)
+    >>> scene = rd.Scene(rope, tension=10e3, gravity=rd.Gravity())
+    >>> round(scene.gravity.sag_parameter(rope, 10e3), 2)
+    76.62
+    >>> scene.compile().modes(2).frequency.round(4)
+    array([0.7071, 0.8676])
+    >>> scene.without("sag").compile().modes(2).frequency.round(4)
+    array([0.3536, 0.7071])
+    """
+
+    kind: ClassVar[str] = "sag"
+
+    g: float = 9.81
+    _: KW_ONLY
+    inclination: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "g", check.number(self.g, "g", "m/s^2"))
+        inclination = check.number(self.inclination, "inclination", "rad")
+        if not abs(inclination) < math.pi / 2:
+            raise SceneError(
+                f"inclination must lie between -pi/2 and pi/2 [rad], got {inclination!r}"
+            )
+        object.__setattr__(self, "inclination", inclination)
+
+    def curvature(self, rope: Rope, tension: float) -> float:
+        """Return w/H [1/m] of a rope under a chordwise tension [N].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> round(rd.Gravity().curvature(rd.Rope(100.0, 2.0), 10e3), 6)
+        0.001962
+        """
+        return rope.linear_density * self.g * math.cos(self.inclination) / tension
+
+    def lengthening(self, rope: Rope, tension: float) -> float:
+        """Return L_e/L = 1 + (w L/H)^2/8 of a rope under a chordwise tension [N].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> round(rd.Gravity().lengthening(rd.Rope(100.0, 2.0), 10e3), 6)
+        1.004812
+        """
+        slope = self.curvature(rope, tension) * rope.length
+        return 1 + slope * slope / 8
+
+    def sag_parameter(self, rope: Rope, tension: float) -> float:
+        """Return Irvine's lambda^2 = (w L/H)^2 EA/(H L_e/L) of a rope under a tension [N].
+
+        Raises
+        ------
+        SceneError
+            If the rope has no axial stiffness.
+        """
+        if rope.axial_stiffness is None:
+            raise SceneError("axial_stiffness must be given for a sag parameter [N], got None")
+        slope = self.curvature(rope, tension) * rope.length
+        return slope**2 * rope.axial_stiffness / (tension * self.lengthening(rope, tension))

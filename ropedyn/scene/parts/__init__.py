@@ -1,0 +1,1 @@
+"""Parts that stand on the rope or change stretches of it."""

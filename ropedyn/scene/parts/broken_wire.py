@@ -1,0 +1,130 @@
+"""A broken wire that stands off the rope."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ...base import check
+from ...base.errors import SceneError
+from .node import Attached, AttachedRate, NodeRate, NodeTerm
+
+FIRST_ROOT = 1.8751040687119611
+"""Of 1 + cos x cosh x."""
+
+
+@dataclass(frozen=True)
+class BrokenWire:
+    """The free end of a broken wire: a small cantilever that the rope carries.
+
+    A solid round Euler-Bernoulli beam parallel to the axis, towards larger x. Its root moves
+    transversely by z + radius alpha and turns by beta, where the scene has these. In undamped modes
+    it is free of damping, as the rope is; dampings of the rope do not act on it, but Rayleigh
+    damping on its mass. The motion of its tip is the response ("wire", 0) of `Model.frf` for the
+    first one among the parts, and so on.
+
+    Parameters
+    ----------
+    x : float
+        Where its root is [m].
+    length, diameter : float
+        Of the wire [m].
+    radius : float
+        Of its root from the axis, sideways [m]: how far it moves with twist; may be negative.
+    youngs_modulus : float, optional
+        [N/m^2].
+    density : float, optional
+        [kg/m^3].
+    damping_ratio : float, optional
+        The modulus is E (1 + 2 i damping_ratio) in the frequency response and in damped modes:
+        every mode of the wire has this damping ratio at its resonance.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, a size is not positive or the damping is negative; in a model,
+        if its root cannot move where it stands.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> wire = rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3)
+    >>> print(round(wire.frequency, 2))
+    86.0
+    """
+
+    kind: ClassVar[str] = "broken wire"
+
+    x: float
+    length: float
+    diameter: float
+    _: KW_ONLY
+    radius: float
+    youngs_modulus: float = 2.06e11
+    density: float = 7850.0
+    damping_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        object.__setattr__(self, "radius", check.number(self.radius, "radius", "m"))
+        for name, unit in (
+            ("length", "m"),
+            ("diameter", "m"),
+            ("youngs_modulus", "N/m^2"),
+            ("density", "kg/m^3"),
+        ):
+            value = check.number(getattr(self, name), name, unit, sign="positive")
+            object.__setattr__(self, name, value)
+        ratio = check.number(self.damping_ratio, "damping_ratio", sign="nonnegative")
+        object.__setattr__(self, "damping_ratio", ratio)
+        with np.errstate(all="ignore"):
+            numbers = np.array([*self._values[:3], self.frequency])
+        if not np.isfinite(numbers).all() or (numbers == 0.0).any():
+            raise SceneError(
+                "length and diameter must leave mass and stiffness of the wire numbers, got "
+                f"{self.length!r} m and {self.diameter!r} m"
+            )
+
+    @property
+    def _values(self) -> tuple[float, float, float, float]:
+        """Mass, E I/length^3, length and damping as the core takes them."""
+        length, d = np.float64(self.length), np.float64(self.diameter)
+        mass = self.density * (math.pi * d * d / 4) * length
+        stiffness = self.youngs_modulus * (math.pi * d**4 / 64) / length**3
+        return float(mass), float(stiffness), self.length, self.damping_ratio
+
+    @property
+    def frequency(self) -> float:
+        """The first natural frequency with the root held [Hz]."""
+        mass, stiffness = (np.float64(v) for v in self._values[:2])
+        return float(FIRST_ROOT**2 * np.sqrt(stiffness / mass) / (2 * math.pi))
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """The displacement of its root; twist and bending where the scene has them."""
+        return ("z",)
+
+    def term(self) -> NodeTerm:
+        """Return the structure, which moves with z and alpha and turns with beta."""
+        moves = {"z": 1.0, "alpha": self.radius}
+        return NodeTerm(attached=[Attached(self.kind, moves, {"beta": 1.0}, self._values)])
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return those of a mass as density d^2 l and a stiffness as E d^4/l^3."""
+        length, d = self.length, self.diameter
+        attached = {
+            "length": AttachedRate(
+                size=1 / length, stiffness=-4 / length, rotation={"beta": 1 / length}
+            ),
+            "diameter": AttachedRate(size=2 / d, stiffness=2 / d),
+            "radius": AttachedRate(displacement={"alpha": 1.0}),
+            "youngs_modulus": AttachedRate(stiffness=1 / self.youngs_modulus),
+            "density": AttachedRate(mass=1 / self.density),
+            "damping_ratio": AttachedRate(damping=1.0),
+        }
+        return {name: NodeRate(attached=rate) for name, rate in attached.items()}

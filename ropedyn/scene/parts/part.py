@@ -1,0 +1,396 @@
+"""Parts that stand on the rope: what each adds to the node it stands at."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar, Protocol
+
+from ...base import check
+from . import stretch as _stretch
+from .broken_wire import BrokenWire
+from .node import Law, NodeRate, NodeTerm
+from .node_force import NodeForce
+from .resonator import Resonator
+from .stop import Stop
+from .stretch import Stretch
+
+
+class Part(Protocol):
+    """What the compiler asks of a part that stands at one place."""
+
+    kind: ClassVar[str]
+    """Name of the effect."""
+
+    @property
+    def x(self) -> float:
+        """Where it stands [m]."""
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Coordinates without which it has no meaning.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).stands_on, rd.PointMass(0.5, 0.1).stands_on
+        (('z',), ())
+        """
+
+    def term(self) -> NodeTerm:
+        """Return what it adds to its node.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).term().stiffness
+        {'z': 10000.0}
+        """
+
+    def rates(self) -> Mapping[str, NodeRate]:
+        """Return how fast that changes with each number of it, positions apart.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).rates()["stiffness"].stiffness
+        {'z': 1.0}
+        """
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A rigid body clamped to the rope at one point.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    mass : float
+        [kg]; 0 is allowed, for a disc that only turns.
+    rotary_inertia, polar_inertia : float
+        About the transverse axis and about the rope's own [kg m^2].
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or is negative.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.PointMass(0.5, 0.1, polar_inertia=1e-5).mass
+    0.1
+    """
+
+    kind: ClassVar[str] = "point mass"
+
+    x: float
+    mass: float
+    _: KW_ONLY
+    rotary_inertia: float = 0.0
+    polar_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        for name, unit in (
+            ("mass", "kg"),
+            ("rotary_inertia", "kg m^2"),
+            ("polar_inertia", "kg m^2"),
+        ):
+            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
+            object.__setattr__(self, name, value)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Nothing: inertia on an absent coordinate is ignored."""
+        return ()
+
+    def term(self) -> NodeTerm:
+        """Inertia on the diagonal."""
+        mass = {
+            "x": self.mass,
+            "z": self.mass,
+            "alpha": self.polar_inertia,
+            "beta": self.rotary_inertia,
+        }
+        return NodeTerm(mass=mass)
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Each of its numbers is an inertia."""
+        return {
+            "mass": NodeRate(mass={"x": 1.0, "z": 1.0}),
+            "rotary_inertia": NodeRate(mass={"beta": 1.0}),
+            "polar_inertia": NodeRate(mass={"alpha": 1.0}),
+        }
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring from the rope to the ground.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    stiffness : float
+        [N/m for x and z, N m for alpha and beta]; may be negative.
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it acts on.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number or the coordinate not a string.
+    SceneError
+        If something is not finite, the stiffness is 0 or the coordinate is unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Spring(0.5, 1e4).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "spring"
+
+    x: float
+    stiffness: float
+    _: KW_ONLY
+    coordinate: str = "z"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+        unit = "N/m" if self.coordinate in ("x", "z") else "N m"
+        stiffness = check.number(self.stiffness, "stiffness", unit, sign="nonzero")
+        object.__setattr__(self, "stiffness", stiffness)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self) -> NodeTerm:
+        """Stiffness on the diagonal."""
+        return NodeTerm(stiffness={self.coordinate: self.stiffness})
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return that of its stiffness."""
+        return {"stiffness": NodeRate(stiffness={self.coordinate: 1.0})}
+
+
+@dataclass(frozen=True)
+class Dashpot:
+    """A dashpot from the rope to the ground, of force c |v|^exponent sign(v).
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    damping : float
+        c [N s/m for x and z, N m s for alpha and beta, of exponent 1].
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it acts on.
+    exponent : float
+        1: in proportion to velocity; 2: a quadratic damper; 0: Coulomb friction, which holds the
+        rope while less than `damping` is needed for that. Others than 1 have a meaning in the time
+        domain alone: frequencies, frequency response, static deflection and matrices are refused.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number or the coordinate not a string.
+    SceneError
+        If something is not finite, the damping is not positive, the exponent is negative or the
+        coordinate is unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Dashpot(0.5, 3.0).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "dashpot"
+
+    x: float
+    damping: float
+    _: KW_ONLY
+    coordinate: str = "z"
+    exponent: float = 1.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+        exponent = check.number(self.exponent, "exponent", sign="nonnegative")
+        object.__setattr__(self, "exponent", exponent)
+        unit = "N s/m" if self.coordinate in ("x", "z") else "N m s"
+        if exponent != 1:
+            speed = "N (s/m)^" if self.coordinate in ("x", "z") else "N m s^"
+            unit = f"{speed}{exponent!r}"
+        damping = check.number(self.damping, "damping", unit, sign="positive")
+        object.__setattr__(self, "damping", damping)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self) -> NodeTerm:
+        """Damping on the diagonal, if it is linear."""
+        if self.exponent != 1.0:
+            law = Law(self.coordinate, "power", (self.damping, self.exponent))
+            return NodeTerm(nonlinear=f"exponent must be 1, got {self.exponent!r}", laws=(law,))
+        return NodeTerm(damping={self.coordinate: self.damping})
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return that of its damping, which undamped modes do not feel."""
+        return {"damping": NodeRate(damping={self.coordinate: 1.0})}
+
+
+@dataclass(frozen=True)
+class Support:
+    """A rigid support of one coordinate.
+
+    Parameters
+    ----------
+    x : float
+        Where it stands [m].
+    coordinate : {"z", "x", "alpha", "beta"}
+        What it holds.
+
+    Raises
+    ------
+    TypeError
+        If the position is not a number or the coordinate not a string.
+    SceneError
+        If the position is not finite or the coordinate is unknown.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rd.Support(0.5).coordinate
+    'z'
+    """
+
+    kind: ClassVar[str] = "support"
+
+    x: float
+    _: KW_ONLY
+    coordinate: str = "z"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Its coordinate."""
+        return (self.coordinate,)
+
+    def term(self) -> NodeTerm:
+        """Return the held coordinate."""
+        return NodeTerm(held=(self.coordinate,))
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Nothing: it has no number but its place."""
+        return {}
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """A place where the bending rotation may jump.
+
+    The node and whatever else stands at the same place (inertia, springs and supports of the
+    rotation) are on the left of the hinge; deflection and force pass through. Hinges at one place
+    are springs in series. The rope's damping of springs damps this one too. Where a hinge moves,
+    the inertia of tensed elements is lumped to second order, to first where the rope has rotary
+    inertia; held by a `Support`, to fourth. Continuous spans lump nothing.
+
+    Parameters
+    ----------
+    x : float
+        Where it is [m], between the ends: at an end ``End(beta="free", spring={"beta": ...})`` is
+        the same thing.
+    stiffness : float
+        Of the rotation spring across it [N m]; 0 is a free hinge, which carries no moment.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite or the stiffness is negative; in a scene, if it stands at an end
+        of the rope.
+
+    Examples
+    --------
+    Two cantilevers that meet tip to tip:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(2.0, 0.1, bending_stiffness=4.0)
+    >>> model = rd.Scene(rope, parts=[rd.Hinge(1.0)]).compile(elements=2)
+    >>> print(model.static({("z", 1.0): 24.0}).displacement[1, 0].round(12))
+    1.0
+    """
+
+    kind: ClassVar[str] = "hinge"
+
+    x: float
+    _: KW_ONLY
+    stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
+        stiffness = check.number(self.stiffness, "stiffness", "N m", sign="nonnegative")
+        object.__setattr__(self, "stiffness", stiffness)
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Bending rotation."""
+        return ("beta",)
+
+    def term(self) -> NodeTerm:
+        """Return the compliance of its spring."""
+        compliance = 1.0 / self.stiffness if self.stiffness > 0.0 else math.inf
+        return NodeTerm(hinge={"beta": compliance})
+
+    def rates(self) -> dict[str, NodeRate]:
+        """Return that of its stiffness."""
+        return {"stiffness": NodeRate(hinge={"beta": 1.0})}
+
+
+KINDS = (
+    PointMass,
+    Spring,
+    Dashpot,
+    Support,
+    Hinge,
+    Resonator,
+    BrokenWire,
+    NodeForce,
+    Stop,
+    *_stretch.KINDS,
+)
+"""Every kind of part."""
+
+
+def standing(parts: Iterable[Part | Stretch]) -> list[Part]:
+    """Return the parts that stand at one place."""
+    return [part for part in parts if not isinstance(part, _stretch.KINDS)]
+
+
+def stretches(parts: Iterable[Part | Stretch]) -> list[Stretch]:
+    """Return the parts that change the rope over a stretch."""
+    return [part for part in parts if isinstance(part, _stretch.KINDS)]
+
+
+def places(parts: Iterable[Part | Stretch]) -> list[float]:
+    """Return where parts stand, begin and end [m]."""
+    at = ((p.start, p.stop) if isinstance(p, _stretch.KINDS) else (p.x,) for p in parts)
+    return list(itertools.chain.from_iterable(at))

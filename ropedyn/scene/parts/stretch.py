@@ -1,0 +1,329 @@
+"""Parts that change the rope over a stretch: what each does to the section between two places."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Collection, Sequence
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...base import check
+from ...base.errors import SceneError
+from ..rope import Rope
+from ..stations import nearest
+
+
+class Change(NamedTuple):
+    """What a part does to the rope: it is multiplied by factors, then something is added."""
+
+    bending: float = 1.0
+    torsion: float = 1.0
+    density: float = 1.0
+    linear_density: float = 0.0
+    """[kg/m]."""
+    polar_inertia: float = 0.0
+    """[kg m]."""
+
+
+FACTORS = slice(0, 3)
+"""The factors of a change; the rest of it is added."""
+
+FACTOR = {
+    "bending_stiffness": "bending",
+    "torsional_stiffness": "torsion",
+    "linear_density": "density",
+    "rotary_inertia": "density",
+    "polar_inertia": "density",
+}
+"""On each property of a rope that changes; what is added to one has its name."""
+
+
+@dataclass(frozen=True)
+class AddedMass:
+    """Mass that moves with the rope over a stretch: grease, ice, marks.
+
+    Masses that overlap add up. The density of a `LocalChange` at the same place is a factor on the
+    rope alone, not on what was added.
+
+    Parameters
+    ----------
+    start, stop : float
+        Where it begins and ends [m].
+    linear_density : float
+        Mass per length [kg/m]; 0 is allowed.
+    polar_inertia : float
+        About the rope's axis, per length [kg m].
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, the stretch does not end beyond its start, or a mass or inertia
+        is negative; in a scene, if the stretch is off the rope or shorter than 1e-9 of it.
+
+    Examples
+    --------
+    Ice of the rope's own mass all along lowers its frequencies by the square root of 2:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.0, 0.1)
+    >>> ice = rd.AddedMass(0.0, 1.0, 0.1)
+    >>> for parts in [], [ice]:
+    ...     print(rd.Scene(rope, tension=80.0, parts=parts).compile().modes(1).frequency.round(3))
+    [14.142]
+    [10.]
+    """
+
+    kind: ClassVar[str] = "added mass"
+    acts_on: ClassVar[dict[str, str]] = {}
+    """Arguments that have no meaning without a coordinate: inertia is ignored there."""
+
+    start: float
+    stop: float
+    linear_density: float
+    _: KW_ONLY
+    polar_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        _set_stretch(self)
+        for name, unit in (("linear_density", "kg/m"), ("polar_inertia", "kg m")):
+            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
+            object.__setattr__(self, name, value)
+
+    def change(self) -> Change:
+        """Return what is added.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.AddedMass(0.0, 0.5, 0.02).change().linear_density
+        0.02
+        """
+        return Change(linear_density=self.linear_density, polar_inertia=self.polar_inertia)
+
+    def on(self, coordinates: Collection[str]) -> AddedMass:
+        """Return itself, on whatever coordinates.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.AddedMass(0.0, 0.5, 0.02).on(["z"])
+        AddedMass(start=0.0, stop=0.5, linear_density=0.02, polar_inertia=0.0)
+        """
+        return self
+
+
+@dataclass(frozen=True)
+class LocalChange:
+    """Factors on the rope over a stretch: damage, wear, a splice.
+
+    Factors that overlap multiply. Axial stiffness and lay are those of the rope. Where a stretch
+    with other stiffness or density begins, tensed elements keep their fourth order, or second
+    order if the rope has rotary inertia; continuous spans are exact.
+
+    Parameters
+    ----------
+    start, stop : float
+        Where it begins and ends [m].
+    bending, torsion : float
+        On the rope's bending and torsional stiffness; 1 leaves it as it is.
+    density : float
+        On its linear density, and on its rotary and polar inertia: there is so much more or less
+        of the same material. What an `AddedMass` adds stays as it is.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, the stretch does not end beyond its start, or a factor is not
+        positive; in a scene, if the stretch is off the rope or shorter than 1e-9 of it, if a
+        factor other than 1 stands on a stiffness that the rope does not have, or if the changed
+        section is not positive definite (the lay coupling stays).
+
+    Examples
+    --------
+    A worn half of a cantilever bends twice as much:
+
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(2.0, 0.1, bending_stiffness=1.0)
+    >>> worn = rd.LocalChange(1.0, 2.0, bending=0.5)
+    >>> scene = rd.Scene(rope, ends=("clamped", "free"), parts=[worn])
+    >>> tip = scene.compile(elements=2).static({("beta", 2.0): 1.0}).displacement[-1, 1]
+    >>> print(tip.round(12))
+    3.0
+    """
+
+    kind: ClassVar[str] = "local change"
+    acts_on: ClassVar[dict[str, str]] = {"bending": "beta", "torsion": "alpha"}
+    """Arguments that have no meaning without a coordinate, unless they are 1."""
+
+    start: float
+    stop: float
+    _: KW_ONLY
+    bending: float = 1.0
+    torsion: float = 1.0
+    density: float = 1.0
+
+    def __post_init__(self) -> None:
+        _set_stretch(self)
+        for name in ("bending", "torsion", "density"):
+            value = check.number(getattr(self, name), name, sign="positive")
+            object.__setattr__(self, name, value)
+
+    def change(self) -> Change:
+        """Return the factors.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.LocalChange(0.0, 0.5, bending=0.9).change().bending
+        0.9
+        """
+        return Change(bending=self.bending, torsion=self.torsion, density=self.density)
+
+    def on(self, coordinates: Collection[str]) -> LocalChange | None:
+        """Return what is left of it on these coordinates, None where that changes nothing.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.LocalChange(0.0, 0.5, bending=0.9, torsion=0.8).on(["z", "alpha"])
+        LocalChange(start=0.0, stop=0.5, bending=1.0, torsion=0.8, density=1.0)
+        >>> rd.LocalChange(0.0, 0.5, bending=0.9).on(["z"]) is None
+        True
+        """
+        left = dataclasses.replace(
+            self,
+            bending=self.bending if "beta" in coordinates else 1.0,
+            torsion=self.torsion if "alpha" in coordinates else 1.0,
+        )
+        return None if left != self and left.change() == Change() else left
+
+
+def _set_stretch(part: AddedMass | LocalChange) -> None:
+    for name in ("start", "stop"):
+        object.__setattr__(part, name, check.number(getattr(part, name), name, "m"))
+    if not part.start < part.stop:
+        raise SceneError(f"stop must lie beyond start, {part.start!r} m, got {part.stop!r}")
+
+
+Stretch = AddedMass | LocalChange
+KINDS = (AddedMass, LocalChange)
+"""Every kind of part that changes the rope over a stretch."""
+
+
+def changes(stretches: Sequence[Stretch], stations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return what all stretches do together, a `Change` for each span between stations.
+
+    Returns
+    -------
+    ndarray, shape (spans, 5)
+    """
+    change = np.tile(np.array(Change()), (len(stations) - 1, 1))
+    starts = nearest(stations, (stretch.start for stretch in stretches))
+    stops = nearest(stations, (stretch.stop for stretch in stretches))
+    with np.errstate(over="ignore", under="ignore"):
+        for stretch, start, stop in zip(stretches, starts, stops):
+            amount = np.array(stretch.change())
+            change[start:stop, FACTORS] *= amount[FACTORS]
+            change[start:stop, FACTORS.stop :] += amount[FACTORS.stop :]
+    return change
+
+
+def ropes(
+    rope: Rope, stretches: Sequence[Stretch], stations: NDArray[np.float64]
+) -> tuple[list[Rope], NDArray[np.intp]]:
+    """Return the different ropes between stations, and which of them each span has.
+
+    Parameters
+    ----------
+    rope : Rope
+        What the stretches change.
+    stretches : sequence of AddedMass, LocalChange
+        That begin and end at stations.
+    stations : ndarray, shape (spans + 1,)
+        [m].
+
+    Raises
+    ------
+    SceneError
+        If a changed rope is none.
+    """
+    change = changes(stretches, stations)
+    distinct, first, which = np.unique(change, axis=0, return_index=True, return_inverse=True)
+    found = []
+    for row, span in zip(distinct.tolist(), first):
+        try:
+            found.append(_changed(rope, Change(*row)))
+        except SceneError as error:
+            raise SceneError(
+                f"parts must leave a rope between {stations[span]:g} m and "
+                f"{stations[span + 1]:g} m: {error}"
+            ) from error
+    return found, which.reshape(-1)
+
+
+def _changed(rope: Rope, change: Change) -> Rope:
+    """Return the rope with the change."""
+    values = {}
+    for name, factor in FACTOR.items():
+        own, more = getattr(rope, name), getattr(change, name, 0.0)
+        if own is not None or more:
+            values[name] = (own or 0.0) * getattr(change, factor) + more
+    return rope.replace(**values)
+
+
+def changed_by(name: str) -> set[str]:
+    """Return the properties of a rope that a number of a `Change` acts on."""
+    return {of for of, factor in FACTOR.items() if name in (of, factor)}
+
+
+def rope_rate(change: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return how fast a property of changed ropes grows with that of the rope: by its factor.
+
+    Parameters
+    ----------
+    change : ndarray, shape (spans, 5)
+        As `changes` returns.
+    name : str
+        Of the property.
+
+    Returns
+    -------
+    ndarray, shape (spans,)
+    """
+    if name not in FACTOR:
+        return np.ones(len(change))
+    return change[:, Change._fields.index(FACTOR[name])]
+
+
+def stretch_rate(
+    rope: Rope, change: NDArray[np.float64], part: Stretch, name: str
+) -> dict[str, NDArray[np.float64]]:
+    """Return how fast properties of changed ropes grow with a number of one of the stretches.
+
+    Parameters
+    ----------
+    rope : Rope
+        That all of them change.
+    change : ndarray, shape (spans, 5)
+        As `changes` returns, of the spans that the stretch has.
+    part : AddedMass, LocalChange
+        The stretch.
+    name : str
+        Of a number as in `Change`.
+
+    Returns
+    -------
+    dict of ndarray, shape (spans,)
+        By property: what is added is all there is of it, a factor acts on what the others leave.
+    """
+    if Change._fields.index(name) >= FACTORS.stop:
+        return {name: np.ones(len(change))}
+    others = change[:, Change._fields.index(name)] / getattr(part, name)
+    return {of: others * (getattr(rope, of) or 0.0) for of in changed_by(name)}

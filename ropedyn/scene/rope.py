@@ -1,0 +1,196 @@
+"""The rope: length, density and the stiffnesses of its section."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base import check
+from ..base.errors import SceneError
+
+if TYPE_CHECKING:
+    from .bench.bending_test import BendingTest
+    from .bench.torsion_test import TorsionTest
+
+
+@dataclass(frozen=True)
+class Rope:
+    """A rope of uniform section. A property left out is an effect that does not exist.
+
+    Parameters
+    ----------
+    length : float
+        Between the two ends [m].
+    linear_density : float
+        Mass per length [kg/m].
+    bending_stiffness : float, optional
+        B [N m^2]: gives bending and with it the coordinates z and beta.
+    torsional_stiffness : float, optional
+        C [N m^2]: gives twist, the coordinate alpha.
+    axial_stiffness : float, optional
+        EA [N]: gives stretch, the coordinate x.
+    lay_coupling : float, optional
+        D [N m]: (axial force, torque) = [[EA, D], [D, C]] (axial strain, twist rate), the linear
+        coupling of an axisymmetric laid rope. Needs axial and torsional stiffness. An end that is
+        free to turn twists by -D F/(EA C - D^2) per length under an axial force F; one that is
+        held takes the torque D F/EA.
+    lay_slope : float, optional
+        H [1]: the section axes of bending and twist are tilted by the slope H, which couples
+        bending and twist as in the 2015 study. Needs bending and torsional stiffness. A force F
+        across the tip of a cantilever of length l twists it by
+        H/(1 + H^2) (1/C - 1/B) F l^2/2.
+    rotary_inertia, polar_inertia : float, optional
+        Inertia of bending rotation and of twist per length [kg m]; 0 is none.
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If something is not finite, not positive where it must be, or if the section is not
+        positive definite.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54)
+    >>> rope.replace(length=2.0).length
+    2.0
+
+    What a force of 1 kN does to a laid rope of 10 m, whose end turns or is kept from it: stretch
+    [m] and turn [rad].
+
+    >>> laid = rd.Rope(
+    ...     10.0, 0.5, axial_stiffness=1e6, torsional_stiffness=20.0, lay_coupling=2000.0
+    ... )
+    >>> for end in rd.End(x="free", alpha="free"), rd.End(x="free"):
+    ...     static = rd.Scene(laid, ends=("clamped", end)).compile().static({("x", 10.0): 1000.0})
+    ...     print(static.displacement[-1].round(6), static.force[-1].round(6))
+    [ 0.0125 -1.25  ] [1000.    0.]
+    [0.01 0.  ] [1000.    2.]
+    """
+
+    length: float
+    linear_density: float
+    _: KW_ONLY
+    bending_stiffness: float | None = None
+    torsional_stiffness: float | None = None
+    axial_stiffness: float | None = None
+    lay_coupling: float | None = None
+    lay_slope: float | None = None
+    rotary_inertia: float | None = None
+    polar_inertia: float | None = None
+
+    def __post_init__(self) -> None:
+        number, optional = check.number, check.optional
+        checked = {
+            "length": number(self.length, "length", "m", sign="positive"),
+            "linear_density": number(
+                self.linear_density, "linear_density", "kg/m", sign="positive"
+            ),
+            "lay_coupling": optional(self.lay_coupling, "lay_coupling", "N m"),
+            "lay_slope": optional(self.lay_slope, "lay_slope"),
+        }
+        for name in ("bending_stiffness", "torsional_stiffness", "axial_stiffness"):
+            unit = "N" if name == "axial_stiffness" else "N m^2"
+            checked[name] = optional(getattr(self, name), name, unit, sign="positive")
+        for name in ("rotary_inertia", "polar_inertia"):
+            checked[name] = optional(getattr(self, name), name, "kg m", sign="nonnegative")
+        for name, value in checked.items():
+            object.__setattr__(self, name, value)
+        self._check_lay()
+
+    def _check_lay(self) -> None:
+        needs = {
+            "lay_coupling": ("axial_stiffness", "torsional_stiffness"),
+            "lay_slope": ("bending_stiffness", "torsional_stiffness"),
+        }
+        for name, others in needs.items():
+            missing = [other for other in others if getattr(self, other) is None]
+            if getattr(self, name) is not None and missing:
+                raise SceneError(f"{name} needs {' and '.join(missing)}, got None")
+        EA, C, D = self.axial_stiffness, self.torsional_stiffness, self.lay_coupling
+        if D is None or EA is None or C is None or EA * C > D * D:
+            return
+        lowest = np.linalg.eigvalsh([[EA, D], [D, C]])[0]
+        raise SceneError(
+            "the section stiffness [[axial_stiffness, lay_coupling], [lay_coupling, "
+            f"torsional_stiffness]] must be positive definite, got {[[EA, D], [D, C]]} with the "
+            f"eigenvalue {lowest:.6g}"
+        )
+
+    @staticmethod
+    def from_tests(
+        length: float,
+        linear_density: float,
+        *,
+        bending: BendingTest | None = None,
+        torsion: TorsionTest | None = None,
+        **others: Any,
+    ) -> Rope:
+        """Return a rope with the stiffnesses that static tests of pieces of it imply.
+
+        A rope keeps no errors: ``Prior.of(bending=..., torsion=...)`` does.
+
+        Parameters
+        ----------
+        length, linear_density : float
+            Of the rope [m, kg/m].
+        bending : BendingTest, optional
+            Of `bending_stiffness`.
+        torsion : TorsionTest, optional
+            Of `torsional_stiffness`.
+        **others
+            Any further argument of `Rope`.
+
+        Returns
+        -------
+        Rope
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type, or there is no such argument.
+        SceneError
+            If there is no test, a stiffness is given that a test tells, or as `Rope` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> bent = rd.BendingTest(0.5, [0.0, 2.0, 4.0], [1.0e-3, 2.5e-3, 4.1e-3])
+        >>> twisted = rd.TorsionTest(0.5, [0.0, 0.05, 0.1], [0.0, 0.17, 0.336])
+        >>> rope = rd.Rope.from_tests(1.35, 0.1017, bending=bent, torsion=twisted)
+        >>> round(rope.bending_stiffness, 2), round(rope.torsional_stiffness, 4)
+        (53.76, 0.1488)
+        """
+        from .prior import given_tests
+
+        for test in given_tests(bending, torsion):
+            name = test.stiffness_name
+            if name in others:
+                raise SceneError(
+                    f"{name} must not be given where a {type(test).__name__} tells it, "
+                    f"got {check.shown(others[name])}"
+                )
+            others[name] = test.stiffness
+        return Rope(length, linear_density, **others)
+
+    def replace(self, **changes: Any) -> Rope:
+        """Return a rope with these properties changed.
+
+        Parameters
+        ----------
+        **changes
+            Any argument of `Rope`.
+
+        Raises
+        ------
+        TypeError
+            If there is no such property.
+        SceneError
+            As `Rope` does.
+        """
+        return dataclasses.replace(self, **changes)

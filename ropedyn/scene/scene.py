@@ -1,0 +1,569 @@
+"""The scene: a rope, what holds and loads it, and what stands on it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..base import check
+from ..base.errors import SceneError
+from . import damping as _damping
+from . import end as _end
+from .damping import Damping
+from .end import End
+from .gravity import Gravity
+from .parts import part as _part
+from .parts import stretch as _stretch
+from .parts.part import Part
+from .parts.stretch import Stretch
+from .rope import Rope
+from .stations import stations_at
+from .tension import Tension
+
+if TYPE_CHECKING:
+    from ..model import Model
+
+EFFECTS = (
+    "tension",
+    Tension.pulsating,
+    Tension.growing,
+    "bending",
+    "twist",
+    "stretch",
+    "lay",
+    "rotary inertia",
+    "polar inertia",
+    *(kind.kind for kind in _part.KINDS),
+    *(kind.kind for kind in _damping.KINDS),
+    Gravity.kind,
+)
+"""Every effect a scene can have."""
+
+_PROPERTIES = {
+    "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
+    "twist": ("torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia"),
+    "stretch": ("axial_stiffness", "lay_coupling"),
+    "lay": ("lay_coupling", "lay_slope"),
+    "rotary inertia": ("rotary_inertia",),
+    "polar inertia": ("polar_inertia",),
+}
+
+_WEIGHTLESS = {"tension", "stretch", Gravity.kind}
+"""Without one of them there is no sag."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A rope with its tension, ends, damping, parts and weight.
+
+    Parameters
+    ----------
+    rope : Rope
+        The rope.
+    tension : float or Tension
+        [N]; negative is compression, which needs bending stiffness. A `Tension` may pulsate or grow
+        with the amplitude; one that does neither is its number.
+    ends : pair of {"clamped", "pinned", "free"} or End
+        Left and right end.
+    damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, optional
+        A tuple of them is their sum.
+    parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, \
+NodeForce, Stop, AddedMass, LocalChange
+        What stands on the rope, and what changes it over a stretch.
+    gravity : Gravity, optional
+        Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
+        holds the rope along x; the rope has no inertia along x then.
+
+    Raises
+    ------
+    TypeError
+        If something is of the wrong type.
+    SceneError
+        If something has no meaning: a position off the rope, a part on a coordinate that the
+        scene does not have, a rope that nothing holds together.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.35, 0.1017, bending_stiffness=1.54), tension=2830.0)
+    >>> scene.effects
+    ('tension', 'bending')
+    >>> scene.without("tension").tension
+    0.0
+    """
+
+    rope: Rope
+    _: KW_ONLY
+    tension: float | Tension = 0.0
+    ends: tuple[str | End, str | End] = ("clamped", "clamped")
+    damping: Damping | tuple[Damping, ...] | None = None
+    parts: tuple[Part | Stretch, ...] = ()
+    gravity: Gravity | None = None
+
+    def __post_init__(self) -> None:
+        check.instance(self.rope, "rope", Rope, "a Rope")
+        object.__setattr__(self, "tension", _checked_tension(self.tension))
+        object.__setattr__(self, "ends", _checked_ends(self.ends))
+        object.__setattr__(self, "damping", _checked_damping(self.damping))
+        object.__setattr__(self, "parts", _checked_parts(self.parts))
+        if self.gravity is not None:
+            check.instance(self.gravity, "gravity", Gravity, "a Gravity or None")
+        self._check_coordinates()
+        self._check_places()
+        # a rope that is changed must be one
+        changing = _part.stretches(self.parts)
+        ends = stations_at(self.rope.length, _part.places(changing))
+        _stretch.ropes(self.rope, changing, ends)
+        self._check_gravity()
+        self._check_stretching()
+
+    def _check_coordinates(self) -> None:
+        bends = self.rope.bending_stiffness is not None
+        least = self.mean_tension
+        if isinstance(self.tension, Tension):
+            least -= self.tension.amplitude
+        if least < 0 and not bends:
+            raise SceneError(
+                f"tension must be >= 0 for a rope without bending_stiffness [N], got {least:g}"
+            )
+        if not self.coordinates:
+            raise SceneError(
+                "rope must have a stiffness or the scene a tension: tension is 0 and "
+                "bending_stiffness, torsional_stiffness and axial_stiffness are None"
+            )
+
+    def _check_places(self) -> None:
+        present = ", ".join(self.coordinates)
+        for i, part in enumerate(self.parts):
+            if isinstance(part, _stretch.KINDS):
+                self._check_stretch(i, part)
+                continue
+            check.position(part.x, f"parts[{i}].x", self.rope.length)
+            for coordinate in part.stands_on:
+                if coordinate not in self.coordinates:
+                    chosen = hasattr(part, "coordinate")
+                    name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
+                    raise SceneError(
+                        f"{name} must be one the scene has ({present}), got {coordinate!r}"
+                    )
+            if isinstance(part, _part.Hinge):
+                self._check_hinge(i, part.x)
+        for i, end in enumerate(self.ends):
+            for name, values in _end.end_of(end).standing.items():
+                for coordinate in values:
+                    if coordinate not in self.coordinates:
+                        raise SceneError(
+                            f"ends[{i}].{name} must stand on coordinates the scene has "
+                            f"({present}), got {coordinate!r}"
+                        )
+
+    def _check_stretch(self, i: int, part: Stretch) -> None:
+        for name in ("start", "stop"):
+            check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
+        least = check.NEAR * self.rope.length
+        if not part.stop - part.start > least:
+            raise SceneError(
+                f"parts[{i}].stop must lie more than {least:g} m beyond start, {part.start!r} m, "
+                f"got {part.stop!r}"
+            )
+        for name, coordinate in part.acts_on.items():
+            factor = getattr(part, name)
+            if factor != 1 and coordinate not in self.coordinates:
+                raise SceneError(
+                    f"parts[{i}].{name} must be 1 where the scene has no {coordinate} "
+                    f"({', '.join(self.coordinates)}), got {factor!r}"
+                )
+
+    def _check_hinge(self, i: int, x: float) -> None:
+        margin = check.NEAR * self.rope.length
+        if not margin < x < self.rope.length - margin:
+            raise SceneError(
+                f"parts[{i}].x must lie between the ends of the rope for a hinge, got {x!r} m: "
+                'there say End(beta="free", spring={"beta": stiffness})'
+            )
+
+    def _check_gravity(self) -> None:
+        if self.gravity is None:
+            return
+        if self.rope.axial_stiffness is None:
+            raise SceneError("gravity needs axial_stiffness of the rope [N], got None")
+        tension = self.mean_tension
+        if not tension > 0:
+            raise SceneError(f"tension must be > 0 where there is gravity, got {tension:g}")
+        lengthening = self.gravity.lengthening(self.rope, tension)
+        if not math.isfinite(lengthening):
+            raise SceneError(
+                "gravity must be small enough for 1 + (w L/H)^2/8 to be a number, got "
+                f"g = {self.gravity.g!r} m/s^2 with the tension {tension!r} N"
+            )
+        terms = [_end.end_of(end).term() for end in self.ends]
+        terms += [part.term() for part in _part.standing(self.parts)]
+        if not any("x" in (*term.held, *term.stiffness) for term in terms):
+            raise SceneError(
+                "ends must hold x where there is gravity, or a Support or Spring: the rope has no "
+                f"inertia along x, got ends {check.shown(self.ends)}"
+            )
+
+    def _check_stretching(self) -> None:
+        if not isinstance(self.tension, Tension) or not self.tension.stretching:
+            return
+        if self.rope.axial_stiffness is None:
+            raise SceneError(
+                "tension must not be stretching without axial_stiffness of the rope [N], got None"
+            )
+        if self.gravity is not None:
+            raise SceneError(
+                "tension must not be stretching where there is gravity: along a sag it is not the "
+                "integral of the slope alone"
+            )
+        if not all("x" in _end.end_of(end).term().held for end in self.ends):
+            raise SceneError(
+                "ends must hold x where the tension is stretching, "
+                f"got ends {check.shown(self.ends)}"
+            )
+
+    @property
+    def mean_tension(self) -> float:
+        """The tension about which motion is small [N].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=50.0)
+        >>> rd.Scene(rd.Rope(1.0, 0.1), tension=tension).mean_tension
+        1000.0
+        """
+        return self.tension.mean if isinstance(self.tension, Tension) else self.tension
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Coordinates of a node: z with bending or tension, beta with bending, and so on.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1.0)).coordinates
+        ('z', 'beta')
+        """
+        rope = self.rope
+        present = {
+            "x": rope.axial_stiffness is not None,
+            "z": rope.bending_stiffness is not None or self.mean_tension != 0,
+            "alpha": rope.torsional_stiffness is not None,
+            "beta": rope.bending_stiffness is not None,
+        }
+        return tuple(c for c in check.COORDINATES if present[c])
+
+    @property
+    def dampings(self) -> tuple[Damping, ...]:
+        """The dampings whose sum acts, none or one or more.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> damping = rd.ViscousDamping(2.0)
+        >>> rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping).dampings
+        (ViscousDamping(coefficient=2.0),)
+        """
+        if self.damping is None:
+            return ()
+        return self.damping if isinstance(self.damping, tuple) else (self.damping,)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """What acts in this scene, in a fixed order."""
+        rope = self.rope
+        stands = {part.kind for part in self.parts} | {d.kind for d in self.dampings}
+        for end in self.ends:
+            stands |= {_end.STANDING[name] for name in _end.end_of(end).standing}
+        acts = {
+            "tension": self.mean_tension != 0,
+            Tension.pulsating: isinstance(self.tension, Tension) and self.tension.pulsates,
+            Tension.growing: isinstance(self.tension, Tension) and self.tension.stretching,
+            "bending": rope.bending_stiffness is not None,
+            "twist": rope.torsional_stiffness is not None,
+            "stretch": rope.axial_stiffness is not None,
+            "lay": bool(rope.lay_coupling or rope.lay_slope),
+            "rotary inertia": bool(rope.rotary_inertia and rope.bending_stiffness),
+            "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
+            Gravity.kind: self.gravity is not None,
+        }
+        return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
+
+    def replace(self, **changes: Any) -> Scene:
+        """Return a scene with these arguments changed.
+
+        Parameters
+        ----------
+        **changes
+            Any argument of `Scene`.
+
+        Raises
+        ------
+        TypeError
+            If there is no such argument.
+        SceneError
+            As `Scene` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> scene.replace(tension=200.0).tension
+        200.0
+        """
+        return dataclasses.replace(self, **changes)
+
+    def without(self, *effects: str) -> Scene:
+        """Return a scene that never had these effects.
+
+        What stood on a coordinate that goes with them is dropped too.
+
+        Parameters
+        ----------
+        *effects : str
+            Names out of `effects`; an effect that the scene does not have changes nothing.
+
+        Raises
+        ------
+        TypeError
+            If a name is not a string.
+        SceneError
+            If there is no such effect, or nothing is left that could vibrate, or that holds a rope
+            with weight along x.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0)
+        >>> scene = rd.Scene(rope, tension=100.0, parts=[rd.PointMass(0.5, 0.1)])
+        >>> scene.without("bending", "point mass").effects
+        ('tension',)
+        """
+        for effect in effects:
+            check.one_of(effect, "effect", EFFECTS)
+        gone = {name for effect in effects for name in _PROPERTIES.get(effect, ())}
+        rope = self.rope.replace(**dict.fromkeys(gone))
+        tension = _left_of_tension(self.tension, effects)
+        mean = tension.mean if isinstance(tension, Tension) else tension
+        bare = Scene(rope, tension=mean)
+        kept = tuple(d for d in self.dampings if d.kind not in effects)
+        return bare.replace(
+            tension=tension,
+            ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
+            damping=kept,
+            gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
+            parts=tuple(
+                left
+                for part in self.parts
+                if part.kind not in effects
+                and (left := _left_of(part, bare.coordinates)) is not None
+            ),
+        )
+
+    def compile(
+        self,
+        *,
+        elements: int | None = None,
+        element: str | None = None,
+        tolerance: float | None = None,
+        below: float | None = None,
+    ) -> Model:
+        """Compile the scene to continuous spans, or to a chain of nodes and elements.
+
+        Parameters
+        ----------
+        elements : int, optional
+            Over the whole rope. There is a node at every station (end or part); the stretches
+            between stations share the elements as equally as can be. Left out: continuous spans.
+        element : {"continuous", "rigid", "tensed", "difference"}, optional
+            ``"continuous"``, the default without `elements`: exact spans at each frequency, no
+            discretisation error; with `elements` there are more nodes to look at. ``"tensed"``,
+            the default with `elements`: the exact static tensed beam, with end-corrected lumping;
+            fourth order where there is bending (second with a hinge that moves). ``"rigid"``: beam
+            elements between rigid node frames, tension as a string in parallel; second order in
+            the length of elements. ``"difference"``: the kinematics of the 2015 study.
+        tolerance, below : float, optional
+            Instead of `elements`: the smallest chain, ``"tensed"`` where left out, whose relative
+            mesh error of every frequency (and rate of growth) below `below` [Hz] is within
+            `tolerance`, to 5 % of its elements. Rigid motion has no relative error; a frequency
+            that only the chain has below the limit counts too. The continuous spans are solved
+            once; one small chain tells the constant of its error C n^-p, which predicts how many
+            elements are needed, and a few more correct that. `Model.choice` says what was chosen
+            and why.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If there are fewer elements than stretches between stations or more than 10^7, the
+            element is unknown, or is ``"difference"`` with bending and tension, or continuous with
+            L sqrt(T/B) beyond 10^10, or only one of `tolerance` and `below` is given, or a
+            tolerance for a number of elements or for continuous spans.
+        SolveError
+            If no chain of this kind meets the tolerance: rounding forbids it, it needs more than
+            10^7 elements, or refinement leads elsewhere, as with ``"difference"``.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> scene.compile().modes(1).frequency.round(6)
+        array([15.811388])
+        >>> scene.compile(elements=8).size
+        7
+        >>> str(scene.compile(tolerance=1e-3, below=20.0).choice).partition(";")[0]
+        '21 tensed elements: relative mesh error 0.000932 <= 0.001 of 1 frequency below 20 Hz'
+        """
+        if tolerance is not None or below is not None:
+            from ..eigen.tolerance import compile_within
+
+            return compile_within(
+                self, tolerance=tolerance, below=below, elements=elements, element=element
+            )
+        from ..chain.compile import compile_scene
+
+        return compile_scene(self, elements=elements, element=element)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene as TOML, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            Of the file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> with TemporaryDirectory() as folder:
+        ...     scene.save(Path(folder, "rope.toml"))
+        ...     Path(folder, "rope.toml").read_text().splitlines()[0]
+        'tension = 100.0'
+        """
+        from .toml import save
+
+        save(self, path)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Scene:
+        """Read a scene from TOML.
+
+        Parameters
+        ----------
+        path : path
+            Of the file; keys are the names of the arguments.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        SceneError
+            If it is not TOML, a key is unknown or missing, or a value has no meaning.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> with TemporaryDirectory() as folder:
+        ...     scene.save(Path(folder, "rope.toml"))
+        ...     rd.Scene.load(Path(folder, "rope.toml")) == scene
+        True
+        """
+        from .toml import load
+
+        return load(path)
+
+
+def _checked_tension(tension: Any) -> float | Tension:
+    if not isinstance(tension, Tension):
+        return check.number(tension, "tension", "N")
+    return tension.mean if tension.is_constant else tension
+
+
+def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
+    """Return the tension of a scene that never had these effects."""
+    if "tension" in effects:
+        return 0.0
+    if not isinstance(tension, Tension):
+        return tension
+    if Tension.pulsating in effects:
+        tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
+    if {Tension.growing, "stretch"} & set(effects):
+        tension = dataclasses.replace(tension, stretching=False)
+    return _checked_tension(tension)
+
+
+def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
+    what = 'a pair of "clamped", "pinned", "free" or End'
+    check.instance(ends, "ends", (tuple, list), what)
+    if len(ends) != 2:
+        raise SceneError(f"ends must be {what}, got {check.shown(ends)}")
+    for i, end in enumerate(ends):
+        check.instance(end, f"ends[{i}]", (str, End), "a word or an End")
+        if isinstance(end, str):
+            check.one_of(end, f"ends[{i}]", _end.NAMED)
+    return (ends[0], ends[1])
+
+
+def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
+    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
+    if damping is None or isinstance(damping, _damping.KINDS):
+        return damping
+    if isinstance(damping, (tuple, list)):
+        for i, one in enumerate(damping):
+            check.instance(one, f"damping[{i}]", _damping.KINDS, names)
+        return _sum_of(tuple(damping))
+    raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
+
+
+def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
+    """Return a sum as a scene holds it: one term is itself, none is None."""
+    return dampings if len(dampings) > 1 else (*dampings, None)[0]
+
+
+def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
+    names = ", ".join(kind.__name__ for kind in _part.KINDS)
+    if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
+        raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
+    parts = tuple(parts)
+    for i, part in enumerate(parts):
+        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {names}")
+    return parts
+
+
+def _left_of(part: Part | Stretch, present: tuple[str, ...]) -> Part | Stretch | None:
+    """Return what is left of a part on these coordinates, None where nothing is."""
+    if isinstance(part, _stretch.KINDS):
+        return part.on(present)
+    return part if set(part.stands_on) <= set(present) else None
+
+
+def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
+    """Return an end without what goes with coordinates or with the effect itself."""
+    if isinstance(end, str):
+        return end
+    kept: dict[str, Any] = {}
+    for name, values in end.standing.items():
+        gone = _end.STANDING[name] in effects
+        kept[name] = {c: v for c, v in values.items() if c in present and not gone}
+    return dataclasses.replace(end, **kept)

@@ -1,0 +1,81 @@
+"""Where the nodes of a chain stand."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.check import NEAR
+from ..base.errors import SceneError
+
+
+def stations_at(length: float, positions: Iterable[float]) -> NDArray[np.float64]:
+    """Return the ends and the positions of parts in order, near ones merged.
+
+    Parameters
+    ----------
+    length : float
+        Of the rope [m].
+    positions : iterable of float
+        Of the parts [m].
+
+    Returns
+    -------
+    ndarray
+        From 0 to the length [m].
+    """
+    margin = NEAR * length
+    inner = sorted(x for x in positions if margin < x < length - margin)
+    kept = [0.0]
+    for x in inner:
+        if x - kept[-1] > margin:
+            kept.append(x)
+    return np.array([*kept, length])
+
+
+def nearest(stations: NDArray[np.float64], positions: Iterable[float]) -> NDArray[np.intp]:
+    """Return the number of the station next to each position."""
+    between = (stations[1:] + stations[:-1]) / 2
+    return np.searchsorted(between, list(positions))
+
+
+def shares(lengths: NDArray[np.float64], elements: int) -> NDArray[np.intp]:
+    """Share out elements over spans so that the longest element is as short as can be.
+
+    Parameters
+    ----------
+    lengths : ndarray, shape (spans,)
+        Of the spans [m].
+    elements : int
+        In all.
+
+    Returns
+    -------
+    ndarray of int, shape (spans,)
+        At least one each.
+
+    Raises
+    ------
+    SceneError
+        If there are fewer elements than spans.
+    """
+    if elements < len(lengths):
+        raise SceneError(
+            f"elements must be at least {len(lengths)}, one for each stretch between stations, "
+            f"got {elements}"
+        )
+    # every span has at least this many in the end
+    counts = np.floor(lengths / lengths.sum() * (elements - len(lengths))).astype(np.intp)
+    counts = np.maximum(counts, 1)
+    left = elements - int(counts.sum())
+    # only so many of the longest can have one more
+    longest = np.argsort(-lengths / counts, kind="stable")[:left]
+    heap = [(-float(lengths[i] / counts[i]), int(i)) for i in longest]
+    for _ in range(left):
+        _, i = heap[0]
+        counts[i] += 1
+        heapq.heapreplace(heap, (-float(lengths[i] / counts[i]), i))
+    return counts

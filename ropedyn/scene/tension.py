@@ -1,0 +1,108 @@
+"""Tension that pulsates in time, or grows with the amplitude."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base import check
+from ..base.errors import SceneError
+
+
+@dataclass(frozen=True)
+class Tension:
+    """A tension that is more than a number.
+
+        T(t) = mean + amplitude cos(2 pi frequency t + phase) + stretching,
+
+    where the stretching, if it is asked for, is EA/2L times the integral of (dz/dx)^2 along the
+    rope: transverse motion lengthens a rope whose ends hold it along x, and the tension this adds
+    is the same everywhere where waves along x are much faster than transverse ones (Kirchhoff's
+    string). Frequencies, responses and deflections are those of the mean tension; what pulsates and
+    stretches acts in `Model.transient`, `Model.stepped_sine`, `Model.floquet` and
+    `Model.stability_map`.
+
+    Parameters
+    ----------
+    mean : float
+        [N]; negative is compression.
+    amplitude : float
+        Of the pulsation [N].
+    frequency : float
+        Of the pulsation [Hz], positive where there is one.
+    phase : float
+        Of the pulsation [rad].
+    stretching : bool
+        Whether the tension grows with the amplitude of transverse motion; needs axial_stiffness.
+
+    Raises
+    ------
+    TypeError
+        If something is of the wrong type.
+    SceneError
+        If something is not finite, the amplitude is negative, or it pulsates without a frequency.
+
+    References
+    ----------
+    G. Kirchhoff, Vorlesungen ueber mathematische Physik: Mechanik (1876), lecture 29; A. H. Nayfeh,
+    D. T. Mook, Nonlinear Oscillations (1979), sections 5.2 and 7.5.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=50.0)
+    >>> rd.Scene(rd.Rope(1.0, 0.1), tension=tension).effects
+    ('tension', 'pulsating tension')
+    """
+
+    pulsating: ClassVar[str] = "pulsating tension"
+    """Name of the effect."""
+    growing: ClassVar[str] = "mean stretching"
+    """Name of the effect."""
+
+    mean: float
+    _: KW_ONLY
+    amplitude: float = 0.0
+    frequency: float = 0.0
+    phase: float = 0.0
+    stretching: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", check.number(self.mean, "mean", "N"))
+        amplitude = check.number(self.amplitude, "amplitude", "N", sign="nonnegative")
+        object.__setattr__(self, "amplitude", amplitude)
+        frequency = check.number(self.frequency, "frequency", "Hz", sign="nonnegative")
+        object.__setattr__(self, "frequency", frequency)
+        object.__setattr__(self, "phase", check.number(self.phase, "phase", "rad"))
+        check.instance(self.stretching, "stretching", bool, "True or False")
+        if self.amplitude > 0 and self.frequency == 0:
+            raise SceneError("frequency must be > 0 where the tension pulsates [Hz], got 0")
+
+    @property
+    def pulsates(self) -> bool:
+        """Whether it varies in time."""
+        return self.amplitude > 0
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is a number."""
+        return not self.pulsates and not self.stretching
+
+    def pulsation(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return what pulsation adds to the mean [N], as `time` [s].
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> tension = rd.Tension(1000.0, amplitude=100.0, frequency=50.0)
+        >>> tension.pulsates, tension.is_constant
+        (True, False)
+        >>> tension.pulsation(np.array([0.0, 0.01, 0.02]))
+        array([ 100., -100.,  100.])
+        """
+        angle = 2 * np.pi * self.frequency * time + self.phase
+        return np.asarray(self.amplitude * np.cos(angle))

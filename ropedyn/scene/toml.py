@@ -1,0 +1,148 @@
+"""Scenes as TOML files."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from ..base import check
+from ..base.atomic import write_bytes
+from ..base.errors import SceneError
+from . import damping
+from .end import End, PerCoordinate
+from .gravity import Gravity
+from .parts import part
+from .parts.node_force import NodeForce
+from .rope import Rope
+from .scene import Scene
+from .tension import Tension
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene; see `Scene.load`."""
+    file = check.path(path)
+    try:
+        document = tomllib.loads(file.read_text(encoding="utf-8"))
+    # not TOML, not UTF-8, a number of thousands of digits, thousands of brackets
+    except (ValueError, RecursionError) as error:
+        raise SceneError(f"{file} is not a TOML file: {error}") from error
+    try:
+        return _scene(document)
+    except (SceneError, TypeError) as error:
+        raise SceneError(f"{file}: {error}") from error
+
+
+def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+    """Write a scene; see `Scene.save`."""
+    import tomli_w
+
+    check.path(path)
+    for i, one in enumerate(scene.parts):
+        if isinstance(one, NodeForce):
+            raise SceneError(f"parts[{i}].law cannot be written to a file, got {one.law!r}")
+    document: dict[str, Any] = {
+        "tension": scene.tension if isinstance(scene.tension, float) else _plain(scene.tension),
+        "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
+        "rope": _plain(scene.rope),
+    }
+    if scene.gravity is not None:
+        document["gravity"] = _plain(scene.gravity)
+    if scene.dampings:
+        document["damping"] = [_named(one) for one in scene.dampings]
+    if scene.parts:
+        document["parts"] = [_named(one) for one in scene.parts]
+    write_bytes(path, tomli_w.dumps(document).encode())
+
+
+def _plain(thing: Any) -> dict[str, Any]:
+    """Return the arguments of a description that are not their defaults."""
+    values = {}
+    for field in dataclasses.fields(thing):
+        value = getattr(thing, field.name)
+        if isinstance(value, PerCoordinate):
+            value = dict(value)
+        if value is not None and value != {}:
+            values[field.name] = value
+    return values
+
+
+def _named(thing: Any) -> dict[str, Any]:
+    return {"kind": type(thing).__name__, **_plain(thing)}
+
+
+def _scene(document: Mapping[str, Any]) -> Scene:
+    known = {field.name for field in dataclasses.fields(Scene)}
+    _known_keys(document, known, "the file")
+    if "rope" not in document:
+        raise SceneError("key rope is missing: a scene needs a table [rope]")
+    arguments = dict(document)
+    arguments["rope"] = _built(Rope, document["rope"], "rope")
+    if isinstance(document.get("tension"), dict):
+        arguments["tension"] = _built(Tension, document["tension"], "tension")
+    if "gravity" in document:
+        arguments["gravity"] = _built(Gravity, document["gravity"], "gravity")
+    if "ends" in document:
+        arguments["ends"] = _ends(document["ends"])
+    if "damping" in document:
+        given = document["damping"]
+        many = given if isinstance(given, list) else [given]
+        arguments["damping"] = _each(many, "damping", damping.KINDS)
+    if "parts" in document:
+        arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
+    return Scene(**arguments)
+
+
+def _ends(given: Any) -> Any:
+    if not isinstance(given, list):
+        return given
+    return tuple(
+        _built(End, end, f"ends[{i}]") if isinstance(end, dict) else end
+        for i, end in enumerate(given)
+    )
+
+
+def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:
+    check.instance(given, name, list, f"an array of tables [[{name}]]")
+    by_name = {kind.__name__: kind for kind in kinds}
+    built = []
+    for i, table in enumerate(given):
+        where = f"{name}[{i}]"
+        check.instance(table, where, dict, "a table")
+        if "kind" not in table:
+            raise SceneError(f"key {where}.kind is missing: one of {', '.join(by_name)}")
+        kind = by_name[check.one_of(table["kind"], f"{where}.kind", by_name)]
+        arguments = {key: value for key, value in table.items() if key != "kind"}
+        built.append(_built(kind, arguments, where))
+    return tuple(built)
+
+
+def _built(kind: Callable[..., Any], table: Any, where: str) -> Any:
+    """Call a description with the keys of a table, and say where an error comes from."""
+    check.instance(table, where, dict, "a table")
+    fields = dataclasses.fields(kind)  # type: ignore[arg-type]
+    _known_keys(table, {field.name for field in fields}, where)
+    required = [
+        field.name
+        for field in fields
+        if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+    ]
+    for key in required:
+        if key not in table:
+            raise SceneError(f"key {where}.{key} is missing")
+    try:
+        return kind(**table)
+    except SceneError as error:
+        raise SceneError(f"{where}.{error}") from error
+    except TypeError as error:
+        raise TypeError(f"{where}.{error}") from error
+
+
+def _known_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:
+    for key in table:
+        if key not in known:
+            raise SceneError(
+                f"unknown key {key!r} in {where}: expected one of {', '.join(sorted(known))}"
+            )

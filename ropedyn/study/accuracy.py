@@ -1,0 +1,325 @@
+"""What accuracy costs: time and error of every way to the answer of a question."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..ask import FRFQuestion, ModesQuestion, Question
+from ..base import check
+from ..base.answer import Answer, Cost, axes
+from ..base.errors import SceneError
+from ..base.progress import Progress, reporter
+from ..base.stopwatch import timed
+from ..base.table import Table, numbers
+from ..base.unit import power
+from ..chain.chain import KINDS
+from ..chain.compile import MOST_ELEMENTS
+from ..scene.scene import Scene
+from .trial import CUTS, Trial, Truth, trial, ways, words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
+"""Relative errors that the cheapest way is looked for."""
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class AccuracyCost(Answer):
+    """Time and error of every way to the answer of a question; made by `accuracy_cost`.
+
+    Attributes
+    ----------
+    question : str
+        What was asked.
+    reference : str
+        What errors were measured against.
+    element : ndarray of str, shape (rows,)
+        Kind of the elements.
+    elements : ndarray of int, shape (rows,)
+        How many; of continuous spans how many spans.
+    solver : ndarray of str, shape (rows,)
+        "sweep", "lapack" or "band".
+    seconds : ndarray, shape (rows,)
+        Processor time of the question, one thread: the median [s]; of modes that of frequencies,
+        shapes come when they are asked for.
+    lower_quartile, upper_quartile : ndarray, shape (rows,)
+        Of the same [s].
+    compile_seconds : ndarray, shape (rows,)
+        Median processor time of `Scene.compile` [s].
+    error : ndarray, shape (rows,)
+        True relative error, the largest of all modes or lines; 1.1e-16 where none is seen. Modes
+        are compared in order. Values of which continuous spans have no correct digit themselves,
+        as a response that is 0 by symmetry, are left out.
+    estimated_error : ndarray, shape (rows,)
+        Estimated relative error, of mesh and rounding together, the largest too.
+    digits_lost : ndarray, shape (rows,)
+        Decimal digits lost to rounding, of 15.7: those in which an assembled solver differs from
+        the sweep along the same chain; of the sweep those that its own bound gives up.
+    refusal : ndarray of str, shape (rows,)
+        Why there is no answer, empty where there is one; numbers of such rows are NaN.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    >>> question = rd.ask.modes(1)
+    >>> cost = rd.accuracy_cost(scene, question, elements=[8, 64], solver="sweep", repeat=1)
+    >>> cost.element.tolist(), cost.elements.tolist()
+    (['rigid', 'rigid', 'tensed', 'tensed', 'continuous'], [8, 64, 8, 64, 1])
+    >>> cost.error[:2].round(6)
+    array([0.006413, 0.0001  ])
+    >>> bool((cost.total_seconds > 0).all()), cost.cheapest[1e-12], cost.cost.method
+    (True, 4, 'trials')
+    """
+
+    question: str
+    reference: str
+    element: NDArray[np.str_] = field(metadata=axes("row"))
+    elements: NDArray[np.int64] = field(metadata=axes("row"))
+    solver: NDArray[np.str_] = field(metadata=axes("row"))
+    seconds: Real = field(metadata=axes("row", unit="s"))
+    lower_quartile: Real = field(metadata=axes("row", unit="s"))
+    upper_quartile: Real = field(metadata=axes("row", unit="s"))
+    compile_seconds: Real = field(metadata=axes("row", unit="s"))
+    error: Real = field(metadata=axes("row"))
+    estimated_error: Real = field(metadata=axes("row"))
+    digits_lost: Real = field(metadata=axes("row"))
+    refusal: NDArray[np.str_] = field(metadata=axes("row"))
+
+    @property
+    def total_seconds(self) -> Real:
+        """From the scene to the answer: compile and question [s], shape (rows,)."""
+        return self.compile_seconds + self.seconds
+
+    @property
+    def cheapest(self) -> dict[float, int | None]:
+        """Row that takes the least time from the scene within each of 1e-3, 1e-6, 1e-9, 1e-12.
+
+        None where no row is within it; see `cheapest_within`.
+        """
+        return {tolerance: self.cheapest_within(tolerance) for tolerance in TOLERANCES}
+
+    def cheapest_within(self, tolerance: float) -> int | None:
+        """Return the row that takes the least time of those whose true error is within a tolerance.
+
+        Of rows whose time is not told apart from the least, because quartiles overlap, it is the
+        most accurate.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative error.
+
+        Returns
+        -------
+        int or None
+            None where no row is within it.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> question = rd.ask.modes(1)
+        >>> cost = rd.accuracy_cost(scene, question, elements=[8, 64], solver="sweep", repeat=1)
+        >>> cost.cheapest_within(1e-9)
+        4
+        """
+        within = check.number(tolerance, "tolerance", sign="positive")
+        enough = np.flatnonzero(self.error <= within)
+        if len(enough) == 0:
+            return None
+        quickest = enough[np.argmin(self.total_seconds[enough])]
+        soonest = self.compile_seconds + self.lower_quartile
+        latest = self.compile_seconds[quickest] + self.upper_quartile[quickest]
+        tied = enough[soonest[enough] <= latest]
+        # of equal errors the quickest
+        order = np.lexsort((self.total_seconds[tied], self.error[tied]))
+        return int(tied[order[0]])
+
+    @property
+    def cost(self) -> Cost:
+        """What all the trials took together: a pass over each, without the repetitions."""
+        asked = self.refusal == ""
+        return Cost(
+            seconds=float(self.total_seconds[asked].sum()),
+            method="trials",
+            elements=int(self.elements[asked].sum()),
+            unknowns=0,
+        )
+
+    def way(self, row: int) -> str:
+        """Say in words how a row answers, such as ``tensed, 64, sweep``.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+        >>> cost = rd.accuracy_cost(scene, rd.ask.modes(1), elements=8, element="tensed", repeat=1)
+        >>> cost.way(0), cost.way(1)
+        ('tensed, 8, sweep', 'tensed, 8, lapack')
+        """
+        check.count(row, "row", least=0, most=len(self.element) - 1)
+        return words(self.element[row], self.elements[row], self.solver[row])
+
+    def table(self) -> Table:
+        """Return one row for each way, the cheapest ones marked."""
+        marks: list[list[str]] = [[] for _ in self.element]
+        for tolerance, row in self.cheapest.items():
+            if row is not None:
+                marks[row].append(power(tolerance))
+        columns: dict[str, Any] = {
+            "element": self.element,
+            "elements": self.elements,
+            "solver": self.solver,
+            "compile [s]": numbers(self.compile_seconds),
+            "question [s]": numbers(self.seconds),
+            "lower quartile [s]": numbers(self.lower_quartile),
+            "upper quartile [s]": numbers(self.upper_quartile),
+            "true error": numbers(self.error),
+            "estimated error": numbers(self.estimated_error),
+            "digits lost to rounding": numbers(self.digits_lost.round(1)),
+            "cheapest for": tuple(", ".join(mark) or None for mark in marks),
+        }
+        if self.refusal.any():
+            columns["refused"] = tuple(text or None for text in self.refusal.tolist())
+        return Table.of(f"{self.question}: relative error against {self.reference}", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot true errors over time from the scene to the answer, the cheapest rows marked."""
+        from ..plot.answers import plot_accuracy
+
+        return plot_accuracy(self, ax)
+
+
+def accuracy_cost(
+    scene: Scene,
+    question: Question,
+    *,
+    elements: int | Sequence[int] | None = None,
+    element: str | Sequence[str] = ("rigid", "tensed", "continuous"),
+    solver: str | Sequence[str] = ("sweep", "lapack"),
+    repeat: int = 7,
+    progress: Progress = None,
+) -> AccuracyCost:
+    """Measure what every way to the answer of a question costs, and how wrong it is.
+
+    Errors are measured against continuous spans, which have no mesh; those of continuous spans
+    against the same spans cut into 3, 5 and 7 parts, the same rope by other arithmetic.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked about.
+    question : ModesQuestion or FRFQuestion
+        Such as ``rd.ask.modes(10)`` or ``rd.ask.frf(frequency, drive=("z", 0.5))``.
+    elements : int or sequence of int, optional
+        Of chains; powers of two from 8 to 4096 where left out, for assembled solvers as far as
+        they take about a second.
+    element : str or sequence of str
+        Kinds of element; continuous spans are one row, by the sweep.
+    solver : str or sequence of str
+        ``"sweep"``, ``"lapack"``, for a frequency response also ``"band"``.
+    repeat : int
+        How often each is timed, in turns, warmed up; calls that take more than 0.05 s at most three
+        times. Of the times the median and the quartiles are kept, of the processor, one thread.
+    progress : None, True or callable
+        True prints, a callable takes, the fraction that is done.
+
+    Returns
+    -------
+    AccuracyCost
+        What is refused on a chain, as more modes than it has, is a row with the reason.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If a value has no meaning, or there is nothing to measure.
+    SolveError
+        If continuous spans have no answer, or no correct digit of it.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    >>> cost = rd.accuracy_cost(scene, rd.ask.modes(1), elements=[8, 16, 32], repeat=1)
+    >>> cost.error[:3].round(5)  # of a string (pi/2n)^2/6
+    array([0.00641, 0.00161, 0.0004 ])
+    >>> print(cost.error[-1] < 1e-14)  # continuous spans
+    True
+    """
+    check.instance(scene, "scene", Scene, "a Scene")
+    kinds_of_question = (ModesQuestion, FRFQuestion)
+    check.instance(question, "question", kinds_of_question, "made by ropedyn.ask")
+    kinds = _words(element, "element", KINDS)
+    solvers = _words(solver, "solver", question.solvers)
+    counts = None if elements is None else _counts(elements)
+    check.count(repeat, "repeat", most=10_000)
+    report = reporter(progress)
+    if kinds == ("continuous",) and "sweep" not in solvers:
+        raise SceneError(f'solver must have "sweep" for continuous spans, got {solvers}')
+    truth = Truth.of(scene, question)
+    every = ways(truth, kinds, counts, solvers)
+    if not every:
+        raise SceneError(
+            f"elements must be given where {' and '.join(solvers)} would take more than about a "
+            "second, got None"
+        )
+    tried = []
+    for k, way in enumerate(every):
+        tried.append(trial(truth, way))
+        report((k + 1) / len(every) / 2)
+    return _timed(question, tried, repeat, lambda fraction: report((1 + fraction) / 2))
+
+
+def _timed(
+    question: Question, tried: Sequence[Trial], repeat: int, report: Callable[[float], Any]
+) -> AccuracyCost:
+    """Time what has been tried."""
+    times = timed([one.calls for one in tried], repeat, report)
+    return AccuracyCost(
+        question=str(question),
+        reference=f"continuous spans, of these against cuts into {_listed(CUTS)} parts",
+        element=np.array([one.element for one in tried]),
+        elements=np.array([one.elements for one in tried]),
+        solver=np.array([one.solver for one in tried]),
+        **times._asdict(),
+        error=np.array([one.error for one in tried]),
+        estimated_error=np.array([one.estimated_error for one in tried]),
+        digits_lost=np.array([one.digits_lost for one in tried]),
+        refusal=np.array([one.refusal for one in tried]),
+    )
+
+
+def _words(given: Any, name: str, words: Sequence[str]) -> tuple[str, ...]:
+    """Return one word or several, each once."""
+    if not isinstance(given, (tuple, list)):
+        return (check.one_of(given, name, words),)
+    if not given:
+        raise SceneError(f"{name} must have at least one of {', '.join(words)}, got {given!r}")
+    return tuple(dict.fromkeys(check.one_of(w, f"{name}[{k}]", words) for k, w in enumerate(given)))
+
+
+def _counts(given: Any) -> tuple[int, ...]:
+    """Return one number of elements or several, each once, increasing."""
+    several = isinstance(given, (tuple, list, range))
+    if not several and not (isinstance(given, np.ndarray) and given.ndim > 0):
+        return (check.count(given, "elements", most=MOST_ELEMENTS),)
+    if len(given) == 0:
+        raise SceneError(f"elements must have at least one number, got {check.shown(given)}")
+    return tuple(
+        sorted({check.count(n, f"elements[{k}]", most=MOST_ELEMENTS) for k, n in enumerate(given)})
+    )
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    return ", ".join(map(str, numbers[:-1])) + f" and {numbers[-1]}"

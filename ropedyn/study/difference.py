@@ -1,0 +1,273 @@
+"""What an answer changes when something is left out: mode by mode, or line by line."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..chain.chain import CARRIED
+from ..eigen.eigen import solve_modes
+from ..eigen.mesh_error import in_hertz
+from ..eigen.modes import Modes
+from ..model import Model
+from ..response.frf import FRF
+
+MOTIONS = {
+    "axial": ("x",),
+    "transverse": ("z", "beta"),
+    "torsional": ("alpha",),
+    **{kind: (name,) for kind, name in CARRIED.items()},
+}
+"""What modes are told apart by: which kinetic energies are whose.
+
+A cross section that turns with dz/dx belongs to z; what the rope carries has modes of its own.
+"""
+
+FURTHEST = 16
+"""Times as many modes as were asked for, among which the partners of modes are looked for."""
+
+OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
+OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
+"""What is measured of a change, the largest first."""
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Change:
+    """What leaving something out changes.
+
+    Attributes
+    ----------
+    size : dict of float
+        Measures of the change with their units, the largest change first; NaN where nothing is
+        left to compare.
+    error : float
+        Error bars of both answers where the change is largest, in the same unit.
+    beyond_error : bool
+        Whether any part of the change is larger than its error bars, or something is lost.
+    lost : int
+        Modes or responses that are only there with it.
+    """
+
+    size: dict[str, float]
+    error: float
+    beyond_error: bool
+    lost: int
+
+    @staticmethod
+    def unknown(measures: Sequence[str]) -> Change:
+        """Return the change of what has no answer."""
+        return Change(dict.fromkeys(measures, np.nan), np.nan, beyond_error=False, lost=0)
+
+
+def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
+    """Return relative differences: 0 where both are 0, 1 where only the right value is."""
+    size = np.where(right == 0, np.abs(found), np.abs(right))
+    return np.divide(np.abs(found - right), size, out=np.zeros(size.shape), where=size > 0)
+
+
+# --- modes ------------------------------------------------------------------------------------
+
+
+def change_of_modes(whole: Modes, model: Model, solver: str) -> Change:
+    """Compare modes with those of a model from which something was left out.
+
+    Modes are paired by their motion and their order among those of the same motion; where the
+    model has none of a motion, or too few, the others are only there in the whole.
+
+    Parameters
+    ----------
+    whole : Modes
+        Of the whole scene.
+    model : Model
+        Of what is left.
+    solver : str
+        As in `Model.modes`.
+    """
+    mine = motions(whole)
+    partners = _partners(mine, model, solver)
+    paired = [np.flatnonzero(mine == motion)[: len(one)] for motion, one in partners.items()]
+    before, error, ratio = _numbers(whole)[np.concatenate(paired)].T
+    after, uncertain, left = np.concatenate(list(partners.values())).T
+    hertz, percent = np.abs(after - before), 100 * relative(after, before)
+    error = error + uncertain
+    lost = len(mine) - len(after)
+    size = [measure(each) for each in (hertz, percent) for measure in (_largest, _root_mean_square)]
+    return Change(
+        size=dict(zip(OF_MODES, (*size, _largest_known(np.abs(left - ratio))))),
+        error=_at_largest(error, hertz),
+        beyond_error=bool(lost > 0 or (hertz > error).any()),
+        lost=lost,
+    )
+
+
+def motions(modes: Modes) -> NDArray[np.str_]:
+    """Say of each mode which motion it is, one of `MOTIONS`.
+
+    By kinetic energy. Where a coupling mixes two modes in equal parts, each has about half of
+    either motion, and both could be called the same: so what a mode has of the motions that it is
+    not called is owed to them, and the next mode pays. Of two mixed modes one is always each. The
+    shares that a resonator has of all modes there are have the sum 1: it is given one of them.
+    """
+    moving = _moving(modes.energy)
+    names = np.array(list(moving))
+    shares = {motion: sum(modes.energy[c] for c in own) for motion, own in moving.items()}
+    owed, which = np.zeros(len(names)), []
+    for share in np.stack(list(shares.values()), axis=1):
+        owed += share / share.sum()
+        which.append(int(owed.argmax()))
+        owed[which[-1]] -= 1.0
+    return names[which]
+
+
+def _moving(energies: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """Return the motions there are, and which of the energies are theirs."""
+    present = {m: tuple(e for e in energies if e in own) for m, own in MOTIONS.items()}
+    return {motion: own for motion, own in present.items() if own}
+
+
+def _partners(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str, Real]:
+    """Return frequencies of a model, for each motion as many as wanted or as there are.
+
+    Parameters
+    ----------
+    mine : ndarray of str, shape (k,)
+        Motions that partners are wanted for.
+    model, solver
+        Whose modes, and how they are found.
+
+    Returns
+    -------
+    dict of ndarray, shape (partners, 3)
+        Of each motion: frequency and error [Hz] and damping ratio, from the fewest modes among
+        which all are.
+    """
+    energies = (*model.coordinates, *(CARRIED[kind] for kind in model.chain.carried))
+    wanted = {
+        motion: min(int(np.sum(mine == motion)), _most(model, motion, own))
+        for motion, own in _moving(energies).items()
+    }
+    found = {motion: np.zeros((0, 3)) for motion in wanted}
+    number = len(mine)
+    while True:
+        modes = solve_modes(model, number, below=None, solver=solver, strict=False)
+        which, numbers = motions(modes), _numbers(modes)
+        for motion in [m for m in wanted if len(found[m]) < wanted[m]]:
+            found[motion] = numbers[which == motion][: wanted[motion]]
+        complete = all(len(found[motion]) == wanted[motion] for motion in wanted)
+        if complete or len(modes.frequency) < number or number >= FURTHEST * len(mine):
+            return found
+        number *= 2
+
+
+def _most(model: Model, motion: str, own: tuple[str, ...]) -> int:
+    """Return how many modes of a motion there can be: as many as coordinates have inertia."""
+    endless = np.iinfo(np.int32).max
+    if motion in CARRIED:
+        return int(model.chain.carries(motion).sum()) if motion == "resonator" else endless
+    chain = model.chain.only(own)
+    if chain.inertia is not None and chain.inertia.any():
+        return endless
+    heavy = chain.mass.any(axis=2) & (chain.held == 0)
+    return int(heavy[chain.term_of].sum())
+
+
+def _numbers(modes: Modes) -> Real:
+    """Return frequency and error [Hz] and damping ratio of each mode, shape (k, 3)."""
+    error = modes.mesh_error + modes.rounding_error
+    return np.stack([in_hertz(modes.eigenvalue), error, modes.damping_ratio], axis=1)
+
+
+# --- frequency response -----------------------------------------------------------------------
+
+
+def change_of_frf(whole: FRF, left: FRF) -> Change:
+    """Compare a frequency response with that of what is left, line by line.
+
+    A value without a correct digit, as one that is 0 by symmetry, counts as 0.
+
+    Parameters
+    ----------
+    whole, left : FRF
+        Of the whole scene, and of what is left.
+    """
+    lines = len(whole.frequency)
+    before, after = (_size(frf).reshape(-1, lines) for frf in (whole, left))
+    gone = before.any(axis=1) & ~after.any(axis=1)
+    level = _level(before[~gone], after[~gone])
+    error = _decibel(_relative_error(whole) + _relative_error(left)).reshape(-1, lines)[~gone]
+    size = (_largest(level), _median(level), _peak_shift(whole, left))
+    return Change(
+        size=dict(zip(OF_FRF, size)),
+        error=_at_largest(error, level),
+        beyond_error=bool(gone.any() or (level > error).any()),
+        lost=int(gone.sum()),
+    )
+
+
+def _size(frf: FRF) -> Real:
+    return np.where(frf.rounding_error < 1, np.abs(frf.value), 0.0)
+
+
+def _level(before: Real, after: Real) -> Real:
+    """Return |20 log10(after/before)| [dB]: 0 where both are 0, infinite where only one is."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        level = 20 * np.abs(np.log10(after) - np.log10(before))
+    return np.where((before == 0) & (after == 0), 0.0, level)
+
+
+def _relative_error(frf: FRF) -> Real:
+    return np.where(frf.rounding_error < 1, frf.rounding_error + frf.mesh_error, 0.0)
+
+
+def _decibel(relative_error: Real) -> Real:
+    """Return how far a level may be off when a value is off by a relative error [dB]."""
+    with np.errstate(divide="ignore"):
+        return -20 * np.log10(1 - np.minimum(relative_error, 1.0))
+
+
+def _peak_shift(whole: FRF, left: FRF) -> float:
+    """Return how far the largest peak moves [Hz], of several responses the furthest.
+
+    NaN where there is none, or where the nearest peak of what is left has another number: then it
+    is not clear which one the peak has become.
+    """
+    shifts = []
+    drives = len(whole.drive) if whole.value.ndim == 3 else 1
+    for drive in range(drives):
+        for one, other in zip(whole.peaks(drive), left.peaks(drive)):
+            if len(one.frequency) == 0 or len(other.frequency) == 0:
+                continue
+            largest = one.amplitude.argmax()
+            away = other.frequency - one.frequency[largest]
+            if np.abs(away).argmin() == largest:
+                shifts.append(float(away[largest]))
+    return max(shifts, key=abs, default=np.nan)
+
+
+# --- measures ---------------------------------------------------------------------------------
+
+
+def _largest(change: Real) -> float:
+    return float(change.max()) if change.size else np.nan
+
+
+def _largest_known(change: Real) -> float:
+    return _largest(change[~np.isnan(change)])
+
+
+def _median(change: Real) -> float:
+    return float(np.median(change)) if change.size else np.nan
+
+
+def _root_mean_square(change: Real) -> float:
+    return float(np.sqrt(np.mean(change**2))) if change.size else np.nan
+
+
+def _at_largest(error: Real, change: Real) -> float:
+    return float(error.flat[change.argmax()]) if change.size else np.nan

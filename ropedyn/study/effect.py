@@ -1,0 +1,370 @@
+"""What effects cost: time and change of the answer with each effect of a scene and without."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..ask import FRFQuestion, ModesQuestion, Question
+from ..base import check
+from ..base.answer import Answer, Cost, axes
+from ..base.errors import RopedynError
+from ..base.progress import Progress, reporter
+from ..base.stopwatch import Times, timed
+from ..base.table import Table, numbers
+from ..model import Model
+from ..scene.scene import Scene
+from .difference import Change
+from .trial import answered, ask_once, words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class EffectCost(Answer):
+    """What each effect of a scene costs, and what it changes; made by `effect_cost`.
+
+    Attributes
+    ----------
+    question : str
+        What was asked.
+    way : str
+        By which elements and solver.
+    elements : int
+        Of the chain, or continuous spans.
+    effect : ndarray of str, shape (rows,)
+        One row for each effect of the scene, in the order of `Scene.effects`.
+    change : dict of ndarray, shape (rows,)
+        What leaving the effect out changes. Of modes ``"largest [Hz]"``, ``"rms [Hz]"``,
+        ``"largest [%]"`` and ``"rms [%]"``, of frequencies; where motion grows -growth/2 pi is the
+        frequency. Each mode is compared with that of the same order among those of the same
+        motion: transverse, torsional, axial, of a resonator or of a broken wire. And
+        ``"damping ratio [1]"``, the largest change of any damping ratio, which has no error bars.
+        Of a frequency response ``"largest [dB]"`` and ``"median [dB]"``, of the level
+        |20 log10(without/with)| of all lines, and ``"peak shift [Hz]"``, from the largest peak to
+        the nearest one without the effect, where that has the same number. NaN where there is
+        nothing to compare.
+    error : ndarray, shape (rows,)
+        Error bars of both answers together, of mesh and rounding, where the change is largest
+        [Hz, dB].
+    beyond_error : ndarray of bool, shape (rows,)
+        Whether the effect changes any frequency or level by more than the error bars there, or
+        modes or responses are only there with it.
+    only_with : ndarray of int, shape (rows,)
+        How many of the modes are only there with the effect; of a frequency response how many
+        responses are 0 without.
+    seconds_with, lower_quartile_with, upper_quartile_with : float
+        Processor time from the scene to the answer, `Scene.compile` and the question, one thread:
+        the median and, of the question, the quartiles [s]; of modes that of frequencies.
+    seconds_without, lower_quartile_without, upper_quartile_without : ndarray, shape (rows,)
+        The same without the effect [s].
+    unknowns_with : int
+        Of what was solved; of continuous spans those at stations.
+    unknowns_without : ndarray of int, shape (rows,)
+        The same without the effect; 0 where there is no answer.
+    refusal : ndarray of str, shape (rows,)
+        Why there is no answer without the effect, empty where there is one; numbers of such rows
+        are NaN or 0.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.5)
+    >>> cost = rd.effect_cost(rd.Scene(rope, tension=100.0), rd.ask.modes(1), repeat=1)
+    >>> cost.effect.tolist(), cost.largest.round(3), cost.cost.method
+    (['tension', 'bending'], array([10.893,  3.044]), 'trials')
+    >>> cost.share.shape, len(cost.share_quartiles), len(cost.costs)
+    ((2,), 2, 2)
+    """
+
+    question: str
+    way: str
+    elements: int
+    effect: NDArray[np.str_] = field(metadata=axes("row"))
+    change: dict[str, Real] = field(metadata=axes("row", keyed=True))
+    error: Real = field(metadata=axes("row"))
+    beyond_error: NDArray[np.bool_] = field(metadata=axes("row"))
+    only_with: NDArray[np.int64] = field(metadata=axes("row"))
+    seconds_with: float
+    lower_quartile_with: float
+    upper_quartile_with: float
+    seconds_without: Real = field(metadata=axes("row", unit="s"))
+    lower_quartile_without: Real = field(metadata=axes("row", unit="s"))
+    upper_quartile_without: Real = field(metadata=axes("row", unit="s"))
+    unknowns_with: int
+    unknowns_without: NDArray[np.int64] = field(metadata=axes("row"))
+    refusal: NDArray[np.str_] = field(metadata=axes("row"))
+
+    @property
+    def largest(self) -> Real:
+        """The largest change, of frequency [Hz] or of level [dB], shape (rows,)."""
+        return next(iter(self.change.values()))
+
+    @property
+    def share(self) -> Real:
+        """Which share of the time the effect takes, negative where it saves time, shape (rows,)."""
+        return 1 - self.seconds_without / self.seconds_with
+
+    @property
+    def share_quartiles(self) -> tuple[Real, Real]:
+        """Least and largest share of the time by the quartiles of both, each shape (rows,)."""
+        return (
+            1 - self.upper_quartile_without / self.lower_quartile_with,
+            1 - self.lower_quartile_without / self.upper_quartile_with,
+        )
+
+    @property
+    def costs(self) -> NDArray[np.str_]:
+        """What the scene costs with the effect: "more", "less", "the same" (quartiles overlap).
+
+        Shape (rows,); empty where there is no answer without it.
+        """
+        least, most = self.share_quartiles
+        told = np.where(least > 0, "more", np.where(most < 0, "less", "the same"))
+        return np.where(self.refusal == "", told, "")
+
+    @property
+    def cost(self) -> Cost:
+        """What all the trials took together: a pass over each, without the repetitions."""
+        return Cost(
+            seconds=float(self.seconds_with + np.nansum(self.seconds_without)),
+            method="trials",
+            elements=self.elements,
+            unknowns=self.unknowns_with,
+        )
+
+    def verdict(self, row: int) -> str:
+        """Say in words whether a row changes the answer, such as ``none beyond rounding``.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.5)
+        >>> cost = rd.effect_cost(rd.Scene(rope, tension=100.0), rd.ask.modes(1), repeat=1)
+        >>> cost.verdict(1)
+        'yes'
+        """
+        check.count(row, "row", least=0, most=len(self.effect) - 1)
+        if self.refusal[row]:
+            return "no answer without it"
+        if self.beyond_error[row]:
+            return "yes"
+        return f"none beyond {'' if self.way == 'continuous' else 'mesh and '}rounding"
+
+    def table(self) -> Table:
+        """Return a row for each effect that is left out, after one for the whole scene."""
+        unit = next(iter(self.change)).partition(" ")[2]
+        asked = self.refusal == ""
+        columns: dict[str, Any] = {
+            "left out": ("nothing", *self.effect.tolist()),
+            "changes the answer": (None, *map(self.verdict, range(len(self.effect)))),
+            **{name: (None, *numbers(change)) for name, change in self.change.items()},
+            f"error bars {unit}": (None, *numbers(self.error)),
+            "only with it": (None, *_where(asked, self.only_with)),
+            "effect costs": (None, *(text or None for text in self.costs.tolist())),
+            "share of time [%]": (None, *numbers((100 * self.share).round(1))),
+            "time [s]": (self.seconds_with, *numbers(self.seconds_without)),
+            "lower quartile [s]": (self.lower_quartile_with, *numbers(self.lower_quartile_without)),
+            "upper quartile [s]": (self.upper_quartile_with, *numbers(self.upper_quartile_without)),
+            "unknowns": (self.unknowns_with, *_where(asked, self.unknowns_without)),
+        }
+        if not asked.all():
+            columns["refused"] = (None, *(text or None for text in self.refusal.tolist()))
+        return Table.of(f"{self.question}, {self.way}: what each effect changes and costs", columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Plot the largest change and the share of time of each effect, a row for each."""
+        from ..plot.answers import plot_effects
+
+        return plot_effects(self, ax)
+
+
+def effect_cost(
+    scene: Scene,
+    question: Question,
+    *,
+    elements: int | None = None,
+    element: str | None = None,
+    solver: str = "sweep",
+    repeat: int = 7,
+    progress: Progress = None,
+) -> EffectCost:
+    """Measure what each effect of a scene costs, and how it changes the answer of a question.
+
+    The question is put to the scene and to ``scene.without(effect)``, for each of its effects.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is asked about.
+    question : ModesQuestion or FRFQuestion
+        Such as ``rd.ask.modes(10)`` or ``rd.ask.frf(frequency, drive=("z", 0.5))``.
+    elements, element
+        As in `Scene.compile`: continuous spans where left out.
+    solver : str
+        ``"sweep"``, ``"lapack"``, for a frequency response also ``"band"``.
+    repeat : int
+        How often each is timed, in turns, as in `accuracy_cost`.
+    progress : None, True or callable
+        True prints, a callable takes, the fraction that is done.
+
+    Returns
+    -------
+    EffectCost
+        Where nothing is left to ask without an effect, as without the coordinate that is driven, is
+        a row with the reason.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong type.
+    SceneError
+        If a value has no meaning, or the question has no answer.
+    SolveError
+        If the scene with all its effects has no answer.
+
+    Examples
+    --------
+    A mass m in the middle of a string halves its first frequency: cot(x) = x m/(mu L) at pi/4.
+
+    >>> import math
+    >>> import ropedyn as rd
+    >>> mass = rd.PointMass(0.5, 0.1 * 4 / math.pi)
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[mass])
+    >>> cost = rd.effect_cost(scene, rd.ask.modes(1), repeat=1)
+    >>> cost.effect.tolist()
+    ['tension', 'point mass']
+    >>> cost.change["largest [%]"].round(9).tolist()
+    [nan, 100.0]
+    >>> print(cost.refusal[0][:53])
+    rope must have a stiffness or the scene a tension: te
+    """
+    check.instance(scene, "scene", Scene, "a Scene")
+    kinds_of_question = (ModesQuestion, FRFQuestion)
+    check.instance(question, "question", kinds_of_question, "made by ropedyn.ask")
+    check.one_of(solver, "solver", question.solvers)
+    check.count(repeat, "repeat", most=10_000)
+    report = reporter(progress)
+    whole = Whole.of(scene, question, {"elements": elements, "element": element}, solver)
+    left: list[Left] = []
+    for effect in scene.effects:
+        left.append(_without(whole, effect))
+        report(len(left) / len(scene.effects) / 2)
+    calls = [whole.calls(scene, whole.model), *(one.calls for one in left)]
+    times = timed(calls, repeat, lambda fraction: report((1 + fraction) / 2))
+    return _result(whole, left, times)
+
+
+@dataclass(frozen=True, eq=False)
+class Whole:
+    """The scene with all its effects, and how it is asked.
+
+    Attributes
+    ----------
+    scene, question, solver
+        As in `effect_cost`.
+    how : dict
+        Arguments of `Scene.compile`.
+    model : Model
+        Of the whole scene.
+    answer : Modes or FRF
+        To the question.
+    """
+
+    scene: Scene
+    question: Question
+    how: dict[str, Any]
+    solver: str
+    model: Model
+    answer: Any
+
+    @staticmethod
+    def of(scene: Scene, question: Question, how: dict[str, Any], solver: str) -> Whole:
+        """Compile and ask the whole scene."""
+        model = scene.compile(**how)
+        return Whole(scene, question, how, solver, model, answered(question, model, solver))
+
+    def calls(self, scene: Scene, model: Model) -> tuple[Callable[[], Any], ...]:
+        """Return what compiles a scene and what asks its model."""
+        asked = partial(ask_once, self.question, model, self.solver)
+        return partial(scene.compile, **self.how), asked
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What is left without an effect.
+
+    Attributes
+    ----------
+    effect : str
+        Which one.
+    change : Change
+        Of the answer.
+    unknowns : int
+        Of what was solved.
+    refusal : str
+        Why there is no answer.
+    calls : tuple of callables
+        What compiles and what asks, nothing where there is no answer.
+    """
+
+    effect: str
+    change: Change
+    unknowns: int = 0
+    refusal: str = ""
+    calls: tuple[Callable[[], Any], ...] = ()
+
+
+def _without(whole: Whole, effect: str) -> Left:
+    """Ask what is left of a scene without an effect."""
+    question, solver = whole.question, whole.solver
+    try:
+        scene = whole.scene.without(effect)
+        model = scene.compile(**whole.how)
+        unknowns = ask_once(question, model, solver).cost.unknowns
+        change = question.change(whole.answer, model, solver=solver)
+    except RopedynError as refusal:
+        return Left(effect, Change.unknown(question.measures), refusal=str(refusal))
+    return Left(effect, change, unknowns, calls=whole.calls(scene, model))
+
+
+def _result(whole: Whole, left: Sequence[Left], times: Times) -> EffectCost:
+    """Lay out what has been tried and timed, the whole scene first among the times."""
+    middle, lower, upper = (
+        times.compile_seconds + part
+        for part in (times.seconds, times.lower_quartile, times.upper_quartile)
+    )
+    question, model, elements = whole.question, whole.model, len(whole.model.x) - 1
+    changes = [one.change for one in left]
+    return EffectCost(
+        question=str(question),
+        way=words(model.element, elements, whole.solver),
+        elements=elements,
+        effect=np.array([one.effect for one in left]),
+        change={name: np.array([c.size[name] for c in changes]) for name in question.measures},
+        error=np.array([c.error for c in changes]),
+        beyond_error=np.array([c.beyond_error for c in changes]),
+        only_with=np.array([c.lost for c in changes]),
+        seconds_with=float(middle[0]),
+        lower_quartile_with=float(lower[0]),
+        upper_quartile_with=float(upper[0]),
+        seconds_without=middle[1:],
+        lower_quartile_without=lower[1:],
+        upper_quartile_without=upper[1:],
+        unknowns_with=whole.answer.cost.unknowns,
+        unknowns_without=np.array([one.unknowns for one in left]),
+        refusal=np.array([one.refusal for one in left]),
+    )
+
+
+def _where(asked: NDArray[np.bool_], values: NDArray[np.int64]) -> tuple[int | None, ...]:
+    """Return whole numbers for a column, None where there is no answer."""
+    return tuple(value if there else None for there, value in zip(asked, values.tolist()))
