@@ -10,18 +10,7 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path beside `path` that takes its place when the block ends well.
-
-    Parameters
-    ----------
-    path : path
-        The file to write or to replace.
-
-    Raises
-    ------
-    OSError
-        If the folder does not exist or cannot be written to.
-    """
+    """Give a temporary path beside `path` that takes its place when the block ends well."""
     import tempfile
 
     target = Path(os.path.realpath(path))

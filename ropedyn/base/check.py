@@ -52,27 +52,7 @@ def _plain(quantity: Any, name: str, what: str, unit: str) -> Any:
 
 
 def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float:
-    """Return a finite real number.
-
-    Parameters
-    ----------
-    value : float or quantity of pint
-        What the user gave.
-    name : str
-        For the message.
-    unit : str
-        For the message, and what a quantity is converted to: of several, as in "N/m or N m", to the
-        first that has its dimension.
-    sign : {"any", "nonzero", "positive", "nonnegative"}
-        What has a meaning.
-
-    Raises
-    ------
-    TypeError
-        If it is not a real number.
-    SceneError
-        If it is not finite, has the wrong sign or, as a quantity, another dimension.
-    """
+    """Return a finite real number."""
     words = {
         "any": "a finite number",
         "nonzero": "a finite number other than 0",
@@ -178,30 +158,7 @@ def matrix(
     *,
     unit: str = "",
 ) -> Any:
-    """Return a new matrix of finite real or complex numbers; one row may be given alone.
-
-    Parameters
-    ----------
-    value : array_like
-        What the user gave.
-    name : str
-        For the message.
-    shape : tuple of int
-        That it must have.
-    rows : str
-        What rows and columns are, for the message.
-    kind : {numpy.float64, numpy.complex128}
-        Of the numbers.
-    unit : str
-        That a quantity of pint is converted to.
-
-    Raises
-    ------
-    TypeError
-        If these are no such numbers.
-    SceneError
-        If one is not finite or the shape is another one.
-    """
+    """Return a new matrix of finite real or complex numbers; one row may be given alone."""
     what = f"finite numbers of shape {shape}, as {rows}"
     if is_quantity(value):
         value = _plain(value, name, what, unit)

@@ -11,13 +11,7 @@ Progress = None | bool | Callable[[float], Any]
 
 
 def reporter(progress: Progress) -> Callable[[float], Any]:
-    """Return what takes the fraction that is done.
-
-    Raises
-    ------
-    TypeError
-        If `progress` is none of None, True, False and callable.
-    """
+    """Return what takes the fraction that is done."""
     if progress is None or progress is False:
         return silent
     if progress is True:

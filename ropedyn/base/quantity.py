@@ -17,22 +17,6 @@ def magnitude(quantity: Any, unit: str) -> Any:
     Registries take the radian for 1, so that 1 rad/s, and 1 Hz, is 1/s to them. A frequency in Hz
     is cycles per second: what holds an angle, as rad/s or revolutions per minute, is divided by the
     2 pi of a cycle. A number without unit holds no angle.
-
-    Parameters
-    ----------
-    quantity : Quantity
-        A number or an array with a unit.
-    unit : str
-        As messages have it, such as "N m^2"; any of several in "N/m or N m"; "" for none.
-
-    Returns
-    -------
-    float or ndarray
-
-    Raises
-    ------
-    ValueError
-        If the quantity has another dimension.
     """
     for one in unit.split(" or "):
         try:

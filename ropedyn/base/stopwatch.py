@@ -25,15 +25,6 @@ def in_turns(
     In turns, so that what disturbs the machine for a while disturbs all of them alike; of the
     processor, so that other work does not count in. Calls have run before; those that are not
     long run twice in a row and the second is timed, for what others drove out of the caches.
-
-    Parameters
-    ----------
-    calls : sequence of callables
-        Without arguments.
-    repeat : int
-        How often each is made.
-    report : callable
-        Takes the fraction that is done.
     """
     times: list[list[float]] = [[] for _ in calls]
     for turn in range(repeat):
@@ -63,15 +54,7 @@ def timed(
     repeat: int,
     report: Callable[[float], Any] = lambda fraction: None,
 ) -> Times:
-    """Time ways to an answer in turns.
-
-    Parameters
-    ----------
-    ways : sequence of sequences of callables
-        What compiles and what asks, nothing where there is no answer.
-    repeat, report
-        As in `in_turns`.
-    """
+    """Time ways to an answer in turns."""
     times = iter(in_turns([call for calls in ways for call in calls], repeat, report))
     compiled, asked = zip(*((next(times), next(times)) if calls else _NEVER for calls in ways))
     lower, median, upper = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T

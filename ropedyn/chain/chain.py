@@ -241,18 +241,6 @@ def components(chain: Chain, coordinates: Sequence[str]) -> tuple[tuple[str, ...
 
     Two coordinates are joined where the section flexibility couples their channels, a node term or
     an attached structure couples them, or sag does x and z; z and beta are one bending motion.
-
-    Parameters
-    ----------
-    chain : Chain
-        Of all the coordinates.
-    coordinates : sequence of str
-        Their names.
-
-    Returns
-    -------
-    tuple of tuple of str
-        Each in the fixed order of coordinates.
     """
     width = len(coordinates)
     channel = [CHANNELS[c] for c in coordinates]

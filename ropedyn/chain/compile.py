@@ -62,19 +62,7 @@ def stations_of(scene: Scene) -> NDArray[np.float64]:
 def divided(
     scene: Scene, element: str, stations: NDArray[np.float64], counts: NDArray[np.intp]
 ) -> Model:
-    """Compile a scene with so many elements between stations.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is compiled.
-    element : str
-        Kind of the elements.
-    stations : ndarray, shape (spans + 1,)
-        Of the scene [m].
-    counts : ndarray of int, shape (spans,)
-        Elements of each span.
-    """
+    """Compile a scene with so many elements between stations."""
     kind = KINDS.index(element)
     if (
         element == "difference"
@@ -154,14 +142,7 @@ def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
 
 
 def section(rope: Rope) -> NDArray[np.float64]:
-    """Return the section flexibility of a rope.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        (axial strain, twist rate, curvature) per (axial force, torque, bending moment), zero where
-        the rope has no such stiffness.
-    """
+    """Return the section flexibility of a rope."""
     return _core.section(
         rope.axial_stiffness or 0.0,
         rope.torsional_stiffness or 0.0,
@@ -321,13 +302,7 @@ def _terms(
     mass: NDArray[np.float64],
     damping: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None]:
-    """Add masses and dashpots of parts to those of the distinct node terms, stations first.
-
-    Returns
-    -------
-    stiffness, held, hinge
-        Of the same node terms; None where nothing is hinged.
-    """
+    """Add masses and dashpots of parts to those of the distinct node terms, stations first."""
     width = len(scene.coordinates)
     stiffness = np.zeros(mass.shape)
     held = np.zeros((len(mass), width), dtype=np.uint8)
@@ -351,17 +326,7 @@ def _terms(
 def _at_nodes(
     given: NDArray[np.float64], which: NDArray[np.int32], inside: NDArray[np.int32]
 ) -> NDArray[np.float64]:
-    """Return what stations get from the elements of spans beside them, then nodes inside spans.
-
-    Parameters
-    ----------
-    given : ndarray, shape (distinct, 2, width, width)
-        By each distinct element to its left and to its right node.
-    which : ndarray of int, shape (spans,)
-        Distinct element of each span.
-    inside : ndarray of int
-        Distinct elements that have equal ones beside them.
-    """
+    """Return what stations get from the elements of spans beside them, then nodes inside spans."""
     none = np.zeros((1, *given.shape[2:]))
     to_left, to_right = np.moveaxis(given[which], 1, 0)
     stations = np.concatenate([none, to_right]) + np.concatenate([to_left, none])
@@ -386,22 +351,6 @@ def lumped(
     Half of it each, and of tensed elements +-mu l^2/12 at z and beta: lumping is the trapezoidal
     rule, this is its first error term by Euler and Maclaurin, zero inside a uniform span. With it
     the frequencies of tensed chains converge with the fourth power of the element's length.
-
-    Parameters
-    ----------
-    kind : int
-        Of the elements.
-    coordinates : sequence of str
-        Of the nodes.
-    inertia : ndarray, shape (elements, width)
-        Per length [kg/m, kg m].
-    length : ndarray, shape (elements,)
-        [m].
-
-    Returns
-    -------
-    ndarray, shape (elements, 2, width, width)
-        Complex where an argument is, and analytic. None of continuous elements, which keep theirs.
     """
     given = _halves(kind, inertia, length)
     if kind != TENSED or "beta" not in coordinates:

@@ -14,21 +14,7 @@ from .port import Point
 def points(
     model: Model, given: Any, name: str, *, forces: bool = True, ends: bool = False
 ) -> tuple[tuple[Point, ...], bool]:
-    """Return one or several points, and whether a list of them was given.
-
-    Parameters
-    ----------
-    model : Model
-        That is asked.
-    given : object
-        What the user gave.
-    name : str
-        For messages.
-    forces : bool
-        Whether internal forces and tips of wires are allowed.
-    ends : bool
-        Whether the motion of an end is, such as ("end", 0, "z").
-    """
+    """Return one or several points, and whether a list of them was given."""
     several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
     length = model.scene.rope.length
     wires = sum(isinstance(part, BrokenWire) for part in model.scene.parts)

@@ -55,19 +55,7 @@ def locate(x: NDArray[np.float64], at: float) -> tuple[int, float | None]:
 def ports(
     chain: Chain, x: NDArray[np.float64], coordinates: Sequence[str], points: Iterable[Point]
 ) -> Ports:
-    """Return the rows of points.
-
-    Parameters
-    ----------
-    chain : Chain
-        Of the coordinates.
-    x : ndarray, shape (nodes,)
-        Where its nodes stand [m].
-    coordinates : sequence of str
-        Of the chain.
-    points : iterable of points
-        On these coordinates; internal forces at nodes other than the first.
-    """
+    """Return the rows of points."""
     points = list(points)
     node = np.zeros(len(points), dtype=np.int32)
     row = np.zeros((len(points), 2, len(coordinates)))
@@ -107,13 +95,6 @@ def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
 
     Under compression an element of kappa l = pi/2, kappa^2 = |T| S_bb, buckles as a cantilever
     though the rope may not: F, G and Q have no digits around it. Pieces have kappa l <= 1.
-
-    Parameters
-    ----------
-    chain : Chain
-        Of tensed elements; without bending nothing buckles.
-    x : ndarray, shape (nodes,)
-        Where its nodes stand [m].
     """
     if COORDINATES.index("beta") not in chain.coordinate:
         return []
@@ -140,22 +121,6 @@ def cut(
 
     Two tensed or continuous elements joined there are the one they came from: no other answer
     changes.
-
-    Parameters
-    ----------
-    chain : Chain
-        To be cut.
-    x : ndarray, shape (nodes,)
-        Where its nodes stand [m].
-    positions : iterable of float
-        Where to cut [m]; nodes are left alone.
-
-    Returns
-    -------
-    Chain
-        With the new nodes, itself where there are none.
-    ndarray
-        Where its nodes stand [m].
     """
     inside = sorted({at for at in positions if locate(x, at)[1] is not None})
     if not inside:

@@ -75,17 +75,6 @@ def section_rate(rope: Rope, name: str) -> Real:
 
     With S = R^T K^-1 R, R the turn by the angle arctan H of the lay slope in (torsion, bending):
     dS = -S~^T dK S~ with S~ = K^-1 R, and dS/dH = (J^T S + S J)/(1 + H^2) with R' = R J.
-
-    Parameters
-    ----------
-    rope : Rope
-        Whose section it is.
-    name : str
-        A stiffness, "lay_coupling" or "lay_slope".
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
     """
     slope = rope.lay_slope or 0.0
     turn = np.eye(3)
@@ -109,65 +98,36 @@ class Weights:
 
     The derivative of the form is the sum of slopes times `element`, `jump` and `node`, less lambda
     times that of slopes times `moving`, `mass` and `heavier`.
-
-    Attributes
-    ----------
-    element : ndarray, shape (stretches - 1, 9)
-        Section, tension, length, sag.
-    moving : ndarray, shape (stretches - 1, width)
-        Inertia per length of continuous elements.
-    jump : ndarray, shape (stretches - 1, width)
-        Stiffness of hinges.
-    node, mass : ndarray, shape (stretches, width, width)
-        Springs and inertia.
-    dashpot : ndarray, shape (stretches, width)
-        Damping of each coordinate to the ground, which undamped modes do not feel.
-    stiffer, heavier : ndarray, shape (attached,)
-        Relative changes of stiffness and mass of the structures that nodes carry.
-    foot : ndarray, shape (attached, 2, width)
-        Displacement and rotation of their feet.
     """
 
-    element: Real
-    moving: Real
-    jump: Real
-    node: Real
-    mass: Real
+    element: Real  # (stretches - 1, 9) Section, tension, length, sag
+    moving: Real  # (stretches - 1, width) inertia per length of continuous elements
+    jump: Real  # (stretches - 1, width) stiffness of hinges
+    node: Real  # (stretches, width, width) springs and inertia
+    mass: Real  # (stretches, width, width) springs and inertia
+    # (stretches, width) damping of each coordinate to the ground, which undamped modes do not feel
     dashpot: Real
+    # (attached,) relative changes of stiffness and mass of the structures that nodes carry
     stiffer: Real
+    # (attached,) relative changes of stiffness and mass of the structures that nodes carry
     heavier: Real
-    foot: Real
+    foot: Real  # (attached, 2, width) displacement and rotation of their feet
 
 
 @dataclass(frozen=True)
 class Places:
-    """Where the spans and stations of a model are among the stretches of its chain.
+    """Where the spans and stations of a model are among the stretches of its chain."""
 
-    Attributes
-    ----------
-    model : Model
-        The model.
-    counts : ndarray of int, shape (spans,)
-        Elements of each span.
-    span : ndarray of int, shape (stretches - 1,)
-        To which the elements of a stretch belong.
-    station : ndarray of int, shape (stretches,)
-        The last one that is no further right.
-    inside : ndarray of bool, shape (stretches,)
-        Whether its nodes lie between stations.
-    change : ndarray, shape (spans, 5)
-        Of the rope, see `stretch.Change`.
-    ropes : tuple of Rope
-        Of each span.
-    """
-
-    model: Model
-    counts: NDArray[np.intp] = field(init=False)
+    model: Model  # the model
+    counts: NDArray[np.intp] = field(init=False)  # (spans,) elements of each span
+    # (stretches - 1,) to which the elements of a stretch belong
     span: NDArray[np.intp] = field(init=False)
+    # (stretches,) the last one that is no further right
     station: NDArray[np.intp] = field(init=False)
+    # (stretches,) whether its nodes lie between stations
     inside: NDArray[np.bool_] = field(init=False)
-    change: Real = field(init=False)
-    ropes: tuple[Rope, ...] = field(init=False)
+    change: Real = field(init=False)  # (spans, 5) of the rope, see `stretch.Change`
+    ropes: tuple[Rope, ...] = field(init=False)  # of each span
 
     def __post_init__(self) -> None:
         model = self.model
@@ -229,23 +189,7 @@ class Places:
 
 
 class Rate:
-    """d/dp of what the spans and stations of a model are made of, zero where it is not said.
-
-    Attributes
-    ----------
-    rope : dict of ndarray, shape (spans,)
-        Of properties of the rope there.
-    pull, chord : float
-        Of g cos(inclination)/T, and of mu L of the scene's own rope, by which all of it is
-        lengthened.
-    tension : ndarray, shape (spans,)
-    length : ndarray, shape (spans,)
-        Of each element.
-    mass, stiffness, dashpot, hinge : ndarray, shape (stations, width)
-        Of what stands there on each coordinate; of the spring across a hinge.
-    stiffer, heavier, foot : ndarray
-        Of the structures that nodes carry, see `Weights`.
-    """
+    """d/dp of what the spans and stations of a model are made of, zero where it is not said."""
 
     def __init__(self, places: Places) -> None:
         spans, width = len(places.counts), len(places.model.coordinates)
@@ -316,18 +260,7 @@ class Rate:
 
 
 def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
-    """Return the numbers of a scene that answers have derivatives by, with their paths.
-
-    Parameters
-    ----------
-    places : Places
-        Of the model.
-
-    Returns
-    -------
-    dict
-        Functions that return the rate, or raise SceneError where there is none.
-    """
+    """Return the numbers of a scene that answers have derivatives by, with their paths."""
     model = places.model
     rope = model.scene.rope
     found: dict[str, Callable[[], Rate]] = {}

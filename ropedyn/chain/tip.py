@@ -63,23 +63,7 @@ def spread(model: Model, responses: Sequence[Point]) -> list[Point]:
 def gather(
     model: Model, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
 ) -> tuple[Complex, Real]:
-    """Return what was asked for from the answers to `spread`.
-
-    Parameters
-    ----------
-    model : Model
-        That was asked.
-    responses : sequence of points
-        With tips.
-    factor : ndarray, shape (5, f)
-        Of the frequencies; see `damping.factors`.
-    value, error : ndarray, shape (drives, spread responses, f)
-        Receptance and its relative error.
-
-    Returns
-    -------
-    value, error : ndarray, shape (drives, responses, f)
-    """
+    """Return what was asked for from the answers to `spread`."""
     shape = (value.shape[0], len(responses), value.shape[2])
     values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
     at = 0

@@ -35,18 +35,7 @@ SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Those of the process where left out.
-
-    Returns
-    -------
-    int
-        Exit status: 0, 1 where the numbers refused, 2 where the input was bad.
-    """
+    """Run the command line."""
     options = _parser().parse_args(arguments)
     try:
         options.run(options)

@@ -17,18 +17,6 @@ def mac(first: NDArray[Any], second: NDArray[Any]) -> Real:
     |a^H b|^2/(a^H a b^H b): 1 where one shape is a multiple of the other, 0 where they are
     orthogonal (Allemang and Brown, A correlation coefficient for modal vector analysis, 1st
     International Modal Analysis Conference, 1982).
-
-    Parameters
-    ----------
-    first : ndarray, shape (k, points)
-        Real or complex.
-    second : ndarray, shape (m, points)
-        At the same points.
-
-    Returns
-    -------
-    ndarray, shape (k, m)
-        NaN where a shape does not move any of the points.
     """
     a, b = _unit(first), _unit(second)
     return np.asarray(np.abs(a.conj() @ b.T) ** 2)
@@ -40,35 +28,13 @@ def frac(measured: Complex, calculated: Complex) -> Real:
     |sum Hm^* Hc|^2/(sum |Hm|^2 sum |Hc|^2) over all lines: 1 where one is a multiple of the other
     (Heylen and Lammens, FRAC: a consistent way of comparing frequency response functions,
     Conference on Identification in Engineering Systems, Swansea, 1996).
-
-    Parameters
-    ----------
-    measured, calculated : ndarray of complex, shape (responses, f)
-
-    Returns
-    -------
-    ndarray, shape (responses,)
-        NaN where one is 0 at all lines.
     """
     a, b = _unit(measured), _unit(calculated)
     return np.asarray(np.abs((a.conj() * b).sum(axis=1)) ** 2)
 
 
 def frac_over(measured: Complex, calculated: Complex, frequency: Real, band: float) -> Real:
-    """Return `frac` of the lines in a band around each line.
-
-    Parameters
-    ----------
-    measured, calculated : ndarray of complex, shape (responses, f)
-    frequency : ndarray, shape (f,)
-        [Hz], increasing.
-    band : float
-        Width of the band [Hz]; where the lines begin and end only what is there counts.
-
-    Returns
-    -------
-    ndarray, shape (responses, f)
-    """
+    """Return `frac` of the lines in a band around each line."""
     first = np.searchsorted(frequency, frequency - band / 2)
     last = np.searchsorted(frequency, frequency + band / 2, side="right")
     edge = np.stack([first, last], axis=1).ravel()

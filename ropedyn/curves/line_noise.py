@@ -20,15 +20,6 @@ def by_coherence(value: Complex, coherence: Real, averages: float) -> Real:
 
     var |H|/|H|^2 = (1 - gamma^2)/(2 n gamma^2) for n averages, and as much for the phase: J. S.
     Bendat, A. G. Piersol, Random Data (2010), table 9.6.
-
-    Parameters
-    ----------
-    value : ndarray of complex, shape (f,)
-        Response.
-    coherence : ndarray, shape (f,)
-        gamma^2.
-    averages : float
-        n.
     """
     share = np.maximum(coherence, np.finfo(float).tiny)
     return np.abs(value) * np.sqrt((1 - coherence) / (2 * averages * share))
@@ -39,11 +30,6 @@ def by_differences(value: Complex) -> Real | None:
 
     What is smooth has small third differences y_0 - 3 y_1 + 3 y_2 - y_3, noise large ones: |.|^2 is
     distributed as 40 sigma^2 times an exponential variable, whose median is ln 2.
-
-    Parameters
-    ----------
-    value : ndarray of complex, shape (f,)
-        Response on even lines.
     """
     from scipy.ndimage import median_filter
 

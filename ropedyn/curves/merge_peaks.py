@@ -45,16 +45,6 @@ def merge_peaks(source: Curves | Sequence[Resonances]) -> Merged:
     width of the peak at half its power, or than 3 of their standard uncertainties. Its uncertainty
     is that of the mean, by the scatter where that is more (R. T. Birge, Physical Review 40 (1932)
     207-227).
-
-    Parameters
-    ----------
-    source : Curves or sequence of Resonances
-        Responses, or the peaks of each.
-
-    Raises
-    ------
-    SceneError
-        If there is no peak.
     """
     if isinstance(source, Curves):
         peaks = [one for d in range(len(source.drive)) for one in source.peaks(d)]

@@ -72,15 +72,7 @@ def _plain(text: str) -> str:
 
 
 def stated(text: str, name: str = "unit") -> tuple[Unit, Unit]:
-    """Return both sides of a unit that the user gave.
-
-    Raises
-    ------
-    TypeError
-        If it is not a string.
-    SceneError
-        If it is not known.
-    """
+    """Return both sides of a unit that the user gave."""
     if not isinstance(text, str):
         raise TypeError(f"{name} must be a unit such as {EXAMPLES}, got {text!r}")
     found = ratio(text)
@@ -92,22 +84,7 @@ def stated(text: str, name: str = "unit") -> tuple[Unit, Unit]:
 def scale(
     sides: tuple[Unit, Unit], response: tuple[str, float], drive: tuple[object, ...], name: str
 ) -> tuple[str, float]:
-    """Return which quantity numbers in a unit are, and what they are to be multiplied by.
-
-    Parameters
-    ----------
-    sides : pair of Unit
-        Motion and force.
-    response, drive : point
-        Of the rope.
-    name : str
-        What has the unit, for the message.
-
-    Raises
-    ------
-    SceneError
-        If the unit is none of such a response.
-    """
+    """Return which quantity numbers in a unit are, and what they are to be multiplied by."""
     over, under = sides
     expected = dimensions(response, drive)
     if (over.dimension, under.dimension) != expected or under.order:

@@ -104,28 +104,7 @@ def resonances(
     *,
     known: Real | None = None,
 ) -> Resonances:
-    """Find local maxima of the amplitude and fit one mode to each.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (f,)
-        [Hz], in any order.
-    value : ndarray of complex, shape (f,)
-        The response.
-    quantity : str
-        What it is.
-    label : str
-        Its name.
-    noise : ndarray, shape (f,), optional
-        Standard deviation of real and of imaginary part as it is around each line: what does not
-        stand out of it is no peak.
-    known : ndarray, shape (f,), optional
-        That of the lines themselves, for the uncertainty.
-
-    Returns
-    -------
-    Resonances
-    """
+    """Find local maxima of the amplitude and fit one mode to each."""
     from scipy.signal import find_peaks
 
     frequency, first = np.unique(frequency, return_index=True)

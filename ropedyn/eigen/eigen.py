@@ -44,27 +44,15 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Found:
-    """Modes of one component, lowest first.
+    """Modes of one component, lowest first."""
 
-    Attributes
-    ----------
-    eigenvalue, error : ndarray, shape (k,)
-        [rad^2/s^2].
-    shape : ndarray, shape (k, nodes, width) or None
-        Over the component's coordinates, None where it was not asked for.
-    motion : ndarray, shape (k, attached) or None
-        Of the structures that the component's nodes carry, as y in csrc/attached.h [m].
-    certified : bool
-        Whether none is missing.
-    work : Work
-        What it took.
-    """
-
-    eigenvalue: Real
-    error: Real
+    eigenvalue: Real  # (k,) [rad^2/s^2]
+    error: Real  # (k,) [rad^2/s^2]
+    # (k, nodes, width) over the component's coordinates, None where it was not asked for
     shape: Real | None
-    certified: bool
-    work: Work
+    certified: bool  # whether none is missing
+    work: Work  # what it took
+    # (k, attached) of the structures that the component's nodes carry, as y in csrc/attached.h [m]
     motion: Real | None = None
 
 
@@ -135,23 +123,7 @@ def check_asked(number: int | None, below: float | None) -> float:
 def spectrum(
     model: Model, component: tuple[str, ...], number: int | None, limit: float = math.inf
 ) -> tuple[Real, Real]:
-    """Return the lowest eigenvalues of one component and their errors [rad^2/s^2].
-
-    Parameters
-    ----------
-    model : Model
-        Whose component it is.
-    component : tuple of str
-        Coordinates.
-    number : int or None
-        How many, or as many as there are; None: all below the limit.
-    limit : float
-        [rad^2/s^2].
-
-    Returns
-    -------
-    eigenvalue, error : ndarray, shape (k,)
-    """
+    """Return the lowest eigenvalues of one component and their errors [rad^2/s^2]."""
     if number is None:
         _refuse_short_waves(model, limit)
     found = _sweep(model, component, number, limit, shaped=False)
@@ -262,19 +234,7 @@ def _sweep(
 
 
 def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> Found:
-    """Find the lowest modes of a chain whose nodes can move but at its ends, or all below a limit.
-
-    Parameters
-    ----------
-    chain : Chain
-        One component, between nodes that nothing moves.
-    number : int or None
-        How many, or as many as there are.
-    limit : float
-        Instead of a number [rad^2/s^2].
-    shaped : bool
-        Whether shapes are wanted.
-    """
+    """Find the lowest modes of a chain between ends that nothing moves, or all below a limit."""
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
     eigenvalue, error, certified, shape, motion, found, sweeps, redone = _in_threads(
@@ -415,13 +375,6 @@ def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, NDArr
     """Cut continuous spans into elements below their own resonance.
 
     Two for each piece of the highest eigenvalue: more would be differences of ever closer nodes.
-
-    Returns
-    -------
-    Model
-        The same spans.
-    ndarray of int, shape (parts + 1,)
-        The nodes between parts: `points` of them in each element of the model, or its elements.
     """
     at = station_nodes(model)
     chain = model.chain.undamped
@@ -453,19 +406,7 @@ def solve_shapes(model: Model, solver: str, eigenvalue: Real, points: int | None
 
 
 def shapes_of(model: Model, solver: str, number: int, edges: NDArray[np.intp]) -> Shapes:
-    """Solve for so many modes, and those that coincide with the last one, with their shapes.
-
-    Parameters
-    ----------
-    model : Model
-        Of continuous spans one with elements below their own resonance.
-    solver : str
-        One of `SOLVERS`.
-    number : int
-        Of modes.
-    edges : ndarray of int
-        See `Shapes`.
-    """
+    """Solve for so many modes, and those that coincide with the last one, with their shapes."""
     more = number
     while True:
         more += 1

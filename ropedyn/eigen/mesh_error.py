@@ -24,24 +24,7 @@ Complex = NDArray[np.complex128]
 def mesh_of_modes(
     scene: Scene, components: tuple[tuple[str, ...], ...], which: NDArray[np.intp], eigenvalue: Real
 ) -> modes.UndampedMesh:
-    """Compare the modes of a chain with those of continuous spans.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of the chain.
-    components : tuple of tuple of str
-        Coordinates that move together.
-    which : ndarray of int, shape (k,)
-        The component of each mode.
-    eigenvalue : ndarray, shape (k,)
-        Of the chain, lowest first [rad^2/s^2].
-
-    Returns
-    -------
-    UndampedMesh
-        Infinite errors where the continuous spans have no answer.
-    """
+    """Compare the modes of a chain with those of continuous spans."""
     error, limit = np.full(len(eigenvalue), np.inf), np.full(len(eigenvalue), np.nan)
     try:
         continuous = scene.compile()
@@ -70,15 +53,7 @@ def _lowest(model: Model, component: tuple[str, ...], number: int) -> tuple[Real
 
 
 def distance(eigenvalue: Real, true: Real, uncertain: Real) -> Real:
-    """Return how far frequencies are from true ones, and how uncertain those are [Hz].
-
-    Parameters
-    ----------
-    eigenvalue : ndarray, shape (k,)
-        [rad^2/s^2].
-    true, uncertain : ndarray, shape (k,)
-        And their errors [rad^2/s^2].
-    """
+    """Return how far frequencies are from true ones, and how uncertain those are [Hz]."""
     from .eigen import error_in_hertz
 
     return np.abs(in_hertz(eigenvalue) - in_hertz(true)) + error_in_hertz(true, uncertain)
@@ -98,26 +73,7 @@ def mesh_of_frf(
     quantity: str,
     value: Complex,
 ) -> frf.Mesh:
-    """Compare the response of a chain with that of continuous spans.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of the chain.
-    frequency : ndarray, shape (f,)
-        [Hz].
-    drives, responses : tuple of points
-        What was asked for.
-    quantity : str
-        What the value is.
-    value : ndarray of complex, shape (responses, f) or (drives, responses, f)
-        Of the chain.
-
-    Returns
-    -------
-    Mesh
-        Infinite where the continuous spans have no answer, or where only the value is 0.
-    """
+    """Compare the response of a chain with that of continuous spans."""
     try:
         true, uncertain = _response(scene.compile(), frequency, drives, responses, quantity)
     except SceneError:

@@ -32,28 +32,15 @@ NOTHING = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
-    """Modes of a model with their shapes at its nodes, lowest first.
+    """Modes of a model with their shapes at its nodes, lowest first."""
 
-    Attributes
-    ----------
-    model : Model
-        Of continuous spans one with elements below their own resonance.
-    eigenvalue : ndarray, shape (k,)
-        [rad^2/s^2].
-    shape : ndarray, shape (k, nodes, width)
-    motion : ndarray, shape (k, attached)
-        Of the structures that nodes carry, as y in csrc/attached.h [m].
-    clusters : tuple of ndarray of int
-        The modes in order; rounding cannot tell those of one cluster apart.
-    edges : ndarray of int, shape (parts + 1,)
-        The nodes between the parts of the rope that were asked for.
-    """
-
-    model: Model
-    eigenvalue: Real
-    shape: Real
-    motion: Real
+    model: Model  # of continuous spans one with elements below their own resonance
+    eigenvalue: Real  # (k,) [rad^2/s^2]
+    shape: Real  # (k, nodes, width)
+    motion: Real  # (k, attached) of the structures that nodes carry, as y in csrc/attached.h [m]
+    # the modes in order; rounding cannot tell those of one cluster apart
     clusters: tuple[NDArray[np.intp], ...]
+    # (parts + 1,) the nodes between the parts of the rope that were asked for
     edges: NDArray[np.intp]
 
 
@@ -67,25 +54,23 @@ def clusters_of(eigenvalue: Real, error: Real) -> tuple[NDArray[np.intp], ...]:
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """How the form Pi of each shape changes with the numbers of each stretch.
+    """How the form Pi of each shape changes with the numbers of each stretch."""
 
-    Attributes
-    ----------
-    eigenvalue : ndarray, shape (m,)
-        Of each shape.
-    element, jump, node : ndarray
-        Shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width,
-        width): see csrc/sensitivity.h.
-    stiffer, heavier, foot : ndarray
-        Shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h.
-    """
-
-    eigenvalue: Real
+    eigenvalue: Real  # (m,) of each shape
+    # shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width, width):
+    # see csrc/sensitivity.h
     element: Real
+    # shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width, width):
+    # see csrc/sensitivity.h
     jump: Real
+    # shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width, width):
+    # see csrc/sensitivity.h
     node: Real
+    # shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h
     stiffer: Real
+    # shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h
     heavier: Real
+    # shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h
     foot: Real
 
     @classmethod
@@ -122,18 +107,10 @@ def _sum(slopes: Real, weights: Real) -> Real:
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Shapes, and sums and differences of those in one cluster: bilinear forms from quadratic ones.
+    """Shapes, and sums and differences in a cluster: bilinear forms from quadratic ones."""
 
-    Attributes
-    ----------
-    shapes : Shapes
-        The modes.
-    pair : ndarray of int, shape (p, 2)
-        Different modes of one cluster.
-    """
-
-    shapes: Shapes
-    pair: NDArray[np.intp]
+    shapes: Shapes  # the modes
+    pair: NDArray[np.intp]  # (p, 2) different modes of one cluster
 
     @classmethod
     def of(cls, shapes: Shapes) -> Pairs:
@@ -172,14 +149,9 @@ class Sensitivity:
 
     With the shape u of a mode dlambda/dp = u^T (dK/dp - lambda dM/dp) u / (u^T M u). Modes that
     rounding cannot tell apart have the eigenvalues of that form within their cluster.
-
-    Attributes
-    ----------
-    shapes : Shapes
-        The modes.
     """
 
-    shapes: Shapes
+    shapes: Shapes  # the modes
 
     @cached_property
     def places(self) -> Places:
@@ -215,17 +187,7 @@ class Sensitivity:
         return asked(rates_of(self.places), path)()
 
     def eigenvalue(self, path: str) -> Real:
-        """Return dlambda/dp; increasing within a cluster.
-
-        Parameters
-        ----------
-        path : str
-            Of p in the scene.
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
+        """Return dlambda/dp; increasing within a cluster."""
         weights = self.rate(path).weights(self.places)
         form = self.pairs.matrix(self.slopes.weigh(weights))
         change = np.diag(form) / np.diag(self.mass)
@@ -240,23 +202,11 @@ class Sensitivity:
         return change
 
     def frequency(self, path: str) -> Real:
-        """Return df/dp [Hz per unit], 0 where motion grows.
-
-        Raises
-        ------
-        SolveError
-            If an eigenvalue leaves 0: its root has no derivative there.
-        """
+        """Return df/dp [Hz per unit], 0 where motion grows."""
         return self._root(path, 1.0) / (2 * np.pi)
 
     def growth(self, path: str) -> Real:
-        """Return d sqrt(-lambda)/dp [1/s per unit], 0 where motion does not grow.
-
-        Raises
-        ------
-        SolveError
-            As `frequency` does.
-        """
+        """Return d sqrt(-lambda)/dp [1/s per unit], 0 where motion does not grow."""
         return self._root(path, -1.0)
 
     def _root(self, path: str, sign: float) -> Real:

@@ -20,23 +20,6 @@ def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
 
     Inside elements of a chain that of the element between its nodes; continuous spans are cut
     there, which changes nothing.
-
-    Parameters
-    ----------
-    modes : Modes
-        Of a model, not of a file.
-    points : sequence of points
-        On coordinates of the model.
-
-    Returns
-    -------
-    ndarray, shape (k, points)
-        The largest component of each at the nodes is 1 or -1.
-
-    Raises
-    ------
-    SceneError
-        If the modes come from a file.
     """
     shapes, number = modes.sensitivity.shapes, len(modes.frequency)
     model = shapes.model

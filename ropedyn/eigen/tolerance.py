@@ -87,17 +87,7 @@ def compile_within(
 
 
 class Question:
-    """How wrong chains of a scene are below a limit.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of the chains.
-    element : str
-        Their kind.
-    limit : float
-        [rad^2/s^2].
-    """
+    """How wrong chains of a scene are below a limit."""
 
     def __init__(self, scene: Scene, element: str, limit: float):
         self.scene, self.element, self.limit = scene, element, limit
@@ -150,19 +140,7 @@ class Question:
 
 
 class Search:
-    """The fewest elements whose error is within a tolerance, where it falls as C n^-p.
-
-    Parameters
-    ----------
-    error : callable
-        Of so many elements.
-    start, least : int
-        Elements of the first chain, and how few there can be.
-    order : float
-        p, until two chains tell it.
-    tolerance : float
-        On the error.
-    """
+    """The fewest elements whose error is within a tolerance, where it falls as C n^-p."""
 
     def __init__(
         self,

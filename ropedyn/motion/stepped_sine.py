@@ -46,33 +46,15 @@ LATER = 30
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """What is asked at each frequency.
+    """What is asked at each frequency."""
 
-    Attributes
-    ----------
-    model : Model
-        That is driven.
-    frequency : ndarray, shape (f,)
-        In the order they are stepped through [Hz].
-    drive : point
-        What moves by, or is pushed with, amplitude cos(omega t).
-    amplitude : float
-        [N, N m; m, rad of an end].
-    responses : tuple of points
-        What is watched.
-    tolerance : float
-        Of the steady state, relative.
-    progress : callable
-        Takes the fraction that is done.
-    """
-
-    model: Model
-    frequency: Real
-    drive: Point
-    amplitude: float
-    responses: tuple[Point, ...]
-    tolerance: float
-    progress: Callable[[float], Any]
+    model: Model  # that is driven
+    frequency: Real  # (f,) in the order they are stepped through [Hz]
+    drive: Point  # what moves by, or is pushed with, amplitude cos(omega t)
+    amplitude: float  # [N, N m; m, rad of an end]
+    responses: tuple[Point, ...]  # what is watched
+    tolerance: float  # of the steady state, relative
+    progress: Callable[[float], Any]  # takes the fraction that is done
 
 
 class Steady(NamedTuple):

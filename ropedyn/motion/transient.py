@@ -29,52 +29,24 @@ METHODS = ("auto", "modal", "direct")
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What is asked of a model over time.
+    """What is asked of a model over time."""
 
-    Attributes
-    ----------
-    model : Model
-        Linear or not.
-    time : ndarray, shape (t,)
-        [s], increasing; motion begins at the first.
-    drives : tuple of points
-        A coordinate and a position, or ("end", 0 or 1, coordinate): motion of an end is given.
-    forces : tuple of Force
-        One for each.
-    responses : tuple of points
-        Motion, internal forces, tips of wires.
-    order : int
-        How often the displacement is differentiated.
-    loads : mapping from points to float
-        Under which the rope rests before the first time, when it is let go.
-    snapshots : ndarray, shape (s,)
-        When the whole rope is looked at [s].
-    modes : int or None
-        Of each component, that the modal method sums.
-    step, tolerance : float or None
-        Of the direct method: one of them at most.
-    spectral_radius : float
-        Of the direct method at infinite frequency.
-    progress : callable
-        Takes the fraction that is done.
-    partial : bool
-        Whether what was computed until the numbers fail is an answer.
-    """
-
-    model: Model
-    time: Real
+    model: Model  # linear or not
+    time: Real  # (t,) [s], increasing; motion begins at the first
+    # a coordinate and a position, or ("end", 0 or 1, coordinate): motion of an end is given
     drives: tuple[Point, ...]
-    forces: tuple[Force, ...]
-    responses: tuple[Point, ...]
-    order: int
+    forces: tuple[Force, ...]  # one for each
+    responses: tuple[Point, ...]  # Motion, internal forces, tips of wires
+    order: int  # how often the displacement is differentiated
+    # under which the rope rests before the first time, when it is let go
     loads: Mapping[Point, float]
-    snapshots: Real
-    modes: int | None
-    step: float | None
-    tolerance: float | None
-    spectral_radius: float
-    progress: Callable[[float], Any]
-    partial: bool
+    snapshots: Real  # (s,) when the whole rope is looked at [s]
+    modes: int | None  # of each component, that the modal method sums
+    step: float | None  # of the direct method: one of them at most
+    tolerance: float | None  # of the direct method: one of them at most
+    spectral_radius: float  # of the direct method at infinite frequency
+    progress: Callable[[float], Any]  # takes the fraction that is done
+    partial: bool  # whether what was computed until the numbers fail is an answer
 
     @property
     def quantity(self) -> str:

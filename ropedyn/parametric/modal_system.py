@@ -40,20 +40,11 @@ class ModalSystem:
     While the tension is mean + a(t)
 
         q'' + C q' + (Lambda + a(t) Gamma) q = 0.
-
-    Attributes
-    ----------
-    eigenvalue : ndarray, shape (k,)
-        Lambda, of the mean tension [rad^2/s^2].
-    geometric : ndarray, shape (k, k)
-        Gamma, the integral of the products of slopes [rad^2/(N s^2)].
-    damping : ndarray, shape (k, k)
-        C [1/s].
     """
 
-    eigenvalue: Real
-    geometric: Real
-    damping: Real
+    eigenvalue: Real  # (k,) Lambda, of the mean tension [rad^2/s^2]
+    geometric: Real  # (k, k) Gamma, the integral of the products of slopes [rad^2/(N s^2)]
+    damping: Real  # (k, k) c [1/s]
 
     @cached_property
     def omega(self) -> Real:
@@ -76,20 +67,6 @@ def modal_system(model: Model, number: int | None) -> ModalSystem:
 
     Exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
     which is not quite a straight line of the tension; the rest vanishes with the mesh.
-
-    Parameters
-    ----------
-    model : Model
-        Linear.
-    number : int or None
-        Of modes; None: all of a chain.
-
-    Raises
-    ------
-    SceneError
-        If the scene has no transverse motion or what pulsation does to it has no such form.
-    SolveError
-        If there are fewer modes.
     """
     _refuse(model)
     component = model.component_of("z")
@@ -140,24 +117,24 @@ def _cut(matrix: Real) -> Real:
 
 @dataclass(frozen=True, eq=False)
 class _Basis:
-    """Forms of shapes of any size.
+    """Forms of shapes of any size."""
 
-    Attributes
-    ----------
-    tension : float
-        Mean [N].
-    eigenvalue : ndarray, shape (k,)
-    mass, geometric, dragged, carried, resisted : ndarray, shape (k, k)
-        Of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
-        structures that nodes carry.
-    """
-
-    tension: float
-    eigenvalue: Real
+    tension: float  # mean [N]
+    eigenvalue: Real  # (k,)
+    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
+    # structures that nodes carry
     mass: Real
+    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
+    # structures that nodes carry
     geometric: Real
+    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
+    # structures that nodes carry
     dragged: Real
+    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
+    # structures that nodes carry
     carried: Real
+    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
+    # structures that nodes carry
     resisted: Real
 
     @classmethod

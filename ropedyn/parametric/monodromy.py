@@ -71,24 +71,7 @@ pulsates by half of it."""
 
 
 def steps_for(system: ModalSystem, frequency: float, amplitude: float, angle: float) -> int:
-    """Return how many steps a period takes.
-
-    Parameters
-    ----------
-    system : ModalSystem
-        What moves.
-    frequency : float
-        [Hz].
-    amplitude : float
-        [N].
-    angle : float
-        Of the fastest motion in a step [rad].
-
-    Raises
-    ------
-    SolveError
-        If there are too many.
-    """
+    """Return how many steps a period takes."""
     stiffest = np.abs(system.eigenvalue) + amplitude * np.abs(np.diag(system.geometric))
     rate = max(math.sqrt(stiffest.max()), float(np.abs(np.diag(system.damping)).max()))
     count = rate / (frequency * angle)
@@ -135,23 +118,7 @@ def exponential(matrix: Real) -> Real:
 
 
 def monodromy(system: ModalSystem, frequency: Real, amplitude: Real, steps: int) -> Real:
-    """Return how states are carried on over one period.
-
-    Parameters
-    ----------
-    system : ModalSystem
-        What moves.
-    frequency : ndarray, shape (f,)
-        Of the pulsation [Hz].
-    amplitude : ndarray, shape (f, a)
-        [N].
-    steps : int
-        Of each period.
-
-    Returns
-    -------
-    ndarray, shape (f, a, 2k, 2k)
-    """
+    """Return how states are carried on over one period."""
     count, several = amplitude.shape
     k = len(system.eigenvalue)
     step = 1 / (frequency * steps)
@@ -180,30 +147,7 @@ def exponent(
     angle: float = ANGLE,
     report: Callable[[float], Any] = lambda fraction: None,
 ) -> Real:
-    """Return ln|multiplier| of the motion that grows most over one period.
-
-    Parameters
-    ----------
-    system : ModalSystem
-        What moves.
-    frequency : ndarray, shape (f,)
-        Of the pulsation [Hz].
-    amplitude : ndarray, shape (f, a)
-        [N].
-    angle : float
-        Of the highest mode in a step [rad].
-    report : callable
-        Takes the fraction that is done.
-
-    Returns
-    -------
-    ndarray, shape (f, a)
-
-    Raises
-    ------
-    SolveError
-        If a period takes too many steps or motion grows out of all numbers in it.
-    """
+    """Return ln|multiplier| of the motion that grows most over one period."""
     largest = np.full(amplitude.shape, -np.inf)
     for number, modes in enumerate(system.blocks):
         done = 0
@@ -235,13 +179,7 @@ def periods(
 
 
 def finite(matrix: Real) -> Real:
-    """Return the same.
-
-    Raises
-    ------
-    SolveError
-        If a number in it is none.
-    """
+    """Return the same."""
     if not np.isfinite(matrix).all():
         raise SolveError("motion grows out of all numbers within one period of the tension")
     return matrix

@@ -44,24 +44,13 @@ ZOOMS = 3
 
 
 class Tongue(NamedTuple):
-    """A region of instability, by where it begins at no amplitude.
+    """A region of instability, by where it begins at no amplitude."""
 
-    Attributes
-    ----------
-    modes : tuple of int
-        Two numbers of modes, from 1; the same twice where one alone grows.
-    order : int
-        n of n f = f_i + f_j.
-    frequency : float
-        Of the tension [Hz].
-    spread : float
-        How far each side of it goes per amplitude, |Gamma_ij|/(4 pi sqrt(omega_i omega_j)), without
-        damping and to first order [Hz/N]; 0 of orders above 1, which widen more slowly.
-    """
-
-    modes: tuple[int, int]
-    order: int
-    frequency: float
+    modes: tuple[int, int]  # two numbers of modes, from 1; the same twice where one alone grows
+    order: int  # n of n f = f_i + f_j
+    frequency: float  # of the tension [Hz]
+    # how far each side of it goes per amplitude, |Gamma_ij|/(4 pi sqrt(omega_i omega_j)), without
+    # damping and to first order [Hz/N]; 0 of orders above 1, which widen more slowly
     spread: float
 
     @property
@@ -115,22 +104,7 @@ def threshold(system: ModalSystem, frequency: Real) -> Real:
 
 
 def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
-    """Return the frequencies where stability changes at an amplitude.
-
-    Parameters
-    ----------
-    system : ModalSystem
-        What moves.
-    frequency : ndarray, shape (f,)
-        That are looked at, beside those near resonances between them [Hz].
-    amplitude : float
-        [N].
-
-    Returns
-    -------
-    ndarray
-        [Hz], increasing.
-    """
+    """Return the frequencies where stability changes at an amplitude."""
     still = ModalSystem(system.eigenvalue, system.geometric, np.zeros_like(system.damping))
     looked = np.union1d(frequency, _near_resonances(still, frequency, amplitude))
     if system.damping.any():
@@ -189,15 +163,6 @@ def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Re
 
     They lie in the tongues without damping, or not far from them where modes are damped unlike; at
     the tip of a tongue, close to where growth is largest.
-
-    Parameters
-    ----------
-    system : ModalSystem
-        With damping.
-    begin, end : ndarray
-        Of the tongues without it [Hz].
-    amplitude : float
-        [N].
     """
     middle, half = (begin + end) / 2, (end - begin) / 2
     looked = []

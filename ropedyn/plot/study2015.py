@@ -19,18 +19,7 @@ FREQUENCY = np.linspace(1.0, 450.0, 1797)
 
 
 def draw(folder: Path) -> list[Path]:
-    """Draw every figure into a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Made if it is missing.
-
-    Returns
-    -------
-    list of Path
-        The PNG files.
-    """
+    """Draw every figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     model = study2015.scene().compile(elements=study2015.ELEMENTS, element="difference")
     figures = {

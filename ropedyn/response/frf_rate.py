@@ -48,22 +48,12 @@ TENSION, LENGTH, SAG = 6, 7, 8
 
 @dataclass(frozen=True, eq=False)
 class FrequencyRates:
-    """How a frequency response changes.
+    """How a frequency response changes."""
 
-    Attributes
-    ----------
-    model : Model
-        That was asked.
-    frequency : ndarray, shape (f,)
-        [Hz].
-    drives, responses : tuple of points
-        That were asked for.
-    """
-
-    model: Model
-    frequency: Real
-    drives: tuple[Point, ...]
-    responses: tuple[Point, ...]
+    model: Model  # that was asked
+    frequency: Real  # (f,) [Hz]
+    drives: tuple[Point, ...]  # that were asked for
+    responses: tuple[Point, ...]  # that were asked for
 
     @cached_property
     def places(self) -> Places:

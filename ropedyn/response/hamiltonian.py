@@ -51,21 +51,7 @@ class Span(NamedTuple):
 
 
 def hamiltonian(span: Span, coordinates: Sequence[str], factor: Complex) -> Complex:
-    """Return H.
-
-    Parameters
-    ----------
-    span : Span
-        What it is made of.
-    coordinates : sequence of str
-        Of its components.
-    factor : ndarray, shape (5, f)
-        As of `damping.factors`.
-
-    Returns
-    -------
-    ndarray, shape (f, 2 width, 2 width)
-    """
+    """Return H."""
     section, tension, _, inertia, dashpot = factor
     pull = span.tension * tension
     form = _filled(
@@ -86,17 +72,7 @@ def hamiltonian(span: Span, coordinates: Sequence[str], factor: Complex) -> Comp
 def hamiltonian_rate(
     span: Span, rate: Span, coordinates: Sequence[str], factor: Complex, factor_rate: Complex
 ) -> Complex:
-    """Return dH/dp, shape (f, 2 width, 2 width).
-
-    Parameters
-    ----------
-    span, rate : Span
-        What it is made of, and how fast that changes.
-    coordinates : sequence of str
-        Of its components.
-    factor, factor_rate : ndarray, shape (5, f)
-        And how fast those do.
-    """
+    """Return dH/dp, shape (f, 2 width, 2 width)."""
     section, tension, _, inertia, dashpot = (one[:, None, None] for one in factor)
     by_section, by_tension, _, by_inertia, by_dashpot = (one[:, None, None] for one in factor_rate)
     pull = (span.tension * tension)[:, 0, 0]

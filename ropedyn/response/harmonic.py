@@ -45,31 +45,15 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked of one component.
+    """What is asked of one component."""
 
-    Attributes
-    ----------
-    model : Model
-        Whose component it is.
-    component : tuple of str
-        Coordinates.
-    frequency : ndarray, shape (f,)
-        [Hz].
-    factor : ndarray of complex, shape (5, f)
-        On sections, tension, springs, inertia and dashpots.
-    drives, responses : list of points
-        On these coordinates.
-    workers : int
-        Threads.
-    """
-
-    model: Model
-    component: tuple[str, ...]
-    frequency: Real
-    factor: Complex
-    drives: list[Point]
-    responses: list[Point]
-    workers: int
+    model: Model  # whose component it is
+    component: tuple[str, ...]  # Coordinates
+    frequency: Real  # (f,) [Hz]
+    factor: Complex  # (5, f) on sections, tension, springs, inertia and dashpots
+    drives: list[Point]  # on these coordinates
+    responses: list[Point]  # on these coordinates
+    workers: int  # Threads
 
     @property
     def is_damped(self) -> NDArray[np.bool_]:

@@ -106,26 +106,7 @@ class Summed(NamedTuple):
 
 
 def modal_sum(question: Question, solver: Solver) -> Summed:
-    """Sum up the modes of one component.
-
-    Parameters
-    ----------
-    question : Question
-        What is asked, and of which component.
-    solver : callable
-        What computes the undamped response: value and relative error.
-
-    Returns
-    -------
-    Summed
-
-    Raises
-    ------
-    SceneError
-        If an internal force is asked for, or a mode below the highest frequency has no ratio.
-    SolveError
-        If there are more than 5000 modes, or a frequency lies on a resonance without damping.
-    """
+    """Sum up the modes of one component."""
     if any(map(is_force, question.responses)):
         raise SceneError(
             "response must be a motion where damping is modal: the sum over modes knows no "

@@ -29,46 +29,31 @@ MOST = 1 << 21
 
 
 class Products(NamedTuple):
-    """Of y = (u, f), motion and internal forces, see hamiltonian.py.
+    """Of y = (u, f), motion and internal forces, see hamiltonian.py."""
 
-    Attributes
-    ----------
-    span : ndarray of complex, shape (spans, drives, responses, f, 2 width, 2 width)
-        Integral of y_response y_drive^T over each span [m].
-    first, last : ndarray of complex, shape (spans, drives, responses, f)
-        y_response^T H y_drive, H the Hamiltonian, at the left and at the right end of each span. It
-        is the same as far as there is no load.
-    node : ndarray of complex, shape (stations, drives, responses, f, width)
-        Of the motion there.
-    jump : ndarray of complex, shape (spans, drives, responses, f, width)
-        Of the jumps across the hinges at the left end of each span.
-    """
-
+    # (spans, drives, responses, f, 2 width, 2 width) integral of y_response y_drive^T over each
+    # span [m]
     span: Complex
+    # (spans, drives, responses, f) y_response^T H y_drive, H the Hamiltonian, at the left and at
+    # the right end of each span. It is the same as far as there is no load
     first: Complex
+    # (spans, drives, responses, f) y_response^T H y_drive, H the Hamiltonian, at the left and at
+    # the right end of each span. It is the same as far as there is no load
     last: Complex
-    node: Complex
+    node: Complex  # (stations, drives, responses, f, width) of the motion there
+    # (spans, drives, responses, f, width) of the jumps across the hinges at the left end of each
+    # span
     jump: Complex
 
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """Continuous spans and the unit loads that make the fields.
+    """Continuous spans and the unit loads that make the fields."""
 
-    Attributes
-    ----------
-    model : Model
-        Of continuous spans.
-    coordinates : tuple of str
-        Of the components that are driven.
-    drives, responses : tuple of points
-        On motion, where the loads act.
-    """
-
-    model: Model
-    coordinates: tuple[str, ...]
-    drives: tuple[Point, ...]
-    responses: tuple[Point, ...]
+    model: Model  # of continuous spans
+    coordinates: tuple[str, ...]  # of the components that are driven
+    drives: tuple[Point, ...]  # on motion, where the loads act
+    responses: tuple[Point, ...]  # on motion, where the loads act
 
     @cached_property
     def chain(self) -> Chain:
@@ -226,24 +211,13 @@ class Loaded:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A stretch of a span without loads.
+    """A stretch of a span without loads."""
 
-    Attributes
-    ----------
-    span : int
-        To which it belongs.
-    begin, end : float
-        [m].
-    x : ndarray, shape (points,)
-        Where the fields are asked for [m].
-    weight : ndarray, shape (points,), or None
-        Of a quadrature [m]; None where the waves are told from two points near the ends.
-    """
-
-    span: int
-    begin: float
-    end: float
-    x: Real
+    span: int  # to which it belongs
+    begin: float  # [m]
+    end: float  # [m]
+    x: Real  # (points,) where the fields are asked for [m]
+    # (points,) of a quadrature [m]; None where the waves are told from two points near the ends
     weight: Real | None
 
     @classmethod

@@ -23,18 +23,6 @@ def rule(waves: float, decay: float) -> tuple[Real, Real]:
     n points are exact up to the degree 2 n - 1. Products of waves, exp(2 i k x) over a length h,
     are polynomials of degree k h and some (k h)^(1/3) more, those of what decays, exp(-2 a x), of
     degree 8 sqrt(a h), to 1e-16. Layers that are thin beside the stretch get panels of their own.
-
-    Parameters
-    ----------
-    waves : float
-        Radians of the shortest wave over the stretch.
-    decay : float
-        Logarithm of what the fastest decay leaves of 1 at the other end, its size.
-
-    Returns
-    -------
-    points, weights : ndarray
-        On (0, 1).
     """
     points, weights = [], []
     for begin, end, deep in _panels(decay):

@@ -40,28 +40,6 @@ def frf_difference(
     changed least counts. Near resonances of a damping ratio z steps below z of the number are
     needed; the least is 1e-9 of it.
 
-    Parameters
-    ----------
-    model : Model
-        That is asked; the elements of each span keep their number.
-    path : str
-        Of a number that is not 0.
-    frequency : ndarray, shape (f,)
-        [Hz].
-    drives, responses : tuple of points
-        As in `Model.frf`.
-
-    Returns
-    -------
-    ndarray of complex, shape (drives, responses, f)
-
-    Raises
-    ------
-    SceneError
-        If the number is 0, or its scene is another to either side.
-
-    References
-    ----------
     C. J. F. Ridders, Accurate computation of F'(x) and F'(x)F''(x), Advances in Engineering
     Software 4 (1982).
     """

@@ -27,22 +27,13 @@ SMALL = 0.1
 
 @dataclass(frozen=True, eq=False)
 class SpanWaves:
-    """y = sum over j of shape_j amplitude_j(x), amplitude_j' = rate_j amplitude_j.
+    """y = sum over j of shape_j amplitude_j(x), amplitude_j' = rate_j amplitude_j."""
 
-    Attributes
-    ----------
-    rate : ndarray of complex, shape (f, 2 width)
-        By their real parts, increasing: the first half decays to the right.
-    shape, inverse : ndarray of complex, shape (f, 2 width, 2 width)
-        In columns, and what makes amplitudes of y.
-    condition : ndarray, shape (f,)
-        Of the shapes, each coordinate in units of its own.
-    """
-
+    # (f, 2 width) by their real parts, increasing: the first half decays to the right
     rate: Complex
-    shape: Complex
-    inverse: Complex
-    condition: Real
+    shape: Complex  # (f, 2 width, 2 width) in columns, and what makes amplitudes of y
+    inverse: Complex  # (f, 2 width, 2 width) in columns, and what makes amplitudes of y
+    condition: Real  # (f,) of the shapes, each coordinate in units of its own
 
     @classmethod
     def of(cls, form: Complex) -> SpanWaves:
@@ -72,17 +63,7 @@ class SpanWaves:
         return np.asarray(long & (self.condition < APART))
 
     def amplitudes(self, y: Complex, near: float, reach: float) -> tuple[Complex, Complex]:
-        """Return the amplitudes at both ends of a stretch, (loads, f, 2 width) each.
-
-        Parameters
-        ----------
-        y : ndarray of complex, shape (loads, 2, 2 width, f)
-            At two places within.
-        near : float
-            How far these are from the ends [m].
-        reach : float
-            Length of the stretch [m].
-        """
+        """Return the amplitudes at both ends of a stretch, (loads, f, 2 width) each."""
         left, right = (np.einsum("fij,ljf->lfi", self.inverse, y[:, k]) for k in (0, 1))
         falls, grows = np.split(self.rate, 2, axis=1)
         half = falls.shape[1]
@@ -96,19 +77,7 @@ class SpanWaves:
     def products(
         self, r: tuple[Complex, Complex], d: tuple[Complex, Complex], reach: float
     ) -> Complex:
-        """Integrate y_r y_d^T over a stretch.
-
-        Parameters
-        ----------
-        r, d : pairs of ndarray
-            Amplitudes at both ends, (responses, f, 2 width) and (drives, f, 2 width).
-        reach : float
-            Length of the stretch [m].
-
-        Returns
-        -------
-        ndarray, shape (drives, responses, f, 2 width, 2 width)
-        """
+        """Integrate y_r y_d^T over a stretch."""
         first, last = (np.einsum("rfi,dfj->drfij", a, b) for a, b in zip(r, d))
         grows = self.rate[:, :, None] + self.rate[:, None, :]
         s = grows * reach

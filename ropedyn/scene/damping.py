@@ -268,20 +268,7 @@ KINDS = (StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDam
 
 
 def factors(dampings: Sequence[Damping], omega: NDArray[Any]) -> NDArray[np.complex128]:
-    """Return the factors of a sum of dampings.
-
-    Parameters
-    ----------
-    dampings : sequence
-        Empty is no damping at all.
-    omega : ndarray
-        Angular frequency [rad/s]; complex where motion decays.
-
-    Returns
-    -------
-    ndarray, shape (..., 5)
-        On sections, tension, springs, inertia and dashpots.
-    """
+    """Return the factors of a sum of dampings."""
     total = np.ones((*omega.shape, len(PARTS)), dtype=np.complex128)
     total[..., INERTIA] = -(omega**2)
     total[..., DASHPOT] = 1j * omega
@@ -305,20 +292,7 @@ def drag(dampings: Sequence[Damping]) -> float:
 
 
 def ratios(dampings: Sequence[Damping], count: int) -> NDArray[np.float64]:
-    """Return what a sum of dampings adds to the damping ratios of the lowest modes.
-
-    Parameters
-    ----------
-    dampings : sequence
-        Empty is no damping at all.
-    count : int
-        How many.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        NaN of modes that no ratio is given for.
-    """
+    """Return what a sum of dampings adds to the damping ratios of the lowest modes."""
     total = np.zeros(count)
     for ratio in (damping.term().ratio for damping in dampings):
         given = np.array(ratio if isinstance(ratio, tuple) else (ratio,) * count)[:count]

@@ -348,16 +348,10 @@ class Impulse(Force):
 
 @dataclass(frozen=True, eq=False)
 class Samples(Force):
-    """A force by its samples, a straight line between two of them.
+    """A force by its samples, a straight line between two of them."""
 
-    Attributes
-    ----------
-    time, sample : ndarray, shape (t,)
-        When [s], and what [N, N m; m or rad as motion of an end].
-    """
-
-    time: Real
-    sample: Real
+    time: Real  # (t,) when [s], and what [N, N m; m or rad as motion of an end]
+    sample: Real  # (t,) when [s], and what [N, N m; m or rad as motion of an end]
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
@@ -417,15 +411,7 @@ KINDS = (Sine, Chirp, Step, Impulse)
 
 
 def forces(given: object, name: str, time: Real, unit: str = ANY) -> Force:
-    """Return a force from one of `KINDS`, an array over time or a sequence of these.
-
-    Raises
-    ------
-    TypeError
-        If it is none of them.
-    SceneError
-        If an array has another shape than time or holds what is not finite.
-    """
+    """Return a force from one of `KINDS`, an array over time or a sequence of these."""
     if isinstance(given, KINDS):
         return given
     if isinstance(given, (tuple, list)) and any(isinstance(one, KINDS) for one in given):

@@ -13,20 +13,7 @@ from ..base.errors import SceneError
 
 
 def stations_at(length: float, positions: Iterable[float]) -> NDArray[np.float64]:
-    """Return the ends and the positions of parts in order, near ones merged.
-
-    Parameters
-    ----------
-    length : float
-        Of the rope [m].
-    positions : iterable of float
-        Of the parts [m].
-
-    Returns
-    -------
-    ndarray
-        From 0 to the length [m].
-    """
+    """Return the ends and the positions of parts in order, near ones merged."""
     margin = NEAR * length
     inner = sorted(x for x in positions if margin < x < length - margin)
     kept = [0.0]
@@ -43,25 +30,7 @@ def nearest(stations: NDArray[np.float64], positions: Iterable[float]) -> NDArra
 
 
 def shares(lengths: NDArray[np.float64], elements: int) -> NDArray[np.intp]:
-    """Share out elements over spans so that the longest element is as short as can be.
-
-    Parameters
-    ----------
-    lengths : ndarray, shape (spans,)
-        Of the spans [m].
-    elements : int
-        In all.
-
-    Returns
-    -------
-    ndarray of int, shape (spans,)
-        At least one each.
-
-    Raises
-    ------
-    SceneError
-        If there are fewer elements than spans.
-    """
+    """Share out elements over spans so that the longest element is as short as can be."""
     if elements < len(lengths):
         raise SceneError(
             f"elements must be at least {len(lengths)}, one for each stretch between stations, "

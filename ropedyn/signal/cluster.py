@@ -7,18 +7,7 @@ from numpy.typing import NDArray
 
 
 def clusters(near: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """Gather what is near, or near to what is near, and so on.
-
-    Parameters
-    ----------
-    near : ndarray of bool, shape (n, n)
-        Symmetric.
-
-    Returns
-    -------
-    list of ndarray of int
-        Members of each group in order, the groups in the order of their first members.
-    """
+    """Gather what is near, or near to what is near, and so on."""
     from scipy.sparse.csgraph import connected_components
 
     count, label = connected_components(near, directed=False)

@@ -99,23 +99,7 @@ def _circles(pole: Complex | Real, members: list[Index], room: Real) -> Circles:
 
 
 def moments(function: Function, circles: Circles, count: int, points: int) -> Complex:
-    """Return the sums of r_k ((p_k - c)/rho)^j in each circle, j < count.
-
-    Parameters
-    ----------
-    function : callable
-        Conjugate at conjugate points.
-    circles : Circles
-        Of real center together, and others.
-    count : int
-        How many.
-    points : int
-        Of each circle, even.
-
-    Returns
-    -------
-    ndarray, shape (circles, count, ...)
-    """
+    """Return the sums of r_k ((p_k - c)/rho)^j in each circle, j < count."""
     is_real = not circles.center.imag.any()
     half = points // 2 if is_real else points
     t = np.exp(2j * np.pi * (np.arange(half) + 0.5) / points)

@@ -75,20 +75,6 @@ def fit(omega: Real, value: Complex, noise: Real | None) -> OneMode | None:
     squares (J^T J)^-1 J^T S J (J^T J)^-1, with S from the noise of each line where it is known,
     times what the fit leaves in units of S where that is more than 1; and from what it leaves
     alone where the noise is not known.
-
-    Parameters
-    ----------
-    omega : ndarray, shape (n,)
-        [rad/s], at least `LEAST`, the peak about the middle.
-    value : ndarray of complex, shape (n,)
-        Response.
-    noise : ndarray, shape (n,), or None
-        Standard deviation of its real and of its imaginary part, where known.
-
-    Returns
-    -------
-    OneMode or None
-        None where nothing fits.
     """
     middle, half = (omega[-1] + omega[0]) / 2, (omega[-1] - omega[0]) / 2
     scale = np.abs(value).max()

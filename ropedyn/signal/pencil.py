@@ -61,13 +61,6 @@ def decaying(y: Complex, noise: Real) -> Modes | None:
     """Return as many modes as explain the samples best, None where noise explains them as well.
 
     What decays soon drowns in the noise of a long record: parts of it are looked at too.
-
-    Parameters
-    ----------
-    y : ndarray of complex, shape (n,)
-        Samples.
-    noise : ndarray, shape (n,)
-        Correlation of their noise at each lag, 1 at none.
     """
     # as many samples would tell as much if their noise were independent
     samples = len(y) / (1 + 2 * float((noise[1:] ** 2).sum()))

@@ -27,21 +27,6 @@ def residues(
     Around a peak receptances are A/(w0^2 - w^2 + 2 i zeta w0 w) + R with the same pole for all
     responses, and A in proportion to the shape; R is what other modes add. Both follow by least
     squares from the lines within three half widths, and not beyond the middle to another peak.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (f,)
-        [Hz], increasing, each > 0.
-    value : ndarray of complex, shape (responses, f)
-        Responses to one drive.
-    quantity : str
-        What they are.
-    peak, damping_ratio : ndarray, shape (k,)
-        Undamped natural frequencies [Hz], in any order, and damping ratios.
-
-    Returns
-    -------
-    ndarray of complex, shape (k, responses)
     """
     omega = 2 * np.pi * frequency
     receptance = value / (1j * omega) ** QUANTITIES[quantity]

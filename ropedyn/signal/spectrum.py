@@ -141,13 +141,7 @@ def window_weights(window: Any, n: int) -> Real:
 
 
 def time_step(time: Real) -> float:
-    """Return the step between times.
-
-    Raises
-    ------
-    SceneError
-        If the steps are not equal.
-    """
+    """Return the step between times."""
     step = float((time[-1] - time[0]) / (len(time) - 1))
     away = np.abs(time - (time[0] + step * np.arange(len(time))))
     if away.max() > UNIFORM * step:

@@ -39,25 +39,15 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Change:
-    """What leaving something out changes.
+    """What leaving something out changes."""
 
-    Attributes
-    ----------
-    size : dict of float
-        Measures of the change with their units, the largest change first; NaN where nothing is
-        left to compare.
-    error : float
-        Error bars of both answers where the change is largest, in the same unit.
-    beyond_error : bool
-        Whether any part of the change is larger than its error bars, or something is lost.
-    lost : int
-        Modes or responses that are only there with it.
-    """
-
+    # measures of the change with their units, the largest change first; NaN where nothing is left
+    # to compare
     size: dict[str, float]
-    error: float
+    error: float  # error bars of both answers where the change is largest, in the same unit
+    # whether any part of the change is larger than its error bars, or something is lost
     beyond_error: bool
-    lost: int
+    lost: int  # modes or responses that are only there with it
 
     @staticmethod
     def unknown(measures: Sequence[str]) -> Change:
@@ -79,15 +69,6 @@ def change_of_modes(whole: Modes, model: Model, solver: str) -> Change:
 
     Modes are paired by their motion and their order among those of the same motion; where the
     model has none of a motion, or too few, the others are only there in the whole.
-
-    Parameters
-    ----------
-    whole : Modes
-        Of the whole scene.
-    model : Model
-        Of what is left.
-    solver : str
-        As in `Model.modes`.
     """
     mine = motions(whole)
     partners = _partners(mine, model, solver)
@@ -132,21 +113,7 @@ def _moving(energies: Collection[str]) -> dict[str, tuple[str, ...]]:
 
 
 def _partners(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str, Real]:
-    """Return frequencies of a model, for each motion as many as wanted or as there are.
-
-    Parameters
-    ----------
-    mine : ndarray of str, shape (k,)
-        Motions that partners are wanted for.
-    model, solver
-        Whose modes, and how they are found.
-
-    Returns
-    -------
-    dict of ndarray, shape (partners, 3)
-        Of each motion: frequency and error [Hz] and damping ratio, from the fewest modes among
-        which all are.
-    """
+    """Return frequencies of a model, for each motion as many as wanted or as there are."""
     energies = (*model.coordinates, *(CARRIED[kind] for kind in model.chain.carried))
     wanted = {
         motion: min(int(np.sum(mine == motion)), _most(model, motion, own))
@@ -190,11 +157,6 @@ def change_of_frf(whole: FRF, left: FRF) -> Change:
     """Compare a frequency response with that of what is left, line by line.
 
     A value without a correct digit, as one that is 0 by symmetry, counts as 0.
-
-    Parameters
-    ----------
-    whole, left : FRF
-        Of the whole scene, and of what is left.
     """
     lines = len(whole.frequency)
     before, after = (_size(frf).reshape(-1, lines) for frf in (whole, left))

@@ -265,26 +265,14 @@ def effect_cost(
 
 @dataclass(frozen=True, eq=False)
 class Whole:
-    """The scene with all its effects, and how it is asked.
+    """The scene with all its effects, and how it is asked."""
 
-    Attributes
-    ----------
-    scene, question, solver
-        As in `effect_cost`.
-    how : dict
-        Arguments of `Scene.compile`.
-    model : Model
-        Of the whole scene.
-    answer : Modes or FRF
-        To the question.
-    """
-
-    scene: Scene
-    question: Question
-    how: dict[str, Any]
-    solver: str
-    model: Model
-    answer: Any
+    scene: Scene  # as in `effect_cost`
+    question: Question  # as in `effect_cost`
+    how: dict[str, Any]  # arguments of `Scene.compile`
+    solver: str  # as in `effect_cost`
+    model: Model  # of the whole scene
+    answer: Any  # to the question
 
     @staticmethod
     def of(scene: Scene, question: Question, how: dict[str, Any], solver: str) -> Whole:
@@ -300,26 +288,13 @@ class Whole:
 
 @dataclass(frozen=True, eq=False)
 class Left:
-    """What is left without an effect.
+    """What is left without an effect."""
 
-    Attributes
-    ----------
-    effect : str
-        Which one.
-    change : Change
-        Of the answer.
-    unknowns : int
-        Of what was solved.
-    refusal : str
-        Why there is no answer.
-    calls : tuple of callables
-        What compiles and what asks, nothing where there is no answer.
-    """
-
-    effect: str
-    change: Change
-    unknowns: int = 0
-    refusal: str = ""
+    effect: str  # which one
+    change: Change  # of the answer
+    unknowns: int = 0  # of what was solved
+    refusal: str = ""  # why there is no answer
+    # what compiles and what asks, nothing where there is no answer
     calls: tuple[Callable[[], Any], ...] = ()
 
 

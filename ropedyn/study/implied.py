@@ -42,17 +42,10 @@ class Implied:
 
     Frequencies tell tension and bending stiffness per linear density alone: one fit for each kind
     of ends holds for every density, multiplied by it.
-
-    Attributes
-    ----------
-    peaks : Peaks
-        Of the study.
-    fits : dict of str to Fit
-        By ends, of the rope that weighs what the first of `DENSITIES` says.
     """
 
-    peaks: Peaks
-    fits: dict[str, Fit]
+    peaks: Peaks  # of the study
+    fits: dict[str, Fit]  # by ends, of the rope that weighs what the first of `DENSITIES` says
 
     @cached_property
     def intervals(self) -> dict[str, Named]:

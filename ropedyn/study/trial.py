@@ -32,33 +32,16 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What answers are measured against: continuous spans.
+    """What answers are measured against: continuous spans."""
 
-    Attributes
-    ----------
-    scene : Scene
-        What is asked about.
-    question : Question
-        What is asked, and timed.
-    same : Question
-        The same for exactly as many values as the true answer has.
-    values : ndarray
-        True ones.
-    known : ndarray of bool
-        Which of them have a correct digit: what is 0 by symmetry is nothing but rounding.
-    error : float
-        Their own largest relative error, seen in other cuts of the same spans.
-    spans : int
-        How many.
-    """
-
-    scene: Scene
-    question: Question
-    same: Question
-    values: NDArray[Any]
+    scene: Scene  # what is asked about
+    question: Question  # what is asked, and timed
+    same: Question  # the same for exactly as many values as the true answer has
+    values: NDArray[Any]  # true ones
+    # which of them have a correct digit: what is 0 by symmetry is nothing but rounding
     known: NDArray[np.bool_]
-    error: float
-    spans: int
+    error: float  # their own largest relative error, seen in other cuts of the same spans
+    spans: int  # how many
 
     @staticmethod
     def of(scene: Scene, question: Question) -> Truth:
@@ -79,27 +62,16 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """One way to the answer.
+    """One way to the answer."""
 
-    Attributes
-    ----------
-    element, elements, solver
-        As in `AccuracyCost`.
-    error, estimated_error, digits_lost : float
-        Largest of all values, NaN where there is no answer.
-    refusal : str
-        Why there is none.
-    calls : tuple of callables
-        What compiles and what asks, nothing where there is no answer.
-    """
-
-    element: str
-    elements: int
-    solver: str
-    error: float = np.nan
-    estimated_error: float = np.nan
-    digits_lost: float = np.nan
-    refusal: str = ""
+    element: str  # as in `AccuracyCost`
+    elements: int  # as in `AccuracyCost`
+    solver: str  # as in `AccuracyCost`
+    error: float = np.nan  # largest of all values, NaN where there is no answer
+    estimated_error: float = np.nan  # largest of all values, NaN where there is no answer
+    digits_lost: float = np.nan  # largest of all values, NaN where there is no answer
+    refusal: str = ""  # why there is none
+    # what compiles and what asks, nothing where there is no answer
     calls: tuple[Callable[[], Any], ...] = ()
 
 
@@ -120,17 +92,7 @@ def words(element: str, elements: int, solver: str) -> str:
 def ways(
     truth: Truth, kinds: Sequence[str], counts: Sequence[int] | None, solvers: Sequence[str]
 ) -> list[Way]:
-    """Return every way to the answer.
-
-    Parameters
-    ----------
-    truth : Truth
-        What is asked, and the answer.
-    kinds, solvers : sequence of str
-        Of elements, and for each.
-    counts : sequence of int or None
-        Of elements; those that make sense where left out.
-    """
+    """Return every way to the answer."""
     found: list[Way] = []
     for kind in kinds:
         if kind != "continuous":

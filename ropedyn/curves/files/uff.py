@@ -61,28 +61,7 @@ class Record(NamedTuple):
 
 
 def read(file: Path, wanted: Callable[[Fields], bool]) -> list[Record]:
-    """Read the functions of a file.
-
-    Parameters
-    ----------
-    file : Path
-        ASCII or binary.
-    wanted : callable
-        Says by its header whether a function is one to be read.
-
-    Returns
-    -------
-    list of Record
-
-    Raises
-    ------
-    ImportError
-        If pyuff is missing.
-    OSError
-        If the file cannot be read.
-    SceneError
-        If it is no universal file, or a damaged one, or has no dataset 58.
-    """
+    """Read the functions of a file."""
     content = file.read_bytes()
     if not content.strip():
         raise SceneError(f"path must be a universal file, got {str(file)!r}, which is empty")
@@ -128,25 +107,7 @@ def _functions(
 
 
 def nodes(file: Path, axis: str) -> dict[int, float]:
-    """Read where the nodes of a file are along one of its axes [m].
-
-    Parameters
-    ----------
-    file : Path
-        A universal file that `read` has read.
-    axis : {"X", "Y", "Z"}
-        Of its own coordinates.
-
-    Returns
-    -------
-    dict
-        From numbers of nodes; empty without datasets 15 and 2411.
-
-    Raises
-    ------
-    SceneError
-        If a dataset is damaged, or no dataset 164 before it says what the unit of length is.
-    """
+    """Read where the nodes of a file are along one of its axes [m]."""
     opened = pyuff().UFF(str(file))
     found: dict[int, float] = {}
     units = None
@@ -222,22 +183,7 @@ def label_of(text: str) -> str:
 
 
 def write(path: Path, datasets: Sequence[Fields]) -> None:
-    """Write datasets to a file, whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    datasets : sequence of dict
-        As pyuff takes them.
-
-    Raises
-    ------
-    ImportError
-        If pyuff is missing.
-    OSError
-        If the file cannot be written.
-    """
+    """Write datasets to a file, whole or not at all."""
     library = pyuff()
     with replacing(path) as draft:
         with warnings.catch_warnings():

@@ -23,19 +23,12 @@ WIRE = ATTACHED.index("broken wire")
 
 
 class Carried(NamedTuple):
-    """What structures have in some motions of a chain.
+    """What structures have in some motions of a chain."""
 
-    Attributes
-    ----------
-    energy : ndarray, shape (kinds, k, 3)
-        Of each kind in `ATTACHED`: twice the strain energy, what they add to the modal mass, and
-        losses, of undamped modes alone.
-    motion : ndarray, shape (k,)
-        The largest of any.
-    """
-
+    # (kinds, k, 3) of each kind in `ATTACHED`: twice the strain energy, what they add to the modal
+    # mass, and losses, of undamped modes alone
     energy: Real
-    motion: Real
+    motion: Real  # (k,) the largest of any
 
     @classmethod
     def none(cls, count: int) -> Carried:

@@ -22,15 +22,11 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Rates:
-    """The factors of the five parts of the dynamic stiffness, polynomials in s.
+    """The factors of the five parts of the dynamic stiffness, polynomials in s."""
 
-    Attributes
-    ----------
-    constant, linear : ndarray, shape (5,)
-        Of sections, tension, springs, inertia, dashpots; inertia has s^2 as well.
-    """
-
+    # (5,) of sections, tension, springs, inertia, dashpots; inertia has s^2 as well
     constant: Complex
+    # (5,) of sections, tension, springs, inertia, dashpots; inertia has s^2 as well
     linear: Complex
 
     @classmethod
@@ -83,30 +79,14 @@ def horizon(chain: Chain, rates: Rates) -> float:
 
 @dataclass
 class Characteristic:
-    """An analytic function that vanishes at the eigenvalues; see csrc/characteristic.h.
+    """An analytic function that vanishes at the eigenvalues; see csrc/characteristic.h."""
 
-    Attributes
-    ----------
-    chain : Chain
-        One component, between nodes that nothing moves.
-    rates : Rates
-        Its factors.
-    reach : float
-        Where it may be asked for: |s| below [rad/s].
-    sweeps : int
-        How often it was.
-    steps : int
-        Pieces shorter than the waves at its reach.
-    rounding : float
-        Of values.
-    """
-
-    chain: Chain
-    rates: Rates
-    reach: float
-    sweeps: int = 0
-    steps: int = field(init=False)
-    rounding: float = field(init=False)
+    chain: Chain  # one component, between nodes that nothing moves
+    rates: Rates  # its factors
+    reach: float  # where it may be asked for: |s| below [rad/s]
+    sweeps: int = 0  # how often it was
+    steps: int = field(init=False)  # pieces shorter than the waves at its reach
+    rounding: float = field(init=False)  # of values
     bound: Complex = field(init=False)
 
     def __post_init__(self) -> None:

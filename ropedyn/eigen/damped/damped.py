@@ -47,29 +47,15 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class _Found:
-    """Rates of all parts in order.
+    """Rates of all parts in order."""
 
-    Attributes
-    ----------
-    parts : list of Part
-        Chains.
-    found : list of Damped
-        Their rates.
-    value, error : ndarray, shape (k,)
-        Those asked for [rad/s].
-    which, at : ndarray of int, shape (k,)
-        Of which part each is, and which of its rates.
-    radius : float
-        None of a modulus below this is missing [rad/s].
-    """
-
-    parts: list[Part]
-    found: list[Damped]
-    value: Complex
-    error: Real
-    which: Index
-    at: Index
-    radius: float
+    parts: list[Part]  # Chains
+    found: list[Damped]  # their rates
+    value: Complex  # (k,) those asked for [rad/s]
+    error: Real  # (k,) those asked for [rad/s]
+    which: Index  # (k,) of which part each is, and which of its rates
+    at: Index  # (k,) of which part each is, and which of its rates
+    radius: float  # none of a modulus below this is missing [rad/s]
 
     def first(self, number: int) -> _Found:
         """Return the lowest alone."""

@@ -25,58 +25,23 @@ NUDGES = (1.0, 1.004, 1.01, 1.03, 1.07)
 
 @dataclass(frozen=True)
 class Damped:
-    """Rates of one chain, in the order of their modulus.
+    """Rates of one chain, in the order of their modulus."""
 
-    Attributes
-    ----------
-    rates : Rates
-        Factors of the chain's parts.
-    value : ndarray of complex, shape (k,)
-        One of each conjugate pair, that above the real axis [rad/s].
-    error : ndarray, shape (k,)
-        Estimated absolute error [rad/s].
-    certified : bool
-        Whether none is missing.
-    radius : float
-        None of a modulus below this is missing [rad/s]; infinite where there are no more.
-    sweeps : int
-        What it took.
-    nearby : ndarray of complex
-        What was found besides: the others of the pairs [rad/s].
-    closed : Proportional or None
-        How the damping is proportional.
-    mode : ndarray of int, shape (k,)
-        The undamped mode that each is of, where it is proportional.
-    """
-
-    rates: Rates
-    value: Complex
-    error: Real
-    certified: bool
+    rates: Rates  # factors of the chain's parts
+    value: Complex  # (k,) one of each conjugate pair, that above the real axis [rad/s]
+    error: Real  # (k,) estimated absolute error [rad/s]
+    certified: bool  # whether none is missing
+    # none of a modulus below this is missing [rad/s]; infinite where there are no more
     radius: float
-    sweeps: int
-    nearby: Complex
-    closed: Proportional | None = None
+    sweeps: int  # what it took
+    nearby: Complex  # what was found besides: the others of the pairs [rad/s]
+    closed: Proportional | None = None  # how the damping is proportional
+    # (k,) the undamped mode that each is of, where it is proportional
     mode: NDArray[np.intp] | None = None
 
 
 def damped_roots(chain: Chain, rates: Rates, radius: float) -> Damped:
-    """Find all rates of a chain of a modulus below some radius.
-
-    Parameters
-    ----------
-    chain : Chain
-        One component, between nodes that nothing moves.
-    rates : Rates
-        Factors of its parts.
-    radius : float
-        [rad/s].
-
-    Raises
-    ------
-    SolveError
-        If they accumulate before it, or rounding decides where they are.
-    """
+    """Find all rates of a chain of a modulus below some radius."""
     edge = MARGIN * horizon(chain, rates)
     closed = proportional(chain, rates)
     if closed is not None and (radius < edge or chain.finite is not None):

@@ -24,13 +24,7 @@ Index = NDArray[np.intp]
 def solve_modal(
     model: Model, number: int | None, *, below: float | None, points: int | None
 ) -> DampedModes:
-    """Find the rates omega (-zeta +- sqrt(zeta^2 - 1)) of undamped modes.
-
-    Raises
-    ------
-    SceneError
-        If there is other damping, which would couple the modes, or a mode has no ratio.
-    """
+    """Find the rates omega (-zeta +- sqrt(zeta^2 - 1)) of undamped modes."""
     dampings, effects = model.scene.dampings, model.scene.effects
     others = [one.kind for one in having(dampings, "rate", "loss", "drag")]
     others += ["dashpot"] if "dashpot" in effects else []

@@ -18,16 +18,11 @@ class Proportional:
     So each undamped mode K phi = lambda M phi has the two rates
 
         s^2 + (drag + soften lambda) s + stiff lambda = 0
-
-    Attributes
-    ----------
-    stiff, soften, drag : complex
-        1 and 0, 0 where nothing is damped; soften [s], drag [1/s].
     """
 
-    stiff: complex
-    soften: complex
-    drag: complex
+    stiff: complex  # 1 and 0, 0 where nothing is damped; soften [s], drag [1/s]
+    soften: complex  # 1 and 0, 0 where nothing is damped; soften [s], drag [1/s]
+    drag: complex  # 1 and 0, 0 where nothing is damped; soften [s], drag [1/s]
 
     def rates(self, eigenvalue: Real) -> Complex:
         """Return both rates of undamped modes, shape (k, 2) [rad/s].

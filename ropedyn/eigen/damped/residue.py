@@ -39,19 +39,6 @@ def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:
 
     The dynamic stiffness D has D(s)^-1 = phi phi^T/(s - s_k) + .., so the mean of D^-1 t over a
     circle s_k + t is phi phi^T, of all rates in it together.
-
-    Parameters
-    ----------
-    chain : Chain
-        One component, between nodes that nothing moves.
-    damped : Damped
-        Its rates.
-    wanted : ndarray of int, shape (k,)
-        Which of them.
-
-    Returns
-    -------
-    ndarray, shape (k, nodes, width)
     """
     value, error, rates = damped.value, damped.error, damped.rates
     motion = np.zeros((len(value), chain.nodes, chain.held.shape[1]), dtype=np.complex128)

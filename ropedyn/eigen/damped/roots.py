@@ -51,35 +51,15 @@ REAL = 1e-6
 
 @dataclass(frozen=True)
 class Roots:
-    """Roots within a circle, of conjugate pairs the one above the real axis.
+    """Roots within a circle, of conjugate pairs the one above the real axis."""
 
-    Attributes
-    ----------
-    value : ndarray of complex, shape (n,)
-        [rad/s].
-    error : ndarray, shape (n,)
-        Estimated absolute error [rad/s].
-    certified : bool
-        Whether circles around them surround as many as the whole circle does.
-    """
-
-    value: Complex
-    error: Real
-    certified: bool
+    value: Complex  # (n,) [rad/s]
+    error: Real  # (n,) estimated absolute error [rad/s]
+    certified: bool  # whether circles around them surround as many as the whole circle does
 
 
 def find_roots(function: Characteristic, within: Winding, guess: Complex) -> Roots:
-    """Find all roots within a circle.
-
-    Parameters
-    ----------
-    function : Characteristic
-        Its reach is more than the radius.
-    within : Winding
-        How many roots there are.
-    guess : ndarray of complex
-        Where to begin, most likely first [rad/s].
-    """
+    """Find all roots within a circle."""
     if within.count == 0:
         return Roots(np.zeros(0, dtype=np.complex128), np.zeros(0), True)
     spacing = 2 * within.radius / within.count

@@ -27,27 +27,13 @@ CLEAR = 1e3
 
 @dataclass(frozen=True)
 class Winding:
-    """What a walk around the circle |s| = radius tells.
+    """What a walk around the circle |s| = radius tells."""
 
-    Attributes
-    ----------
-    radius : float
-        [rad/s].
-    count : int
-        Roots inside.
-    point : ndarray of complex, shape (arcs, 2)
-        Ends of arcs, of a half circle where the roots come in pairs.
-    change : ndarray of complex, shape (arcs,)
-        Of the function's logarithm along each.
-    paired : bool
-        Whether the roots come in conjugate pairs.
-    """
-
-    radius: float
-    count: int
-    point: Complex
-    change: Complex
-    paired: bool
+    radius: float  # [rad/s]
+    count: int  # roots inside
+    point: Complex  # (arcs, 2) ends of arcs, of a half circle where the roots come in pairs
+    change: Complex  # (arcs,) of the function's logarithm along each
+    paired: bool  # whether the roots come in conjugate pairs
 
     def moments(self, known: Complex, number: int) -> Complex:
         """Return sums of powers 1 .. number of root/radius over unknown roots, to some per cent.
@@ -70,19 +56,6 @@ def winding(function: Characteristic, radius: float) -> Winding | None:
     begins with arcs along which waves on the rope turn by a radian or so. Each is halved until its
     two halves turn as much as the whole does, and the logarithm changes little along both: what
     turns once more in between would show in one of them.
-
-    Parameters
-    ----------
-    function : Characteristic
-        Its reach is more than the radius.
-    radius : float
-        [rad/s].
-
-    Returns
-    -------
-    Winding or None
-        None where the function is no more than its rounding at a point of the circle: a root lies
-        there, or motion decays so fast that no digit of it comes back.
     """
     paired = function.is_paired
     whole = np.pi if paired else 2 * np.pi

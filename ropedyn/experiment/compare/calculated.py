@@ -28,30 +28,15 @@ UNSEEN = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Predicted:
-    """Calculated frequencies.
+    """Calculated frequencies."""
 
-    Attributes
-    ----------
-    frequency : ndarray, shape (m,)
-        [Hz], increasing, each > 0.
-    error : ndarray, shape (m,)
-        Of modes by mesh and rounding, of peaks of a response that of the fit to them [Hz].
-    damping_ratio : ndarray, shape (m,)
-        NaN where nothing damps.
-    number : ndarray of int, shape (m,)
-        Which of `modes` each is, from 0.
-    modes : Modes or None
-        Rigid motion and growth among them.
-    frf : FRF or None
-        That shows the peaks.
-    """
-
-    frequency: Real
+    frequency: Real  # (m,) [Hz], increasing, each > 0
+    # (m,) of modes by mesh and rounding, of peaks of a response that of the fit to them [Hz]
     error: Real
-    damping_ratio: Real
-    number: NDArray[np.intp]
-    modes: Modes | None = None
-    frf: FRF | None = None
+    damping_ratio: Real  # (m,) NaN where nothing damps
+    number: NDArray[np.intp]  # (m,) which of `modes` each is, from 0
+    modes: Modes | None = None  # rigid motion and growth among them
+    frf: FRF | None = None  # that shows the peaks
 
     @property
     def has_shapes(self) -> bool:
@@ -120,24 +105,7 @@ def index(points: tuple[Point, ...], wanted: Point) -> int | None:
 def predicted_of(
     given: Model | Modes | FRF, highest: float, more: int, least: int, drive: int
 ) -> Predicted:
-    """Return the calculated frequencies that measured ones may be.
-
-    Parameters
-    ----------
-    given : Model, Modes or FRF
-        What was calculated.
-    highest : float
-        Of the measured frequencies [Hz].
-    more, least : int
-        Modes above that, and in all, that a model is asked for.
-    drive : int
-        Of an FRF which drive counts.
-
-    Raises
-    ------
-    SceneError
-        If there is none.
-    """
+    """Return the calculated frequencies that measured ones may be."""
     if isinstance(given, FRF):
         found = _of_frf(given, drive)
     else:

@@ -75,20 +75,6 @@ def likely_cause(found: Predicted, order: NDArray[np.int64], measured: Real, std
     and with it every other number that leaves no more than chance exceeds in one of 1000 cases.
     What the scene does not have, as the give of a clamped end, is not tried, nor are several
     numbers together.
-
-    Parameters
-    ----------
-    found : Predicted
-        Modes, or there is no hint.
-    order : ndarray of int, shape (k,)
-        Which calculated frequency each measured one is, from 1, or 0.
-    measured, std : ndarray, shape (k,)
-        [Hz].
-
-    Returns
-    -------
-    str
-        Empty where nothing is proved.
     """
     from scipy.special import fdtrc
 
@@ -171,17 +157,10 @@ class Tracked:
     """Some modes while a number of the scene changes.
 
     A mode is the same as long as it has the same number among those of its component.
-
-    Attributes
-    ----------
-    modes : Modes
-        Of a model.
-    number : ndarray of int, shape (k,)
-        Which of them, from 0.
     """
 
-    modes: Modes
-    number: NDArray[np.intp]
+    modes: Modes  # of a model
+    number: NDArray[np.intp]  # (k,) which of them, from 0
 
     @cached_property
     def model(self) -> Model:

@@ -31,25 +31,7 @@ def drive_of(calculated: FRF, measured: Measured) -> int:
 
 
 def calculated_at(calculated: Model | FRF, measured: Measured) -> Complex:
-    """Return the calculated responses as measured: points, lines and quantity.
-
-    Parameters
-    ----------
-    calculated : Model or FRF
-        Of a model the response is computed.
-    measured : Measured
-        Without a line at 0 Hz.
-
-    Returns
-    -------
-    ndarray of complex, shape (responses, f)
-
-    Raises
-    ------
-    SceneError
-        If an FRF has other lines, another drive or not all of the responses, or a model none of
-        their coordinates.
-    """
+    """Return the calculated responses as measured: points, lines and quantity."""
     if isinstance(calculated, Model):
         return calculated.frf(
             measured.frequency,

@@ -25,15 +25,6 @@ def reach(calculated: Real) -> Real:
     Half the distance to a neighbour: a peak in the middle between two modes says nothing about
     which of them it is. Of two neighbours the farther one counts. Modes close to each other, as
     where twist meets bending, are one neighbour.
-
-    Parameters
-    ----------
-    calculated : ndarray, shape (m,)
-        [Hz], increasing, each > 0.
-
-    Returns
-    -------
-    ndarray, shape (m,)
     """
     log = np.log(calculated)
     mean = (log[-1] - log[0] + ALONE) / len(log)
@@ -54,23 +45,6 @@ def partners(
     is smallest, d = log(measured/calculated): to leave a pair out costs as much as a peak in the
     middle between two modes, so that peaks that are no modes and modes that are no peaks stay
     alone. As d^2 is convex, no two pairs cross: the order of frequencies is kept.
-
-    Parameters
-    ----------
-    measured : ndarray, shape (k,)
-        [Hz], in any order.
-    calculated : ndarray, shape (m,)
-        [Hz], increasing, each > 0.
-    std : ndarray, shape (k,), optional
-        Standard uncertainty of the measured frequencies [Hz].
-    within : float, optional
-        Largest relative error of a calculated frequency: no pair is farther apart than that and
-        three standard uncertainties.
-
-    Returns
-    -------
-    ndarray of int, shape (k,)
-        Numbers from 1, 0 where there is none.
     """
     from scipy.optimize import linear_sum_assignment
 

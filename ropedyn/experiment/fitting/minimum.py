@@ -31,21 +31,12 @@ EVALUATIONS = 50
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """Where the sum of squares is least.
+    """Where the sum of squares is least."""
 
-    Attributes
-    ----------
-    u : ndarray, shape (p,)
-    residual : ndarray, shape (m,)
-    slope : ndarray, shape (m, p)
-    evaluations : int
-        Of the residuals and their slopes.
-    """
-
-    u: Real
-    residual: Real
-    slope: Real
-    evaluations: int
+    u: Real  # (p,)
+    residual: Real  # (m,)
+    slope: Real  # (m, p)
+    evaluations: int  # of the residuals and their slopes
 
     @property
     def cost(self) -> float:
@@ -93,25 +84,6 @@ def minimise(
 
     Directions that do not change the residuals at the start are not gone: of all points with the
     least sum the one next to the start is found.
-
-    Parameters
-    ----------
-    misfit : callable
-        Residuals and slopes.
-    start : ndarray, shape (p,)
-    directions : ndarray, shape (p, q), optional
-        Orthonormal, all that may be gone.
-    digits : mapping
-        Tolerances as SciPy's least_squares takes them.
-
-    Returns
-    -------
-    Minimum
-
-    Raises
-    ------
-    SolveError
-        If it does not converge.
     """
     seen = Memory(misfit, start)
     residual, slope = seen(start)

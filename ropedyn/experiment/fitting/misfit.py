@@ -18,21 +18,12 @@ Misfit = Callable[[Real], tuple[Real, Real]]
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What is known beforehand: values and their standard deviations.
+    """What is known beforehand: values and their standard deviations."""
 
-    Attributes
-    ----------
-    unknowns : Unknowns
-        What is sought.
-    at : ndarray of int, shape (q,)
-        Which of it.
-    value, std : ndarray, shape (q,)
-    """
-
-    unknowns: Unknowns
-    at: NDArray[np.intp]
-    value: Real
-    std: Real
+    unknowns: Unknowns  # what is sought
+    at: NDArray[np.intp]  # (q,) which of it
+    value: Real  # (q,)
+    std: Real  # (q,)
 
     @classmethod
     def of(cls, unknowns: Unknowns, prior: Mapping[str, tuple[float, float]]) -> Known | None:

@@ -25,41 +25,18 @@ MARGIN = 1.5
 
 @dataclass(frozen=True, eq=False)
 class NaturalFrequencies:
-    """Natural frequencies of a scene with unknown numbers.
+    """Natural frequencies of a scene with unknown numbers."""
 
-    Attributes
-    ----------
-    unknowns : Unknowns
-        What is sought.
-    elements, element
-        As `Scene.compile` takes them.
-    """
-
-    unknowns: Unknowns
-    elements: int | None = None
-    element: str | None = None
+    unknowns: Unknowns  # what is sought
+    elements: int | None = None  # as `Scene.compile` takes them
+    element: str | None = None  # as `Scene.compile` takes them
     asked: OrderedDict[tuple[bytes, int], tuple[Real, Real]] = field(
         default_factory=OrderedDict, init=False, repr=False
     )
     highest: dict[int, float] = field(default_factory=dict, init=False, repr=False)
 
     def __call__(self, u: Real, count: int) -> tuple[Real, Real]:
-        """Find the lowest frequencies, rigid motion and growth left out, or all there are.
-
-        Parameters
-        ----------
-        u : ndarray, shape (p,)
-            The variables.
-        count : int
-            How many.
-
-        Returns
-        -------
-        frequency : ndarray, shape (count,)
-            [Hz].
-        slope : ndarray, shape (count, p)
-            df/du [Hz].
-        """
+        """Find the lowest frequencies, rigid motion and growth left out, or all there are."""
         key = u.tobytes(), count
         if key not in self.asked:
             if len(self.asked) == REMEMBERED:

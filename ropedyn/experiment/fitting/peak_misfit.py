@@ -15,24 +15,12 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PeakMisfit:
-    """Differences of natural frequencies from measured peaks.
+    """Differences of natural frequencies from measured peaks."""
 
-    Attributes
-    ----------
-    calculated : NaturalFrequencies
-        The frequencies.
-    measured : ndarray, shape (k,)
-        [Hz].
-    weight : ndarray, shape (k,)
-        By which differences are divided [Hz].
-    orders : ndarray of int, shape (k,)
-        From 1; 0 of a peak that is no mode, whose difference is 0.
-    """
-
-    calculated: NaturalFrequencies
-    measured: Real
-    weight: Real
-    orders: NDArray[np.intp]
+    calculated: NaturalFrequencies  # the frequencies
+    measured: Real  # (k,) [Hz]
+    weight: Real  # (k,) by which differences are divided [Hz]
+    orders: NDArray[np.intp]  # (k,) from 1; 0 of a peak that is no mode, whose difference is 0
 
     def __call__(self, u: Real) -> tuple[Real, Real]:
         """Return the residuals and their slopes."""

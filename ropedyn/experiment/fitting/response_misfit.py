@@ -18,39 +18,18 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """The response of a scene with unknown numbers, where and as it was measured.
+    """The response of a scene with unknown numbers, where and as it was measured."""
 
-    Attributes
-    ----------
-    unknowns : Unknowns
-        What is sought; the factor of the calibration may be among it.
-    measured : Measured
-    elements, element
-        As `Scene.compile` takes them.
-    """
-
-    unknowns: Unknowns
+    unknowns: Unknowns  # what is sought; the factor of the calibration may be among it
     measured: Measured
-    elements: int | None = None
-    element: str | None = None
+    elements: int | None = None  # as `Scene.compile` takes them
+    element: str | None = None  # as `Scene.compile` takes them
     _last: dict[bytes, tuple[Complex, Complex]] = field(
         default_factory=dict, init=False, repr=False
     )
 
     def __call__(self, u: Real) -> tuple[Complex, Complex]:
-        """Compute the response and its slopes.
-
-        Parameters
-        ----------
-        u : ndarray, shape (p,)
-            The variables.
-
-        Returns
-        -------
-        value : ndarray of complex, shape (responses, f)
-        slope : ndarray of complex, shape (responses, f, p)
-            d(value)/du.
-        """
+        """Compute the response and its slopes."""
         key = u.tobytes()
         if key not in self._last:
             answer = self._solve(u)
@@ -89,10 +68,6 @@ class LogMisfit:
     Every line counts alike, on a peak or between two, and a peak at a wrong place is off by its
     height in decades: far from the solution that is a wide valley, where differences of the
     responses themselves have none. Phases are compared by exp(i phi), which knows no jump of 2 pi.
-
-    Attributes
-    ----------
-    response : Response
     """
 
     response: Response
@@ -111,17 +86,10 @@ class LogMisfit:
 
 @dataclass(frozen=True, eq=False)
 class LineMisfit:
-    """Differences of the responses over the noise of each line, real and imaginary parts.
-
-    Attributes
-    ----------
-    response : Response
-    std : ndarray, shape (responses, f)
-        Of either part; infinite where a line says nothing.
-    """
+    """Differences of the responses over the noise of each line, real and imaginary parts."""
 
     response: Response
-    std: Real
+    std: Real  # (responses, f) of either part; infinite where a line says nothing
 
     def __call__(self, u: Real) -> tuple[Real, Real]:
         """Return the residuals (2 m,) and their slopes (2 m, p)."""

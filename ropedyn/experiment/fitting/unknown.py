@@ -30,23 +30,12 @@ class Unknowns:
     A number keeps its sign: u = ln(p/p_0), p_0 its start, so that what is positive stays so and a
     step of 1 is a factor e, whatever the unit. Only positions, by the length of the rope, and the
     inclination may pass 0: u = (p - p_0)/scale.
-
-    Attributes
-    ----------
-    scene : Scene
-        With the starts.
-    paths : tuple of str
-        Of the p numbers.
-    start : ndarray, shape (p,)
-        [of each number].
-    scale : ndarray, shape (p,)
-        0 where u is a logarithm.
     """
 
-    scene: Scene
-    paths: tuple[str, ...]
-    start: Real
-    scale: Real
+    scene: Scene  # with the starts
+    paths: tuple[str, ...]  # of the p numbers
+    start: Real  # (p,) [of each number]
+    scale: Real  # (p,) 0 where u is a logarithm
 
     @classmethod
     def of(cls, scene: Scene, unknown: str | Sequence[str]) -> Unknowns:

@@ -23,25 +23,15 @@ LEVEL = 0.95
 
 @dataclass(frozen=True, eq=False)
 class Alternative:
-    """The same peaks with other ends.
+    """The same peaks with other ends."""
 
-    Attributes
-    ----------
-    ends : str
-        The word for both.
-    fit : Fit
-        What they tell then.
-    verdict : {"better", "as well", "worse"}
-        How it fits. Where peaks have a standard deviation, "worse" is a chi-square larger by more
-        than 3.84, as that of one number off its interval of 95 %; where they have none, a sum of
-        squares more than the quantile of F as often as large.
-    change : dict from str to float
-        Of each number that is told, relative to the fit with the scene's own ends.
-    """
-
-    ends: str
-    fit: Fit
+    ends: str  # the word for both
+    fit: Fit  # what they tell then
+    # {"better", "as well", "worse"} How it fits. Where peaks have a standard deviation, "worse" is
+    # a chi-square larger by more than 3.84, as that of one number off its interval of 95 %; where
+    # they have none, a sum of squares more than the quantile of F as often as large
     verdict: str
+    # of each number that is told, relative to the fit with the scene's own ends
     change: dict[str, float]
 
     def __str__(self) -> str:

@@ -43,13 +43,6 @@ def fit_response(response: Response, known: Known | None) -> ResponseFit:
 
     First the logarithms, in which a peak at a wrong place is off by its height in decades; then the
     differences themselves over the noise of each line, which the residuals tell.
-
-    Parameters
-    ----------
-    response : Response
-        With what is sought and what was measured.
-    known : Known, optional
-        What is known beforehand.
     """
     started = time.perf_counter()
     measured = response.measured

@@ -29,30 +29,15 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """Numbers of a scene that are sought by peaks.
+    """Numbers of a scene that are sought by peaks."""
 
-    Attributes
-    ----------
-    calculated : NaturalFrequencies
-        Natural frequencies as functions of what is sought.
-    frequency : ndarray, shape (k,)
-        Of the peaks [Hz].
-    std : ndarray, shape (k,), or None
-        Their standard deviations [Hz].
-    orders : ndarray of int, shape (k,)
-        Which mode each is, from 1; 0 where it is none.
-    prior : mapping from str to (float, float)
-        Value and standard deviation of what is known beforehand.
-    runner_up : RunnerUp or None
-        Of the orders, where they were searched.
-    """
-
-    calculated: NaturalFrequencies
-    frequency: Real
-    std: Real | None
-    orders: Orders
+    calculated: NaturalFrequencies  # natural frequencies as functions of what is sought
+    frequency: Real  # (k,) of the peaks [Hz]
+    std: Real | None  # (k,) their standard deviations [Hz]
+    orders: Orders  # (k,) which mode each is, from 1; 0 where it is none
+    # value and standard deviation of what is known beforehand
     prior: Mapping[str, tuple[float, float]]
-    runner_up: RunnerUp | None = None
+    runner_up: RunnerUp | None = None  # of the orders, where they were searched
 
     @property
     def unknowns(self) -> Unknowns:
@@ -77,15 +62,7 @@ class Identification:
         return dataclasses.replace(self, calculated=calculated, runner_up=None)
 
     def fit(self) -> Fit:
-        """Solve.
-
-        Raises
-        ------
-        SceneError
-            If there is too little, or a number does not change any of these peaks.
-        SolveError
-            If the scene has fewer modes than the orders ask for, or the solution does not converge.
-        """
+        """Solve."""
         began = time.perf_counter()
         self._refuse_few()
         start = start_of_peaks(self.misfit, np.zeros(len(self.unknowns)))

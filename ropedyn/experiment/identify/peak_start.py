@@ -31,17 +31,6 @@ def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
     made of: with lambda* measured, sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* -
     lambda. Where the shapes do not depend on p, as those of pinned ropes, one step is exact
     however far off the start is; otherwise a few come near.
-
-    Parameters
-    ----------
-    misfit : PeakMisfit
-    u : ndarray, shape (p,)
-        The scene's own guess.
-
-    Returns
-    -------
-    ndarray, shape (p,)
-        The best of what was seen, next to the guess where peaks do not tell all.
     """
     best, least, felt = u, np.inf, np.zeros((1, len(u)))
     for _ in range(STEPS):

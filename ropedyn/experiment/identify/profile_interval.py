@@ -31,45 +31,19 @@ class Profile:
     Where the model is linear the root of that growth is the distance in standard deviations; where
     it is not, the interval on which the root is below a quantile still covers the truth as often
     (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, section 6.1).
-
-    Attributes
-    ----------
-    misfit : callable
-    minimum : Minimum
-    i : int
-        The number.
-    path : ndarray, shape (p,)
-        Change of the best others, linearly, for a change of 1 of it.
-    by_factor : ndarray of bool, shape (p,)
-        Numbers whose variables are logarithms: these are followed by their relative changes, in
-        which frequencies squared are linear.
-    limit : float
-        Largest distance, of a logarithm or another variable.
     """
 
     misfit: Misfit
     minimum: Minimum
-    i: int
-    path: Real
+    i: int  # the number
+    path: Real  # (p,) change of the best others, linearly, for a change of 1 of it
+    # (p,) numbers whose variables are logarithms: these are followed by their relative changes, in
+    # which frequencies squared are linear
     by_factor: NDArray[np.bool_]
-    limit: float
+    limit: float  # largest distance, of a logarithm or another variable
 
     def bound(self, side: int, root: float, step: float) -> float:
-        """Return u_i where the root of the growth has a value.
-
-        Parameters
-        ----------
-        side : {-1, 1}
-        root : float
-            That value > 0.
-        step : float
-            Guess of the distance, of a number by factor its relative change.
-
-        Returns
-        -------
-        float
-            Infinite where there is none within the limit.
-        """
+        """Return u_i where the root of the growth has a value."""
 
         def off(distance: float) -> float:
             return self._root(side * distance, ACCEPTED * root**2)

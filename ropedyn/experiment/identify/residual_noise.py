@@ -30,17 +30,6 @@ def line_std(measured: Measured, off: Complex) -> Real:
 
     Where coherence C was measured the first kind is what that tells, a^2 |H|^2 (1 - C)/C, as of n
     averages with a^2 = 1/2n (J. S. Bendat, A. G. Piersol, Random Data, 2010, section 9.2).
-
-    Parameters
-    ----------
-    measured : Measured
-    off : ndarray of complex, shape (responses, f)
-        Differences of a fitted response.
-
-    Returns
-    -------
-    ndarray, shape (responses, f)
-        Infinite where the coherence is 0.
     """
     std = np.empty(off.shape)
     for r, value in enumerate(measured.value):
@@ -62,12 +51,6 @@ def _most_likely(kinds: Real, square: Real) -> Real:
 
     One kind alone if both are not much likelier: a second one that is not there would be found
     where few high lines happen to be off by more, and take their weight away.
-
-    Parameters
-    ----------
-    kinds : ndarray, shape (2, m)
-    square : ndarray, shape (m,)
-        Means of the squares of real and imaginary part.
     """
     each = np.array([_alone(kind, square) for kind in kinds])
     alone = [np.array([each[0], 0.0]), np.array([0.0, each[1]])]

@@ -57,21 +57,6 @@ def start_of_response(response: Response) -> tuple[Response, Real]:
     The logarithm of the response, compared on a few hundred lines, is fitted from the guess of the
     scene itself, and from what makes natural frequencies those of the peaks, under several readings
     of which modes they are. What fits best is taken.
-
-    Parameters
-    ----------
-    response : Response
-
-    Returns
-    -------
-    Response
-        The same, but for the sign of the calibration that is sought: that with which phases fit.
-    ndarray, shape (p,)
-
-    Raises
-    ------
-    SceneError, SolveError
-        If nothing of that has an answer.
     """
     starts, failure = _starts(response)
     best: tuple[Minimum, Response] | None = None

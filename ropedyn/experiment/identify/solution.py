@@ -42,33 +42,15 @@ FAR = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The best numbers and what is known of them.
+    """The best numbers and what is known of them."""
 
-    Attributes
-    ----------
-    unknowns : Unknowns
-        What was sought.
-    misfit : callable
-        What was made small, with what was known beforehand.
-    minimum : Minimum
-        Where it is least.
-    rows : int
-        Of the residuals, those that were measured.
-    noise : float
-        Standard deviation of residuals; infinite where nothing tells it.
-    freedom : float or None
-        Degrees of freedom it was estimated with; None where it was given.
-    side : ndarray of int, shape (p,)
-        -1 of numbers that went to 0, 1 to infinity, else 0.
-    """
-
-    unknowns: Unknowns
-    misfit: Misfit
-    minimum: Minimum
-    rows: int
-    noise: float
-    freedom: float | None
-    side: NDArray[np.int_]
+    unknowns: Unknowns  # what was sought
+    misfit: Misfit  # what was made small, with what was known beforehand
+    minimum: Minimum  # where it is least
+    rows: int  # of the residuals, those that were measured
+    noise: float  # standard deviation of residuals; infinite where nothing tells it
+    freedom: float | None  # degrees of freedom it was estimated with; None where it was given
+    side: NDArray[np.int_]  # (p,) -1 of numbers that went to 0, 1 to infinity, else 0
 
     @property
     def off(self) -> float:
@@ -156,22 +138,7 @@ def solve(
     noise: float | None,
     guess: Real | None = None,
 ) -> Solution:
-    """Make what was measured fit best, together with what was known beforehand.
-
-    Parameters
-    ----------
-    unknowns : Unknowns
-    measured : callable
-        Residuals of what was measured, and their slopes.
-    start : ndarray, shape (p,)
-    rows : int
-        How many residuals there are.
-    known : Known, optional
-    noise : float, optional
-        Standard deviation of the residuals; estimated where left out.
-    guess : ndarray, shape (p,), optional
-        Where numbers come from that went to 0 or infinity, if that is not the start.
-    """
+    """Make what was measured fit best, together with what was known beforehand."""
 
     def attempt(start: Real) -> Solution:
         misfit = measured

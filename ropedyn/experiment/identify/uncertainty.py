@@ -40,18 +40,10 @@ def quantile(level: float, freedom: float | None) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Linear statistics of the variables u.
+    """Linear statistics of the variables u."""
 
-    Attributes
-    ----------
-    slope : ndarray, shape (m, p)
-        Of residuals; 0 of numbers that are at a bound.
-    noise : float
-        Standard deviation of residuals; infinite where nothing tells it.
-    """
-
-    slope: Real
-    noise: float
+    slope: Real  # (m, p) of residuals; 0 of numbers that are at a bound
+    noise: float  # standard deviation of residuals; infinite where nothing tells it
 
     @cached_property
     def basis(self) -> Real:

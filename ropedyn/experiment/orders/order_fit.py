@@ -29,40 +29,22 @@ STRIDE = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Tangent:
-    """What was calculated at some parameters.
+    """What was calculated at some parameters."""
 
-    Attributes
-    ----------
-    parameters : ndarray, shape (p,)
-    quotients : Quotients
-    """
-
-    parameters: Real
+    parameters: Real  # (p,)
     quotients: Quotients
 
 
 @dataclass(frozen=True, eq=False)
 class OrderFit:
-    """The likeliest parameters for orders.
+    """The likeliest parameters for orders."""
 
-    Attributes
-    ----------
-    orders : ndarray of int, shape (k,)
-    parameters : ndarray, shape (p,)
-    frequency : ndarray, shape (m,)
-        With these parameters [Hz].
-    cost, misfit : float
-        See `Likelihood`.
-    tangent : Tangent
-        What they were found from.
-    """
-
-    orders: Whole
-    parameters: Real
-    frequency: Real
-    cost: float
-    misfit: float
-    tangent: Tangent
+    orders: Whole  # (k,)
+    parameters: Real  # (p,)
+    frequency: Real  # (m,) with these parameters [Hz]
+    cost: float  # see `Likelihood`
+    misfit: float  # see `Likelihood`
+    tangent: Tangent  # what they were found from
 
 
 class OrderFits:

@@ -41,18 +41,11 @@ class Grid:
     Directions in which all frequencies change by a common factor, or none does, need no points:
     tension and all stiffnesses together, or tension and all masses. A mode's shares s tell them, by
     Euler: steps v of the logarithms change all ln(f^2) alike where s v is the same for all modes.
-
-    Attributes
-    ----------
-    parameters : ndarray, shape (points, p)
-    quotients : Quotients
-        Of each point.
-    lift : ndarray, shape (p,)
-        Shortest step of the logarithms that adds 1 to all ln(f^2); 0 where there is none.
     """
 
-    parameters: Real
-    quotients: Quotients
+    parameters: Real  # (points, p)
+    quotients: Quotients  # of each point
+    # (p,) shortest step of the logarithms that adds 1 to all ln(f^2); 0 where there is none
     lift: Real
 
     @classmethod

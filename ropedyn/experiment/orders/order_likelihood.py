@@ -26,27 +26,16 @@ class Likelihood:
 
     These are the prices of one chi-square: modes are missed where that costs less than what the
     other peaks gain by it.
-
-    Attributes
-    ----------
-    frequency, sigma : ndarray, shape (k,)
-        [Hz].
-    band : tuple of float
-        Where modes would have been seen [Hz].
-    overlooked : float
-        q, between 0 and 1.
-    stray : float
-        r, positive.
-    missing, spurious : int
-        At most so many modes below the highest one seen are missing, and peaks are no modes.
     """
 
-    frequency: Real
-    sigma: Real
-    band: tuple[float, float]
-    overlooked: float
-    stray: float
+    frequency: Real  # (k,) [Hz]
+    sigma: Real  # (k,) [Hz]
+    band: tuple[float, float]  # where modes would have been seen [Hz]
+    overlooked: float  # q, between 0 and 1
+    stray: float  # r, positive
+    # at most so many modes below the highest one seen are missing, and peaks are no modes
     missing: int
+    # at most so many modes below the highest one seen are missing, and peaks are no modes
     spurious: int
 
     def coarser(self, error: float | Real) -> Real:
@@ -114,21 +103,6 @@ def numbered(seen: Real, none: Real, missing: int, spurious: int) -> tuple[Whole
     After i peaks, s of them no mode, and m modes skipped, the last seen is the mode i - s + m. The
     next peak is no mode, V(i+1, m, s+1) = V(i, m, s) + none(i), or the next mode after skipping
     some more, V(i+1, m', s) = min over m <= m' of V(i, m, s) + seen(i, i + 1 - s + m').
-
-    Parameters
-    ----------
-    seen : ndarray, shape (h, k, m)
-        Price of each peak as each mode, many times over.
-    none : ndarray, shape (h, k)
-        Price of each peak as no mode.
-    missing, spurious : int
-        At most.
-
-    Returns
-    -------
-    orders : ndarray of int, shape (h, k)
-        0 where a peak is no mode.
-    cost : ndarray, shape (h,)
     """
     many, peaks, modes = seen.shape
     skipped = np.arange(missing + 1)

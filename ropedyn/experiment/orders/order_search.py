@@ -51,28 +51,17 @@ ROUNDS = 3
 
 @dataclass(frozen=True, eq=False)
 class Assignment:
-    """One way to see measured peaks as modes.
+    """One way to see measured peaks as modes."""
 
-    Attributes
-    ----------
-    orders : ndarray of int, shape (k,)
-        Of each peak from 1; 0 where it is no mode.
-    parameters : ndarray, shape (p,)
-        The likeliest with these orders.
-    cost : float
-        -2 ln of the likelihood, up to a constant all assignments share: differences of two are
-        differences of chi-square, `ropedyn.order_likelihood.Likelihood` has the terms.
-    misfit : float
-        The part that peaks alone say, sum of ((calculated - measured)/std)^2: where two
-        assignments do not differ in it, only how likely modes are missed decides.
-    noise : float or None
-        Relative standard uncertainty that makes the peaks likeliest, where none was given.
-    """
-
-    orders: Whole
-    parameters: Real
+    orders: Whole  # (k,) of each peak from 1; 0 where it is no mode
+    parameters: Real  # (p,) the likeliest with these orders
+    # -2 ln of the likelihood, up to a constant all assignments share: differences of two are
+    # differences of chi-square, `ropedyn.order_likelihood.Likelihood` has the terms
     cost: float
+    # the part that peaks alone say, sum of ((calculated - measured)/std)^2: where two assignments
+    # do not differ in it, only how likely modes are missed decides
     misfit: float
+    # relative standard uncertainty that makes the peaks likeliest, where none was given
     noise: float | None
 
 

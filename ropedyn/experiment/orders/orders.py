@@ -60,21 +60,11 @@ def lowest_orders(frequency: Real) -> Orders:
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Natural frequencies as functions of the factors by which some numbers leave a centre.
+    """Natural frequencies as functions of the factors by which some numbers leave a centre."""
 
-    Attributes
-    ----------
-    calculated : NaturalFrequencies
-        As functions of the variables.
-    centre : ndarray, shape (p,)
-        Of the variables.
-    which : ndarray of int, shape (q,)
-        The numbers; the others stay.
-    """
-
-    calculated: NaturalFrequencies
-    centre: Real
-    which: Orders
+    calculated: NaturalFrequencies  # as functions of the variables
+    centre: Real  # (p,) of the variables
+    which: Orders  # (q,) the numbers; the others stay
 
     @classmethod
     def of(cls, calculated: NaturalFrequencies, centre: Real, count: int) -> Factors:
@@ -105,17 +95,6 @@ def lowest_suffice(residual: Real, frequency: Real, std: Real | None, freedom: i
 
     Any others have a mode missing: where the noise is not known they must gain more than that
     costs, where it is known the lowest must be off by more than noise would be.
-
-    Parameters
-    ----------
-    residual : ndarray, shape (k,)
-        Calculated less measured [Hz].
-    frequency : ndarray, shape (k,)
-        Of the peaks [Hz].
-    std : ndarray, shape (k,), or None
-        Their standard deviations [Hz].
-    freedom : int
-        Peaks that are more than numbers sought.
     """
     from scipy.special import chdtri
 
@@ -137,32 +116,7 @@ def found_orders(
     missing: int | None,
     spurious: int,
 ) -> tuple[Orders, RunnerUp | None]:
-    """Search the modes of the peaks.
-
-    Parameters
-    ----------
-    calculated : NaturalFrequencies
-        Frequencies of what is sought; positions stay at their guesses.
-    centres : sequence of ndarray, shape (p,)
-        Variables about which it is searched, within a factor of 30 each.
-    frequency : ndarray, shape (k,)
-        Of the peaks [Hz].
-    std : ndarray, shape (k,), or None
-        Their standard deviations [Hz].
-    missing, spurious
-        As `order_search.search` takes them.
-
-    Returns
-    -------
-    orders : ndarray of int, shape (k,)
-    runner_up : RunnerUp or None
-        None where nothing else is within the limits, or nothing was searched.
-
-    Raises
-    ------
-    SolveError
-        If no orders are within the limits.
-    """
+    """Search the modes of the peaks."""
     from .order_search import search
 
     ranked: dict[tuple[int, ...], float] = {}

@@ -38,20 +38,11 @@ class Quotients:
     First order for every parameter, and more: exact where shapes do not change, as along a common
     factor of all stiffnesses, or for the pinned rope. For r given f it is linear. Of parameters
     with a share beyond 1, such as a length, r is a power.
-
-    Attributes
-    ----------
-    frequency : ndarray, shape (..., m)
-        f(1) [Hz], positive.
-    share : ndarray, shape (..., m, p)
-        Of the power.
-    power : ndarray, shape (..., p)
-        From 1 to 4.
     """
 
-    frequency: Real
-    share: Real
-    power: Real
+    frequency: Real  # (..., m) f(1) [Hz], positive
+    share: Real  # (..., m, p) of the power
+    power: Real  # (..., p) from 1 to 4
 
     @classmethod
     def of(cls, parameters: Real, frequency: Real, jacobian: Real) -> Quotients:
@@ -91,19 +82,6 @@ class Quotients:
         """Return ratios whose frequencies are the measured ones, by weighted least squares.
 
         By Gauss-Newton for f(r)^2/measured^2 - 1, which of stiffnesses alone is linear.
-
-        Parameters
-        ----------
-        measured : ndarray, shape (k,)
-            [Hz].
-        weight : ndarray, shape (..., k)
-            1/relative standard uncertainty.
-        orders : ndarray of int, shape (..., k)
-            From 1; 0 where the peak is no mode.
-        pull : tuple of ndarray of shape (..., p) and float
-            Ratios expected beforehand, and their relative uncertainty: what peaks do not tell.
-        bounds : tuple of ndarray, each broadcastable to shape (..., p)
-            Lowest and highest ratios.
         """
         mode = np.maximum(orders - 1, 0)
         calculated = np.take_along_axis(self.frequency, mode, axis=-1)

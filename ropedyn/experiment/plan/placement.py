@@ -39,20 +39,6 @@ def place(drive: Candidates, sensors: Sequence[Candidates], apart: float) -> Fou
 
     One sensor: every pair is tried. More: each place in turn is moved to where it is best, given
     the others, until none moves, from several starts; the best that was found, not proved to be.
-
-    Parameters
-    ----------
-    drive : Candidates
-        a_n.
-    sensors : sequence of Candidates
-        b_n of each sensor.
-    apart : float
-        Least distance between any two places [m].
-
-    Returns
-    -------
-    Found or None
-        Indices into the candidates; None where `apart` leaves no room.
     """
     if len(sensors) == 1:
         return _pair(drive, sensors[0], apart)

@@ -27,58 +27,21 @@ MOST_MODES = 4096
 
 
 class Wanted(NamedTuple):
-    """Modes that a measurement should show.
+    """Modes that a measurement should show."""
 
-    Attributes
-    ----------
-    mode : ndarray of int, shape (k,)
-        Their numbers, from 1.
-    rank : ndarray of int, shape (k,)
-        Their numbers among those that can be seen, from 0.
-    frequency, damping_ratio, separation : ndarray, shape (k,)
-        As in `Plan`.
-    highest_peak : ndarray, shape (k,)
-        The largest that |phi(x_d) phi(x_r)|/(2 zeta m omega^2) can be.
-    x : ndarray, shape (places,)
-        [m].
-    driven, heard : ndarray, shape (k, places)
-        As in `Plan`.
-    """
-
-    mode: NDArray[np.int64]
-    rank: NDArray[np.intp]
-    frequency: Real
-    damping_ratio: Real
-    separation: Real
-    highest_peak: Real
-    x: Real
-    driven: Real
-    heard: Real
+    mode: NDArray[np.int64]  # (k,) their numbers, from 1
+    rank: NDArray[np.intp]  # (k,) their numbers among those that can be seen, from 0
+    frequency: Real  # (k,) as in `Plan`
+    damping_ratio: Real  # (k,) as in `Plan`
+    separation: Real  # (k,) as in `Plan`
+    highest_peak: Real  # (k,) the largest that |phi(x_d) phi(x_r)|/(2 zeta m omega^2) can be
+    x: Real  # (places,) [m]
+    driven: Real  # (k, places) as in `Plan`
+    heard: Real  # (k, places) as in `Plan`
 
 
 def wanted_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> Wanted:
-    """Find modes and the next ones, among those that move both coordinates.
-
-    Parameters
-    ----------
-    model : Model
-        Continuous spans.
-    asked : int or sequence of int
-        How many of the lowest, or their numbers from 1.
-    coordinates : tuple of str
-        Of the drive and of the response.
-
-    Returns
-    -------
-    Wanted
-
-    Raises
-    ------
-    TypeError, SceneError
-        If the numbers are none, or one is that of a mode that is not seen.
-    SolveError
-        If there are not so many.
-    """
+    """Find modes and the next ones, among those that move both coordinates."""
     numbers, count = _checked(asked)
     found, shapes, seen = _enough(model, numbers, count, coordinates)
     chosen = np.array(numbers) - 1 if numbers else seen[:count]

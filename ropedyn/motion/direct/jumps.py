@@ -41,31 +41,15 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Onset:
-    """The jumps and blows of one chain at one time.
+    """The jumps and blows of one chain at one time."""
 
-    Attributes
-    ----------
-    motion : Motion
-        Of the chain.
-    time : float
-        Just after which [s].
-    h : float
-        Of the steps that follow [s].
-    force, ends : Change
-        Of the forces and of ends that are moved.
-    blow : ndarray, shape (drives,)
-        Impulses [N s, N m s].
-    jumps : bool
-        Whether something must follow at once.
-    """
-
-    motion: Motion
-    time: float
-    h: float
-    force: Change
-    ends: Change
-    blow: Real
-    jumps: bool
+    motion: Motion  # of the chain
+    time: float  # just after which [s]
+    h: float  # of the steps that follow [s]
+    force: Change  # of the forces and of ends that are moved
+    ends: Change  # of the forces and of ends that are moved
+    blow: Real  # (drives,) impulses [N s, N m s]
+    jumps: bool  # whether something must follow at once
 
     def happen(self) -> Real:
         """Let it happen; return the energies of what led there, shape (.., 5)."""

@@ -47,61 +47,28 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Lumps:
-    """The chain of coordinates that move together, and what acts on it.
+    """The chain of coordinates that move together, and what acts on it."""
 
-    Attributes
-    ----------
-    coordinates : tuple of str
-        Of every node.
-    chain : Chain
-        Without correction of its lumps; its damping is all that is in proportion to velocity.
-    x : ndarray, shape (nodes,)
-        Where nodes stand [m].
-    kept : ndarray of int
-        Those that the model has.
-    beside : Beside
-    laws : Laws
-    calls : tuple of Call
-        Those among them that Python knows.
-    drives : Ports
-        Of the forces.
-    forces : tuple of Force
-        One for each.
-    moved : ndarray of int32, shape (moved, 2)
-        Node and coordinate of ends whose motion is given.
-    motions : tuple of Force
-        One for each.
-    reading : Reading
-        What is watched.
-    local : ndarray, shape (responses, drives)
-        How far forces between nodes move what is watched in the same element at once.
-    number : ndarray of int
-        Which of the responses of the run each is.
-    pulsation : callable or None
-        What is added to the tension at times [s].
-    start : State
-        Where the motion begins.
-    released : bool
-        Whether loads on coordinates without inertia are let go.
-    """
-
-    coordinates: tuple[str, ...]
+    coordinates: tuple[str, ...]  # of every node
+    # without correction of its lumps; its damping is all that is in proportion to velocity
     chain: Chain
-    x: Real
-    kept: NDArray[np.intp]
+    x: Real  # (nodes,) where nodes stand [m]
+    kept: NDArray[np.intp]  # those that the model has
     beside: Beside
     laws: Laws
-    calls: tuple[Call, ...]
-    drives: Ports
-    forces: tuple[Force, ...]
-    moved: NDArray[np.int32]
-    motions: tuple[Force, ...]
-    reading: Reading
+    calls: tuple[Call, ...]  # those among them that Python knows
+    drives: Ports  # of the forces
+    forces: tuple[Force, ...]  # one for each
+    moved: NDArray[np.int32]  # (moved, 2) node and coordinate of ends whose motion is given
+    motions: tuple[Force, ...]  # one for each
+    reading: Reading  # what is watched
+    # (responses, drives) how far forces between nodes move what is watched in the same element at
+    # once
     local: Real
-    number: NDArray[np.intp]
-    pulsation: Callable[[Real], Real] | None
-    start: State
-    released: bool
+    number: NDArray[np.intp]  # which of the responses of the run each is
+    pulsation: Callable[[Real], Real] | None  # what is added to the tension at times [s]
+    start: State  # where the motion begins
+    released: bool  # whether loads on coordinates without inertia are let go
 
     @property
     def is_damped(self) -> bool:

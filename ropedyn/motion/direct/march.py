@@ -51,21 +51,15 @@ class Push(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Stride:
-    """Where steps led.
+    """Where steps led."""
 
-    Attributes
-    ----------
-    read : ndarray, shape (done, 3, responses)
-        Displacement (or internal force), velocity and acceleration at the ends of steps.
-    energy : ndarray, shape (done, 5)
-        Kinetic and strain energy there; input, dissipated and what laws took during the step [J].
-    error : exception or None
-        What stopped the step after those.
-    """
-
+    # (done, 3, responses) displacement (or internal force), velocity and acceleration at the ends
+    # of steps
     read: Real
+    # (done, 5) kinetic and strain energy there; input, dissipated and what laws took during the
+    # step [J]
     energy: Real
-    error: BaseException | None = None
+    error: BaseException | None = None  # what stopped the step after those
 
     def then(self, other: Stride) -> Stride:
         """Return it and the steps after it."""
@@ -74,24 +68,7 @@ class Stride:
 
 
 class Motion:
-    """The motion of one chain.
-
-    Parameters
-    ----------
-    lumps : Lumps
-        The chain and what acts on it.
-    refined : bool
-        Whether stages are solved twice, so that energy does not drift by rounding.
-
-    Attributes
-    ----------
-    state : State
-        Now.
-    late : float
-        How long ago the step should have begun that is next [s]: what follows jumps takes time.
-    stages, factorisations : int
-        What was solved so far.
-    """
+    """The motion of one chain."""
 
     def __init__(self, lumps: Lumps, *, refined: bool) -> None:
         self.lumps = lumps
@@ -114,15 +91,6 @@ class Motion:
         do forces what has no inertia, by the scheme that keeps energy, of two midpoint steps: it
         takes them as means over both ends of these. Where they act there, at the middle, it would
         be off by as much at each end, with another sign each time, and its velocity more and more.
-
-        Parameters
-        ----------
-        time : ndarray, shape (steps + 1,)
-            Where steps begin and end [s].
-        h, g : float
-            Of the steps.
-        begin, end : float
-            How far after the first and before the last time functions are taken [s].
         """
         lumps = self.lumps
         stages = time[:-1, None] + h * np.array([g, 1 - g])

@@ -74,20 +74,7 @@ class Stage(NamedTuple):
 
 
 def solve_stage(stage: Stage, guess: Real) -> tuple[Real, Real]:
-    """Return the forces of all laws at a stage, and the velocities of their points.
-
-    Parameters
-    ----------
-    stage : Stage
-        Without them.
-    guess : ndarray
-        Of the forces of Python's laws.
-
-    Raises
-    ------
-    SolveError
-        If a law returns no finite number, or Newton's method does not converge.
-    """
+    """Return the forces of all laws at a stage, and the velocities of their points."""
     if len(stage.x) == 1:
         return _solve_alone(stage, float(guess[0]))
     given = guess.copy()

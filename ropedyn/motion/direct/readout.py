@@ -20,21 +20,12 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """Responses as numbers that the core reads.
+    """Responses as numbers that the core reads."""
 
-    Attributes
-    ----------
-    ports : Ports
-        That the core reads: responses, and what an internal force at the left end follows from.
-    direct : ndarray of int
-        Responses that are read as they are.
-    left : LeftForce or None
-        What tells the others.
-    """
-
+    # that the core reads: responses, and what an internal force at the left end follows from
     ports: Ports
-    direct: NDArray[np.intp]
-    left: LeftForce | None
+    direct: NDArray[np.intp]  # responses that are read as they are
+    left: LeftForce | None  # what tells the others
 
     def values(self, read: Real, time: Real, order: int) -> Real:
         """Return the responses, shape (times, responses), of what the core read at these times."""
@@ -93,19 +84,7 @@ def reading(
     beside: Beside,
     pulsation: Callable[[Real], Real] | None,
 ) -> Reading:
-    """Return what the core reads for responses on these coordinates.
-
-    Parameters
-    ----------
-    chain, x, coordinates
-        As in `ports`.
-    points : list of points
-        Responses.
-    beside : Beside
-        The chain.
-    pulsation : callable or None
-        Tension [N] at times [s].
-    """
+    """Return what the core reads for responses on these coordinates."""
     hidden = [at_start(x, p) for p in points]
     direct = [p for p, left in zip(points, hidden) if not left]
     number = np.flatnonzero(~np.array(hidden, dtype=np.bool_))

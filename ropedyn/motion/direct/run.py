@@ -24,56 +24,24 @@ FINE = 1e-8
 
 @dataclass(eq=False)
 class Passage:
-    """What a march leaves behind.
+    """What a march leaves behind."""
 
-    Attributes
-    ----------
-    value : ndarray, shape (responses, t)
-        At the times that were asked for.
-    energy : ndarray, shape (chains, t, 5)
-        Kinetic, strain; input, dissipated and taken by laws since the first time [J].
-    snapshot : ndarray, shape (s, nodes, coordinates)
-        Of the model.
-    largest : ndarray, shape (2, coordinates)
-        Displacement and velocity of any node at the times between calls of the core.
-    last : ndarray, shape (nodes, coordinates)
-        Displacement where the march ended.
-    reached, seen : int
-        How many times and snapshots were reached.
-    error : exception or None
-        Why not all.
-    stages, factorisations : int
-        What it took.
-    """
-
-    value: Real
+    value: Real  # (responses, t) at the times that were asked for
+    # (chains, t, 5) Kinetic, strain; input, dissipated and taken by laws since the first time [J]
     energy: Real
-    snapshot: Real
+    snapshot: Real  # (s, nodes, coordinates) of the model
+    # (2, coordinates) displacement and velocity of any node at the times between calls of the core
     largest: Real
-    last: Real
-    reached: int = 0
-    seen: int = 0
-    error: BaseException | None = None
-    stages: int = 0
-    factorisations: int = 0
+    last: Real  # (nodes, coordinates) displacement where the march ended
+    reached: int = 0  # how many times and snapshots were reached
+    seen: int = 0  # how many times and snapshots were reached
+    error: BaseException | None = None  # why not all
+    stages: int = 0  # what it took
+    factorisations: int = 0  # what it took
 
 
 class Walk:
-    """All chains of a run, led through a timeline together.
-
-    Parameters
-    ----------
-    run : Run
-        What is asked.
-    chains : list of Lumps
-        That are pushed.
-    line : Timeline
-        When.
-    g : float
-        Of the scheme.
-    share : tuple of float
-        Of the work, where this walk begins and ends.
-    """
+    """All chains of a run, led through a timeline together."""
 
     def __init__(
         self,

@@ -69,22 +69,12 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Pace:
-    """A run with enough steps.
+    """A run with enough steps."""
 
-    Attributes
-    ----------
-    passage : Passage
-        The finest.
-    error : ndarray, shape (responses, t)
-        Estimated, of the steps.
-    stages, factorisations : int
-        Of all that were marched.
-    """
-
-    passage: Passage
-    error: Real
-    stages: int
-    factorisations: int
+    passage: Passage  # the finest
+    error: Real  # (responses, t) Estimated, of the steps
+    stages: int  # of all that were marched
+    factorisations: int  # of all that were marched
 
 
 def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
@@ -160,15 +150,7 @@ def within(run: Run, chains: list[Lumps], g: float) -> Pace:
 
 
 class Trend:
-    """How the distances between runs with finer and finer steps fall.
-
-    Attributes
-    ----------
-    last : tuple of int and Passage, or None
-        How fine the last run was, and what it left.
-    error : float
-        Of the last run, relative to what is largest, as far as two runs can tell.
-    """
+    """How the distances between runs with finer and finer steps fall."""
 
     def __init__(self) -> None:
         self.last: tuple[int, Passage] | None = None

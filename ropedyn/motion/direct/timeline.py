@@ -32,28 +32,16 @@ class Block(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Timeline:
-    """Marks that steps end at, and how many steps lie between two of them.
+    """Marks that steps end at, and how many steps lie between two of them."""
 
-    Attributes
-    ----------
-    mark : ndarray, shape (marks,)
-        [s], increasing.
-    asked, seen : ndarray of int, shape (marks,)
-        Number of the time or of the snapshot that is there, -1 where there is none.
-    breaks : ndarray of bool, shape (marks,)
-        Where forces jump or bend; the first mark is one.
-    count : ndarray of int, shape (marks - 1,)
-        Steps in each interval.
-    h : ndarray, shape (marks - 1,)
-        Their length [s], the same number where it differs by rounding.
-    """
-
-    mark: Real
+    mark: Real  # (marks,) [s], increasing
+    # (marks,) number of the time or of the snapshot that is there, -1 where there is none
     asked: Whole
+    # (marks,) number of the time or of the snapshot that is there, -1 where there is none
     seen: Whole
-    breaks: NDArray[np.bool_]
-    count: Whole
-    h: Real
+    breaks: NDArray[np.bool_]  # (marks,) where forces jump or bend; the first mark is one
+    count: Whole  # (marks - 1,) steps in each interval
+    h: Real  # (marks - 1,) their length [s], the same number where it differs by rounding
 
     @property
     def near(self) -> float:
@@ -115,17 +103,7 @@ class Timeline:
 def timeline(
     time: Real, snapshots: Real, breaks: Iterable[float], most: Callable[[Real, Real], Real]
 ) -> Timeline:
-    """Return when to stop and how many steps to take between.
-
-    Parameters
-    ----------
-    time, snapshots : ndarray
-        Asked for [s].
-    breaks : iterable of float
-        Of forces [s]; those outside `time` are left out.
-    most : callable
-        Takes begins and ends of intervals [s], returns how long steps may be there [s].
-    """
+    """Return when to stop and how many steps to take between."""
     near = float(ROUNDING * time[-1])
     extra: list[float] = []
     for at in sorted((*snapshots.tolist(), *breaks)):

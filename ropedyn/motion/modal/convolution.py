@@ -36,24 +36,6 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
     What the force did before the first time is not felt, and nothing is sampled: sines, steps and
     blows are exponentials, chirps have Faddeeva's function, straight lines an exact recurrence.
     Where something jumps, it is the value from the right.
-
-    Parameters
-    ----------
-    expansion : Expansion
-        Of the responses.
-    drive : int
-        Which of its drives the force acts on.
-    force : Force
-        Of absolute time.
-    time : ndarray, shape (t,)
-        [s], increasing.
-    order : {0, 1, 2}
-        How often the responses are differentiated.
-
-    Raises
-    ------
-    SolveError
-        If a growing mode leaves the numbers.
     """
     if isinstance(force, Sum):
         still = np.zeros((len(expansion.rest[drive]), len(time)))
@@ -71,13 +53,7 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
 
 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
-    """Return the motion after a static load is let go at the first time, shape (responses, t).
-
-    Raises
-    ------
-    SceneError
-        If a mode is rigid or grows: it has no rest under a load.
-    """
+    """Return the motion after a static load is let go at the first time, shape (responses, t)."""
     modes = pairs(expansion, drive)
     growing = np.concatenate([expansion.square <= 0, expansion.p >= 0])
     if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():

@@ -85,26 +85,13 @@ class Group(NamedTuple):
 
 @dataclass(frozen=True)
 class Driven:
-    """Modes of one component under all that drives it.
+    """Modes of one component under all that drives it."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (t,)
-        [s].
-    given : list of Force or float
-        Forces, and loads that are let go.
-    own : Expansion
-        Of the motion where they act.
-    lag : float
-        gamma [s].
-    rest : ndarray, shape (drives, drives)
-    """
-
-    time: Real
-    given: list[Force | float]
-    own: Expansion
-    lag: float
-    rest: Real
+    time: Real  # (t,) [s]
+    given: list[Force | float]  # Forces, and loads that are let go
+    own: Expansion  # of the motion where they act
+    lag: float  # gamma [s]
+    rest: Real  # (drives, drives)
 
     @classmethod
     def of(cls, run: Run, share: Share) -> Driven:

@@ -99,32 +99,7 @@ def expand(
     resolved: float = 0.0,
     bound: bool = True,
 ) -> tuple[Share, ...]:
-    """Expand the transfer functions of each component.
-
-    Parameters
-    ----------
-    model : Model
-        Linear.
-    drives, responses : sequence of points
-        As in `Model.frf`.
-    modes : int, optional
-        Of each component; where left out all of a chain with at most 1000 unknowns, and else those
-        below eight times the highest angular frequency, 64 at least and 400 at most. Where damping
-        is not proportional 200 is the most of both.
-    resolved : float
-        Highest angular frequency that is of interest [rad/s].
-    bound : bool
-        Whether the bound of what is left out is wanted; it is infinite without.
-
-    Raises
-    ------
-    SceneError
-        If damping is a complex modulus, which has no meaning in time; modal beside another or with
-        the motion of an end; or stiffness is damped where an internal force is asked for per motion
-        of an end.
-    SolveError
-        Where `Model.modes` refuses damped ones.
-    """
+    """Expand the transfer functions of each component."""
     refuse_hysteresis(model)
     if damping.having(model.scene.dampings, "ratio"):
         refuse_other_damping(model, drives, responses)

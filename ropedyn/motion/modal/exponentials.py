@@ -63,15 +63,6 @@ def invert(poles: Complex, numerator: Numerator, span: float) -> Exponentials:
     cancel: the trapezoidal rule on a circle around all of them gives as many terms as it has nodes,
     and its error falls as a power of their number (L. N. Trefethen, J. A. C. Weideman, SIAM Review
     56 (2014) 385).
-
-    Parameters
-    ----------
-    poles : ndarray, shape (k, m)
-        Of each mode [1/s], conjugate ones in pairs.
-    numerator : callable
-        Of rates and the mode of each; real at real rates.
-    span : float
-        For how long it is asked for [s].
     """
     apart = ~_close(poles, span).any(axis=(1, 2))
     parts = [_residues(poles, numerator, np.flatnonzero(apart))]

@@ -38,21 +38,6 @@ def left_out(
 
     and so on for derivatives; a sine also by its steady state. Infinite where there is no bound, as
     for a blow at an instant.
-
-    Parameters
-    ----------
-    force : Force
-        Of absolute time.
-    time : ndarray, shape (t,)
-        [s]; the motion begins at rest at the first.
-    bound : ndarray
-        Of their static response to 1 N, each mode by its magnitude.
-    beyond : float
-        Lowest angular frequency of them [rad/s].
-    order : {0, 1, 2}
-        How often the response is differentiated.
-    ratio : float
-        Largest damping ratio of them.
     """
     bound = np.asarray(bound, dtype=np.float64)
     try:

@@ -12,24 +12,13 @@ Real = NDArray[np.float64]
 
 
 class Line(NamedTuple):
-    """y = offset + slope x.
+    """y = offset + slope x."""
 
-    Attributes
-    ----------
-    slope, offset : float
-        Of least squares; an offset that was given is itself.
-    std : float
-        Standard error of the slope, infinite where no y is left over to tell it.
-    residual : ndarray, shape (k,)
-        y less the line.
-    freedom : float
-        Degrees of freedom of the standard error, infinite where that of each y was given.
-    """
-
-    slope: float
-    offset: float
-    std: float
-    residual: Real
+    slope: float  # of least squares; an offset that was given is itself
+    offset: float  # of least squares; an offset that was given is itself
+    std: float  # standard error of the slope, infinite where no y is left over to tell it
+    residual: Real  # (k,) y less the line
+    # degrees of freedom of the standard error, infinite where that of each y was given
     freedom: float
 
     @staticmethod

@@ -218,12 +218,7 @@ KINDS = (AddedMass, LocalChange)
 
 
 def changes(stretches: Sequence[Stretch], stations: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return what all stretches do together, a `Change` for each span between stations.
-
-    Returns
-    -------
-    ndarray, shape (spans, 5)
-    """
+    """Return what all stretches do together, a `Change` for each span between stations."""
     change = np.tile(np.array(Change()), (len(stations) - 1, 1))
     starts = nearest(stations, (stretch.start for stretch in stretches))
     stops = nearest(stations, (stretch.stop for stretch in stretches))
@@ -238,22 +233,7 @@ def changes(stretches: Sequence[Stretch], stations: NDArray[np.float64]) -> NDAr
 def ropes(
     rope: Rope, stretches: Sequence[Stretch], stations: NDArray[np.float64]
 ) -> tuple[list[Rope], NDArray[np.intp]]:
-    """Return the different ropes between stations, and which of them each span has.
-
-    Parameters
-    ----------
-    rope : Rope
-        What the stretches change.
-    stretches : sequence of AddedMass, LocalChange
-        That begin and end at stations.
-    stations : ndarray, shape (spans + 1,)
-        [m].
-
-    Raises
-    ------
-    SceneError
-        If a changed rope is none.
-    """
+    """Return the different ropes between stations, and which of them each span has."""
     change = changes(stretches, stations)
     distinct, first, which = np.unique(change, axis=0, return_index=True, return_inverse=True)
     found = []
@@ -284,19 +264,7 @@ def changed_by(name: str) -> set[str]:
 
 
 def rope_rate(change: NDArray[np.float64], name: str) -> NDArray[np.float64]:
-    """Return how fast a property of changed ropes grows with that of the rope: by its factor.
-
-    Parameters
-    ----------
-    change : ndarray, shape (spans, 5)
-        As `changes` returns.
-    name : str
-        Of the property.
-
-    Returns
-    -------
-    ndarray, shape (spans,)
-    """
+    """Return how fast a property of changed ropes grows with that of the rope: by its factor."""
     if name not in FACTOR:
         return np.ones(len(change))
     return change[:, Change._fields.index(FACTOR[name])]
@@ -305,24 +273,7 @@ def rope_rate(change: NDArray[np.float64], name: str) -> NDArray[np.float64]:
 def stretch_rate(
     rope: Rope, change: NDArray[np.float64], part: Stretch, name: str
 ) -> dict[str, NDArray[np.float64]]:
-    """Return how fast properties of changed ropes grow with a number of one of the stretches.
-
-    Parameters
-    ----------
-    rope : Rope
-        That all of them change.
-    change : ndarray, shape (spans, 5)
-        As `changes` returns, of the spans that the stretch has.
-    part : AddedMass, LocalChange
-        The stretch.
-    name : str
-        Of a number as in `Change`.
-
-    Returns
-    -------
-    dict of ndarray, shape (spans,)
-        By property: what is added is all there is of it, a factor acts on what the others leave.
-    """
+    """Return how fast properties of changed ropes grow with a number of one of the stretches."""
     if Change._fields.index(name) >= FACTORS.stop:
         return {name: np.ones(len(change))}
     others = change[:, Change._fields.index(name)] / getattr(part, name)
