@@ -18,10 +18,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .base import check
 from .base.answer import Frozen
+from .base.array import Complex, Real
 from .base.errors import SceneError
 from .base.unit import QUANTITIES, place
 from .chain.port import Point
@@ -31,8 +32,6 @@ from .model import Model
 from .response import harmonic
 from .response.frf import FRF
 from .study.difference import OF_FRF, OF_MODES, Change, change_of_frf, change_of_modes
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -198,7 +197,7 @@ class FRFQuestion(Frozen):
         """Return the question itself: every answer has as many lines."""
         return self
 
-    def values(self, answer: FRF) -> NDArray[np.complex128]:
+    def values(self, answer: FRF) -> Complex:
         """Return the response."""
         return answer.value
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .base import check
 from .base.answer import Frozen
+from .base.array import Real
 from .base.errors import SceneError
 from .base.progress import Progress
 from .chain.chain import Chain
@@ -54,9 +55,9 @@ class Triples(NamedTuple):
         Which of them stands where.
     """
 
-    F: NDArray[np.float64]
-    G: NDArray[np.float64]
-    Q: NDArray[np.float64]
+    F: Real
+    G: Real
+    Q: Real
     element: NDArray[np.int32]
 
 
@@ -73,8 +74,8 @@ class NodeTerms(NamedTuple):
         Which of them stands where.
     """
 
-    mass: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
+    mass: Real
+    stiffness: Real
     held: NDArray[np.uint8]
     term: NDArray[np.int32]
 
@@ -109,7 +110,7 @@ class Model(Frozen):
     element: str
     coordinates: tuple[str, ...]
     components: tuple[tuple[str, ...], ...]
-    x: NDArray[np.float64]
+    x: Real
     chain: Chain
     unknowns: tuple[int, ...]
     choice: Choice | None = None

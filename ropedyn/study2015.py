@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _core
 from .base import check
+from .base.array import Real
 from .base.errors import SceneError
 from .base.table import Table
 from .curves.peaks import Peaks
@@ -200,7 +200,7 @@ def solid_rod_stiffness() -> float:
     return STEEL * float(np.pi) * DIAMETER**4 / 64
 
 
-def flexibility(*, printed: bool = False) -> NDArray[np.float64]:
+def flexibility(*, printed: bool = False) -> Real:
     """Return the flexibility matrix of one element over (z, alpha, beta).
 
     Parameters
@@ -235,7 +235,7 @@ def flexibility(*, printed: bool = False) -> NDArray[np.float64]:
     )
 
 
-def stiffness(matrix: Any) -> NDArray[np.float64]:
+def stiffness(matrix: Any) -> Real:
     """Return the stiffness matrix of an element, the inverse of its flexibility matrix.
 
     Parameters

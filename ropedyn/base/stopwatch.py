@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from .array import Real
 
 LONG, FEW = 0.05, 3
 """Calls longer than this [s] are not warmed up again, and made so many times at most."""

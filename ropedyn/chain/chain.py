@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.array import Flags, Index, Real
 from ..base.check import COORDINATES
 
 KINDS = ("difference", "rigid", "tensed", "continuous")
@@ -36,44 +37,44 @@ class Chain(NamedTuple):
     kind: int
     coordinate: NDArray[np.int32]
     """(width,) numbers of the coordinates."""
-    length: NDArray[np.float64]
+    length: Real
     """(distinct,) [m]."""
-    tension: NDArray[np.float64]
+    tension: Real
     """(distinct,) [N]."""
-    flexibility: NDArray[np.float64]
+    flexibility: Real
     """(distinct, 3, 3) of the section: axial, torsion, bending."""
     first: NDArray[np.int32]
     """(stretches,) first node, increasing from 0 to the last node."""
     element: NDArray[np.int32]
     """(stretches - 1,) which distinct element stands right of each node."""
-    mass: NDArray[np.float64]
+    mass: Real
     """(terms, width, width)."""
-    stiffness: NDArray[np.float64]
+    stiffness: Real
     """(terms, width, width)."""
     held: NDArray[np.uint8]
     """(terms, width)."""
     term: NDArray[np.int32]
     """(stretches,) which node term."""
-    hinge: NDArray[np.float64] | None = None
+    hinge: Real | None = None
     """(terms, width) compliance between the node and the element on its right, infinite where
     free; None where nothing is hinged."""
-    inertia: NDArray[np.float64] | None = None
+    inertia: Real | None = None
     """(distinct, width) per length of continuous elements [kg/m, kg m]; None for others."""
-    damping: NDArray[np.float64] | None = None
+    damping: Real | None = None
     """(terms, width, width) of dashpots [N s/m, N m s]; None where there are none."""
-    drag: NDArray[np.float64] | None = None
+    drag: Real | None = None
     """(distinct, width) damping per length of continuous elements [N s/m^2, N s]; None where there
     is none."""
-    sag: NDArray[np.float64] | None = None
+    sag: Real | None = None
     """(distinct,) weight per length over tension [1/m]; None without gravity."""
     attached_kind: NDArray[np.int32] | None = None
     """(attached,) kinds of the structures that nodes carry, see csrc/attached.h; None where there
     are none, as the rest of them."""
     attached_term: NDArray[np.int32] | None = None
     """(attached,) node term that carries it."""
-    attached_row: NDArray[np.float64] | None = None
+    attached_row: Real | None = None
     """(attached, 2, width) displacement and rotation of its foot per motion of the node."""
-    attached_value: NDArray[np.float64] | None = None
+    attached_value: Real | None = None
     """(attached, 4) its numbers, its damping last."""
 
     @property
@@ -126,7 +127,7 @@ class Chain(NamedTuple):
         """Whether that of some, of broken wires, is a complex modulus."""
         return bool(self._own_damping([ATTACHED.index("broken wire")]).any())
 
-    def _own_damping(self, kinds: Sequence[int]) -> NDArray[np.float64]:
+    def _own_damping(self, kinds: Sequence[int]) -> Real:
         """Return the damping of the structures of some kinds that these nodes carry."""
         if self.attached_value is None:
             return np.zeros(0)
@@ -136,7 +137,7 @@ class Chain(NamedTuple):
         return self.attached_value[own, -1]
 
     @property
-    def feet(self) -> NDArray[np.intp]:
+    def feet(self) -> Index:
         """Nodes that carry the structures, -1 for those of another part, shape (attached,)."""
         if self.attached_term is None:
             return np.zeros(0, dtype=np.intp)
@@ -156,7 +157,7 @@ class Chain(NamedTuple):
     @property
     def spans(self) -> tuple[tuple[int, int], ...]:
         """First and last node of what lies between nodes where nothing can move."""
-        still: NDArray[np.bool_] = np.all(self.held, axis=1)[self.term]
+        still: Flags = np.all(self.held, axis=1)[self.term]
         still[[0, -1]] = False
         nodes = [
             np.arange(self.first[k], self.first[k + 1], dtype=np.int64)
@@ -184,7 +185,7 @@ class Chain(NamedTuple):
         kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
         square = np.ix_(range(len(self.mass)), kept, kept)
 
-        def columns(array: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+        def columns(array: Real | None) -> Real | None:
             return None if array is None else np.ascontiguousarray(array[..., kept])
 
         damping = None if self.damping is None else np.ascontiguousarray(self.damping[square])
@@ -201,7 +202,7 @@ class Chain(NamedTuple):
             attached_row=columns(self.attached_row),
         )._moving_attached
 
-    def carries(self, kind: str) -> NDArray[np.bool_]:
+    def carries(self, kind: str) -> Flags:
         """Return which structures are of a kind of `ATTACHED`, shape (attached,)."""
         if self.attached_kind is None:
             return np.zeros(0, dtype=np.bool_)
@@ -213,7 +214,7 @@ class Chain(NamedTuple):
         row = self.attached_row
         return self if row is None else self.carrying(np.asarray(row.any(axis=(1, 2))))
 
-    def carrying(self, these: NDArray[np.bool_]) -> Chain:
+    def carrying(self, these: Flags) -> Chain:
         """Return the chain with some of its structures alone, chosen by shape (attached,)."""
         if not these.any():
             return self._replace(
@@ -231,7 +232,7 @@ class Chain(NamedTuple):
         )
 
 
-def _present(array: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+def _present(array: Real | None) -> Real | None:
     """Return an array that has something in it, else None."""
     return array if array is not None and array.any() else None
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base import check
+from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError
 from ..model import MOST_POINTS, Model
 from ..scene.damping import drag
@@ -54,14 +55,12 @@ def compile_scene(scene: Scene, *, elements: int | None, element: str | None) ->
     return divided(scene, element, stations, counts)
 
 
-def stations_of(scene: Scene) -> NDArray[np.float64]:
+def stations_of(scene: Scene) -> Real:
     """Return where the ends and parts of a scene stand, begin and end [m]."""
     return stations_at(scene.rope.length, places(scene.parts))
 
 
-def divided(
-    scene: Scene, element: str, stations: NDArray[np.float64], counts: NDArray[np.intp]
-) -> Model:
+def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Model:
     """Compile a scene with so many elements between stations."""
     kind = KINDS.index(element)
     if (
@@ -98,7 +97,7 @@ def divided(
     )
 
 
-def station_nodes(model: Model) -> NDArray[np.intp]:
+def station_nodes(model: Model) -> Index:
     """Return the nodes of a model at the stations of its scene."""
     return np.searchsorted(model.x, stations_of(model.scene))
 
@@ -141,7 +140,7 @@ def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
         )
 
 
-def section(rope: Rope) -> NDArray[np.float64]:
+def section(rope: Rope) -> Real:
     """Return the section flexibility of a rope."""
     return _core.section(
         rope.axial_stiffness or 0.0,
@@ -152,7 +151,7 @@ def section(rope: Rope) -> NDArray[np.float64]:
     )
 
 
-def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArray[np.float64]:
+def _positions(stations: Real, counts: Index) -> Real:
     nodes, begins = np.append(counts, 1), np.append(0, np.cumsum(counts))
     x = np.arange(begins[-1] + 1, dtype=np.float64)
     x -= np.repeat(begins, nodes)
@@ -165,24 +164,24 @@ def _positions(stations: NDArray[np.float64], counts: NDArray[np.intp]) -> NDArr
 class Elements(NamedTuple):
     """The distinct elements in the order they come in."""
 
-    length: NDArray[np.float64]
+    length: Real
     """(distinct,) [m]."""
-    flexibility: NDArray[np.float64]
+    flexibility: Real
     """(distinct, 3, 3) of the section."""
-    inertia: NDArray[np.float64]
+    inertia: Real
     """(distinct, width) per length [kg/m, kg m]."""
     which: NDArray[np.int32]
     """(spans,) which of them each span has."""
-    sag: NDArray[np.float64] | None
+    sag: Real | None
     """(distinct,) weight per length over tension [1/m], None without gravity."""
 
 
 def _distinct(
     scene: Scene,
     local: Sequence[Rope],
-    rope: NDArray[np.intp],
-    spans: NDArray[np.float64],
-    counts: NDArray[np.intp],
+    rope: Index,
+    spans: Real,
+    counts: Index,
 ) -> Elements:
     """Tell elements of spans apart by length and by which of the local ropes they are of.
 
@@ -217,8 +216,8 @@ def _distinct(
 def _chain(
     scene: Scene,
     kind: int,
-    stations: NDArray[np.float64],
-    counts: NDArray[np.intp],
+    stations: Real,
+    counts: Index,
     elements: Elements,
 ) -> Chain:
     """Return the chain with so many equal elements between stations."""
@@ -263,7 +262,7 @@ def _chain(
     return _with_attached(scene, stations, chain)
 
 
-def _with_attached(scene: Scene, stations: NDArray[np.float64], chain: Chain) -> Chain:
+def _with_attached(scene: Scene, stations: Real, chain: Chain) -> Chain:
     """Return the chain with the structures that its stations carry."""
     carried = [(at, one) for at, _, one in carried_by(standing_at(scene, stations))]
     if not carried:
@@ -298,10 +297,10 @@ def carried_by(
 
 def _terms(
     scene: Scene,
-    stations: NDArray[np.float64],
-    mass: NDArray[np.float64],
-    damping: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64] | None]:
+    stations: Real,
+    mass: Real,
+    damping: Real,
+) -> tuple[Real, NDArray[np.uint8], Real | None]:
     """Add masses and dashpots of parts to those of the distinct node terms, stations first."""
     width = len(scene.coordinates)
     stiffness = np.zeros(mass.shape)
@@ -323,9 +322,7 @@ def _terms(
     return stiffness, held, hinge
 
 
-def _at_nodes(
-    given: NDArray[np.float64], which: NDArray[np.int32], inside: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _at_nodes(given: Real, which: NDArray[np.int32], inside: NDArray[np.int32]) -> Real:
     """Return what stations get from the elements of spans beside them, then nodes inside spans."""
     none = np.zeros((1, *given.shape[2:]))
     to_left, to_right = np.moveaxis(given[which], 1, 0)
@@ -369,25 +366,25 @@ def lumped(
     return given
 
 
-def inertia_of(scene: Scene, rope: Rope) -> NDArray[np.float64]:
+def inertia_of(scene: Scene, rope: Rope) -> Real:
     """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
     own = [getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
     return np.where(has_inertia(scene), own, 0.0)
 
 
-def has_inertia(scene: Scene) -> NDArray[np.bool_]:
+def has_inertia(scene: Scene) -> Flags:
     """Say on which coordinates the rope's own inertia acts, shape (width,)."""
     still = () if scene.gravity is None else ("x",)
     return np.array([c not in still for c in scene.coordinates])
 
 
-def dragged(scene: Scene) -> NDArray[np.float64]:
+def dragged(scene: Scene) -> Real:
     """Return 1 for each coordinate that damping along the rope acts on, else 0, shape (width,)."""
     along = ("x", "z") if scene.gravity is None else ("z",)
     return np.array([float(c in along) for c in scene.coordinates])
 
 
-def standing_at(scene: Scene, stations: NDArray[np.float64]) -> Iterator[tuple[int, NodeTerm]]:
+def standing_at(scene: Scene, stations: Real) -> Iterator[tuple[int, NodeTerm]]:
     """Return what stands at which station."""
     for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
         yield station, end.term()

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Real
 from ..scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, Damping, factors
 from .chain import Chain
 
@@ -42,9 +42,7 @@ def damping(chain: Chain, dampings: Sequence[Damping]) -> sp.csr_array:
     return _sparse(chain, diagonal, coupling)
 
 
-def _sparse(
-    chain: Chain, diagonal: NDArray[np.float64], coupling: NDArray[np.float64]
-) -> sp.csr_array:
+def _sparse(chain: Chain, diagonal: Real, coupling: Real) -> sp.csr_array:
     """Turn a block tridiagonal matrix into a sparse one without the held coordinates."""
     nodes, width, _ = diagonal.shape
     free = (chain.held[chain.term_of] == 0).ravel()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Real
 from ..base.check import COORDINATES, NEAR
 from ..base.errors import SolveError
 from ..base.unit import END, OF_FORCE
@@ -25,9 +26,9 @@ class Ports(NamedTuple):
 
     node: NDArray[np.int32]
     """(points,) left node."""
-    row: NDArray[np.float64]
+    row: Real
     """(points, 2, width) displacement per displacement of the nodes."""
-    force: NDArray[np.float64] | None
+    force: Real | None
     """(points, width) share of the internal force at the right end of the element, or None."""
 
 
@@ -42,7 +43,7 @@ def moving(point: tuple[Any, ...]) -> str:
     return OF_FORCE.get(name, name)
 
 
-def locate(x: NDArray[np.float64], at: float) -> tuple[int, float | None]:
+def locate(x: Real, at: float) -> tuple[int, float | None]:
     """Return the node at a position and None, or the node left of it and the distance [m]."""
     right = int(np.searchsorted(x, at))
     margin = NEAR * float(x[-1])
@@ -52,9 +53,7 @@ def locate(x: NDArray[np.float64], at: float) -> tuple[int, float | None]:
     return right - 1, float(at - x[right - 1])
 
 
-def ports(
-    chain: Chain, x: NDArray[np.float64], coordinates: Sequence[str], points: Iterable[Point]
-) -> Ports:
+def ports(chain: Chain, x: Real, coordinates: Sequence[str], points: Iterable[Point]) -> Ports:
     """Return the rows of points."""
     points = list(points)
     node = np.zeros(len(points), dtype=np.int32)
@@ -77,7 +76,7 @@ def ports(
 
 def local(
     chain: Chain,
-    x: NDArray[np.float64],
+    x: Real,
     coordinates: Sequence[str],
     pushed: Point,
     watched: Point,
@@ -90,7 +89,7 @@ def local(
     return float(inside[coordinates.index(watched[0]), coordinates.index(pushed[0])])
 
 
-def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
+def stops(chain: Chain, x: Real) -> list[float]:
     """Return where tensed elements are cut so that none is near its own critical load.
 
     Under compression an element of kappa l = pi/2, kappa^2 = |T| S_bb, buckles as a cantilever
@@ -114,9 +113,7 @@ def stops(chain: Chain, x: NDArray[np.float64]) -> list[float]:
     ]
 
 
-def cut(
-    chain: Chain, x: NDArray[np.float64], positions: Iterable[float]
-) -> tuple[Chain, NDArray[np.float64]]:
+def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]:
     """Put nodes without mass at positions inside elements.
 
     Two tensed or continuous elements joined there are the one they came from: no other answer
@@ -162,8 +159,6 @@ def cut(
     ), nodes
 
 
-def _repeated(
-    array: NDArray[np.float64] | None, source: NDArray[np.int32]
-) -> NDArray[np.float64] | None:
+def _repeated(array: Real | None, source: NDArray[np.int32]) -> Real | None:
     """Append those rows of an array of the distinct elements again."""
     return None if array is None else np.concatenate([array, array[source]])

@@ -9,8 +9,8 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError
 from ..model import Model
 from ..scene.end import end_of
@@ -41,8 +41,6 @@ from .compile import (
     station_nodes,
     stations_of,
 )
-
-Real = NDArray[np.float64]
 
 _Any = TypeVar("_Any")
 
@@ -119,13 +117,13 @@ class Places:
     """Where the spans and stations of a model are among the stretches of its chain."""
 
     model: Model  # the model
-    counts: NDArray[np.intp] = field(init=False)  # (spans,) elements of each span
+    counts: Index = field(init=False)  # (spans,) elements of each span
     # (stretches - 1,) to which the elements of a stretch belong
-    span: NDArray[np.intp] = field(init=False)
+    span: Index = field(init=False)
     # (stretches,) the last one that is no further right
-    station: NDArray[np.intp] = field(init=False)
+    station: Index = field(init=False)
     # (stretches,) whether its nodes lie between stations
-    inside: NDArray[np.bool_] = field(init=False)
+    inside: Flags = field(init=False)
     change: Real = field(init=False)  # (spans, 5) of the rope, see `stretch.Change`
     ropes: tuple[Rope, ...] = field(init=False)  # of each span
 

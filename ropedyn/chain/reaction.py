@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Complex, Flags, Real
 from ..base.check import COORDINATES
 from ..base.unit import FORCE
 from .chain import CHANNELS, KINDS, Chain
@@ -32,12 +33,12 @@ class LeftEnd(NamedTuple):
     P: NDArray[Any]
 
 
-def at_start(x: NDArray[np.float64], point: Point) -> bool:
+def at_start(x: Real, point: Point) -> bool:
     """Whether an internal force is asked for at the left end, where no element ends."""
     return is_force(point) and locate(x, point[1])[0] == 0
 
 
-def tellers(coordinates: Sequence[str], x: NDArray[np.float64]) -> list[Point]:
+def tellers(coordinates: Sequence[str], x: Real) -> list[Point]:
     """Return what the force at the left end follows from: motion of nodes 0 and 1, force at 1."""
     motion = [(c, float(at)) for at in x[:2] for c in coordinates]
     return motion + [(FORCE[c], float(x[1])) for c in coordinates]
@@ -55,7 +56,7 @@ def left_ends(chain: Chain) -> LeftEnd:
     return LeftEnd(E, Q, P)
 
 
-def first_left_end(chain: Chain, factor: NDArray[np.complex128]) -> LeftEnd:
+def first_left_end(chain: Chain, factor: Complex) -> LeftEnd:
     """Return that of the first element at the factors (5, f)."""
     e = int(chain.element[0])
     if _is_strut(chain)[e]:
@@ -66,14 +67,14 @@ def first_left_end(chain: Chain, factor: NDArray[np.complex128]) -> LeftEnd:
     return LeftEnd(F.transpose(0, 2, 1), Q, np.zeros_like(Q))
 
 
-def _is_strut(chain: Chain) -> NDArray[np.bool_]:
+def _is_strut(chain: Chain) -> Flags:
     """Whether each distinct element is one: see csrc/sweep_kernel.h, sweep_is_strut."""
     if chain.kind != KINDS.index("rigid") or COORDINATES.index("beta") not in chain.coordinate:
         return np.zeros(len(chain.length), dtype=np.bool_)
     return -chain.tension * chain.flexibility[:, BENDING, BENDING] * chain.length**2 > 1
 
 
-def _strut(chain: Chain, e: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _strut(chain: Chain, e: int) -> tuple[Real, Real]:
     """Return E and Q = P of a strut."""
     channel = [CHANNELS[COORDINATES[c]] for c in chain.coordinate]
     S = chain.flexibility[e]

@@ -6,18 +6,15 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Complex, Real
 from ..base.unit import WIRE
 from ..model import Model
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing
 from .chain import ATTACHED
 from .port import Point, locate
-
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
 
 
 class Tip(NamedTuple):

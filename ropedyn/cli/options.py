@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.answer import Answer
+from ..base.array import Real
 from ..base.atomic import replacing
 from ..base.check import shown
 from ..base.errors import SceneError
@@ -113,7 +113,7 @@ def whole_numbers(text: str, option: str) -> list[int]:
         ) from None
 
 
-def spaced(text: str, option: str, unit: str) -> NDArray[np.float64] | list[float]:
+def spaced(text: str, option: str, unit: str) -> Real | list[float]:
     """Return equally spaced numbers from ``start:stop:count``, or those of a comma list."""
     if ":" not in text:
         return numbers(text, option)

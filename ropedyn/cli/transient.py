@@ -7,16 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Real
 from ..base.check import shown
 from ..base.errors import SceneError
 from ..base.unit import MOTIONS
 from ..motion.transient import METHODS
 from ..scene.force import Chirp, Impulse, Sine, Step
 from .options import compiled, drive, point, progress_option, scene_command, show, spaced
-
-Real = NDArray[np.float64]
 
 FORCES: dict[str, tuple[str, int, Callable[..., Any]]] = {
     "sine": ("AMPLITUDE:FREQUENCY[:PHASE]", 2, lambda a, f, p=0.0: Sine(a, f, phase=p)),

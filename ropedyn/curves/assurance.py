@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from ..base.array import Complex, Real
 
 
 def mac(first: NDArray[Any], second: NDArray[Any]) -> Real:

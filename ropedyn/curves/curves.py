@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import QUANTITIES, label, place
@@ -28,15 +28,15 @@ class Curves(Answer):
     drive: tuple[Point, ...]
     response: tuple[Point, ...]
     quantity: str
-    frequency: NDArray[np.float64]
-    value: NDArray[np.complex128]
+    frequency: Real
+    value: Complex
 
     @property
     def labels(self) -> tuple[str, ...]:
         """What each response is, with its unit, for the first drive."""
         return tuple(label(r, self.drive[0], self.quantity) for r in self.response)
 
-    def curve(self, response: int = 0, drive: int = 0) -> NDArray[np.complex128]:
+    def curve(self, response: int = 0, drive: int = 0) -> Complex:
         """Return one response to one drive, shape (f,).
 
         Raises
@@ -129,11 +129,11 @@ class Curves(Answer):
             for r in range(len(self.response))
         )
 
-    def _noise_around(self, response: int) -> NDArray[np.float64] | None:
+    def _noise_around(self, response: int) -> Real | None:
         """Return the noise out of which peaks stand at each line, None where there is none."""
         return None
 
-    def _noise(self, response: int) -> NDArray[np.float64] | None:
+    def _noise(self, response: int) -> Real | None:
         """Return the standard deviation of real and imaginary part, where that is known."""
         return None
 
@@ -197,7 +197,7 @@ class Curves(Answer):
         return plot_curves(self, ax)
 
 
-def named_curves(curves: Curves) -> Iterator[tuple[str, int, NDArray[np.complex128]]]:
+def named_curves(curves: Curves) -> Iterator[tuple[str, int, Complex]]:
     """Yield each response to each drive: its name, which response it is, and the curve."""
     for d, drive in enumerate(curves.drive):
         for r, point in enumerate(curves.response):

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from ..base.array import Complex, Real
 
 AROUND = 41
 """Lines that the median of the differences goes over: narrow peaks are few of them."""

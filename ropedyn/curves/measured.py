@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import axes
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.quantity import is_quantity
 from ..base.unit import QUANTITIES, curve_unit
@@ -59,15 +60,13 @@ class Measured(Curves):
     ('z at 0.500 m [m/N]',)
     """
 
-    frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
-    value: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
+    frequency: Real = field(metadata=axes("frequency", unit="Hz"))
+    value: Complex = field(metadata=axes("response", "frequency"))
     _: KW_ONLY
     drive: tuple[Point, ...]
     response: tuple[Point, ...]
     quantity: str = "receptance"
-    coherence: NDArray[np.float64] | None = field(
-        default=None, metadata=axes("response", "frequency")
-    )
+    coherence: Real | None = field(default=None, metadata=axes("response", "frequency"))
     averages: float | None = None
 
     def __post_init__(self) -> None:
@@ -210,10 +209,10 @@ class Measured(Curves):
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from error
 
-    def _noise_around(self, response: int) -> NDArray[np.float64] | None:
+    def _noise_around(self, response: int) -> Real | None:
         return by_differences(self.value[response])
 
-    def _noise(self, response: int) -> NDArray[np.float64] | None:
+    def _noise(self, response: int) -> Real | None:
         if self.coherence is None or self.averages is None:
             return None
         return by_coherence(self.value[response], self.coherence[response], self.averages)
@@ -239,7 +238,7 @@ def _points(given: Any, name: str) -> tuple[Any, ...]:
     return (found,) if isinstance(found[0], str) else found
 
 
-def _value(measured: Measured, shape: tuple[int, int]) -> NDArray[np.complex128]:
+def _value(measured: Measured, shape: tuple[int, int]) -> Complex:
     """Return the values; of a quantity of pint in the unit that all responses have."""
     units = {curve_unit(r, measured.drive[0], measured.quantity) for r in measured.response}
     if len(units) > 1 and is_quantity(measured.value):

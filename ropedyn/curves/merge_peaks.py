@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Real
 from ..base.errors import SceneError
 from .curves import Curves
 from .resonance import Resonances
-
-Real = NDArray[np.float64]
 
 APART = 3.0
 """Peaks that differ by less than so many standard uncertainties are one."""

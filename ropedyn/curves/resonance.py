@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.answer import Answer, axes
+from ..base.array import Complex, Index, Real
 from ..base.table import Table
 from ..base.unit import QUANTITIES
 from ..signal import one_mode
@@ -16,9 +16,6 @@ from ..signal import one_mode
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 LEVEL = 0.4
 """Lines as high as this part of a peak, and not below, are fitted: 2.3 half widths to each side."""
@@ -60,11 +57,11 @@ class Resonances(Answer):
     """
 
     label: str
-    frequency: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
-    amplitude: NDArray[np.float64] = field(metadata=axes("peak"))
-    damping_ratio: NDArray[np.float64] = field(metadata=axes("peak"))
-    std: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
-    damping_ratio_std: NDArray[np.float64] = field(metadata=axes("peak"))
+    frequency: Real = field(metadata=axes("peak", unit="Hz"))
+    amplitude: Real = field(metadata=axes("peak"))
+    damping_ratio: Real = field(metadata=axes("peak"))
+    std: Real = field(metadata=axes("peak", unit="Hz"))
+    damping_ratio_std: Real = field(metadata=axes("peak"))
 
     def table(self) -> Table:
         """Return one row for each peak."""
@@ -135,7 +132,7 @@ def resonances(
     )
 
 
-def _windows(size: Real, at: NDArray[np.intp]) -> list[tuple[int, int]]:
+def _windows(size: Real, at: Index) -> list[tuple[int, int]]:
     """Return the first and the last line that are fitted for each peak."""
     last = len(size) - 1
     middle = (at[:-1] + at[1:]) // 2

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer, axes
+from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..chain.compile import lumped
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from ..model import Model
     from .modes import Modes
 
-Real = NDArray[np.float64]
 
 STIFFNESSES = ("bending_stiffness", "torsional_stiffness", "axial_stiffness")
 

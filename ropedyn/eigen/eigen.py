@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base import check
 from ..base.answer import Cost, Work
+from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..base.unit import FAMILY
 from ..chain.chain import CARRIED, CHANNELS, Chain
@@ -38,8 +39,6 @@ HIGHEST = 1e100
 
 UNSEEN = 1e-8
 """Of the largest component of a shape: less at all points is rounding at nodes of the mode."""
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -162,7 +161,7 @@ def _count(chain: Chain, limit: float) -> int:
     return int(_core.count(chain, np.array([min(limit, HIGHEST)]))[0])
 
 
-def _merged(found: Sequence[Found], number: int | None) -> tuple[Real, Real, NDArray[np.intp]]:
+def _merged(found: Sequence[Found], number: int | None) -> tuple[Real, Real, Index]:
     """Return eigenvalues and errors of all components in order, and that order."""
     eigenvalue = np.concatenate([part.eigenvalue for part in found])
     error = np.concatenate([part.error for part in found])
@@ -371,7 +370,7 @@ def _later_within(
     )
 
 
-def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, NDArray[np.intp]]:
+def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, Index]:
     """Cut continuous spans into elements below their own resonance.
 
     Two for each piece of the highest eigenvalue: more would be differences of ever closer nodes.
@@ -405,7 +404,7 @@ def solve_shapes(model: Model, solver: str, eigenvalue: Real, points: int | None
     return shapes_of(model, solver, len(eigenvalue), edges)
 
 
-def shapes_of(model: Model, solver: str, number: int, edges: NDArray[np.intp]) -> Shapes:
+def shapes_of(model: Model, solver: str, number: int, edges: Index) -> Shapes:
     """Solve for so many modes, and those that coincide with the last one, with their shapes."""
     more = number
     while True:
@@ -424,7 +423,7 @@ def shapes_of(model: Model, solver: str, number: int, edges: NDArray[np.intp]) -
 
 
 def _vectors(
-    model: Model, found: Sequence[Found], eigenvalue: Real, order: NDArray[np.intp]
+    model: Model, found: Sequence[Found], eigenvalue: Real, order: Index
 ) -> UndampedVectors:
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
@@ -477,7 +476,7 @@ def _spread(model: Model, found: Sequence[Found]) -> Real:
     return np.concatenate(shapes)
 
 
-def largest(shape: NDArray[Any], own: NDArray[np.intp]) -> NDArray[Any]:
+def largest(shape: NDArray[Any], own: Index) -> NDArray[Any]:
     """Return the value of the largest component of the family's own coordinate, with its sign."""
     rows = np.arange(len(shape))
     moved = shape[rows, :, own]
@@ -501,19 +500,17 @@ def error_in_hertz(eigenvalue: Real, error: Real) -> Real:
 class _Energies(NamedTuple):
     """Twice the energies of shapes."""
 
-    strain: NDArray[np.float64]
+    strain: Real
     """(k, strains)."""
-    kinetic: NDArray[np.float64]
+    kinetic: Real
     """(k, coordinates) modal mass of the rope and its nodes."""
-    dragged: NDArray[np.float64]
+    dragged: Real
     """(k,) modal damping of drag and dashpots."""
-    carried: NDArray[np.float64]
+    carried: Real
     """(k, 3) strain, modal mass and losses of all structures that nodes carry."""
 
 
-def _damping_ratio(
-    model: Model, omega: NDArray[np.float64], energies: _Energies
-) -> NDArray[np.float64]:
+def _damping_ratio(model: Model, omega: Real, energies: _Energies) -> Real:
     """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega.
 
     And the ratio that a mode has by itself.
@@ -539,11 +536,11 @@ def _damping_ratio(
 
 def fractions(
     model: Model,
-    eigenvalue: NDArray[np.float64],
-    strain: NDArray[np.float64],
-    kinetic: NDArray[np.float64],
-    carried: NDArray[np.float64],
-) -> dict[str, NDArray[np.float64]]:
+    eigenvalue: Real,
+    strain: Real,
+    kinetic: Real,
+    carried: Real,
+) -> dict[str, Real]:
     """Return shares of the strain and of the kinetic energy.
 
     `carried`, shape (kinds, k, 3), is of each kind of structure that the nodes carry.

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.answer import Answer, Frozen, axes
+from ..base.array import Real
 from ..chain.chain import CARRIED
 
 if TYPE_CHECKING:
@@ -29,14 +30,14 @@ class Vectors(Frozen, Generic[Number]):
     family: NDArray[np.str_] = field(metadata=axes("mode"))
     modal_mass: NDArray[Number] = field(metadata=axes("mode", unit="kg or kg m^2"))
     shape: NDArray[Number] = field(metadata=axes("mode", "node", "coordinate", unit="m or rad"))
-    energy: dict[str, NDArray[np.float64]] = field(metadata=axes("mode", keyed=True))
+    energy: dict[str, Real] = field(metadata=axes("mode", keyed=True))
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh(Frozen):
     """What continuous spans say about the modes of a chain; see `Modes` and `DampedModes`."""
 
-    mesh_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    mesh_error: Real = field(metadata=axes("mode", unit="Hz"))
 
 
 OfShapes = TypeVar("OfShapes", bound=Vectors[Any])
@@ -47,7 +48,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
     """Base of modes: what follows from shapes and from continuous spans is found when asked for."""
 
     coordinates: tuple[str, ...]
-    x: NDArray[np.float64]
+    x: Real
     source: OfShapes | Callable[[], OfShapes]
     mesh_source: OfMesh | Callable[[], OfMesh]
 
@@ -78,7 +79,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
 
     @property
-    def mesh_error(self) -> NDArray[np.float64]:
+    def mesh_error(self) -> Real:
         """Error that the elements cause [Hz], shape (k,)."""
         return self.mesh.mesh_error
 
@@ -98,7 +99,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         return self.vectors.shape
 
     @property
-    def energy(self) -> dict[str, NDArray[np.float64]]:
+    def energy(self) -> dict[str, Real]:
         """Fractions of strain and of kinetic energy, each shape (k,)."""
         return self.vectors.energy
 
@@ -155,7 +156,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         return animated(modes, k, path=path, frames=frames, seconds=seconds)
 
     @property
-    def _shares(self) -> dict[str, NDArray[np.float64]]:
+    def _shares(self) -> dict[str, Real]:
         """Columns of the energies, kinetic ones first [%]."""
         moving = (*self.coordinates, *CARRIED.values())
         kinetic = [name for name in moving if name in self.energy]

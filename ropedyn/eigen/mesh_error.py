@@ -6,8 +6,8 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.port import Point
 from ..response import frf
@@ -17,12 +17,9 @@ if TYPE_CHECKING:
     from ..model import Model
     from ..scene.scene import Scene
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
 
 def mesh_of_modes(
-    scene: Scene, components: tuple[tuple[str, ...], ...], which: NDArray[np.intp], eigenvalue: Real
+    scene: Scene, components: tuple[tuple[str, ...], ...], which: Index, eigenvalue: Real
 ) -> modes.UndampedMesh:
     """Compare the modes of a chain with those of continuous spans."""
     error, limit = np.full(len(eigenvalue), np.inf), np.full(len(eigenvalue), np.nan)

@@ -8,10 +8,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import TRANSIENT, Cost, axes, nested
+from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.table import Table
 from .free_motion import FreeMotion, Mesh, Vectors
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 class UndampedVectors(Vectors[np.float64]):
     """What follows from the shapes of undamped modes; see `Modes`."""
 
-    damping_ratio: NDArray[np.float64] = field(metadata=axes("mode"))
+    damping_ratio: Real = field(metadata=axes("mode"))
 
 
 @dataclass(frozen=True, eq=False)
 class UndampedMesh(Mesh):
     """What continuous spans say about the undamped modes of a chain; see `Modes`."""
 
-    limit: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    limit: Real = field(metadata=axes("mode", unit="Hz"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +108,11 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
 
     coordinates: tuple[str, ...]
     certified: bool
-    x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
-    frequency: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
-    eigenvalue: NDArray[np.float64] = field(metadata=axes("mode", unit="rad^2/s^2"))
-    growth: NDArray[np.float64] = field(metadata=axes("mode", unit="1/s"))
-    rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    x: Real = field(metadata=axes("node", unit="m"))
+    frequency: Real = field(metadata=axes("mode", unit="Hz"))
+    eigenvalue: Real = field(metadata=axes("mode", unit="rad^2/s^2"))
+    growth: Real = field(metadata=axes("mode", unit="1/s"))
+    rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
     source: UndampedVectors | Callable[[], UndampedVectors] = field(
         repr=False, metadata=nested(UndampedVectors, "vectors")
@@ -123,12 +123,12 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @property
-    def limit(self) -> NDArray[np.float64]:
+    def limit(self) -> Real:
         """Frequencies without mesh error [Hz], shape (k,)."""
         return self.mesh.limit
 
     @property
-    def damping_ratio(self) -> NDArray[np.float64]:
+    def damping_ratio(self) -> Real:
         """Damping ratio of each mode, shape (k,)."""
         return self.vectors.damping_ratio
 
@@ -154,7 +154,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
             )
         return self.solve_shapes(points)
 
-    def derivative(self, path: str, *, of: str = "frequency") -> NDArray[np.float64]:
+    def derivative(self, path: str, *, of: str = "frequency") -> Real:
         """Find the exact derivative of each mode with respect to a number of the scene.
 
         By first-order perturbation theory, from the shapes: no difference of two frequencies. It is

@@ -8,15 +8,13 @@ from itertools import combinations
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Index, Real
 from ..base.errors import SolveError
 from ..chain.chain import Chain
 from ..chain.rate import Places, Rate, Weights, asked, rates_of
 from ..model import Model
-
-Real = NDArray[np.float64]
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 
@@ -39,12 +37,12 @@ class Shapes:
     shape: Real  # (k, nodes, width)
     motion: Real  # (k, attached) of the structures that nodes carry, as y in csrc/attached.h [m]
     # the modes in order; rounding cannot tell those of one cluster apart
-    clusters: tuple[NDArray[np.intp], ...]
+    clusters: tuple[Index, ...]
     # (parts + 1,) the nodes between the parts of the rope that were asked for
-    edges: NDArray[np.intp]
+    edges: Index
 
 
-def clusters_of(eigenvalue: Real, error: Real) -> tuple[NDArray[np.intp], ...]:
+def clusters_of(eigenvalue: Real, error: Real) -> tuple[Index, ...]:
     """Return which of increasing eigenvalues are not further apart than their errors."""
     if len(eigenvalue) == 0:
         return ()
@@ -110,7 +108,7 @@ class Pairs:
     """Shapes, and sums and differences in a cluster: bilinear forms from quadratic ones."""
 
     shapes: Shapes  # the modes
-    pair: NDArray[np.intp]  # (p, 2) different modes of one cluster
+    pair: Index  # (p, 2) different modes of one cluster
 
     @classmethod
     def of(cls, shapes: Shapes) -> Pairs:

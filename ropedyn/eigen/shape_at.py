@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Real
 from ..chain.compile import divided
 from ..chain.port import Point, locate, ports
 from .eigen import shapes_of
 from .modes import Modes
-
-Real = NDArray[np.float64]
 
 
 def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:

@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import KINDS
 from ..chain.compile import MOST_ELEMENTS, compile_scene, stations_of
@@ -30,7 +30,6 @@ SECANTS = 4
 """Interpolations between a chain that fails and one that does not, before they are halved."""
 
 Component = tuple[str, ...]
-Real = NDArray[np.float64]
 
 
 def compile_within(

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..base.answer import Answer, Cost, Frozen, axes, nested
+from ..base.array import Complex, Real
 from ..base.table import Table
 from ..base.unit import label
 from ..chain.port import Point
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from ..curves.measured import Measured
     from ..signal.ringdown import RingDown
     from ..signal.spectrum import Spectrum
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,9 +259,7 @@ class History(Answer):
 
         return spectrum(self, window)
 
-    def amplitude(
-        self, frequency: ArrayLike, *, last: float | None = None
-    ) -> NDArray[np.complex128]:
+    def amplitude(self, frequency: ArrayLike, *, last: float | None = None) -> Complex:
         """Fit steady motion at one or several frequencies.
 
         By least squares together with what stands still and what drifts steadily. Motion is

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Real
 from ..base.errors import SolveError
 from ..scene.force import Sine
 from ..scene.tension import Tension
@@ -17,9 +17,6 @@ from .direct.lumped import Lumps, lumped_chains, refuse
 from .direct.march import Motion, stage_of
 from .stepped_sine import Steady, Steps, amplitudes
 from .transient import Run
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 FEWEST, MOST = 32, 1 << 14
 """Steps of a period."""

@@ -10,10 +10,10 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Cost
+from ..base.array import Complex, Flags, Real
 from ..base.errors import SceneError, SolveError
 from ..base.progress import reporter
 from ..base.unit import QUANTITIES, push_unit
@@ -27,9 +27,6 @@ from .modal.convolution import convolve
 from .modal.expansion import Share, expand
 from .modal.superposition import ratio_beyond
 from .transient import is_direct, why_direct
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SAMPLES = 16
 """Of a period that the modal method looks at."""
@@ -191,7 +188,7 @@ def _slowest(share: Share) -> float:
     return float(min(slow[seen].min(initial=math.inf), single.min(initial=math.inf)))
 
 
-def _seen(residues: Real) -> NDArray[np.bool_]:
+def _seen(residues: Real) -> Flags:
     size = np.abs(residues).max(axis=(0, 1), initial=0.0)
     return np.asarray(size > UNSEEN * size.max(initial=0.0))
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.progress import reporter
 from ..base.unit import MOTIONS, push_unit
@@ -21,8 +21,6 @@ from ..scene.force import Force, forces
 from ..scene.parts.part import standing
 from ..scene.tension import Tension
 from .history import History
-
-Real = NDArray[np.float64]
 
 METHODS = ("auto", "modal", "direct")
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer, Cost, axes
+from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..model import Model
@@ -21,8 +21,6 @@ from .monodromy import finite, monodromy, steps_for
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 EPS = float(np.finfo(float).eps)
 
@@ -83,7 +81,7 @@ class Floquet(Answer):
     """
 
     period: float
-    modes: NDArray[np.intp] = field(metadata=axes("mode"))
+    modes: Index = field(metadata=axes("mode"))
     frequency: Real = field(metadata=axes("mode", unit="Hz"))
     multiplier: Complex = field(metadata=axes("motion"))
     rounding_error: Real = field(metadata=axes("motion"))
@@ -232,7 +230,7 @@ def _errors(matrix: Real, off: float, right: Complex) -> Real:
     return np.fmin(whole * condition, root)
 
 
-def _order(multiplier: Complex) -> NDArray[np.intp]:
+def _order(multiplier: Complex) -> Index:
     """Sort by size; of a pair of the same size the one above the real axis comes first."""
     size = np.abs(multiplier)
     return np.lexsort((-multiplier.imag, -np.round(size / size.max(initial=1.0), 12)))

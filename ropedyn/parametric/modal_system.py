@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
@@ -17,8 +17,6 @@ from ..eigen.eigen import SOLVERS, Found, pieces_of, spectrum
 from ..model import Model
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
 from ..signal.cluster import clusters
-
-Real = NDArray[np.float64]
 
 SLOPE_OF_TENSION = 6
 """Among the slopes of an element, see `_core.sensitivity`."""
@@ -52,11 +50,11 @@ class ModalSystem:
         return np.sqrt(np.maximum(self.eigenvalue, 0.0))
 
     @cached_property
-    def blocks(self) -> tuple[NDArray[np.intp], ...]:
+    def blocks(self) -> tuple[Index, ...]:
         """Modes that tension or damping couple, those of each block in order."""
         return tuple(clusters((self.geometric != 0) | (self.damping != 0)))
 
-    def only(self, modes: NDArray[np.intp]) -> ModalSystem:
+    def only(self, modes: Index) -> ModalSystem:
         """Return that of some modes."""
         square = np.ix_(modes, modes)
         return ModalSystem(self.eigenvalue[modes], self.geometric[square], self.damping[square])

@@ -18,12 +18,10 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Index, Real
 from ..base.errors import SolveError
 from .modal_system import ModalSystem
-
-Real = NDArray[np.float64]
 
 HALF = (
     0.07879572252168641926390768,
@@ -162,7 +160,7 @@ def exponent(
 
 def periods(
     system: ModalSystem, frequency: Real, amplitude: Real, angle: float
-) -> Iterator[tuple[NDArray[np.intp], Real]]:
+) -> Iterator[tuple[Index, Real]]:
     """Yield some of the frequencies, lowest first, and the motion over their periods.
 
     As `exponent` takes them; the motion has the shape (some, a, 2k, 2k).

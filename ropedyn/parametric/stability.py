@@ -8,10 +8,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer, Cost, axes
+from ..base.array import Flags, Real
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table
@@ -23,8 +23,6 @@ from .tongue import Tongue, boundaries, threshold, tongues_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +91,7 @@ class StabilityMap(Answer):
         return self.system.omega / (2 * np.pi)
 
     @property
-    def stable(self) -> NDArray[np.bool_]:
+    def stable(self) -> Flags:
         """Whether no motion grows, shape (a, f)."""
         return np.asarray(self.growth <= threshold(self.system, self.frequency) * self.frequency)
 

@@ -7,12 +7,10 @@ from itertools import combinations_with_replacement
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Flags, Index, Real
 from .modal_system import ModalSystem
 from .monodromy import ANGLE, exponent, periods, rates, scales
-
-Real = NDArray[np.float64]
 
 HIGHEST_ORDER = 4
 """Of resonances that are looked for."""
@@ -119,7 +117,7 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
 
 def _changes(
     system: ModalSystem, looked: Real, amplitude: float, close: float = CLOSE
-) -> tuple[Real, NDArray[np.bool_]]:
+) -> tuple[Real, Flags]:
     """Return where stability changes between given frequencies; whether motion grows beyond.
 
     Where what grows is of another kind there may be a gap between two tongues.
@@ -139,7 +137,7 @@ def _changes(
     return (looked[at] + looked[at + 1]) / 2, grows[at + 1]
 
 
-def _growing(system: ModalSystem, frequency: Real, amplitude: float) -> NDArray[np.intp]:
+def _growing(system: ModalSystem, frequency: Real, amplitude: float) -> Index:
     """Return a number for what grows, 0 for nothing.
 
     Counts multipliers beyond 1, beyond -1, and outside the unit circle elsewhere.
@@ -202,9 +200,7 @@ def _near_resonances(system: ModalSystem, frequency: Real, amplitude: float) -> 
     return np.concatenate(points)
 
 
-def _closing_in(
-    system: ModalSystem, pair: NDArray[np.intp], window: Real, amplitude: float
-) -> Real:
+def _closing_in(system: ModalSystem, pair: Index, window: Real, amplitude: float) -> Real:
     """Return the frequencies that a search for growth of pairs of modes in windows looked at.
 
     The phases by which two modes turn in a period add up to whole turns at a resonance: the sign of
@@ -224,8 +220,8 @@ def _closing_in(
 
 
 def _turns(
-    system: ModalSystem, pair: NDArray[np.intp], frequency: Real, amplitude: float
-) -> tuple[Real, NDArray[np.bool_]]:
+    system: ModalSystem, pair: Index, frequency: Real, amplitude: float
+) -> tuple[Real, Flags]:
     """Return by how much pairs of modes turn in a period beside whole turns [rad]; if they grow.
 
     Of each conjugate pair of motions one goes round as a mode without pulsation does: its q' is

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Frozen
+from ..base.array import Real
 from ..base.atomic import replacing
 from ..base.errors import SceneError
 from ..base.unit import FAMILY, NAME, UNIT
@@ -53,9 +53,9 @@ class Animation(Frozen):
 
     title: str
     coordinates: tuple[str, ...]
-    x: NDArray[np.float64]
-    motion: NDArray[np.float64]
-    envelope: NDArray[np.float64]
+    x: Real
+    motion: Real
+    envelope: Real
     seconds: float
 
     def __repr__(self) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Index, Real
 from ..base.unit import NAME, UNIT, place, power
 from ..curves.curves import Curves, named_curves
 
@@ -113,9 +113,7 @@ def plot_deflection(deflection: Deflection, ax: Axes | None) -> Axes:
     return ax
 
 
-def plot_peaks(
-    frequency: NDArray[np.float64], ax: Axes | None, height: NDArray[np.float64] | None = None
-) -> Axes:
+def plot_peaks(frequency: Real, ax: Axes | None, height: Real | None = None) -> Axes:
     """Plot peaks as vertical lines over frequency."""
     ax = new_axes(ax)
     ax.vlines(frequency, 0.0, np.ones_like(frequency) if height is None else height)
@@ -197,7 +195,7 @@ def plot_effects(cost: EffectCost, ax: Axes | None) -> Axes:
     return ax
 
 
-def _effect_rows(cost: EffectCost) -> tuple[NDArray[np.intp], float, float]:
+def _effect_rows(cost: EffectCost) -> tuple[Index, float, float]:
     """Return effects, those that change most first, and limits of the changes to show."""
     weight = np.where(np.isnan(cost.largest), np.inf, cost.largest)
     weight = np.where(cost.beyond_error, weight, 0.0)
@@ -217,7 +215,7 @@ def _effect_note(cost: EffectCost, row: int) -> str:
     return f"\n{lost} {what}{'s' * (lost > 1)} only with it" if lost else ""
 
 
-def _plot_shares(cost: EffectCost, rows: NDArray[np.intp], ax: Axes) -> None:
+def _plot_shares(cost: EffectCost, rows: Index, ax: Axes) -> None:
     """Plot shares of time with their quartiles on an axis above, filled where they are told."""
     above = ax.twiny()
     share, least, most = (100 * each for each in (cost.share, *cost.share_quartiles))

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
 from ..base import check
 from ..base.answer import Answer, Cost, Work, axes
+from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..base.unit import FORCE, FORCE_UNIT, UNIT
@@ -56,9 +56,9 @@ class Deflection(Answer):
     """
 
     coordinates: tuple[str, ...]
-    x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
-    displacement: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="m or rad"))
-    force: NDArray[np.float64] = field(metadata=axes("node", "coordinate", unit="N or N m"))
+    x: Real = field(metadata=axes("node", unit="m"))
+    displacement: Real = field(metadata=axes("node", "coordinate", unit="m or rad"))
+    force: Real = field(metadata=axes("node", "coordinate", unit="N or N m"))
     load: tuple[tuple[Point, float], ...]
     cost: Cost
 
@@ -130,8 +130,8 @@ BLOCK = 4096
 
 
 def _sweep(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+) -> tuple[Real, Real, Work]:
     """Return motion of the nodes, what the surroundings put on them, and what it took."""
     longer, finer, kept = _cut(model, component, loads, nodes)
     pushed = ports(longer, finer, component, loads)
@@ -139,7 +139,7 @@ def _sweep(
     factor = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
     asked = 0
 
-    def ask(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
+    def ask(node: Index, forces: bool) -> Real:
         """Return motion of nodes, or force on the right end of the elements left of them."""
         w = len(component)
         rows = np.zeros((len(node) * w, 2, w))
@@ -157,7 +157,7 @@ def _sweep(
         answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)
         return answer.reshape(len(node), w)
 
-    def ask_all(node: NDArray[np.intp], forces: bool) -> NDArray[np.float64]:
+    def ask_all(node: Index, forces: bool) -> Real:
         blocks = [node[k : k + BLOCK] for k in range(0, len(node), BLOCK)]
         return np.concatenate([ask(block, forces) for block in blocks])
 
@@ -168,8 +168,8 @@ def _sweep(
 
 
 def _band(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+) -> tuple[Real, Real, Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
     u, force = _core.mixed_deflection(chain, nodal(chain, x, component, loads))
     on_nodes = _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
@@ -178,11 +178,11 @@ def _band(
 
 def _on_nodes(
     chain: Chain,
-    kept: NDArray[np.intp],
-    u: NDArray[np.float64],
-    right: NDArray[np.float64],
-    begins: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    kept: Index,
+    u: Real,
+    right: Real,
+    begins: Real,
+) -> Real:
     """Return f_b of the element on the left less f_a = E f_b - Q u_a + P u_b of the right one."""
     of = left_ends(chain)
     first = chain.element_of[kept[:-1]]
@@ -198,7 +198,7 @@ def _on_nodes(
     return force
 
 
-def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np.float64]:
+def _kept(compliance: Real, Q: Real) -> Real:
     """Return the share 1/(1 + Q C) that a hinge leaves of f_a without it, none where it is free.
 
     f_a = E f_b - Q (u_a + C f_a) + P u_b, and a hinge stands on the one coordinate that Q has.
@@ -209,16 +209,16 @@ def _kept(compliance: NDArray[np.float64], Q: NDArray[np.float64]) -> NDArray[np
 
 
 def _lapack(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], Work]:
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+) -> tuple[Real, Real, Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
     u, _ = _core.deflection(chain, nodal(chain, x, component, loads))
     return u[kept], _held_up(chain, u)[kept], Work(factorisations=1)
 
 
 def _cut(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: NDArray[np.float64]
-) -> tuple[Chain, NDArray[np.float64], NDArray[np.intp]]:
+    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+) -> tuple[Chain, Real, Index]:
     """Return the chain with nodes under the loads, where they stand, and those of the answer."""
     chain, x = model.chain.only(component).at_rest, model.x
     if model.element in EXACT:
@@ -246,10 +246,10 @@ def checked_loads(model: Model, load: Any, name: str = "load") -> dict[Point, fl
 
 def nodal(
     chain: Chain,
-    x: NDArray[np.float64],
+    x: Real,
     component: tuple[str, ...],
     loads: dict[Point, float],
-) -> NDArray[np.float64]:
+) -> Real:
     """Return the forces on the nodes that the loads amount to."""
     node, row, _ = ports(chain, x, component, loads)
     force = np.zeros((len(x), len(component)))
@@ -258,7 +258,7 @@ def nodal(
     return force
 
 
-def _held_up(chain: Chain, u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _held_up(chain: Chain, u: Real) -> Real:
     """Return what the elements need from outside at every node: K_elements u."""
     elastic, elastic_beside, string, string_beside, _, _, _ = _core.assemble(chain)
     force = np.einsum("nij,nj->ni", elastic + string, u)

@@ -7,10 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..base.answer import TRANSIENT, Cost, Frozen, axes, nested
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..chain.port import Point
 from ..curves.curves import Curves
@@ -23,7 +21,7 @@ if TYPE_CHECKING:
 class Mesh(Frozen):
     """What continuous spans say about the response of a chain; see `FRF`."""
 
-    mesh_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
+    mesh_error: Real = field(metadata=axes("drive", "response", "frequency"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +59,9 @@ class FRF(Curves):
     drive: tuple[Point, ...]
     response: tuple[Point, ...]
     quantity: str
-    frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
-    value: NDArray[np.complex128] = field(metadata=axes("drive", "response", "frequency"))
-    rounding_error: NDArray[np.float64] = field(metadata=axes("drive", "response", "frequency"))
+    frequency: Real = field(metadata=axes("frequency", unit="Hz"))
+    value: Complex = field(metadata=axes("drive", "response", "frequency"))
+    rounding_error: Real = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
     mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
     rates_source: Callable[[], FrequencyRates] | None = field(
@@ -76,7 +74,7 @@ class FRF(Curves):
         return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
 
     @property
-    def mesh_error(self) -> NDArray[np.float64]:
+    def mesh_error(self) -> Real:
         """Relative error that the elements cause, as value."""
         return self.mesh.mesh_error
 
@@ -90,7 +88,7 @@ class FRF(Curves):
             )
         return self.rates_source()
 
-    def derivative(self, path: str) -> NDArray[np.complex128]:
+    def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.
 
         Exact for continuous spans: the dynamic stiffness Z is symmetric, damped or not, so that

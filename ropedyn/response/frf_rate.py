@@ -23,8 +23,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Real
 from ..base.check import NEAR
 from ..base.errors import SceneError
 from ..base.unit import END, QUANTITIES, WIRE
@@ -38,9 +38,6 @@ from ..scene.parts.stretch import KINDS as STRETCHES
 from .hamiltonian import Span, hamiltonian_rate
 from .products import Loaded, Products, driven
 from .ridders import frf_difference
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 TENSION, LENGTH, SAG = 6, 7, 8
 """Of the weights of an element, behind the entries of its section."""

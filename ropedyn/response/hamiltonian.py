@@ -17,10 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.array import Complex, Real
 from ..chain.chain import CHANNELS, Chain
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 class Span(NamedTuple):

@@ -11,11 +11,12 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..base import check
 from ..base.answer import Cost
+from ..base.array import Complex, Flags, Real
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -39,9 +40,6 @@ LANES = 16
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Question:
@@ -56,7 +54,7 @@ class Question:
     workers: int  # Threads
 
     @property
-    def is_damped(self) -> NDArray[np.bool_]:
+    def is_damped(self) -> Flags:
         """Whether a factor of something that this component has is complex, shape (f,)."""
         chain = self.cut[0]
         bends, rods = "beta" in self.component, {"x", "alpha"} & set(self.component)

@@ -18,9 +18,9 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.port import Point, is_force
 from ..chain.tip import is_tip
@@ -32,8 +32,6 @@ from .moved_end import refuse_moved_ends
 if TYPE_CHECKING:
     from .harmonic import Question
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Solver = Callable[["Question"], tuple[Complex, Real]]
 
 REACH, LEAST, MOST = 8.0, 64, 5_000

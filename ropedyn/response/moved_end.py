@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.unit import END
 from ..chain.chain import Chain
@@ -27,8 +27,6 @@ from ..model import Model
 if TYPE_CHECKING:
     from .harmonic import Question
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Solver = Callable[["Question"], tuple[Complex, Real]]
 
 

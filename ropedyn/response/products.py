@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Index, Real
 from ..base.unit import FORCE
 from ..chain.chain import Chain
 from ..chain.compile import station_nodes, stations_of
@@ -20,9 +20,6 @@ from ..scene.stations import stations_at
 from .hamiltonian import Span, generator, hamiltonian
 from .quadrature import rule
 from .span_waves import SpanWaves
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 MOST = 1 << 21
 """Numbers of a field at once."""
@@ -140,9 +137,7 @@ class Loaded:
         }
         return [found[e] for e in elements]
 
-    def _readings(
-        self, waves: Sequence[SpanWaves]
-    ) -> Iterator[tuple[NDArray[np.intp], list[Piece]]]:
+    def _readings(self, waves: Sequence[SpanWaves]) -> Iterator[tuple[Index, list[Piece]]]:
         """Yield frequencies by their numbers, with the pieces as they are integrated there.
 
         Where the waves of a piece can be told apart two places say all of it. Where its waves are

@@ -6,9 +6,8 @@ import functools
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from ..base.array import Real
 
 DEEP = 40.0
 """What decays as exp(-s) is nothing beyond: 4e-18."""

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..chain.compile import remeshed, stations_of
 from ..chain.port import Point
@@ -17,8 +17,6 @@ from ..scene.stations import nearest
 if TYPE_CHECKING:
     from ..model import Model
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 WIDEST, SHRINK, LEVELS = 0.02, 4.0, 12
 """The first step over the size of the number, by what it shrinks, and how often at most."""

@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Flags, Index, Real
 from .hamiltonian import generator
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 LONG = 0.5
 """Radians of every wave on a stretch, below which their sum cancels."""
@@ -51,13 +48,13 @@ class SpanWaves:
         inverse /= np.where(unit > 0, unit, 1.0).swapaxes(1, 2)
         return cls(rate, shape, inverse, np.where(apart, size, np.inf))
 
-    def at(self, lines: NDArray[np.intp]) -> SpanWaves:
+    def at(self, lines: Index) -> SpanWaves:
         """Return those of some frequencies, by their numbers."""
         return SpanWaves(
             self.rate[lines], self.shape[lines], self.inverse[lines], self.condition[lines]
         )
 
-    def tell(self, reach: float) -> NDArray[np.bool_]:
+    def tell(self, reach: float) -> Flags:
         """Whether waves can be told apart on a stretch of this length [m], shape (f,)."""
         long = (np.abs(self.rate) * reach > LONG).all(axis=1)
         return np.asarray(long & (self.condition < APART))

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.quantity import is_quantity
 
@@ -267,7 +268,7 @@ KINDS = (StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDam
 """Every kind of damping."""
 
 
-def factors(dampings: Sequence[Damping], omega: NDArray[Any]) -> NDArray[np.complex128]:
+def factors(dampings: Sequence[Damping], omega: NDArray[Any]) -> Complex:
     """Return the factors of a sum of dampings."""
     total = np.ones((*omega.shape, len(PARTS)), dtype=np.complex128)
     total[..., INERTIA] = -(omega**2)
@@ -291,7 +292,7 @@ def drag(dampings: Sequence[Damping]) -> float:
     return sum(damping.term().drag for damping in dampings)
 
 
-def ratios(dampings: Sequence[Damping], count: int) -> NDArray[np.float64]:
+def ratios(dampings: Sequence[Damping], count: int) -> Real:
     """Return what a sum of dampings adds to the damping ratios of the lowest modes."""
     total = np.zeros(count)
     for ratio in (damping.term().ratio for damping in dampings):

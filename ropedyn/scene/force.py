@@ -7,12 +7,10 @@ from dataclasses import KW_ONLY, dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Real
 from ..base.errors import SceneError
-
-Real = NDArray[np.float64]
 
 ANY = "N or N m or m or rad"
 """Units of what drives: a force, a moment, or the motion of an end."""

@@ -6,13 +6,13 @@ import heapq
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Index, Real
 from ..base.check import NEAR
 from ..base.errors import SceneError
 
 
-def stations_at(length: float, positions: Iterable[float]) -> NDArray[np.float64]:
+def stations_at(length: float, positions: Iterable[float]) -> Real:
     """Return the ends and the positions of parts in order, near ones merged."""
     margin = NEAR * length
     inner = sorted(x for x in positions if margin < x < length - margin)
@@ -23,13 +23,13 @@ def stations_at(length: float, positions: Iterable[float]) -> NDArray[np.float64
     return np.array([*kept, length])
 
 
-def nearest(stations: NDArray[np.float64], positions: Iterable[float]) -> NDArray[np.intp]:
+def nearest(stations: Real, positions: Iterable[float]) -> Index:
     """Return the number of the station next to each position."""
     between = (stations[1:] + stations[:-1]) / 2
     return np.searchsorted(between, list(positions))
 
 
-def shares(lengths: NDArray[np.float64], elements: int) -> NDArray[np.intp]:
+def shares(lengths: Real, elements: int) -> Index:
     """Share out elements over spans so that the longest element is as short as can be."""
     if elements < len(lengths):
         raise SceneError(

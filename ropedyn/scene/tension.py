@@ -6,9 +6,9 @@ from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Real
 from ..base.errors import SceneError
 
 
@@ -91,7 +91,7 @@ class Tension:
         """Whether it is a number."""
         return not self.pulsates and not self.stretching
 
-    def pulsation(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    def pulsation(self, time: Real) -> Real:
         """Return what pulsation adds to the mean [N], as `time` [s].
 
         Examples

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..base.array import Flags, Index
 
 
-def clusters(near: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+def clusters(near: Flags) -> list[Index]:
     """Gather what is near, or near to what is near, and so on."""
     from scipy.sparse.csgraph import connected_components
 

@@ -15,13 +15,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Index, Real
 from .cluster import clusters
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
 Function = Callable[[Complex], Complex]
 """Takes points, shape (n,), and returns values, shape (..., n)."""
 
@@ -53,7 +50,7 @@ class Circles(NamedTuple):
         return Circles(self.center[which], self.radius[which], [self.members[k] for k in which])
 
     @property
-    def size(self) -> NDArray[np.intp]:
+    def size(self) -> Index:
         """How many poles each has in it, shape (n,)."""
         return np.array([len(one) for one in self.members], dtype=np.intp)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Flags, Real
 from ..base.errors import SceneError
 from ..base.unit import MOTIONS, QUANTITIES
 from ..curves.measured import Measured
@@ -63,7 +63,7 @@ def estimate(
     )
 
 
-def _force(history: History, drive: int) -> NDArray[np.float64]:
+def _force(history: History, drive: int) -> Real:
     """Return the force that alone drives."""
     if not history.drive:
         raise SceneError("drive must be there for a response per force: the motion is free")
@@ -79,7 +79,7 @@ def _force(history: History, drive: int) -> NDArray[np.float64]:
     return history.force[drive]
 
 
-def _band(given: Any) -> NDArray[np.float64] | None:
+def _band(given: Any) -> Real | None:
     """Return the lowest and the highest frequency that are asked for [Hz]."""
     if given is None:
         return None
@@ -92,11 +92,11 @@ def _band(given: Any) -> NDArray[np.float64] | None:
 
 
 def _kept(
-    frequency: NDArray[np.float64],
-    power: NDArray[np.float64],
-    band: NDArray[np.float64] | None,
+    frequency: Real,
+    power: Real,
+    band: Real | None,
     quantity: str,
-) -> NDArray[np.bool_]:
+) -> Flags:
     """Return which lines are told: those of the band, or where the force is not small."""
     if band is None:
         kept = power > FLOOR**2 * power.max()

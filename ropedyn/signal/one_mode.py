@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from ..base.array import Complex, Real
 
 POWERS = np.arange(3)
 """Of the numerator: one mode as accelerance has a square, and so has a constant beside it."""

@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..base.array import Complex, Real
 from ..base.unit import QUANTITIES
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 BROAD = 3.0
 """Half widths of a peak, damping ratio times frequency, on each side that a mode is fitted to."""

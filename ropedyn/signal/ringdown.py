@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer, axes
+from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from .pencil import decaying
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from ..motion.history import History
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 LEAST = 16
 """Times that a record of free motion must have."""

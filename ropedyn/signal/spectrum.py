@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer, axes
+from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import label
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from ..motion.history import History
 
-Real = NDArray[np.float64]
 
 UNIFORM = 1e-6
 """Times this part of a step away from equal steps are at equal steps."""
@@ -67,7 +66,7 @@ class Spectrum(Answer):
     window: str
     bandwidth: float
     frequency: Real = field(metadata=axes("frequency", unit="Hz"))
-    value: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
+    value: Complex = field(metadata=axes("response", "frequency"))
 
     @property
     def amplitude(self) -> Real:

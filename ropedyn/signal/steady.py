@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
+from ..base.array import Complex
 from ..base.errors import SceneError
 
 if TYPE_CHECKING:
     from ..motion.history import History
 
 
-def amplitude(history: History, frequency: Any, last: float | None) -> NDArray[np.complex128]:
+def amplitude(history: History, frequency: Any, last: float | None) -> Complex:
     """Fit steady motion; see `History.amplitude`."""
     given = check.frequencies(frequency)
     time = history.time

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..ask import FRFQuestion, ModesQuestion, Question
 from ..base import check
 from ..base.answer import Answer, Cost, axes
+from ..base.array import Integer, Real
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.stopwatch import timed
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
 """Relative errors that the cheapest way is looked for."""
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +82,7 @@ class AccuracyCost(Answer):
     question: str
     reference: str
     element: NDArray[np.str_] = field(metadata=axes("row"))
-    elements: NDArray[np.int64] = field(metadata=axes("row"))
+    elements: Integer = field(metadata=axes("row"))
     solver: NDArray[np.str_] = field(metadata=axes("row"))
     seconds: Real = field(metadata=axes("row", unit="s"))
     lower_quartile: Real = field(metadata=axes("row", unit="s"))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.array import Real
 from ..chain.chain import CARRIED
 from ..eigen.eigen import solve_modes
 from ..eigen.mesh_error import in_hertz
@@ -33,8 +34,6 @@ FURTHEST = 16
 OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
 """What is measured of a change, the largest first."""
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..ask import FRFQuestion, ModesQuestion, Question
 from ..base import check
 from ..base.answer import Answer, Cost, axes
+from ..base.array import Flags, Integer, Real
 from ..base.errors import RopedynError
 from ..base.progress import Progress, reporter
 from ..base.stopwatch import Times, timed
@@ -24,8 +25,6 @@ from .trial import answered, ask_once, words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +90,8 @@ class EffectCost(Answer):
     effect: NDArray[np.str_] = field(metadata=axes("row"))
     change: dict[str, Real] = field(metadata=axes("row", keyed=True))
     error: Real = field(metadata=axes("row"))
-    beyond_error: NDArray[np.bool_] = field(metadata=axes("row"))
-    only_with: NDArray[np.int64] = field(metadata=axes("row"))
+    beyond_error: Flags = field(metadata=axes("row"))
+    only_with: Integer = field(metadata=axes("row"))
     seconds_with: float
     lower_quartile_with: float
     upper_quartile_with: float
@@ -100,7 +99,7 @@ class EffectCost(Answer):
     lower_quartile_without: Real = field(metadata=axes("row", unit="s"))
     upper_quartile_without: Real = field(metadata=axes("row", unit="s"))
     unknowns_with: int
-    unknowns_without: NDArray[np.int64] = field(metadata=axes("row"))
+    unknowns_without: Integer = field(metadata=axes("row"))
     refusal: NDArray[np.str_] = field(metadata=axes("row"))
 
     @property
@@ -340,6 +339,6 @@ def _result(whole: Whole, left: Sequence[Left], times: Times) -> EffectCost:
     )
 
 
-def _where(asked: NDArray[np.bool_], values: NDArray[np.int64]) -> tuple[int | None, ...]:
+def _where(asked: Flags, values: Integer) -> tuple[int | None, ...]:
     """Return whole numbers for a column, None where there is no answer."""
     return tuple(value if there else None for there, value in zip(asked, values.tolist()))

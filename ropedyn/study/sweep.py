@@ -12,10 +12,10 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Answer, Cost
+from ..base.array import Real
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
 from .outcome import Errand, Failure, Outcome, outcome_of
@@ -66,7 +66,7 @@ class Sweep(Sequence[Result | None], Generic[Result]):
 
     results: tuple[Result | None, ...]
     failed: Mapping[int, BaseException]
-    seconds: NDArray[np.float64]
+    seconds: Real
     cost: Cost
 
     def __post_init__(self) -> None:

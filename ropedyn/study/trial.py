@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..ask import Question
+from ..base.array import Flags, Real
 from ..base.errors import RopedynError, SceneError, SolveError
 from ..model import Model
 from ..scene.scene import Scene
@@ -27,8 +28,6 @@ LONGEST = 1.0
 
 EPSILON = float(np.finfo(float).eps)
 
-Real = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
 class Truth:
@@ -39,7 +38,7 @@ class Truth:
     same: Question  # the same for exactly as many values as the true answer has
     values: NDArray[Any]  # true ones
     # which of them have a correct digit: what is 0 by symmetry is nothing but rounding
-    known: NDArray[np.bool_]
+    known: Flags
     error: float  # their own largest relative error, seen in other cuts of the same spans
     spans: int  # how many
 
@@ -75,7 +74,7 @@ class Trial:
     calls: tuple[Callable[[], Any], ...] = ()
 
 
-def largest(errors: Real, known: NDArray[np.bool_]) -> float:
+def largest(errors: Real, known: Flags) -> float:
     """Return the largest error of values that are known."""
     return float(errors[known].max())
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Complex, Real
 from ...base.atomic import write_bytes
 from ...base.errors import SceneError
 from ...base.unit import QUANTITIES
@@ -53,7 +53,7 @@ class Sheet(NamedTuple):
 
     names: tuple[str, ...] | None
     """Of the columns; None where the first line has numbers already."""
-    numbers: NDArray[np.float64]
+    numbers: Real
     """(rows, columns)."""
 
 
@@ -186,7 +186,7 @@ def _columns(file: Path, sheet: Sheet, columns: Any) -> dict[str, Any]:
     }
 
 
-def _taken(file: Path, sheet: Sheet, key: str, chosen: Any) -> NDArray[np.float64]:
+def _taken(file: Path, sheet: Sheet, key: str, chosen: Any) -> Real:
     """Return columns by name or number, shape (columns, rows)."""
     chosen = chosen if isinstance(chosen, (list, tuple)) else [chosen]
     width = sheet.numbers.shape[1]
@@ -204,7 +204,7 @@ def _taken(file: Path, sheet: Sheet, key: str, chosen: Any) -> NDArray[np.float6
     return sheet.numbers[:, at].T
 
 
-def _complex(real: NDArray[np.float64], imag: NDArray[np.float64]) -> NDArray[np.complex128]:
+def _complex(real: Real, imag: Real) -> Complex:
     """Return real and imaginary parts together, every bit as it is."""
     value = np.empty(real.shape, dtype=np.complex128)
     value.real, value.imag = real, imag

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Real
 from ...base.errors import SceneError
 from . import uff
 from .uff import AVERAGES, COHERENCE, FREQUENCY, FRF, UNSAID, Record, label_of
@@ -110,7 +110,7 @@ def _listed(unit: Any, lines: int) -> list[str | None]:
     return list(unit)
 
 
-def _frequency(record: Record, file: Path) -> NDArray[np.float64]:
+def _frequency(record: Record, file: Path) -> Real:
     """Return the frequencies of a record [Hz]."""
     kind, text = record.fields["abscissa_spec_data_type"], record.fields["abscissa_axis_units_lab"]
     said = label_of(text)
@@ -122,13 +122,11 @@ def _frequency(record: Record, file: Path) -> NDArray[np.float64]:
     return np.asarray(record.fields["x"] * HERTZ[said or "Hz"], dtype=np.float64)
 
 
-def _alike(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+def _alike(a: Real, b: Real) -> bool:
     return len(a) == len(b) and np.allclose(a, b, rtol=SAME, atol=0.0)
 
 
-def _coherence(
-    lines: Sequence[Line], found: Sequence[Record], file: Path
-) -> NDArray[np.float64] | None:
+def _coherence(lines: Sequence[Line], found: Sequence[Record], file: Path) -> Real | None:
     """Return the coherence of each response, by its nodes and directions; None without any."""
     frequency = _frequency(lines[0].record, file)
     rows = []

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...base.unit import QUANTITIES, label
 from ...chain.port import Point
@@ -93,7 +93,7 @@ def _common(
     }
 
 
-def _is_even(frequency: NDArray[np.float64], binary: bool) -> bool:
+def _is_even(frequency: Real, binary: bool) -> bool:
     """Whether the start and the step, with the 6 digits a header has, are the frequencies.
 
     Else each is written: with 6 digits too, or in full where the file is binary.
@@ -112,9 +112,7 @@ def _is_even(frequency: NDArray[np.float64], binary: bool) -> bool:
     return False
 
 
-def _ordinate(
-    curves: Curves, drive: Point, response: Point, curve: NDArray[np.complex128]
-) -> Fields:
+def _ordinate(curves: Curves, drive: Point, response: Point, curve: Complex) -> Fields:
     order = QUANTITIES[curves.quantity]
     above, below = dimensions(response, drive)
     kind = next(code for code, times in MOTION.items() if times == order)
@@ -130,5 +128,5 @@ def _ordinate(
     }
 
 
-def _share(coherence: NDArray[np.float64]) -> Fields:
+def _share(coherence: Real) -> Fields:
     return {"func_type": COHERENCE, "data": coherence, "ordinate_axis_lab": "Coherence"}

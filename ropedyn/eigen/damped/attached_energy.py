@@ -6,12 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Complex, Real
 from ...chain.chain import ATTACHED, Chain
 from ...scene.damping import DASHPOT, INERTIA
-from .characteristic import Complex, Real
 
 LEAST = 12
 """Polynomials for the curvature of a wire whose waves are long."""
@@ -99,7 +98,7 @@ def _wire(value: Real, inertia: Complex, foot: Complex) -> tuple[Real, Real]:
     xi, weight = (node + 1) / 2, weight / 2
     phi = _bent(count, node)
     stiff = 1 / (2 * np.arange(count) + 1)
-    square: NDArray[np.float64] = (phi * weight) @ phi.T
+    square: Real = (phi * weight) @ phi.T
     still = foot[:, :1] + length * foot[:, 1:] * xi
     ratio_of = (inertia * mass / (spring * (1 + 2j * ratio)))[:, None]
     system = np.diag(stiff) + ratio_of[:, :, None] * square

@@ -6,18 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Complex, Real
 from ...base.check import COORDINATES
 from ...chain.chain import Chain
 from ...scene.damping import INERTIA, SECTION, TENSION, Damping
 
 ROUNDING = 4.0
 """Of values, in units of eps sqrt(steps)."""
-
-Complex = NDArray[np.complex128]
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

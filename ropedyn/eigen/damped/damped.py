@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import _core
 from ...base import check
 from ...base.answer import Cost
+from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import FAMILY
 from ...chain.chain import Chain
@@ -24,7 +24,7 @@ from ...scene.damping import having
 from ..eigen import check_asked, fractions, largest, lowest, points_for, within
 from ..free_motion import Mesh, Vectors
 from .attached_energy import Carried
-from .characteristic import Complex, Rates, Real
+from .characteristic import Rates
 from .damped_modes import DampedModes
 from .damped_roots import Damped, damped_roots
 from .modal_rates import solve_modal
@@ -41,8 +41,6 @@ UNSEEN = 1e-8
 
 Part = tuple[tuple[str, ...], int, int]
 """A component between two nodes."""
-
-Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import Cost, axes, nested
+from ...base.array import Complex, Real
 from ...base.table import Table
 from ..free_motion import FreeMotion, Mesh, Vectors
 
@@ -88,9 +88,9 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
     coordinates: tuple[str, ...]
     certified: bool
     searched: float
-    x: NDArray[np.float64] = field(metadata=axes("node", unit="m"))
-    eigenvalue: NDArray[np.complex128] = field(metadata=axes("mode", unit="rad/s"))
-    rounding_error: NDArray[np.float64] = field(metadata=axes("mode", unit="Hz"))
+    x: Real = field(metadata=axes("node", unit="m"))
+    eigenvalue: Complex = field(metadata=axes("mode", unit="rad/s"))
+    rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
     source: Vectors[np.complex128] | Callable[[], Vectors[np.complex128]] = field(
         repr=False, metadata=nested(Vectors, "vectors")
@@ -98,23 +98,23 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
     mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
 
     @property
-    def frequency(self) -> NDArray[np.float64]:
+    def frequency(self) -> Real:
         """Frequency of the damped oscillation [Hz], shape (k,)."""
         return self.eigenvalue.imag / (2 * np.pi)
 
     @property
-    def natural_frequency(self) -> NDArray[np.float64]:
+    def natural_frequency(self) -> Real:
         """Modulus of s/2 pi [Hz], shape (k,)."""
         return np.abs(self.eigenvalue) / (2 * np.pi)
 
     @property
-    def damping_ratio(self) -> NDArray[np.float64]:
+    def damping_ratio(self) -> Real:
         """Damping ratio of each mode, shape (k,)."""
         size = np.abs(self.eigenvalue)
         return np.divide(self.decay_rate, size, out=np.zeros_like(size), where=size > 0)
 
     @property
-    def decay_rate(self) -> NDArray[np.float64]:
+    def decay_rate(self) -> Real:
         """Decay rate of each mode [1/s], shape (k,)."""
         return 0.0 - self.eigenvalue.real
 

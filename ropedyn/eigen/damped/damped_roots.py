@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Index, Real
 from ...base.errors import SolveError
 from ...chain.chain import Chain
 from ..eigen import lowest
-from .characteristic import Characteristic, Complex, Rates, Real, elastic, horizon
+from .characteristic import Characteristic, Rates, elastic, horizon
 from .proportional import Proportional, proportional
 from .roots import Roots, find_roots
 from .winding import winding
@@ -37,7 +37,7 @@ class Damped:
     nearby: Complex  # what was found besides: the others of the pairs [rad/s]
     closed: Proportional | None = None  # how the damping is proportional
     # (k,) the undamped mode that each is of, where it is proportional
-    mode: NDArray[np.intp] | None = None
+    mode: Index | None = None
 
 
 def damped_roots(chain: Chain, rates: Rates, radius: float) -> Damped:

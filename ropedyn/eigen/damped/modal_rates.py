@@ -7,18 +7,15 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...model import Model
 from ...scene.damping import having, ratios
 from ..eigen import solve_modes
 from ..free_motion import Mesh, Vectors
 from ..modes import Modes
-from .characteristic import Complex, Real
 from .damped_modes import DampedModes
-
-Index = NDArray[np.intp]
 
 
 def solve_modal(

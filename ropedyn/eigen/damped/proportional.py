@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.array import Complex, Real
 from ...chain.chain import Chain
 from ...scene.damping import DASHPOT, INERTIA, SPRING
-from .characteristic import Complex, Rates, Real, elastic
+from .characteristic import Rates, elastic
 
 
 @dataclass(frozen=True)

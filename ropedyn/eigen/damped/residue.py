@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Complex, Index, Integer, Real
 from ...base.errors import SolveError
 from ...chain.chain import Chain
 from ...chain.port import Ports
 from ...signal.cluster import clusters
-from .characteristic import Complex, Rates, Real
+from .characteristic import Rates
 from .damped_roots import Damped
 
 SAMPLES = 8
@@ -30,8 +30,6 @@ PLACES = 16
 
 GOLDEN = 0.6180339887498949
 """Multiples of it, without whole turns, are spread evenly."""
-
-Index = NDArray[np.intp]
 
 
 def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:
@@ -88,14 +86,14 @@ def _room(value: Complex, group: Index, damped: Damped) -> float:
     return min(nearest, damped.radius - abs(center))
 
 
-def _probes(chain: Chain) -> NDArray[np.int64]:
+def _probes(chain: Chain) -> Integer:
     """Return the ends of a chain, some nodes spread along it and those that carry structures."""
     last = chain.nodes - 1
     spread = np.rint(np.arange(1, PLACES + 1) * GOLDEN % 1.0 * last).astype(np.int64)
     return np.unique(np.concatenate([[0, last], spread, chain.feet[chain.feet >= 0]]))
 
 
-def _ports(chain: Chain, nodes: NDArray[np.int64]) -> Ports:
+def _ports(chain: Chain, nodes: Integer) -> Ports:
     """Return every coordinate of these nodes, one after another."""
     width = chain.held.shape[1]
     left = np.minimum(nodes, chain.nodes - 2)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .characteristic import Characteristic, Complex, Real
+from ...base.array import Complex, Real
+from .characteristic import Characteristic
 from .winding import Winding
 
 MOST_STEPS = 30

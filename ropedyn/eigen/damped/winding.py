@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.array import Complex, Real
 from ...chain.chain import Chain
-from .characteristic import Characteristic, Complex, Real
+from .characteristic import Characteristic
 
 FIRST = 16
 """Arcs of a half circle to begin with, at least."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Complex, Flags, Index, Real
 from ...base.check import COORDINATES, NEAR
 from ...base.errors import SceneError
 from ...chain.port import Point
@@ -19,8 +19,6 @@ from ...model import Model
 from ...response.frf import FRF
 from ...signal.response_shape import residues
 from .measured import peaks_in
-
-Real = NDArray[np.float64]
 
 UNSEEN = 1e-9
 """Product of a shape at the drive and at a response: less is rounding at a node of the shape."""
@@ -34,7 +32,7 @@ class Predicted:
     # (m,) of modes by mesh and rounding, of peaks of a response that of the fit to them [Hz]
     error: Real
     damping_ratio: Real  # (m,) NaN where nothing damps
-    number: NDArray[np.intp]  # (m,) which of `modes` each is, from 0
+    number: Index  # (m,) which of `modes` each is, from 0
     modes: Modes | None = None  # rigid motion and growth among them
     frf: FRF | None = None  # that shows the peaks
 
@@ -55,7 +53,7 @@ class Predicted:
             for k, point in enumerate(points)
         )
 
-    def shapes(self, points: tuple[Point, ...], drive: int) -> NDArray[np.complex128] | Real | None:
+    def shapes(self, points: tuple[Point, ...], drive: int) -> Complex | Real | None:
         """Return the shapes at points, shape (m, points), or None where they are not known."""
         if self.modes is not None:
             return shapes_at(self.modes, points)[self.number]
@@ -74,7 +72,7 @@ class Predicted:
             self.damping_ratio,
         )
 
-    def seen(self, drive: Point, response: tuple[Point, ...]) -> NDArray[np.bool_]:
+    def seen(self, drive: Point, response: tuple[Point, ...]) -> Flags:
         """Return which frequencies a drive can show in at least one response."""
         if self.modes is None or not self.has_shapes or not all(map(is_motion, response)):
             return np.ones(len(self.frequency), dtype=np.bool_)

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Integer, Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import FAMILY
 from ...chain.compile import remeshed
@@ -20,8 +20,6 @@ from ...eigen.modes import Modes
 from ...model import Model
 from ...scene.path import value_at, with_values
 from .calculated import Predicted
-
-Real = NDArray[np.float64]
 
 LIKELY = 0.05
 """What explains differences leaves some that rounding and noise exceed at least so often."""
@@ -60,7 +58,7 @@ class Cause(NamedTuple):
     """What is left, in squares of standard uncertainties."""
 
 
-def likely_cause(found: Predicted, order: NDArray[np.int64], measured: Real, std: Real) -> str:
+def likely_cause(found: Predicted, order: Integer, measured: Real, std: Real) -> str:
     """Say which one number of the scene explains all differences, where they prove it.
 
     Every number of the scene that shifts modes is tried by itself: the one value of it that fits
@@ -160,7 +158,7 @@ class Tracked:
     """
 
     modes: Modes  # of a model
-    number: NDArray[np.intp]  # (k,) which of them, from 0
+    number: Index  # (k,) which of them, from 0
 
     @cached_property
     def model(self) -> Model:
@@ -168,7 +166,7 @@ class Tracked:
         return self.modes.sensitivity.shapes.model
 
     @cached_property
-    def parts(self) -> list[tuple[tuple[str, ...], NDArray[np.intp], NDArray[np.intp]]]:
+    def parts(self) -> list[tuple[tuple[str, ...], Index, Index]]:
         """Components, which of the tracked modes are theirs, and their numbers in them."""
         coordinate = {name: c for c, name in FAMILY.items()}
         own = [self.model.component_of(coordinate[name]) for name in self.modes.family]

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import Answer, axes
+from ...base.array import Complex, Flags, Integer, Real
 from ...base.errors import SceneError
 from ...base.table import Table, numbers
 from ...chain.port import Point
@@ -31,8 +32,6 @@ from .pairing import partners
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 BAND = 0.1
 """Share of the measured range that FRAC is taken over at each line, where nothing else is said."""
@@ -94,7 +93,7 @@ class Comparison(Answer):
     array([ 2., -5.])
     """
 
-    order: NDArray[np.int64] = field(metadata=axes("peak"))
+    order: Integer = field(metadata=axes("peak"))
     measured: Real = field(metadata=axes("peak", unit="Hz"))
     calculated: Real = field(metadata=axes("peak", unit="Hz"))
     difference: Real = field(metadata=axes("peak", unit="%"))
@@ -103,7 +102,7 @@ class Comparison(Answer):
     damping_ratio: Real = field(metadata=axes("peak"))
     calculated_damping_ratio: Real = field(metadata=axes("peak"))
     all_calculated: Real = field(metadata=axes("calculated", unit="Hz"))
-    visible: NDArray[np.bool_] = field(metadata=axes("calculated"))
+    visible: Flags = field(metadata=axes("calculated"))
     hint: str = ""
     response: tuple[str, ...] = ()
     frequency: Real | None = field(default=None, metadata=axes("frequency", unit="Hz"))
@@ -127,7 +126,7 @@ class Comparison(Answer):
             return self.residual / spread
 
     @property
-    def missed(self) -> NDArray[np.int64]:
+    def missed(self) -> Integer:
         """Visible calculated peaks from the lowest to the highest measured one that none is."""
         f, low = self.all_calculated, self.measured.min(initial=np.inf)
         within = self.visible & (f >= low) & (f <= self.measured.max(initial=0.0))
@@ -310,9 +309,7 @@ def compare(
     )
 
 
-def _order(
-    calculated: Real, visible: NDArray[np.bool_], seen: Seen, within: float | None
-) -> NDArray[np.int64]:
+def _order(calculated: Real, visible: Flags, seen: Seen, within: float | None) -> Integer:
     """Return which calculated peak each measured one is."""
     if seen.order is not None:
         if seen.last > len(calculated):

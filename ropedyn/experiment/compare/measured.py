@@ -7,9 +7,9 @@ from numbers import Real as RealNumber
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Integer, Real
 from ...base.errors import SceneError
 from ...base.quantity import is_quantity
 from ...curves.curves import Curves
@@ -17,8 +17,6 @@ from ...curves.measured import Measured, lines_of
 from ...curves.merge_peaks import Merged, merge_peaks
 from ...curves.peaks import Peaks
 from ...curves.resonance import Resonances
-
-Real = NDArray[np.float64]
 
 
 class Seen(NamedTuple):
@@ -30,7 +28,7 @@ class Seen(NamedTuple):
     """(k,) [Hz], NaN where it is not known."""
     damping_ratio: Real
     """(k,) NaN where it is not known."""
-    order: NDArray[np.int64] | None
+    order: Integer | None
     """(k,) where it is given."""
     curves: Measured | None
     """Without a line at 0 Hz."""

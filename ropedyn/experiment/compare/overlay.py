@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError
 from ...base.unit import QUANTITIES, place
 from ...curves.measured import Measured
 from ...model import Model
 from ...response.frf import FRF
 from .calculated import index
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SAME = 1e-9
 """Lines that differ by this share are one."""
@@ -55,7 +52,7 @@ def calculated_at(calculated: Model | FRF, measured: Measured) -> Complex:
     return np.asarray(np.stack(rows) * (2j * np.pi * measured.frequency) ** times)
 
 
-def _lines(calculated: FRF, measured: Measured) -> NDArray[np.intp]:
+def _lines(calculated: FRF, measured: Measured) -> Index:
     """Return which lines are those of the measurement."""
     line, first = np.unique(calculated.frequency, return_index=True)
     above = line > 0

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from ...base.array import Integer, Real
 
 CLOSE = 0.1
 """Of the mean distance of calculated frequencies: nearer ones are close to each other."""
@@ -38,7 +37,7 @@ def reach(calculated: Real) -> Real:
 
 def partners(
     measured: Real, calculated: Real, *, std: Real | None = None, within: float | None = None
-) -> NDArray[np.int64]:
+) -> Integer:
     """Find the calculated partner of each measured frequency, or none.
 
     Over all sets of pairs the sum of d^2 + (reach^2 of each calculated frequency without partner)

@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from .misfit import Misfit
-
-Real = NDArray[np.float64]
 
 BLIND = 1e-8
 """Of the largest singular value: less is the rounding of derivatives."""

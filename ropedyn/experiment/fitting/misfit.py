@@ -6,11 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Real
 from .unknown import Unknowns
-
-Real = NDArray[np.float64]
 
 Misfit = Callable[[Real], tuple[Real, Real]]
 """From variables u, shape (p,), to residuals (m,) and their slopes (m, p)."""
@@ -21,7 +19,7 @@ class Known:
     """What is known beforehand: values and their standard deviations."""
 
     unknowns: Unknowns  # what is sought
-    at: NDArray[np.intp]  # (q,) which of it
+    at: Index  # (q,) which of it
     value: Real  # (q,)
     std: Real  # (q,)
 

@@ -6,15 +6,13 @@ from collections import OrderedDict
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ...eigen.eigen import solve_modes, solve_shapes
 from ...eigen.sensitivity import Sensitivity, Shapes
 from ...model import Model
 from .unknown import Unknowns
-
-Real = NDArray[np.float64]
 
 REMEMBERED = 8
 """Answers."""
@@ -60,7 +58,7 @@ class NaturalFrequencies:
                 f"response tells: {error}"
             ) from error
 
-    def _shapes(self, u: Real, count: int) -> tuple[Shapes, NDArray[np.intp]]:
+    def _shapes(self, u: Real, count: int) -> tuple[Shapes, Index]:
         """Return modes among which so many vibrate, or all there are, and which they are."""
         model = self.unknowns.at(u).compile(elements=self.elements, element=self.element)
         asked = count

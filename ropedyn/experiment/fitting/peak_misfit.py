@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Real
 from ...base.errors import SolveError
 from .natural_frequencies import NaturalFrequencies
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +18,7 @@ class PeakMisfit:
     calculated: NaturalFrequencies  # the frequencies
     measured: Real  # (k,) [Hz]
     weight: Real  # (k,) by which differences are divided [Hz]
-    orders: NDArray[np.intp]  # (k,) from 1; 0 of a peak that is no mode, whose difference is 0
+    orders: Index  # (k,) from 1; 0 of a peak that is no mode, whose difference is 0
 
     def __call__(self, u: Real) -> tuple[Real, Real]:
         """Return the residuals and their slopes."""

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...curves.measured import Measured
 from ...response.frf import FRF
 from .unknown import CALIBRATION, Unknowns
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Flags, Real
 from ...base.errors import SceneError
 from ...scene.path import value_at, with_values
 from ...scene.scene import Scene
-
-Real = NDArray[np.float64]
 
 CALIBRATION = "scale"
 """Among the paths: the factor on a calculated response that makes it the one that was measured."""
@@ -61,7 +59,7 @@ class Unknowns:
         return len(self.paths)
 
     @property
-    def by_factor(self) -> NDArray[np.bool_]:
+    def by_factor(self) -> Flags:
         """Which are sought by their logarithms, shape (p,)."""
         return self.scale == 0
 
@@ -102,7 +100,7 @@ class Unknowns:
             return 1.0
         return float(self.value(u)[self.paths.index(CALIBRATION)])
 
-    def only(self, wanted: NDArray[np.bool_]) -> Unknowns:
+    def only(self, wanted: Flags) -> Unknowns:
         """Return some of them, chosen by shape (p,)."""
         paths = tuple(path for path, one in zip(self.paths, wanted) if one)
         return replace(self, paths=paths, start=self.start[wanted], scale=self.scale[wanted])

@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import TRANSIENT, Cost, axes
+from ...base.array import Integer, Real
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table, numbers
@@ -75,11 +75,11 @@ class Fit(Identified):
     unknown: tuple[str, ...]
     value: Named = field(metadata=axes("unknown"))
     std: Named = field(metadata=axes("unknown"))
-    correlation: NDArray[np.float64] = field(metadata=axes("unknown", "other"))
-    orders: NDArray[np.int64] = field(metadata=axes("peak"))
-    measured: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
-    measured_std: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
-    calculated: NDArray[np.float64] = field(metadata=axes("peak", unit="Hz"))
+    correlation: Real = field(metadata=axes("unknown", "other"))
+    orders: Integer = field(metadata=axes("peak"))
+    measured: Real = field(metadata=axes("peak", unit="Hz"))
+    measured_std: Real = field(metadata=axes("peak", unit="Hz"))
+    calculated: Real = field(metadata=axes("peak", unit="Hz"))
     freedom: float | None
     chi_square: float
     runner_up: RunnerUp | None
@@ -94,7 +94,7 @@ class Fit(Identified):
         super().__post_init__()
 
     @property
-    def residual(self) -> NDArray[np.float64]:
+    def residual(self) -> Real:
         """Calculated less measured frequencies [Hz], shape (k,)."""
         return self.calculated - self.measured
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import Cost
+from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ..fitting.minimum import minimise
 from ..fitting.misfit import Known
@@ -18,9 +18,6 @@ from .residual_noise import line_std
 from .response_fit import ResponseFit
 from .response_start import start_of_response
 from .solution import Solution, solve
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 ROUGH = {"ftol": 1e-4, "xtol": 1e-6, "gtol": 1e-8}
 """Tolerances of what only leads on."""

@@ -9,22 +9,20 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import Cost
+from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ...scene.scene import Scene
 from ..fitting.misfit import Known
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.peak_misfit import PeakMisfit
 from ..fitting.unknown import Unknowns
-from ..orders.orders import Orders, RunnerUp
+from ..orders.orders import RunnerUp
 from .fit import Fit
 from .notes import notes_of
 from .peak_start import start_of_peaks
 from .solution import Solution, solve
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +32,7 @@ class Identification:
     calculated: NaturalFrequencies  # natural frequencies as functions of what is sought
     frequency: Real  # (k,) of the peaks [Hz]
     std: Real | None  # (k,) their standard deviations [Hz]
-    orders: Orders  # (k,) which mode each is, from 1; 0 where it is none
+    orders: Index  # (k,) which mode each is, from 1; 0 where it is none
     # value and standard deviation of what is known beforehand
     prior: Mapping[str, tuple[float, float]]
     runner_up: RunnerUp | None = None  # of the orders, where they were searched

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import TRANSIENT, Answer, axes
+from ...base.array import Real
 from ...base.errors import RopedynError
 from ...base.table import Table, numbers
 from .fit import Fit
@@ -46,9 +46,9 @@ class Fits(Answer, Sequence[Fit | None]):
     """
 
     unknown: tuple[str, ...]
-    value: NDArray[np.float64] = field(metadata=axes("rope", "unknown"))
-    std: NDArray[np.float64] = field(metadata=axes("rope", "unknown"))
-    rms: NDArray[np.float64] = field(metadata=axes("rope"))
+    value: Real = field(metadata=axes("rope", "unknown"))
+    std: Real = field(metadata=axes("rope", "unknown"))
+    rms: Real = field(metadata=axes("rope"))
     failure: tuple[str, ...]
     fits: tuple[Fit | None, ...] = field(default=(), repr=False, metadata=TRANSIENT)
     failed: Mapping[int, RopedynError] = field(default_factory=dict, repr=False, metadata=TRANSIENT)

@@ -8,9 +8,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...base import check
+from ...base.array import Real
 from ...base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from ...curves.measured import Measured
 from ...curves.peaks import Peaks
@@ -27,8 +28,6 @@ from .fit import Fit
 from .fit_peaks import Identification
 from .fits import Fits
 from .response_fit import ResponseFit
-
-Real = NDArray[np.float64]
 
 MOST = 64
 """Modes that are missing, and peaks that are none."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Real
 from .solution import Solution
 from .uncertainty import freedom_of
-
-Real = NDArray[np.float64]
 
 INVOLVED = 1e-6
 """Share of a direction from which on a number takes part in it."""
@@ -67,7 +65,7 @@ def _blind(solution: Solution, data: Data) -> list[str]:
     return [f"{apart}; what {data.name} {data.tells} is {', '.join(told)}"]
 
 
-def combinations(solution: Solution, at: NDArray[np.intp]) -> list[Real]:
+def combinations(solution: Solution, at: Index) -> list[Real]:
     """Return exponents of products that are told, where all are small fractions.
 
     Null directions N in echelon form, a pivot each: p_i is told with pivots to the power -N.
@@ -99,7 +97,7 @@ def combinations(solution: Solution, at: NDArray[np.intp]) -> list[Real]:
     return found
 
 
-def _shown(solution: Solution, at: NDArray[np.intp], power: Real) -> str:
+def _shown(solution: Solution, at: Index, power: Real) -> str:
     """Return a product with its value and standard deviation."""
     value = float(np.prod(solution.value[at] ** power))
     direction = np.zeros(len(solution.unknowns))

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
 from ..fitting.minimum import BLIND, told
 from ..fitting.peak_misfit import PeakMisfit
-
-Real = NDArray[np.float64]
 
 LEAST = 0.1
 """A number falls to no less than this part of itself in a step."""
@@ -65,7 +63,7 @@ def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
     return best + np.where(share < UNFELT, back, 0.0)
 
 
-def _step(matrix: Real, target: Real, movable: NDArray[np.bool_]) -> Real:
+def _step(matrix: Real, target: Real, movable: Flags) -> Real:
     """Solve matrix change = target by least squares, none below its least, some not at all."""
     change = np.zeros(len(movable))
     free = movable.copy()

@@ -6,13 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
 from ..fitting.minimum import Minimum, minimise, told
 from ..fitting.misfit import Misfit
-
-Real = NDArray[np.float64]
 
 CLOSE = 1e-3
 """Of the bound's distance in standard deviations: it changes what is covered by 1e-4."""
@@ -39,7 +37,7 @@ class Profile:
     path: Real  # (p,) change of the best others, linearly, for a change of 1 of it
     # (p,) numbers whose variables are logarithms: these are followed by their relative changes, in
     # which frequencies squared are linear
-    by_factor: NDArray[np.bool_]
+    by_factor: Flags
     limit: float  # largest distance, of a logarithm or another variable
 
     def bound(self, side: int, root: float, step: float) -> float:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Real
 from ...curves.measured import Measured
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 LEAST = 1e-12
 """Of a line: less is rounding."""

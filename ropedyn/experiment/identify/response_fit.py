@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import TRANSIENT, Cost, axes
+from ...base.array import Complex, Real
 from ...base.named import Named
 from ...base.table import Table
 from ...base.unit import label
@@ -73,14 +73,14 @@ class ResponseFit(Identified):
     unknown: tuple[str, ...]
     value: Named = field(metadata=axes("unknown"))
     std: Named = field(metadata=axes("unknown"))
-    correlation: NDArray[np.float64] = field(metadata=axes("unknown", "other"))
+    correlation: Real = field(metadata=axes("unknown", "other"))
     drive: tuple[Point, ...]
     response: tuple[Point, ...]
     quantity: str
-    frequency: NDArray[np.float64] = field(metadata=axes("frequency", unit="Hz"))
-    measured: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
-    calculated: NDArray[np.complex128] = field(metadata=axes("response", "frequency"))
-    measured_std: NDArray[np.float64] = field(metadata=axes("response", "frequency"))
+    frequency: Real = field(metadata=axes("frequency", unit="Hz"))
+    measured: Complex = field(metadata=axes("response", "frequency"))
+    calculated: Complex = field(metadata=axes("response", "frequency"))
+    measured_std: Real = field(metadata=axes("response", "frequency"))
     freedom: float | None
     chi_square: float
     notes: tuple[str, ...]
@@ -88,7 +88,7 @@ class ResponseFit(Identified):
     solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @property
-    def residual(self) -> NDArray[np.complex128]:
+    def residual(self) -> Complex:
         """Calculated less measured response, shape (responses, f)."""
         return self.calculated - self.measured
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain.port import moving
 from ...chain.rate import Places, rates_of
@@ -20,9 +20,6 @@ from ..fitting.peak_misfit import PeakMisfit
 from ..fitting.response_misfit import LogMisfit, Response
 from ..fitting.unknown import CALIBRATION
 from .peak_start import start_of_peaks
-
-Real = NDArray[np.float64]
-Orders = NDArray[np.intp]
 
 SEEN = 1e-3
 """Of the largest residue: modes with less are not looked for among the peaks."""
@@ -158,7 +155,7 @@ def _candidates(response: Response) -> Iterator[Real]:
         yield u
 
 
-def _seen(response: Response, calculated: NaturalFrequencies, count: int) -> Orders:
+def _seen(response: Response, calculated: NaturalFrequencies, count: int) -> Index:
     """Return the lowest modes of the guess that the drive and some response see, from 1."""
     measured, unknowns = response.measured, response.unknowns
     model = unknowns.at(np.zeros(len(unknowns))).compile(

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...scene.scene import Scene
 from ..fitting.minimum import FARTHEST, Minimum, minimise
@@ -15,8 +16,6 @@ from ..fitting.misfit import Known, Misfit, Together
 from ..fitting.unknown import Unknowns
 from .profile_interval import Profile
 from .uncertainty import Uncertainty, freedom_of, quantile
-
-Real = NDArray[np.float64]
 
 NOMINAL = 1e-3
 """Relative noise that is thought of where nothing tells it."""

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Flags, Real
 from ..fitting.minimum import Minimum, told
-
-Real = NDArray[np.float64]
 
 APART = 1e-6
 """Share of a number in directions that nothing tells, from which on it is not told itself."""
@@ -51,7 +49,7 @@ class Uncertainty:
         return told(self.slope)
 
     @property
-    def blind(self) -> NDArray[np.bool_]:
+    def blind(self) -> Flags:
         """Numbers that are not told, shape (p,)."""
         return 1 - np.sum(self.basis**2, axis=1) > APART
 

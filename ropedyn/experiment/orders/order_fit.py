@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Integer, Real
 from .order_grid import Calculated, quotients_at
 from .order_likelihood import Likelihood
 from .rayleigh import Quotients
-
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 SETTLED = 0.02
 """Error of the frequencies, in standard uncertainties, that ends a fit."""
@@ -39,7 +36,7 @@ class Tangent:
 class OrderFit:
     """The likeliest parameters for orders."""
 
-    orders: Whole  # (k,)
+    orders: Integer  # (k,)
     parameters: Real  # (p,)
     frequency: Real  # (m,) with these parameters [Hz]
     cost: float  # see `Likelihood`
@@ -61,7 +58,7 @@ class OrderFits:
         """Return those that were not given up, the likeliest first."""
         return sorted((one for one in self.made.values() if one), key=lambda one: one.cost)
 
-    def settle(self, orders: Whole, parameters: Real) -> None:
+    def settle(self, orders: Integer, parameters: Real) -> None:
         """Fit, number the peaks anew, and again until the numbers stay."""
         tangent = self._tangent(parameters)
         while tangent is not None and orders.tobytes() not in self.made:
@@ -86,12 +83,12 @@ class OrderFits:
                 if orders.tobytes() not in self.made:
                     self.fit(orders, best.tangent)
 
-    def fit(self, orders: Whole, tangent: Tangent) -> OrderFit | None:
+    def fit(self, orders: Integer, tangent: Tangent) -> OrderFit | None:
         """Fit parameters to peaks of these orders; None where that is given up."""
         self.made[orders.tobytes()] = found = self._fitted(orders, tangent)
         return found
 
-    def _fitted(self, orders: Whole, tangent: Tangent) -> OrderFit | None:
+    def _fitted(self, orders: Integer, tangent: Tangent) -> OrderFit | None:
         """Follow tangents until one is exact enough.
 
         Its error is of second order in the changes of the frequencies, taken without their signs.
@@ -123,7 +120,7 @@ class OrderFits:
         misfit = likelihood.misfit(frequency, orders)
         return OrderFit(orders, parameters * ratio, frequency, cost, misfit, tangent)
 
-    def _ratio(self, orders: Whole, tangent: Tangent) -> Real:
+    def _ratio(self, orders: Integer, tangent: Tangent) -> Real:
         peaks, parameters = self.likelihood, tangent.parameters
         bounds = (
             np.maximum(self.limits[0] / parameters, 1 / STRIDE),

@@ -7,13 +7,10 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Integer, Real
 from ...base.errors import RopedynError, SolveError
 from .rayleigh import Quotients
-
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 Calculated = Callable[[Real, int], tuple[Real, Real]]
 """Takes parameters, shape (p,), and how many modes; see `ropedyn.order_search.search`."""
@@ -71,7 +68,7 @@ class Grid:
                 lift = common.T @ rise / (rise @ rise)
         return cls(np.stack(points), Quotients.stack(found, fewest), lift)
 
-    def centre(self, at: NDArray[np.intp], measured: Real, orders: Whole) -> Real:
+    def centre(self, at: Index, measured: Real, orders: Integer) -> Real:
         """Return ratios to expect at points `at`, from peaks of these orders, shape (h, p)."""
         used, mode = orders > 0, np.maximum(orders - 1, 0)
         calculated = np.take_along_axis(self.quotients.frequency[at], mode, axis=-1)

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from ...base.array import Integer, Real
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,26 +60,26 @@ class Likelihood:
         seen -= self.price_of_missing(calculated)[..., None, :]
         return seen, np.broadcast_to(self.price_of_spurious(sigma), seen.shape[:-1])
 
-    def cost(self, calculated: Real, orders: Whole, sigma: Real) -> float:
+    def cost(self, calculated: Real, orders: Integer, sigma: Real) -> float:
         """Return -2 ln of the likelihood, up to a constant, of peaks of these orders."""
         seen, none = self.prices(calculated, sigma)
         real = orders > 0
         price = seen[real, orders[real] - 1].sum() + none[~real].sum()
         return float(price + self.price_of_missing(calculated).sum())
 
-    def misfit(self, calculated: Real, orders: Whole) -> float:
+    def misfit(self, calculated: Real, orders: Integer) -> float:
         """Return the sum of z^2."""
         real = orders > 0
         z = (calculated[orders[real] - 1] - self.frequency[real]) / self.sigma[real]
         return float(z @ z)
 
-    def numbered(self, calculated: Real, sigma: Real) -> tuple[Whole, Real]:
+    def numbered(self, calculated: Real, sigma: Real) -> tuple[Integer, Real]:
         """Find the likeliest orders and their cost, shape (h, k) and (h,), of (h, m) calculated."""
         seen, none = self.prices(calculated, sigma)
         orders, cost = numbered(seen, none, self.missing, self.spurious)
         return orders, cost + self.price_of_missing(calculated).sum(axis=-1)
 
-    def others(self, calculated: Real, orders: Whole) -> Whole:
+    def others(self, calculated: Real, orders: Integer) -> Integer:
         """Return the likeliest orders that differ from these in each peak, shape (h, k).
 
         Whatever differs at all differs somewhere, so that the next best is among them (the first
@@ -97,7 +95,7 @@ class Likelihood:
         return found[np.isfinite(cost)]
 
 
-def numbered(seen: Real, none: Real, missing: int, spurious: int) -> tuple[Whole, Real]:
+def numbered(seen: Real, none: Real, missing: int, spurious: int) -> tuple[Integer, Real]:
     """Find the cheapest orders that increase, by dynamic programming.
 
     After i peaks, s of them no mode, and m modes skipped, the last seen is the mode i - s + m. The
@@ -120,7 +118,7 @@ def numbered(seen: Real, none: Real, missing: int, spurious: int) -> tuple[Whole
     return _traced_back(V, none)
 
 
-def _traced_back(V: Real, none: Real) -> tuple[Whole, Real]:
+def _traced_back(V: Real, none: Real) -> tuple[Integer, Real]:
     peaks, many = len(V) - 1, V.shape[1]
     each = np.arange(many)
     last = V[-1].reshape(many, V.shape[2] * V.shape[3])

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Integer, Real
 from ...base.errors import SolveError
 from .order_fit import OrderFit, OrderFits
 from .order_grid import COARSE, STEP, Calculated, Grid
 from .order_likelihood import Likelihood
-
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 OVERLOOKED = 0.1
 """Probability that a mode of the band is not among the peaks."""
@@ -53,7 +50,7 @@ ROUNDS = 3
 class Assignment:
     """One way to see measured peaks as modes."""
 
-    orders: Whole  # (k,) of each peak from 1; 0 where it is no mode
+    orders: Integer  # (k,) of each peak from 1; 0 where it is no mode
     parameters: Real  # (p,) the likeliest with these orders
     # -2 ln of the likelihood, up to a constant all assignments share: differences of two are
     # differences of chi-square, `ropedyn.order_likelihood.Likelihood` has the terms
@@ -175,9 +172,7 @@ def _with(likelihood: Likelihood, noise: float | None) -> Likelihood:
     return dataclasses.replace(likelihood, sigma=noise * likelihood.frequency)
 
 
-def _keep(
-    found: dict[bytes, Assignment], fit: OrderFit, back: NDArray[np.intp], noise: float | None
-) -> None:
+def _keep(found: dict[bytes, Assignment], fit: OrderFit, back: Index, noise: float | None) -> None:
     """Keep an assignment with the noise that makes it likeliest."""
     orders, cost = fit.orders[back], fit.cost
     if noise is not None:
@@ -190,7 +185,7 @@ def _keep(
 
 def _candidates(
     grid: Grid, likelihood: Likelihood, limits: tuple[Real, Real]
-) -> list[tuple[Whole, Real]]:
+) -> list[tuple[Integer, Real]]:
     """Return the likeliest different orders over the grid, with parameters."""
     guesses = _guesses(likelihood, grid.quotients.frequency.shape[1], grid.parameters.shape[1])
     at = np.repeat(np.arange(len(grid.parameters)), len(guesses))
@@ -201,7 +196,7 @@ def _candidates(
         parameters = _fitted(grid, likelihood, limits, at, orders)
         frequency = grid.quotients.take(at).at(parameters / grid.parameters[at])
         orders, cost = likelihood.numbered(frequency, sigma)
-    chosen: dict[bytes, tuple[Whole, Real]] = {}
+    chosen: dict[bytes, tuple[Integer, Real]] = {}
     ranked = np.argsort(cost, kind="stable")
     for h in ranked[np.isfinite(cost[ranked])]:
         chosen.setdefault(orders[h].tobytes(), (orders[h], parameters[h]))
@@ -210,7 +205,7 @@ def _candidates(
     return list(chosen.values())
 
 
-def _guesses(likelihood: Likelihood, modes: int, parameters: int) -> Whole:
+def _guesses(likelihood: Likelihood, modes: int, parameters: int) -> Integer:
     """Return orders of two peaks, or of one where there is one parameter, shape (g, k)."""
     k, missing, spurious = len(likelihood.frequency), likelihood.missing, likelihood.spurious
     guesses = []
@@ -233,7 +228,7 @@ def _subsets(peaks: int, size: int, spurious: int) -> list[tuple[int, ...]]:
     return list(combinations(range(peaks), size))
 
 
-def _once_each(at: NDArray[np.intp], orders: Whole) -> tuple[NDArray[np.intp], Whole]:
+def _once_each(at: Index, orders: Integer) -> tuple[Index, Integer]:
     both = np.unique(np.column_stack([at, orders]), axis=0)
     return both[:, 0], both[:, 1:]
 
@@ -242,8 +237,8 @@ def _fitted(
     grid: Grid,
     likelihood: Likelihood,
     limits: tuple[Real, Real],
-    at: NDArray[np.intp],
-    orders: Whole,
+    at: Index,
+    orders: Integer,
 ) -> Real:
     """Return parameters near points of the grid that fit peaks of these orders, shape (h, p)."""
     peaks, point = likelihood.frequency, grid.parameters[at]

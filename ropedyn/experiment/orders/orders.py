@@ -7,16 +7,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Index, Real
 from ...base.errors import SceneError, SolveError
 from ...curves.peaks import Peaks
 from ..fitting.minimum import BLIND
 from ..fitting.natural_frequencies import NaturalFrequencies
-
-Real = NDArray[np.float64]
-Orders = NDArray[np.intp]
 
 NOISE = 0.005
 """Relative standard deviation of peaks that have none, to judge the lowest modes alone."""
@@ -35,7 +32,7 @@ class RunnerUp(NamedTuple):
     """By how much chi-square is larger, with what peaks that are missing or none cost."""
 
 
-def given_orders(orders: Any, peaks: Peaks) -> Orders | None:
+def given_orders(orders: Any, peaks: Peaks) -> Index | None:
     """Return the modes of the peaks where somebody says them, from 1, 0 where they are none."""
     k = np.size(peaks.frequency)
     what = f'"auto", None or {k} whole numbers, one for each peak, those from 1 different'
@@ -53,7 +50,7 @@ def given_orders(orders: Any, peaks: Peaks) -> Orders | None:
     return np.array(each, dtype=np.intp)
 
 
-def lowest_orders(frequency: Real) -> Orders:
+def lowest_orders(frequency: Real) -> Index:
     """Return the lowest modes for peaks in any order."""
     return np.argsort(np.argsort(frequency, kind="stable")) + 1
 
@@ -64,7 +61,7 @@ class Factors:
 
     calculated: NaturalFrequencies  # as functions of the variables
     centre: Real  # (p,) of the variables
-    which: Orders  # (q,) the numbers; the others stay
+    which: Index  # (q,) the numbers; the others stay
 
     @classmethod
     def of(cls, calculated: NaturalFrequencies, centre: Real, count: int) -> Factors:
@@ -115,7 +112,7 @@ def found_orders(
     *,
     missing: int | None,
     spurious: int,
-) -> tuple[Orders, RunnerUp | None]:
+) -> tuple[Index, RunnerUp | None]:
     """Search the modes of the peaks."""
     from .order_search import search
 

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from ...base.array import Index, Integer, Real
 
 STEPS = 3
 """Of Gauss and Newton; for stiffnesses alone the first is exact."""
@@ -60,7 +58,7 @@ class Quotients:
             np.stack([one.power for one in some]),
         )
 
-    def take(self, which: NDArray[np.intp]) -> Quotients:
+    def take(self, which: Index) -> Quotients:
         """Return those of some of the calculated parameters."""
         return Quotients(self.frequency[which], self.share[which], self.power[which])
 
@@ -75,7 +73,7 @@ class Quotients:
         self,
         measured: Real,
         weight: Real,
-        orders: Whole,
+        orders: Integer,
         pull: tuple[Real, float],
         bounds: tuple[Real, Real],
     ) -> Real:

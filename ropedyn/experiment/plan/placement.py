@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
+from ...base.array import Real
 
 TIE = 1e-6
 """Weight of the mean over modes beside the least: of equals the one that sees more is taken."""

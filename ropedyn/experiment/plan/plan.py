@@ -7,16 +7,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import Answer, axes
+from ...base.array import Integer, Real
 from ...base.table import Table
 from ...base.unit import label, place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Real = NDArray[np.float64]
 
 RATE = 2.56
 """Samples per cycle at the top of the band."""
@@ -74,7 +73,7 @@ class Plan(Answer):
 
     drive: tuple[str, float]
     response: tuple[tuple[str, float], ...]
-    mode: NDArray[np.int64] = field(metadata=axes("mode"))
+    mode: Integer = field(metadata=axes("mode"))
     frequency: Real = field(metadata=axes("mode", unit="Hz"))
     damping_ratio: Real = field(metadata=axes("mode"))
     visibility: Real = field(metadata=axes("sensor", "mode"))

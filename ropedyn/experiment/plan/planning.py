@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...chain.place import points
 from ...chain.port import Point
@@ -24,7 +24,6 @@ from .target_modes import Wanted, wanted_modes
 if TYPE_CHECKING:
     from ...model import Model
 
-Real = NDArray[np.float64]
 DamageKind = LocalChange | AddedMass | PointMass | Hinge
 
 LINES = 4

@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Index, Integer, Real
 from ...base.errors import SceneError, SolveError
 
 if TYPE_CHECKING:
     from ...eigen.modes import Modes
     from ...model import Model
 
-Real = NDArray[np.float64]
 
 GRID = 512
 """Places along the rope that are looked at, at least."""
@@ -29,8 +28,8 @@ MOST_MODES = 4096
 class Wanted(NamedTuple):
     """Modes that a measurement should show."""
 
-    mode: NDArray[np.int64]  # (k,) their numbers, from 1
-    rank: NDArray[np.intp]  # (k,) their numbers among those that can be seen, from 0
+    mode: Integer  # (k,) their numbers, from 1
+    rank: Index  # (k,) their numbers among those that can be seen, from 0
     frequency: Real  # (k,) as in `Plan`
     damping_ratio: Real  # (k,) as in `Plan`
     separation: Real  # (k,) as in `Plan`
@@ -85,7 +84,7 @@ def _checked(asked: Any) -> tuple[list[int], int]:
 
 def _enough(
     model: Model, numbers: list[int], count: int, coordinates: tuple[str, str]
-) -> tuple[Modes, list[Real], NDArray[np.intp]]:
+) -> tuple[Modes, list[Real], Index]:
     """Return modes, how they move both coordinates, and which do: one more than is wanted."""
     size = max([count, *numbers]) + 2
     parts = -(-GRID // (len(model.x) - 1))

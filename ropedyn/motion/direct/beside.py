@@ -6,14 +6,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...chain.chain import KINDS, Chain
 from ...model import Model
 from ...scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, factors
 from ...scene.tension import Tension
-
-Real = NDArray[np.float64]
 
 RIGID = KINDS.index("rigid")
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import Cost
+from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import WIRE
 from ...chain.port import is_force
@@ -19,8 +19,6 @@ from .lumped import Lumps, lumped_chains, refuse
 from .march import stage_of
 from .run import Passage, Walk
 from .steps import Pace, halved, quiet, steps_of, within
-
-Real = NDArray[np.float64]
 
 ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")
 """Of a passage, in its order."""

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Flags, Real
 from ...scene.force import Force
 from .march import FORGETS, KEEPS, Motion, Push, Stride
 from .timeline import Timeline
-
-Real = NDArray[np.float64]
 
 SHORT = 1e-4
 """Of a step: how long blows last, ends jump and what has no inertia follows; less is rounding."""
@@ -35,7 +33,7 @@ class Change(NamedTuple):
     jump: Real
     rate: Real
     """After it [1/s]."""
-    bend: NDArray[np.bool_]
+    bend: Flags
     """Whether the rate jumps."""
 
 

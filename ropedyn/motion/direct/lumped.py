@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Flags, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain.chain import TENSED, Chain
 from ...chain.port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
@@ -22,8 +23,6 @@ from ..transient import Run
 from .beside import Beside, plain, pulsation_of
 from .point_law import Call, Laws, Standing, laws_of, standing_laws
 from .readout import Reading, reading
-
-Real = NDArray[np.float64]
 
 
 class State(NamedTuple):
@@ -53,7 +52,7 @@ class Lumps:
     # without correction of its lumps; its damping is all that is in proportion to velocity
     chain: Chain
     x: Real  # (nodes,) where nodes stand [m]
-    kept: NDArray[np.intp]  # those that the model has
+    kept: Index  # those that the model has
     beside: Beside
     laws: Laws
     calls: tuple[Call, ...]  # those among them that Python knows
@@ -65,7 +64,7 @@ class Lumps:
     # (responses, drives) how far forces between nodes move what is watched in the same element at
     # once
     local: Real
-    number: NDArray[np.intp]  # which of the responses of the run each is
+    number: Index  # which of the responses of the run each is
     pulsation: Callable[[Real], Real] | None  # what is added to the tension at times [s]
     start: State  # where the motion begins
     released: bool  # whether loads on coordinates without inertia are let go
@@ -81,16 +80,16 @@ class Lumps:
         return bool(self.beside.rate.all()) or bool(len(along) and along.all())
 
     @property
-    def massless(self) -> NDArray[np.bool_]:
+    def massless(self) -> Flags:
         """Which free coordinates have no inertia, shape (nodes, width)."""
         return _massless(self.chain)
 
     @property
-    def is_bare(self) -> NDArray[np.bool_]:
+    def is_bare(self) -> Flags:
         """Whether each force acts on a coordinate without inertia, shape (drives,)."""
         return self._without_mass(self.drives)
 
-    def _without_mass(self, points: Ports) -> NDArray[np.bool_]:
+    def _without_mass(self, points: Ports) -> Flags:
         """Whether each point moves with a coordinate without inertia, shape (points,)."""
         node, row, none = points.node, points.row != 0, self.massless
         return np.asarray((row & np.stack([none[node], none[node + 1]], axis=1)).any(axis=(1, 2)))
@@ -241,7 +240,7 @@ def _refuse_local(
         )
 
 
-def _massless(chain: Chain) -> NDArray[np.bool_]:
+def _massless(chain: Chain) -> Flags:
     none = (np.einsum("tii->ti", chain.mass) == 0) & (chain.held == 0)
     return np.asarray(none[chain.term_of])
 

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.port import Ports
 from .lumped import Lumps
 from .newton import Stage, solve_stage
-
-Real = NDArray[np.float64]
 
 KEEPS = 0.25
 """The stage of the scheme that keeps energy."""

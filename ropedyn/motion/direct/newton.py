@@ -6,17 +6,16 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import _core
 from ...base import check
+from ...base.array import Real
 from ...base.errors import SolveError
 
 if TYPE_CHECKING:
     from .lumped import Lumps
     from .point_law import Call
 
-Real = NDArray[np.float64]
 
 MOST = 50
 """Newton steps of a stage."""

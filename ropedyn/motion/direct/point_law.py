@@ -8,13 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...chain.chain import Chain
 from ...chain.port import locate, ports
 from ...model import Model
 from ...scene.parts.node import Law
 from ...scene.parts.part import standing
-
-Real = NDArray[np.float64]
 
 KINDS = ("power", "stop", "call")
 """In the core's order."""

@@ -6,16 +6,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ...chain.chain import Chain
 from ...chain.port import Point, Ports, moving, ports
 from ...chain.reaction import at_start, tellers
 from .beside import Beside
-
-Real = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +22,7 @@ class Reading:
 
     # that the core reads: responses, and what an internal force at the left end follows from
     ports: Ports
-    direct: NDArray[np.intp]  # responses that are read as they are
+    direct: Index  # responses that are read as they are
     left: LeftForce | None  # what tells the others
 
     def values(self, read: Real, time: Real, order: int) -> Real:

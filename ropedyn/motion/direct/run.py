@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from ..transient import Run
 from .jumps import Onset, onset
 from .lumped import Lumps
 from .march import DISSIPATED, ENERGIES, INPUT, Motion, Stride
 from .timeline import Block, Timeline
-
-Real = NDArray[np.float64]
 
 BLOCK = 4096
 """Steps of one call of the core: a look for Ctrl-C."""

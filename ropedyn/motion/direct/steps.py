@@ -17,8 +17,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.port import is_force, moving
 from ...scene.force import is_sampled
@@ -27,8 +27,6 @@ from ..transient import Run
 from .lumped import Lumps
 from .run import Passage, Walk
 from .timeline import Timeline, timeline
-
-Real = NDArray[np.float64]
 
 TOLERANCE = 1e-4
 """Where neither tolerance nor step is given."""

@@ -7,10 +7,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Whole = NDArray[np.intp]
+from ...base.array import Flags, Index, Real
 
 ROUNDING = 16 * np.finfo(float).eps
 """Times closer than this part of the last one are one time."""
@@ -26,7 +24,7 @@ class Block(NamedTuple):
     """[s]."""
     time: Real
     """(steps + 1,) where they begin and end [s]."""
-    ends: Whole
+    ends: Index
     """(marks,) step after which a mark is reached, of the marks after `first` one by one."""
 
 
@@ -36,11 +34,11 @@ class Timeline:
 
     mark: Real  # (marks,) [s], increasing
     # (marks,) number of the time or of the snapshot that is there, -1 where there is none
-    asked: Whole
+    asked: Index
     # (marks,) number of the time or of the snapshot that is there, -1 where there is none
-    seen: Whole
-    breaks: NDArray[np.bool_]  # (marks,) where forces jump or bend; the first mark is one
-    count: Whole  # (marks - 1,) steps in each interval
+    seen: Index
+    breaks: Flags  # (marks,) where forces jump or bend; the first mark is one
+    count: Index  # (marks - 1,) steps in each interval
     h: Real  # (marks - 1,) their length [s], the same number where it differs by rounding
 
     @property
@@ -125,7 +123,7 @@ def timeline(
     )
 
 
-def _numbers(mark: Real, when: Real, near: float) -> Whole:
+def _numbers(mark: Real, when: Real, near: float) -> Index:
     """Return the number of the time at each mark, -1 where there is none."""
     number = np.full(len(mark), -1, dtype=np.intp)
     if len(when) == 0:

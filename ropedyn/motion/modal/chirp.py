@@ -6,14 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import wofz
 
+from ...base.array import Complex, Index, Real
 from ...scene.force import Chirp
-from .exponentials import SLICE, Complex, Exponentials, Indices, invert, rates
+from .exponentials import SLICE, Exponentials, invert, rates
 from .pair import Pairs
-
-Real = NDArray[np.float64]
 
 STEADY = 1e-17
 """Growth of the frequency [rad/s^2] times time^2 up to which a chirp is a sine."""
@@ -81,7 +79,7 @@ def while_it_lasts(
     return value, *_state(terms, force, len(modes.sigma))
 
 
-def _one(s: Complex, k: Indices) -> Complex:
+def _one(s: Complex, k: Index) -> Complex:
     return np.ones(len(k), dtype=complex)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...scene.force import Chirp, Force, Samples, Sum
 from .chirp import chirping, while_it_lasts
 from .expansion import Expansion
-from .exponentials import Complex, Exponentials, Indices, evaluate, invert, rates
+from .exponentials import Exponentials, evaluate, invert, rates
 from .pair import Pairs, pairs
 from .piece import Piece, pieces, sine
 from .recurrence import straight_lines
@@ -17,7 +17,6 @@ from .truncation import left_out
 
 __all__ = ["convolve", "left_out", "move", "release"]
 
-Real = NDArray[np.float64]
 
 LARGEST = 1e300
 """What a growing mode may reach."""
@@ -122,7 +121,7 @@ def _motion(modes: Pairs, piece: Piece, q: Real, v: Real, span: float) -> Expone
     own = rates(modes.sigma, modes.square)
     poles = np.concatenate([own, np.broadcast_to(forced, (len(own), len(forced)))], axis=1)
 
-    def numerator(s: Complex, k: Indices) -> Complex:
+    def numerator(s: Complex, k: Index) -> Complex:
         free = v[k] + (s + 2 * modes.sigma[k]) * q[k]
         if not acts:
             return free

@@ -22,8 +22,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ...eigen.damped.characteristic import Rates
 from ...eigen.damped.proportional import proportional
@@ -34,9 +34,6 @@ from ..history import Balance
 from ..transient import Run
 from .convolution import move
 from .expansion import Expansion, Share, expand
-
-Real = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 NAMES = ("kinetic", "strain", "input", "dissipated")
 
@@ -76,7 +73,7 @@ def _refuse(run: Run) -> None:
 class Group(NamedTuple):
     """Modes that are integrated together."""
 
-    modes: Indices
+    modes: Index
     rate: float
     """Highest angular frequency, or rate of slow decay or growth [rad/s]."""
     decay: float
@@ -139,12 +136,12 @@ class Driven:
             groups.append(Group(modes, float(rate[modes[-1]]), float(decay[modes].max())))
         return groups
 
-    def _power(self, modes: Indices, time: Real) -> Real:
+    def _power(self, modes: Index, time: Real) -> Real:
         """Return what forces do to some modes."""
         velocity = self._velocity(np.append(self.time[0], time), modes)[:, 1:]
         return np.asarray((self._force(time) * velocity).sum(axis=0))
 
-    def _loss(self, modes: Indices, time: Real) -> Real:
+    def _loss(self, modes: Index, time: Real) -> Real:
         """Return what dampers take from some modes."""
         v = self._modes(modes, np.append(self.time[0], time), 1)[..., 1:]
         r = 2 * self.own.sigma[modes] * self.own.a[..., modes]
@@ -160,7 +157,7 @@ class Driven:
         y = self._rest(np.append(self.time[0], time), 1)[:, 1:]
         return np.asarray(self.lag * np.einsum("de,dt,et->t", self.rest, y, y))
 
-    def _velocity(self, time: Real, modes: Indices | slice) -> Real:
+    def _velocity(self, time: Real, modes: Index | slice) -> Real:
         """Return what some modes have of the velocity of each drive, (drives, t)."""
         own, shape = self.own, self.rest.shape
         some = own._replace(
@@ -175,7 +172,7 @@ class Driven:
         moved = [move(some, d, one, time, 1) for d, one in enumerate(self.given)]
         return np.asarray(np.sum(moved, axis=0))
 
-    def _modes(self, part: Indices | slice, time: Real, order: int) -> Real:
+    def _modes(self, part: Index | slice, time: Real, order: int) -> Real:
         """Return the motion of each mode per drive, (drives, modes, t)."""
         sigma, square = self.own.sigma[part], self.own.square[part]
         k = len(sigma)

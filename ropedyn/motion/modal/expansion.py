@@ -14,8 +14,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Complex, Flags, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain import tip
 from ...chain.chain import Chain
@@ -31,10 +31,6 @@ from ...response.moved_end import is_end, moves_ends
 from ...scene import damping
 from ...scene.damping import DASHPOT, INERTIA
 from ...signal import contour
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
 
 LARGEST, MANY = 1000, 400
 """Unknowns of a chain all of whose modes are summed where no number is given; modes of others."""
@@ -477,7 +473,7 @@ def _terms(
     )
 
 
-def _is_pair(pole: Complex, circles: contour.Circles) -> NDArray[np.bool_]:
+def _is_pair(pole: Complex, circles: contour.Circles) -> Flags:
     """Whether each circle lies on the real axis and holds two rates, or rigid motion."""
     still = np.array([bool((pole[one] == 0).all()) for one in circles.members], dtype=np.bool_)
     return np.asarray((circles.center.imag == 0) & (still | (circles.size == 2)))

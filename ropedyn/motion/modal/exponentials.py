@@ -8,12 +8,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.intp]
-Numerator = Callable[[Complex, Indices], Complex]
+from ...base.array import Complex, Flags, Index, Real
+
+Numerator = Callable[[Complex, Index], Complex]
 
 BLOCK = 128
 """Times whose powers are tabled: a grid of n needs BLOCK + n/BLOCK exponentials of each rate."""
@@ -40,7 +38,7 @@ class Exponentials(NamedTuple):
     """(j,) [1/s]."""
     weight: Complex
     """(j,)."""
-    mode: Indices
+    mode: Index
     """(j,)."""
 
 
@@ -136,7 +134,7 @@ def _anywhere(rate: Complex, coefficient: Complex, time: Real) -> Real:
     return out
 
 
-def _close(poles: Complex, span: float) -> NDArray[np.bool_]:
+def _close(poles: Complex, span: float) -> Flags:
     """Say which poles of a mode cancel, shape (k, m, m), the diagonal False."""
     one, other = poles[..., :, None], poles[..., None, :]
     close = np.abs(one - other) < CLOSE * _width(one + other, span)
@@ -150,7 +148,7 @@ def _width(twice: Complex, span: float) -> Real:
     return 1 / span + np.maximum(-twice.real, 0) / 4
 
 
-def _residues(poles: Complex, numerator: Numerator, modes: Indices) -> Exponentials:
+def _residues(poles: Complex, numerator: Numerator, modes: Index) -> Exponentials:
     rate, weight, mode = [], [], []
     for i in range(poles.shape[1]):
         pole = poles[modes, i]
@@ -192,7 +190,7 @@ def _circled(poles: Complex, numerator: Numerator, k: int, span: float) -> list[
     return parts
 
 
-def _groups(poles: Complex, span: float) -> list[NDArray[np.bool_]]:
+def _groups(poles: Complex, span: float) -> list[Flags]:
     """Return which poles one circle goes around: those that are close, and what is in its way."""
     reach = np.linalg.matrix_power(_close(poles, span) + np.eye(len(poles)), len(poles)) > 0
     while True:
@@ -209,13 +207,13 @@ def _groups(poles: Complex, span: float) -> list[NDArray[np.bool_]]:
             return groups
 
 
-def _ring(poles: Complex, inside: NDArray[np.bool_]) -> tuple[float, float]:
+def _ring(poles: Complex, inside: Flags) -> tuple[float, float]:
     """Return how far the farthest of some poles is from their mean, and the nearest other."""
     away = np.abs(poles - poles[inside].mean())
     return float(away[inside].max()), float(away[~inside].min(initial=math.inf))
 
 
-def _circle(poles: Complex, inside: NDArray[np.bool_], span: float) -> tuple[float, int]:
+def _circle(poles: Complex, inside: Flags, span: float) -> tuple[float, int]:
     """Return the radius of a circle around some poles, and how many nodes it takes.
 
     With n nodes the poles add (inner/radius)^n and (radius/outer)^n, the exponential its term

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from .expansion import Expansion
-
-Real = NDArray[np.float64]
 
 
 class Pairs(NamedTuple):

@@ -6,11 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...scene.force import Force, Impulse, Sine, Step
-
-Real = NDArray[np.float64]
 
 
 class Piece(NamedTuple):

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import _core
+from ...base.array import Complex, Index, Real
 from ...scene.force import Samples
-from .exponentials import Complex, Indices, invert, is_uniform, rates
+from .exponentials import invert, is_uniform, rates
 from .pair import Pairs
-
-Real = NDArray[np.float64]
 
 STEPS = 2048
 """In one call of the core: a look for Ctrl-C every millisecond."""
@@ -89,7 +87,7 @@ def _integrals(sigma: Real, square: Real, h: Real) -> tuple[Real, Real, Real]:
     return result[0], result[1], result[2]
 
 
-def _octaves(h: Real) -> list[Indices]:
+def _octaves(h: Real) -> list[Index]:
     """Return groups of lengths within a factor of 2."""
     octave = np.frexp(h)[1]
     return [np.flatnonzero(octave == each) for each in np.unique(octave)]
@@ -131,5 +129,5 @@ def _inverted_over(own: Complex, power: int, h: Real) -> Real:
     return result
 
 
-def _one(s: Complex, k: Indices) -> Complex:
+def _one(s: Complex, k: Index) -> Complex:
     return np.ones(len(k), dtype=complex)

@@ -10,9 +10,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.answer import Cost
+from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.progress import silent
 from ...eigen.eigen import within
@@ -25,8 +25,6 @@ from ..transient import Run
 from .convolution import left_out, move
 from .energy_balance import balance
 from .expansion import Expansion, Share, expand
-
-Real = NDArray[np.float64]
 
 WAVE = 8
 """Samples of a period that times resolve."""

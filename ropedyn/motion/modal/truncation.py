@@ -6,11 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...base.array import Real
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
-
-Real = NDArray[np.float64]
 
 
 class Change(NamedTuple):

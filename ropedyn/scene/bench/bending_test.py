@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import axes
+from ...base.array import Real
 from ...base.errors import SceneError
-from .static_test import Real, StaticTest, set_readings
+from .static_test import StaticTest, set_readings
 
 
 def _cantilever(L: float, s: float, t: float) -> float:

@@ -7,18 +7,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
 from ...base.answer import Answer
+from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
 from .straight_line import Line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Real = NDArray[np.float64]
 
 
 class StaticTest(Answer):

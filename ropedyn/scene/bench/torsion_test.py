@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import axes
-from .static_test import Real, StaticTest, set_readings
+from ...base.array import Real
+from .static_test import StaticTest, set_readings
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base import check
+from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ..rope import Rope
 from ..stations import nearest
@@ -217,7 +217,7 @@ KINDS = (AddedMass, LocalChange)
 """Every kind of part that changes the rope over a stretch."""
 
 
-def changes(stretches: Sequence[Stretch], stations: NDArray[np.float64]) -> NDArray[np.float64]:
+def changes(stretches: Sequence[Stretch], stations: Real) -> Real:
     """Return what all stretches do together, a `Change` for each span between stations."""
     change = np.tile(np.array(Change()), (len(stations) - 1, 1))
     starts = nearest(stations, (stretch.start for stretch in stretches))
@@ -230,9 +230,7 @@ def changes(stretches: Sequence[Stretch], stations: NDArray[np.float64]) -> NDAr
     return change
 
 
-def ropes(
-    rope: Rope, stretches: Sequence[Stretch], stations: NDArray[np.float64]
-) -> tuple[list[Rope], NDArray[np.intp]]:
+def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[list[Rope], Index]:
     """Return the different ropes between stations, and which of them each span has."""
     change = changes(stretches, stations)
     distinct, first, which = np.unique(change, axis=0, return_index=True, return_inverse=True)
@@ -263,16 +261,14 @@ def changed_by(name: str) -> set[str]:
     return {of for of, factor in FACTOR.items() if name in (of, factor)}
 
 
-def rope_rate(change: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+def rope_rate(change: Real, name: str) -> Real:
     """Return how fast a property of changed ropes grows with that of the rope: by its factor."""
     if name not in FACTOR:
         return np.ones(len(change))
     return change[:, Change._fields.index(FACTOR[name])]
 
 
-def stretch_rate(
-    rope: Rope, change: NDArray[np.float64], part: Stretch, name: str
-) -> dict[str, NDArray[np.float64]]:
+def stretch_rate(rope: Rope, change: Real, part: Stretch, name: str) -> dict[str, Real]:
     """Return how fast properties of changed ropes grow with a number of one of the stretches."""
     if Change._fields.index(name) >= FACTORS.stop:
         return {name: np.ones(len(change))}
