@@ -261,7 +261,7 @@ def stiffness(matrix: Any) -> Real:
     >>> rd.study2015.stiffness(rd.study2015.flexibility(printed=True))
     Traceback (most recent call last):
     ...
-    ropedyn.errors.SceneError: flexibility must be positive definite, got a matrix with the \
+    ropedyn.SceneError: flexibility must be positive definite, got a matrix with the \
 eigenvalue -0.0031; its inverse has the eigenvalue -321.55
     """
     given = np.asarray(matrix)

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ..motion.history import History
+from typing import Any
 
 
 class RopedynError(Exception):
@@ -31,7 +28,7 @@ class SceneError(RopedynError, ValueError):
     >>> rd.Rope(1.0, 0.1, bending_stiffness=float("nan"))
     Traceback (most recent call last):
     ...
-    ropedyn.errors.SceneError: bending_stiffness must be a finite number > 0 [N m^2], got nan
+    ropedyn.SceneError: bending_stiffness must be a finite number > 0 [N m^2], got nan
     """
 
 
@@ -50,10 +47,10 @@ class SolveError(RopedynError, ArithmeticError):
     >>> model.modes(5)
     Traceback (most recent call last):
     ...
-    ropedyn.errors.SolveError: number must be at most 1, the modes this model has, got 5
+    ropedyn.SolveError: number must be at most 1, the modes this model has, got 5
     """
 
-    history: History | None = None
+    history: Any = None
 
 
 class IdentifyWarning(UserWarning):
@@ -71,3 +68,7 @@ class IdentifyWarning(UserWarning):
     >>> told[0].category is rd.IdentifyWarning, len(fit.notes)
     (True, 1)
     """
+
+
+for _error in (RopedynError, SceneError, SolveError, IdentifyWarning):
+    _error.__module__ = "ropedyn"  # where users find them, and what a traceback says

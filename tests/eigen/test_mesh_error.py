@@ -12,6 +12,7 @@ from random_scene import WIDTHS, random_line, taut_scene
 
 import ropedyn as rd
 from ropedyn import _core
+from ropedyn.base import check
 from ropedyn.chain.chain import KINDS as ELEMENTS
 from ropedyn.eigen.mesh_error import mesh_of_frf
 
@@ -208,7 +209,7 @@ def test_modes_that_continuous_spans_do_not_find_have_an_infinite_mesh_error(ref
 
 def chain_names(chain):
     """Coordinates of a chain."""
-    return [rd.check.COORDINATES[k] for k in chain.coordinate]
+    return [check.COORDINATES[k] for k in chain.coordinate]
 
 
 # when it is computed, and what becomes of it
