@@ -1,87 +1,36 @@
-"""The model: a scene compiled to plain arrays, and the questions it answers."""
+"""The model: a compiled scene, and the questions it answers."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
+from typing import Any, Literal, overload
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from . import _core
 from .base import check
-from .base.answer import Frozen
-from .base.array import Real
-from .base.errors import SceneError
 from .base.progress import Progress
-from .chain.chain import Chain
-from .chain.mesh_choice import Choice
+from .chain.compile import compile_scene
+from .chain.compiled import Compiled, refuse_nonlinear
 from .chain.port import Point
-from .scene.damping import having, separable
-from .scene.parts.stretch import KINDS as STRETCHES
+from .eigen.damped.damped import solve_damped
+from .eigen.damped.damped_modes import DampedModes
+from .eigen.eigen import count_modes, solve_modes
+from .eigen.modes import Modes
+from .eigen.tolerance import compile_within
+from .motion.history import History
+from .motion.stepped_sine import solve_stepped_sine
+from .motion.transient import solve_transient
+from .parametric.floquet import Floquet, solve_floquet
+from .parametric.stability import StabilityMap, solve_stability
+from .response.deflection import Deflection, solve_static
+from .response.frf import FRF
+from .response.harmonic import solve_frf
 from .scene.scene import Scene
-
-if TYPE_CHECKING:
-    import scipy.sparse as sp
-
-    from .eigen.damped.damped_modes import DampedModes
-    from .eigen.modes import Modes
-    from .motion.history import History
-    from .parametric.floquet import Floquet
-    from .parametric.stability import StabilityMap
-    from .response.deflection import Deflection
-    from .response.frf import FRF
-
-
-EXACT = ("tensed", "continuous")
-"""Elements that can be cut anywhere."""
-
-MOST_STEPS = 10_000_000
-"""Of a walk over continuous spans."""
-
-MOST_POINTS = 1_000_000
-"""Parts of a continuous element that an answer is given at."""
-
-
-class Triples(NamedTuple):
-    """The distinct elements: u_b = F u_a + G f_b and f_a = F^T f_b - Q u_a.
-
-    Attributes
-    ----------
-    F, G, Q : ndarray, shape (distinct, width, width)
-        Over the model's coordinates, SI units.
-    element : ndarray of int, shape (elements,)
-        Which of them stands where.
-    """
-
-    F: Real
-    G: Real
-    Q: Real
-    element: NDArray[np.int32]
-
-
-class NodeTerms(NamedTuple):
-    """What stands at the nodes: inertia, springs to the ground, supports.
-
-    Attributes
-    ----------
-    mass, stiffness : ndarray, shape (terms, width, width)
-        Over the model's coordinates [kg, kg m, kg m^2; N/m, N, N m].
-    held : ndarray of uint8, shape (terms, width)
-        1 where a coordinate cannot move.
-    term : ndarray of int, shape (nodes,)
-        Which of them stands where.
-    """
-
-    mass: Real
-    stiffness: Real
-    held: NDArray[np.uint8]
-    term: NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
-class Model(Frozen):
+class Model(Compiled):
     """A chain of nodes and elements, or of continuous spans; plain data that pickles.
 
     Made by `Scene.compile`.
@@ -105,151 +54,6 @@ class Model(Frozen):
     choice : Choice or None
         Why there are so many elements, where `Scene.compile` chose them for a tolerance.
     """
-
-    scene: Scene
-    element: str
-    coordinates: tuple[str, ...]
-    components: tuple[tuple[str, ...], ...]
-    x: Real
-    chain: Chain
-    unknowns: tuple[int, ...]
-    choice: Choice | None = None
-
-    @property
-    def size(self) -> int:
-        """Number of unknowns: coordinates of nodes that can move."""
-        return sum(self.unknowns)
-
-    @property
-    def separable(self) -> bool:
-        """Whether damping scales parts of the assembled stiffness that the model keeps apart.
-
-        In a tensed element that bends, sections and tension are one, and in a string that hangs.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rope, damping = rd.Rope(1.0, 0.1, bending_stiffness=1.0), rd.StiffnessDamping(1e-4)
-        >>> scene = rd.Scene(rope, tension=100.0, damping=damping)
-        >>> [scene.compile(elements=4, element=kind).separable for kind in ("rigid", "tensed")]
-        [True, False]
-        """
-        bends = "beta" in self.coordinates
-        inseparable = self.element == "tensed" if bends else self.scene.gravity is not None
-        if not inseparable or self.scene.mean_tension == 0:
-            return True
-        return separable(self.scene.dampings)
-
-    @property
-    def triples(self) -> Triples:
-        """The distinct elements, at rest.
-
-        Raises
-        ------
-        SolveError
-            If the compression is exactly the critical load of one element.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4, element="rigid")
-        >>> model.triples.G.round(6), model.triples.element
-        (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
-        """
-        return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
-
-    @property
-    def node_terms(self) -> NodeTerms:
-        """The distinct node terms.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4, element="rigid")
-        >>> model.node_terms.held.tolist(), model.node_terms.term.tolist()
-        ([[1], [1], [0]], [0, 2, 2, 2, 1])
-        """
-        chain = self.chain
-        return NodeTerms(chain.mass, chain.stiffness, chain.held, chain.term_of)
-
-    def stiffness(self) -> sp.csr_array:
-        """Assemble the stiffness matrix, tension included.
-
-        Returns
-        -------
-        scipy.sparse.csr_array, shape (size, size)
-            Over the free coordinates, node by node in the order of `coordinates` [N/m, N, N m].
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=3, element="rigid")
-        >>> print(model.stiffness().toarray().round(6))
-        [[ 600. -300.]
-         [-300.  600.]]
-        """
-        from .chain.matrices import stiffness
-
-        self._refuse_matrices()
-        return stiffness(self.chain)
-
-    def mass(self) -> sp.csr_array:
-        """Assemble the mass matrix.
-
-        Returns
-        -------
-        scipy.sparse.csr_array, shape (size, size)
-            Over the free coordinates [kg, kg m, kg m^2].
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0).compile(elements=3, element="rigid")
-        >>> print(model.mass().toarray().round(6))
-        [[0.1 0. ]
-         [0.  0.1]]
-        """
-        from .chain.matrices import mass
-
-        self._refuse_matrices()
-        return mass(self.chain)
-
-    def damping(self) -> sp.csr_array:
-        """Assemble the damping matrix.
-
-        Returns
-        -------
-        scipy.sparse.csr_array, shape (size, size)
-            Over the free coordinates [N s/m, N s, N m s].
-
-        Raises
-        ------
-        SceneError
-            If there is none: tensed elements with tension and stiffness damping, a loss factor,
-            modal damping.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0, damping=rd.ViscousDamping(6.0))
-        >>> print(scene.compile(elements=3, element="rigid").damping().toarray().round(6))
-        [[2. 0.]
-         [0. 2.]]
-        """
-        self._refuse_matrices()
-        self._refuse_nonlinear()
-        for one in having(self.scene.dampings, "loss", "ratio"):
-            raise SceneError(
-                f"damping must be in proportion to velocity to have a matrix, got {one}"
-            )
-        if not self.separable:
-            raise SceneError(
-                "damping must scale sections and tension alike for tensed elements or a hanging "
-                f"string to have a damping matrix, got {self.scene.damping}"
-            )
-        from .chain.matrices import damping
-
-        return damping(self.chain, self.scene.dampings)
 
     @overload
     def modes(
@@ -341,14 +145,10 @@ class Model(Frozen):
         >>> print(model.modes(1, damped=True).damping_ratio.round(5))
         [0.01021]
         """
-        self._refuse_nonlinear()
+        refuse_nonlinear(self)
         check.instance(damped, "damped", bool, "True or False")
         if damped:
-            from .eigen.damped.damped import solve_damped
-
             return solve_damped(self, number, below=below, solver=solver, points=points)
-        from .eigen.eigen import solve_modes
-
         return solve_modes(self, number, below=below, solver=solver, points=points)
 
     def count(self, *, below: float) -> int:
@@ -378,9 +178,7 @@ class Model(Frozen):
         >>> model.count(below=40.0)
         2
         """
-        self._refuse_nonlinear()
-        from .eigen.eigen import count_modes
-
+        refuse_nonlinear(self)
         return count_modes(self, below)
 
     def frf(
@@ -460,9 +258,7 @@ class Model(Frozen):
         >>> print(model.frf([0.0], drive=("z", 0.5)).value[0, 0].real.round(6))
         0.0025
         """
-        self._refuse_nonlinear()
-        from .response.harmonic import solve_frf
-
+        refuse_nonlinear(self)
         return solve_frf(
             self,
             frequency,
@@ -517,9 +313,7 @@ class Model(Frozen):
         >>> print(model.static({("z", 0.5): 8.0}).displacement[2])
         [0.02]
         """
-        self._refuse_nonlinear()
-        from .response.deflection import solve_static
-
+        refuse_nonlinear(self)
         return solve_static(self, load, solver=solver, points=points)
 
     def transient(
@@ -625,8 +419,6 @@ class Model(Frozen):
         >>> print(history.value[0].round(3) + 0.0)
         [ 0.01 -0.01]
         """
-        from .motion.transient import solve_transient
-
         return solve_transient(
             self,
             time,
@@ -686,9 +478,7 @@ class Model(Frozen):
         >>> floquet.stable, floquet.growth.round(2)
         (False, array([ 1.57, -1.57]))
         """
-        self._refuse_nonlinear()
-        from .parametric.floquet import solve_floquet
-
+        refuse_nonlinear(self)
         return solve_floquet(self, modes)
 
     def stability_map(
@@ -742,9 +532,7 @@ class Model(Frozen):
         >>> [tongue.label for tongue in stability.tongues]
         ['2 f1']
         """
-        self._refuse_nonlinear()
-        from .parametric.stability import solve_stability
-
+        refuse_nonlinear(self)
         return solve_stability(self, frequency, amplitude, modes=modes, progress=progress)
 
     def stepped_sine(
@@ -813,8 +601,6 @@ class Model(Frozen):
         >>> bool(abs(stepped.value / model.frf(lines, drive=drive).value - 1).max() < 1e-8)
         True
         """
-        from .motion.stepped_sine import solve_stepped_sine
-
         return solve_stepped_sine(
             self,
             frequency,
@@ -827,33 +613,15 @@ class Model(Frozen):
             progress=progress,
         )
 
-    def _refuse_matrices(self) -> None:
-        if self.element == "continuous":
-            raise SceneError(
-                "elements must be given for matrices: continuous spans have none, their stiffness "
-                "depends on the frequency"
-            )
-        if self.chain.attached_kind is not None:
-            kinds = " or ".join(self.chain.carried)
-            raise SceneError(
-                f"parts must not have a {kinds} for matrices: their stiffness depends on the "
-                "frequency"
-            )
 
-    def _refuse_nonlinear(self) -> None:
-        for i, part in enumerate(self.scene.parts):
-            must_be = "" if isinstance(part, STRETCHES) else part.term().nonlinear
-            if must_be:
-                raise SceneError(f"parts[{i}].{must_be}: only integration over time takes others")
-
-    def component_of(self, coordinate: str) -> tuple[str, ...]:
-        """Return the coordinates that move with this one.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=0.2)
-        >>> rd.Scene(rope, tension=100.0).compile(elements=4).component_of("beta")
-        ('z', 'beta')
-        """
-        return next(c for c in self.components if coordinate in c)
+def compile_model(
+    scene: Scene, *, elements: Any, element: str | None, tolerance: Any, below: Any
+) -> Model:
+    """Compile a scene; see `Scene.compile`."""
+    if tolerance is None and below is None:
+        compiled = compile_scene(scene, elements=elements, element=element)
+    else:
+        compiled = compile_within(
+            scene, tolerance=tolerance, below=below, elements=elements, element=element
+        )
+    return Model(**vars(compiled))

@@ -12,7 +12,6 @@ from .. import _core
 from ..base import check
 from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError
-from ..model import MOST_POINTS, Model
 from ..scene.damping import drag
 from ..scene.end import end_of
 from ..scene.parts.node import Attached, NodeTerm
@@ -22,6 +21,7 @@ from ..scene.rope import Rope
 from ..scene.scene import Scene
 from ..scene.stations import nearest, shares, stations_at
 from .chain import ATTACHED, CONTINUOUS, KINDS, TENSED, Chain, components
+from .compiled import MOST_POINTS, Compiled
 
 MOST_ELEMENTS = 10_000_000
 
@@ -40,7 +40,9 @@ MOST_RADIANS = 1e10
 """Of the boundary layers of a stiff string, L sqrt(T/B), in a continuous span."""
 
 
-def compile_scene(scene: Scene, *, elements: int | None, element: str | None) -> Model:
+def compile_scene(
+    scene: Scene, *, elements: int | None = None, element: str | None = None
+) -> Compiled:
     """Compile a scene; see `Scene.compile`."""
     if element is None:
         element = "continuous" if elements is None else "tensed"
@@ -60,7 +62,7 @@ def stations_of(scene: Scene) -> Real:
     return stations_at(scene.rope.length, places(scene.parts))
 
 
-def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Model:
+def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compiled:
     """Compile a scene with so many elements between stations."""
     kind = KINDS.index(element)
     if (
@@ -86,7 +88,7 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Model:
     for array in chain:
         if isinstance(array, np.ndarray):
             array.flags.writeable = False
-    return Model(
+    return Compiled(
         scene=scene,
         element=element,
         coordinates=scene.coordinates,
@@ -97,18 +99,18 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Model:
     )
 
 
-def station_nodes(model: Model) -> Index:
+def station_nodes(model: Compiled) -> Index:
     """Return the nodes of a model at the stations of its scene."""
     return np.searchsorted(model.x, stations_of(model.scene))
 
 
-def finer(model: Model, points: int) -> Model:
+def finer(model: Compiled, points: int) -> Compiled:
     """Return the same continuous spans with nodes at the ends of equal parts of their elements."""
     counts = np.diff(station_nodes(model)) * points
     return divided(model.scene, model.element, stations_of(model.scene), counts)
 
 
-def remeshed(model: Model, scene: Scene) -> Model:
+def remeshed(model: Compiled, scene: Scene) -> Compiled:
     """Compile another scene, with the elements that each span of a model has; one if continuous."""
     stations = stations_of(scene)
     if model.element == "continuous":
@@ -118,7 +120,7 @@ def remeshed(model: Model, scene: Scene) -> Model:
     return divided(scene, model.element, stations, counts)
 
 
-def check_points(model: Model, points: int | None) -> None:
+def check_points(model: Compiled, points: int | None) -> None:
     """Refuse points inside the elements of a chain, and numbers of them without meaning."""
     if points is None:
         return

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 
 from .. import _core
 from ..base.array import Real
 from ..scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, Damping, factors
 from .chain import Chain
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 
 def stiffness(chain: Chain) -> sp.csr_array:
@@ -44,6 +47,8 @@ def damping(chain: Chain, dampings: Sequence[Damping]) -> sp.csr_array:
 
 def _sparse(chain: Chain, diagonal: Real, coupling: Real) -> sp.csr_array:
     """Turn a block tridiagonal matrix into a sparse one without the held coordinates."""
+    import scipy.sparse as sp
+
     nodes, width, _ = diagonal.shape
     free = (chain.held[chain.term_of] == 0).ravel()
     number = np.where(free, np.cumsum(free) - 1, -1).reshape(nodes, width)

@@ -6,13 +6,13 @@ from typing import Any
 
 from ..base import check
 from ..base.errors import SceneError
-from ..model import Model
 from ..scene.parts.broken_wire import BrokenWire
+from .compiled import Compiled
 from .port import Point
 
 
 def points(
-    model: Model, given: Any, name: str, *, forces: bool = True, ends: bool = False
+    model: Compiled, given: Any, name: str, *, forces: bool = True, ends: bool = False
 ) -> tuple[tuple[Point, ...], bool]:
     """Return one or several points, and whether a list of them was given."""
     several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
@@ -37,7 +37,7 @@ def points(
     return tuple(found), several
 
 
-def _end(model: Model, given: Any, name: str) -> Any:
+def _end(model: Compiled, given: Any, name: str) -> Any:
     """Return an end that is moved: it must hold the coordinate."""
     from ..scene.end import end_of
 
@@ -50,7 +50,7 @@ def _end(model: Model, given: Any, name: str) -> Any:
     return found
 
 
-def observed(model: Model, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
+def observed(model: Compiled, given: Any, drives: tuple[Point, ...]) -> tuple[Point, ...]:
     """Return what is watched: the drives where nothing else is said."""
     if given is not None:
         return points(model, given, "response")[0]

@@ -12,7 +12,6 @@ import numpy as np
 
 from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError
-from ..model import Model
 from ..scene.end import end_of
 from ..scene.parts.node import AttachedRate, NodeRate
 from ..scene.parts.part import places as places_of
@@ -41,6 +40,7 @@ from .compile import (
     station_nodes,
     stations_of,
 )
+from .compiled import Compiled
 
 _Any = TypeVar("_Any")
 
@@ -116,7 +116,7 @@ class Weights:
 class Places:
     """Where the spans and stations of a model are among the stretches of its chain."""
 
-    model: Model  # the model
+    model: Compiled  # the model
     counts: Index = field(init=False)  # (spans,) elements of each span
     # (stretches - 1,) to which the elements of a stretch belong
     span: Index = field(init=False)
@@ -295,7 +295,7 @@ def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _A
     return rates[path]
 
 
-def _acting(model: Model) -> set[str]:
+def _acting(model: Compiled) -> set[str]:
     """Return the properties that a rope may have and this model's depends on."""
     stiffness = {name for name in SECTION if getattr(model.scene.rope, name) is not None}
     return stiffness | {c for c in DENSITIES if inertia_rate(model.scene, c).any()}
@@ -317,7 +317,7 @@ def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[
     }
 
 
-def _bends(model: Model) -> bool:
+def _bends(model: Compiled) -> bool:
     return "beta" in model.coordinates
 
 

@@ -10,10 +10,10 @@ import numpy as np
 from .. import _core
 from ..base.array import Complex, Real
 from ..base.unit import WIRE
-from ..model import Model
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.parts.part import standing
 from .chain import ATTACHED
+from .compiled import Compiled
 from .port import Point, locate
 
 
@@ -31,7 +31,7 @@ def is_tip(point: Point) -> bool:
     return point[0] == WIRE
 
 
-def tip_of(model: Model, point: Point) -> Tip:
+def tip_of(model: Compiled, point: Point) -> Tip:
     """Return the tip of the wire with this number among the broken wires of the scene."""
     chain, scene = model.chain, model.scene
     assert chain.attached_kind is not None
@@ -49,7 +49,7 @@ def tip_of(model: Model, point: Point) -> Tip:
     return Tip(structure, root)
 
 
-def spread(model: Model, responses: Sequence[Point]) -> list[Point]:
+def spread(model: Compiled, responses: Sequence[Point]) -> list[Point]:
     """Return the responses with the motion of the root in place of that of each tip."""
     asked: list[Point] = []
     for point in responses:
@@ -58,7 +58,7 @@ def spread(model: Model, responses: Sequence[Point]) -> list[Point]:
 
 
 def gather(
-    model: Model, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
+    model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
 ) -> tuple[Complex, Real]:
     """Return what was asked for from the answers to `spread`."""
     shape = (value.shape[0], len(responses), value.shape[2])

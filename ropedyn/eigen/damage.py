@@ -19,7 +19,7 @@ from .sensitivity import SAG, SECTIONS, Pairs, Shapes, Slopes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..model import Model
+    from ..chain.compiled import Compiled
     from .modes import Modes
 
 
@@ -153,7 +153,7 @@ def _mass(pairs: Pairs) -> Real:
     return pairs.bilinear(pairs.slopes(chain).mass(chain))[0]
 
 
-def _forms(model: Model, pairs: Pairs) -> dict[str, Real]:
+def _forms(model: Compiled, pairs: Pairs) -> dict[str, Real]:
     """Return p dPi/dp of each element, by property, shape (k + 2 p, elements)."""
     chain = model.chain
     each = chain._replace(
@@ -180,7 +180,7 @@ def _forms(model: Model, pairs: Pairs) -> dict[str, Real]:
     return forms
 
 
-def _moving(model: Model, slopes: Slopes, inertia: Real) -> Real:
+def _moving(model: Compiled, slopes: Slopes, inertia: Real) -> Real:
     """Return what inertia per length gives of each element to u^T M u, shape (m, elements)."""
     given = lumped(model.chain.kind, model.coordinates, inertia, np.diff(model.x))
     moving = np.einsum("mei,ei->me", slopes.element[..., SECTIONS:], inertia)

@@ -21,7 +21,7 @@ from ..base.errors import SceneError, SolveError
 from ..base.unit import FAMILY
 from ..chain.chain import CARRIED, CHANNELS, Chain
 from ..chain.compile import check_points, divided, finer, station_nodes, stations_of
-from ..model import MOST_POINTS, MOST_STEPS, Model
+from ..chain.compiled import MOST_POINTS, MOST_STEPS, Compiled
 from ..scene import damping
 from .damped.attached_energy import Carried
 from .mesh_error import mesh_of_modes
@@ -56,7 +56,7 @@ class Found:
 
 
 def solve_modes(
-    model: Model,
+    model: Compiled,
     number: int | None,
     *,
     below: float | None,
@@ -120,7 +120,7 @@ def check_asked(number: int | None, below: float | None) -> float:
 
 
 def spectrum(
-    model: Model, component: tuple[str, ...], number: int | None, limit: float = math.inf
+    model: Compiled, component: tuple[str, ...], number: int | None, limit: float = math.inf
 ) -> tuple[Real, Real]:
     """Return the lowest eigenvalues of one component and their errors [rad^2/s^2]."""
     if number is None:
@@ -130,7 +130,7 @@ def spectrum(
     return eigenvalue, error
 
 
-def _cost(model: Model, solver: str, seconds: float, found: Sequence[Found]) -> Cost:
+def _cost(model: Compiled, solver: str, seconds: float, found: Sequence[Found]) -> Cost:
     work = Work.of(part.work for part in found)
     share = work.redone / max(sum(len(part.eigenvalue) for part in found), 1)
     return Cost(
@@ -144,14 +144,14 @@ def eigenvalue_of(below: Any) -> float:
     return (2 * math.pi * highest) ** 2
 
 
-def count_modes(model: Model, below: float) -> int:
+def count_modes(model: Compiled, below: float) -> int:
     """Count the natural frequencies below a limit; see `Model.count`."""
     limit = eigenvalue_of(below)
     _refuse_short_waves(model, limit)
     return sum(count_component(model, c, limit) for c in model.components)
 
 
-def count_component(model: Model, component: tuple[str, ...], limit: float) -> int:
+def count_component(model: Compiled, component: tuple[str, ...], limit: float) -> int:
     """Count the eigenvalues of one component below a limit [rad^2/s^2]."""
     return _count(model.chain.undamped.only(component), limit)
 
@@ -171,7 +171,7 @@ def _merged(found: Sequence[Found], number: int | None) -> tuple[Real, Real, Ind
     return eigenvalue[order], error[order], order
 
 
-def _refuse_short_waves(model: Model, eigenvalue: float) -> None:
+def _refuse_short_waves(model: Compiled, eigenvalue: float) -> None:
     """Refuse to count more half waves than can be walked."""
     if model.element != "continuous":
         return
@@ -205,7 +205,7 @@ def _in_threads(call: Callable[..., Any], nodes: int, *arguments: Any) -> Any:
 
 
 def _sweep(
-    model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
+    model: Compiled, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> Found:
     """Solve each span between nodes that nothing moves for itself."""
     chain = model.chain.undamped.only(component)
@@ -260,7 +260,7 @@ def _upper(limit: float) -> float:
 
 
 def _lapack(
-    model: Model, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
+    model: Compiled, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> Found:
     chain = model.chain.undamped.only(component)
     if chain.carried:
@@ -289,7 +289,7 @@ def _lapack(
     return Found(eigenvalue, error, shape, False, Work(factorisations=1))
 
 
-def _scale(model: Model, component: tuple[str, ...]) -> float:
+def _scale(model: Compiled, component: tuple[str, ...]) -> float:
     """Return the order of the first elastic eigenvalue: half a wave over the rope."""
     rope, chain = model.scene.rope, model.chain
     with np.errstate(over="ignore"):
@@ -316,7 +316,7 @@ SOLVERS = {"sweep": _sweep, "lapack": _lapack}
 # --- what follows from the shapes -------------------------------------------------------------
 
 
-def _later(model: Model, solver: str, number: int | None, limit: float) -> UndampedVectors:
+def _later(model: Compiled, solver: str, number: int | None, limit: float) -> UndampedVectors:
     """Solve once more, with shapes."""
     found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
     eigenvalue, _, order = _merged(found, number)
@@ -329,7 +329,7 @@ def within(x: Real, points: int) -> Real:
     return np.append((x[:-1, None] + parts).ravel(), x[-1])
 
 
-def _most_pieces(model: Model, eigenvalue: Real) -> int:
+def _most_pieces(model: Compiled, eigenvalue: Real) -> int:
     """Return how many pieces shorter than the waves of the highest mode an element has at most."""
     highest = float(np.abs(eigenvalue).max(initial=0.0))
     chain = model.chain.undamped
@@ -338,19 +338,19 @@ def _most_pieces(model: Model, eigenvalue: Real) -> int:
     return max(_pieces(model, element, highest) for element in elements)
 
 
-def _pieces(model: Model, element: Chain, eigenvalue: float) -> int:
+def _pieces(model: Compiled, element: Chain, eigenvalue: float) -> int:
     """Return how many pieces shorter than its waves an element has."""
     return max((pieces_of(element.only(c), eigenvalue) for c in model.components), default=1)
 
 
-def points_for(model: Model, eigenvalue: Real) -> int:
+def points_for(model: Compiled, eigenvalue: Real) -> int:
     """Return how many parts of each element show the highest mode."""
     pieces = _most_pieces(model, eigenvalue)
     return min(max(32, 8 * pieces), MOST_POINTS)
 
 
 def _later_within(
-    model: Model, number: int | None, limit: float, eigenvalue: Real, points: int
+    model: Compiled, number: int | None, limit: float, eigenvalue: Real, points: int
 ) -> UndampedVectors:
     """Solve continuous spans once more, with shapes inside them.
 
@@ -370,7 +370,7 @@ def _later_within(
     )
 
 
-def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, Index]:
+def _cut(model: Compiled, highest: float, points: int | None) -> tuple[Compiled, Index]:
     """Cut continuous spans into elements below their own resonance.
 
     Two for each piece of the highest eigenvalue: more would be differences of ever closer nodes.
@@ -391,7 +391,9 @@ def _cut(model: Model, highest: float, points: int | None) -> tuple[Model, Index
     return divided(model.scene, model.element, stations_of(model.scene), counts), edges
 
 
-def solve_shapes(model: Model, solver: str, eigenvalue: Real, points: int | None = None) -> Shapes:
+def solve_shapes(
+    model: Compiled, solver: str, eigenvalue: Real, points: int | None = None
+) -> Shapes:
     """Solve as many modes as there are eigenvalues, with the shapes that sensitivities need.
 
     Modes that coincide with the last one belong to them. Of eigenvalues of continuous spans the
@@ -404,7 +406,7 @@ def solve_shapes(model: Model, solver: str, eigenvalue: Real, points: int | None
     return shapes_of(model, solver, len(eigenvalue), edges)
 
 
-def shapes_of(model: Model, solver: str, number: int, edges: Index) -> Shapes:
+def shapes_of(model: Compiled, solver: str, number: int, edges: Index) -> Shapes:
     """Solve for so many modes, and those that coincide with the last one, with their shapes."""
     more = number
     while True:
@@ -423,7 +425,7 @@ def shapes_of(model: Model, solver: str, number: int, edges: Index) -> Shapes:
 
 
 def _vectors(
-    model: Model, found: Sequence[Found], eigenvalue: Real, order: Index
+    model: Compiled, found: Sequence[Found], eigenvalue: Real, order: Index
 ) -> UndampedVectors:
     shape = _spread(model, found)[order]
     strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
@@ -447,7 +449,7 @@ def _vectors(
     )
 
 
-def _motion(model: Model, found: Sequence[Found]) -> Real:
+def _motion(model: Compiled, found: Sequence[Found]) -> Real:
     """Return the motion of all structures that nodes carry, by component; shape (k, attached)."""
     modes = [len(part.eigenvalue) for part in found]
     if model.chain.attached_row is None:
@@ -465,7 +467,7 @@ def _motion(model: Model, found: Sequence[Found]) -> Real:
     return np.concatenate(motions)
 
 
-def _spread(model: Model, found: Sequence[Found]) -> Real:
+def _spread(model: Compiled, found: Sequence[Found]) -> Real:
     """Return the shapes of all components over all coordinates."""
     shapes = []
     for part, component in zip(found, model.components):
@@ -510,7 +512,7 @@ class _Energies(NamedTuple):
     """(k, 3) strain, modal mass and losses of all structures that nodes carry."""
 
 
-def _damping_ratio(model: Model, omega: Real, energies: _Energies) -> Real:
+def _damping_ratio(model: Compiled, omega: Real, energies: _Energies) -> Real:
     """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega.
 
     And the ratio that a mode has by itself.
@@ -535,7 +537,7 @@ def _damping_ratio(model: Model, omega: Real, energies: _Energies) -> Real:
 
 
 def fractions(
-    model: Model,
+    model: Compiled,
     eigenvalue: Real,
     strain: Real,
     kinetic: Real,

@@ -9,12 +9,13 @@ import numpy as np
 
 from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError, SolveError
+from ..chain.compile import compile_scene
 from ..chain.port import Point
 from ..response import frf
 from . import modes
 
 if TYPE_CHECKING:
-    from ..model import Model
+    from ..chain.compiled import Compiled
     from ..scene.scene import Scene
 
 
@@ -24,7 +25,7 @@ def mesh_of_modes(
     """Compare the modes of a chain with those of continuous spans."""
     error, limit = np.full(len(eigenvalue), np.inf), np.full(len(eigenvalue), np.nan)
     try:
-        continuous = scene.compile()
+        continuous = compile_scene(scene)
     except SceneError:
         return modes.UndampedMesh(mesh_error=error, limit=limit)
     for k, component in enumerate(components):
@@ -36,7 +37,7 @@ def mesh_of_modes(
     return modes.UndampedMesh(mesh_error=error, limit=limit)
 
 
-def _lowest(model: Model, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
+def _lowest(model: Compiled, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
     """Return the lowest eigenvalues and their errors [rad^2/s^2].
 
     None where they are refused or too much for the memory: the chain's own answer stands.
@@ -72,7 +73,7 @@ def mesh_of_frf(
 ) -> frf.Mesh:
     """Compare the response of a chain with that of continuous spans."""
     try:
-        true, uncertain = _response(scene.compile(), frequency, drives, responses, quantity)
+        true, uncertain = _response(compile_scene(scene), frequency, drives, responses, quantity)
     except SceneError:
         return frf.Mesh(np.full(value.shape, np.inf))
     true, uncertain = true.reshape(value.shape), uncertain.reshape(value.shape)
@@ -86,7 +87,7 @@ def mesh_of_frf(
 
 
 def _response(
-    model: Model,
+    model: Compiled,
     frequency: Real,
     drives: tuple[Point, ...],
     responses: tuple[Point, ...],
@@ -96,8 +97,10 @@ def _response(
 
     One frequency without an answer refuses all: halves are asked until it is alone.
     """
+    from ..response.harmonic import solve_frf
+
     try:
-        answer = model.frf(frequency, drive=drives, response=responses, quantity=quantity)
+        answer = solve_frf(model, frequency, drive=drives, response=responses, quantity=quantity)
         # a sum over modes has an error beside rounding, continuous spans or not
         return answer.value, answer.rounding_error + answer.mesh_error
     except SolveError:

@@ -13,8 +13,8 @@ from .. import _core
 from ..base.array import Index, Real
 from ..base.errors import SolveError
 from ..chain.chain import Chain
+from ..chain.compiled import Compiled
 from ..chain.rate import Places, Rate, Weights, asked, rates_of
-from ..model import Model
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 
@@ -32,7 +32,7 @@ NOTHING = 1e-12
 class Shapes:
     """Modes of a model with their shapes at its nodes, lowest first."""
 
-    model: Model  # of continuous spans one with elements below their own resonance
+    model: Compiled  # of continuous spans one with elements below their own resonance
     eigenvalue: Real  # (k,) [rad^2/s^2]
     shape: Real  # (k, nodes, width)
     motion: Real  # (k, attached) of the structures that nodes carry, as y in csrc/attached.h [m]

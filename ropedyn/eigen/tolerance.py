@@ -14,8 +14,8 @@ from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import KINDS
 from ..chain.compile import MOST_ELEMENTS, compile_scene, stations_of
+from ..chain.compiled import Compiled
 from ..chain.mesh_choice import Choice
-from ..model import Model
 from ..scene.scene import Scene
 from .eigen import count_component, eigenvalue_of, spectrum
 from .mesh_error import distance, in_hertz
@@ -34,7 +34,7 @@ Component = tuple[str, ...]
 
 def compile_within(
     scene: Scene, *, tolerance: Any, below: Any, elements: Any, element: str | None
-) -> Model:
+) -> Compiled:
     """Compile a scene to the smallest chain within a tolerance; see `Scene.compile`."""
     if tolerance is None or below is None:
         raise SceneError(
@@ -90,7 +90,7 @@ class Question:
 
     def __init__(self, scene: Scene, element: str, limit: float):
         self.scene, self.element, self.limit = scene, element, limit
-        self.continuous = scene.compile()
+        self.continuous = compile_scene(scene)
         # (eigenvalues, errors) of each component, more of them where a chain has more below
         self.true = {
             c: spectrum(self.continuous, c, None, limit) for c in self.continuous.components
@@ -116,7 +116,7 @@ class Question:
         except SolveError:
             return math.inf
 
-    def _error(self, chain: Model, component: Component) -> float:
+    def _error(self, chain: Compiled, component: Component) -> float:
         """Return that of one component; what lies below the limit in the chain only counts too."""
         number = max(self.existing[component], count_component(chain, component, self.limit))
         if number == 0:

@@ -17,10 +17,10 @@ from ..base.array import Complex, Flags, Real
 from ..base.errors import SceneError, SolveError
 from ..base.progress import reporter
 from ..base.unit import QUANTITIES, push_unit
+from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point
 from ..eigen.mesh_error import mesh_of_frf
-from ..model import Model
 from ..response.frf import FRF, Mesh
 from ..scene.force import Sine
 from .modal.convolution import convolve
@@ -45,7 +45,7 @@ LATER = 30
 class Steps:
     """What is asked at each frequency."""
 
-    model: Model  # that is driven
+    model: Compiled  # that is driven
     frequency: Real  # (f,) in the order they are stepped through [Hz]
     drive: Point  # what moves by, or is pushed with, amplitude cos(omega t)
     amplitude: float  # [N, N m; m, rad of an end]
@@ -68,7 +68,7 @@ class Steady(NamedTuple):
 
 
 def solve_stepped_sine(
-    model: Model,
+    model: Compiled,
     frequency: Any,
     *,
     drive: Any,
@@ -110,7 +110,7 @@ def _stepped(frequency: Any) -> Real:
     return f
 
 
-def _driven(model: Model, drive: Any) -> Point:
+def _driven(model: Compiled, drive: Any) -> Point:
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     if several:
         raise SceneError(f"drive must be one point, got {len(drives)}")
@@ -193,7 +193,7 @@ def _seen(residues: Real) -> Flags:
     return np.asarray(size > UNSEEN * size.max(initial=0.0))
 
 
-def _left_out(model: Model, shares: tuple[Share, ...], omega: float, responses: int) -> Real:
+def _left_out(model: Compiled, shares: tuple[Share, ...], omega: float, responses: int) -> Real:
     """Return how far modes that are left out move beyond what is static, at most.
 
     A mode's response is 1/(1 - x^2 + 2 i zeta x) of its static one, x = omega/omega_k. Where

@@ -13,9 +13,9 @@ from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.progress import reporter
 from ..base.unit import MOTIONS, push_unit
+from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point
-from ..model import Model
 from ..response.deflection import Deflection, checked_loads
 from ..scene.force import Force, forces
 from ..scene.parts.part import standing
@@ -29,7 +29,7 @@ METHODS = ("auto", "modal", "direct")
 class Run:
     """What is asked of a model over time."""
 
-    model: Model  # linear or not
+    model: Compiled  # linear or not
     time: Real  # (t,) [s], increasing; motion begins at the first
     # a coordinate and a position, or ("end", 0 or 1, coordinate): motion of an end is given
     drives: tuple[Point, ...]
@@ -59,7 +59,7 @@ class Run:
 
 
 def solve_transient(
-    model: Model,
+    model: Compiled,
     time: Any,
     *,
     drive: Any,
@@ -107,7 +107,7 @@ def solve_transient(
     return superpose(run)
 
 
-def is_direct(model: Model, method: str) -> bool:
+def is_direct(model: Compiled, method: str) -> bool:
     """Whether a method is the direct one; refuse modes where they do not tell the motion."""
     check.one_of(method, "method", METHODS)
     why = why_direct(model)
@@ -116,7 +116,7 @@ def is_direct(model: Model, method: str) -> bool:
     return method == "direct" or (method == "auto" and bool(why))
 
 
-def why_direct(model: Model) -> str:
+def why_direct(model: Compiled) -> str:
     """Say why modes do not tell the motion, with nothing where they do."""
     for i, part in enumerate(model.scene.parts):
         if part in standing([part]) and part.term().laws:
@@ -142,7 +142,7 @@ def _times(given: Any) -> Real:
 
 
 def _driven(
-    model: Model, drive: Any, force: Any, time: Real
+    model: Compiled, drive: Any, force: Any, time: Real
 ) -> tuple[tuple[Point, ...], tuple[Force, ...]]:
     """Return what is driven and by which forces."""
     if (drive is None) != (force is None):
@@ -162,7 +162,7 @@ def _driven(
     )
 
 
-def _loads(model: Model, start: Any) -> dict[Point, float]:
+def _loads(model: Compiled, start: Any) -> dict[Point, float]:
     """Return the loads that are let go."""
     if start is None:
         return {}

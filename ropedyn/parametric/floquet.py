@@ -13,7 +13,7 @@ from ..base.answer import Answer, Cost, axes
 from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError
 from ..base.table import Table
-from ..model import Model
+from ..chain.compiled import Compiled
 from ..scene.tension import Tension
 from .modal_system import ModalSystem, modal_system
 from .monodromy import finite, monodromy, steps_for
@@ -128,7 +128,7 @@ class Floquet(Answer):
         return plot_floquet(self, ax)
 
 
-def solve_floquet(model: Model, modes: int | None) -> Floquet:
+def solve_floquet(model: Compiled, modes: int | None) -> Floquet:
     """Find the multipliers of a model; see `Model.floquet`."""
     tension = model.scene.tension
     if not isinstance(tension, Tension) or not tension.pulsates:
@@ -170,7 +170,7 @@ def solve_floquet(model: Model, modes: int | None) -> Floquet:
     )
 
 
-def checked_modes(model: Model, modes: int | None) -> int | None:
+def checked_modes(model: Compiled, modes: int | None) -> int | None:
     """Return how many modes are asked for."""
     if modes is not None:
         return check.count(modes, "modes", most=MOST_MODES)

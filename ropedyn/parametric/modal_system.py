@@ -13,8 +13,8 @@ from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
+from ..chain.compiled import Compiled
 from ..eigen.eigen import SOLVERS, Found, pieces_of, spectrum
-from ..model import Model
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
 from ..signal.cluster import clusters
 
@@ -60,7 +60,7 @@ class ModalSystem:
         return ModalSystem(self.eigenvalue[modes], self.geometric[square], self.damping[square])
 
 
-def modal_system(model: Model, number: int | None) -> ModalSystem:
+def modal_system(model: Compiled, number: int | None) -> ModalSystem:
     """Reduce a model to its lowest modes with transverse motion.
 
     Exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
@@ -75,7 +75,7 @@ def modal_system(model: Model, number: int | None) -> ModalSystem:
     return ModalSystem(basis.eigenvalue, geometric, _cut(damping))
 
 
-def _refuse(model: Model) -> None:
+def _refuse(model: Compiled) -> None:
     scene = model.scene
     if "z" not in model.coordinates:
         raise SceneError("rope must move transversely for a tension that pulsates to act on it")
@@ -136,7 +136,7 @@ class _Basis:
     resisted: Real
 
     @classmethod
-    def of(cls, model: Model, component: tuple[str, ...], number: int | None) -> _Basis:
+    def of(cls, model: Compiled, component: tuple[str, ...], number: int | None) -> _Basis:
         """Solve for the shapes."""
         weight = None
         if model.element == "continuous":
@@ -194,8 +194,8 @@ def _settled(found: Found) -> Real:
 
 
 def _at_gauss_points(
-    model: Model, component: tuple[str, ...], number: int | None
-) -> tuple[Model, Real]:
+    model: Compiled, component: tuple[str, ...], number: int | None
+) -> tuple[Compiled, Real]:
     """Return continuous spans with nodes at the points of Gauss, and these points' weights [m]."""
     eigenvalue, _ = spectrum(model, component, number)
     highest = float(np.abs(eigenvalue).max(initial=0.0))
@@ -306,7 +306,7 @@ class _Carried:
 # --- damping ----------------------------------------------------------------------------------
 
 
-def _damping(model: Model, basis: _Basis) -> Real:
+def _damping(model: Compiled, basis: _Basis) -> Real:
     """Return shape^T C shape; of what bends, all stiffness but that of tension and structures."""
     share = factors(model.scene.dampings, np.array(1.0)).imag
     root = np.sqrt(np.diag(basis.mass))
@@ -321,7 +321,7 @@ def _damping(model: Model, basis: _Basis) -> Real:
     )
 
 
-def _modal(model: Model, component: tuple[str, ...], eigenvalue: Real) -> Real:
+def _modal(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
     """Return 2 zeta omega of damping ratios, in the order of all modes of the model."""
     others = [spectrum(model, c, len(eigenvalue))[0] for c in model.components if c != component]
     number = np.arange(len(eigenvalue))

@@ -15,7 +15,7 @@ from ..base.array import Flags, Real
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table
-from ..model import Model
+from ..chain.compiled import Compiled
 from .floquet import checked_modes
 from .modal_system import ModalSystem, modal_system
 from .monodromy import exponent
@@ -160,7 +160,7 @@ class StabilityMap(Answer):
 
 
 def solve_stability(
-    model: Model, frequency: Any, amplitude: Any, *, modes: int | None, progress: Progress
+    model: Compiled, frequency: Any, amplitude: Any, *, modes: int | None, progress: Progress
 ) -> StabilityMap:
     """Look at every frequency and amplitude; see `Model.stability_map`."""
     f = _increasing(check.numbers(frequency, "frequency", "Hz", sign="positive"), "frequency")
@@ -192,7 +192,7 @@ def _increasing(value: Real, name: str) -> Real:
     return value
 
 
-def _check_tension(model: Model, amplitude: float) -> None:
+def _check_tension(model: Compiled, amplitude: float) -> None:
     scene = model.scene
     if scene.rope.bending_stiffness is None and amplitude > scene.mean_tension:
         raise SceneError(

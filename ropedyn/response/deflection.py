@@ -18,9 +18,9 @@ from ..base.table import Table
 from ..base.unit import FORCE, FORCE_UNIT, UNIT
 from ..chain.chain import Chain
 from ..chain.compile import check_points, finer
+from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
-from ..model import EXACT, Model
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ class Deflection(Answer):
 
 
 def solve_static(
-    model: Model, load: Mapping[Point, float], *, solver: str, points: int | None = None
+    model: Compiled, load: Mapping[Point, float], *, solver: str, points: int | None = None
 ) -> Deflection:
     """Find the static deflection; see `Model.static`."""
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
@@ -130,7 +130,7 @@ BLOCK = 4096
 
 
 def _sweep(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
 ) -> tuple[Real, Real, Work]:
     """Return motion of the nodes, what the surroundings put on them, and what it took."""
     longer, finer, kept = _cut(model, component, loads, nodes)
@@ -168,7 +168,7 @@ def _sweep(
 
 
 def _band(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
 ) -> tuple[Real, Real, Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
     u, force = _core.mixed_deflection(chain, nodal(chain, x, component, loads))
@@ -209,7 +209,7 @@ def _kept(compliance: Real, Q: Real) -> Real:
 
 
 def _lapack(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
 ) -> tuple[Real, Real, Work]:
     chain, x, kept = _cut(model, component, loads, nodes)
     u, _ = _core.deflection(chain, nodal(chain, x, component, loads))
@@ -217,7 +217,7 @@ def _lapack(
 
 
 def _cut(
-    model: Model, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
+    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
 ) -> tuple[Chain, Real, Index]:
     """Return the chain with nodes under the loads, where they stand, and those of the answer."""
     chain, x = model.chain.only(component).at_rest, model.x
@@ -230,7 +230,7 @@ SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
 """What finds motion of and forces on the nodes of one component."""
 
 
-def checked_loads(model: Model, load: Any, name: str = "load") -> dict[Point, float]:
+def checked_loads(model: Compiled, load: Any, name: str = "load") -> dict[Point, float]:
     """Return forces at points, those given twice as their sum."""
     what = 'a mapping such as {("z", 0.5): 10.0}'
     check.instance(load, name, Mapping, what)

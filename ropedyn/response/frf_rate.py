@@ -29,9 +29,9 @@ from ..base.check import NEAR
 from ..base.errors import SceneError
 from ..base.unit import END, QUANTITIES, WIRE
 from ..chain.compile import dragged
+from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force, moving
 from ..chain.rate import ENTRIES, Places, Rate, Weights, asked, rates_of
-from ..model import Model
 from ..scene import damping
 from ..scene.damping import Damping, ModalDamping
 from ..scene.parts.stretch import KINDS as STRETCHES
@@ -47,7 +47,7 @@ TENSION, LENGTH, SAG = 6, 7, 8
 class FrequencyRates:
     """How a frequency response changes."""
 
-    model: Model  # that was asked
+    model: Compiled  # that was asked
     frequency: Real  # (f,) [Hz]
     drives: tuple[Point, ...]  # that were asked for
     responses: tuple[Point, ...]  # that were asked for

@@ -21,11 +21,11 @@ from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
 from ..chain.chain import Chain
+from ..chain.compiled import EXACT, MOST_STEPS, Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
 from ..chain.reaction import at_start, first_left_end, tellers
 from ..eigen.mesh_error import mesh_of_frf
-from ..model import EXACT, MOST_STEPS, Model
 from ..scene import damping
 from .frf import FRF, Mesh
 from .modal_sum import Solver, Summed, modal_sum, refuse_other_damping
@@ -45,7 +45,7 @@ SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 class Question:
     """What is asked of one component."""
 
-    model: Model  # whose component it is
+    model: Compiled  # whose component it is
     component: tuple[str, ...]  # Coordinates
     frequency: Real  # (f,) [Hz]
     factor: Complex  # (5, f) on sections, tension, springs, inertia and dashpots
@@ -111,14 +111,14 @@ class Question:
 
 
 def solve_frf(
-    model: Model,
+    model: Compiled,
     frequency: ArrayLike,
     *,
     drive: Any,
     response: Any,
-    quantity: str,
-    solver: str,
-    threads: int | None,
+    quantity: str = "receptance",
+    solver: str = "sweep",
+    threads: int | None = None,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
     solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
@@ -172,7 +172,7 @@ def solve_frf(
 
 
 def _rates(
-    model: Model, frequency: Real, drives: tuple[Point, ...], responses: tuple[Point, ...]
+    model: Compiled, frequency: Real, drives: tuple[Point, ...], responses: tuple[Point, ...]
 ) -> FrequencyRates:
     from .frf_rate import FrequencyRates
 

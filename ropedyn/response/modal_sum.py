@@ -22,10 +22,10 @@ import numpy as np
 from .. import _core
 from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
+from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force
 from ..chain.tip import is_tip
 from ..eigen.eigen import HIGHEST, count_component, spectrum
-from ..model import Model
 from ..scene import damping
 from .moved_end import refuse_moved_ends
 
@@ -70,7 +70,9 @@ class Poles(NamedTuple):
     """Largest damping ratio."""
 
 
-def refuse_other_damping(model: Model, drives: Iterable[Point], responses: Iterable[Point]) -> None:
+def refuse_other_damping(
+    model: Compiled, drives: Iterable[Point], responses: Iterable[Point]
+) -> None:
     """Refuse modal damping beside any other, which would couple the modes, of ends and tips."""
     scene, chain = model.scene, model.chain
     others = [one.kind for one in damping.having(scene.dampings, "rate", "loss", "drag")]
@@ -172,7 +174,7 @@ def _too_high(question: Question, why: str) -> SolveError:
     )
 
 
-def ratios_of(model: Model, component: tuple[str, ...], eigenvalue: Real) -> Real:
+def ratios_of(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
     """Return the damping ratios: modes are numbered over all components."""
     number = np.arange(len(eigenvalue))
     for other in model.components:

@@ -21,8 +21,8 @@ from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.unit import END
 from ..chain.chain import Chain
+from ..chain.compiled import Compiled
 from ..chain.port import Point
-from ..model import Model
 
 if TYPE_CHECKING:
     from .harmonic import Question
@@ -82,7 +82,7 @@ def _transmitted(question: Question, end: Point, solver: Solver) -> tuple[Comple
     return ratio, relative
 
 
-def released(model: Model, end: tuple[Any, ...]) -> tuple[Model, Point]:
+def released(model: Compiled, end: tuple[Any, ...]) -> tuple[Compiled, Point]:
     """Return the model whose end a spring and a dashpot hold, and where that end is."""
     chain = model.chain
     at = model.coordinates.index(end[2])
@@ -98,7 +98,7 @@ def released(model: Model, end: tuple[Any, ...]) -> tuple[Model, Point]:
     return dataclasses.replace(model, chain=loose), place
 
 
-def _hold(model: Model, coordinate: str) -> tuple[float, float]:
+def _hold(model: Compiled, coordinate: str) -> tuple[float, float]:
     """Return a spring as soft as the elements one after another, and a dashpot.
 
     The rope's inertia on that spring takes as long as the dashpot on it.

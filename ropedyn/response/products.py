@@ -13,11 +13,12 @@ from ..base.array import Complex, Index, Real
 from ..base.unit import FORCE
 from ..chain.chain import Chain
 from ..chain.compile import station_nodes, stations_of
+from ..chain.compiled import Compiled
 from ..chain.port import Point, locate, moving
-from ..model import Model
 from ..scene import damping
 from ..scene.stations import stations_at
 from .hamiltonian import Span, generator, hamiltonian
+from .harmonic import solve_frf
 from .quadrature import rule
 from .span_waves import SpanWaves
 
@@ -47,7 +48,7 @@ class Products(NamedTuple):
 class Loaded:
     """Continuous spans and the unit loads that make the fields."""
 
-    model: Model  # of continuous spans
+    model: Compiled  # of continuous spans
     coordinates: tuple[str, ...]  # of the components that are driven
     drives: tuple[Point, ...]  # on motion, where the loads act
     responses: tuple[Point, ...]  # on motion, where the loads act
@@ -166,7 +167,7 @@ class Loaded:
         names = [*self.coordinates, *(FORCE[c] for c in self.coordinates)]
         asked = [(c, float(x)) for x in self.stations for c in self.coordinates]
         asked += [(name, float(x)) for piece in pieces for x in piece.x for name in names]
-        value = self.model.frf(frequency, drive=self.loads, response=asked).value
+        value = solve_frf(self.model, frequency, drive=self.loads, response=asked).value
         nodes, inside = np.split(value, [w * len(self.stations)], axis=1)
         cuts = np.cumsum([2 * w * len(piece.x) for piece in pieces])[:-1]
         loads, count = len(self.loads), len(frequency)
@@ -240,7 +241,7 @@ class Piece:
         return waves.products((first[r], last[r]), (first[d], last[d]), self.reach)
 
 
-def driven(model: Model, drives: Sequence[Point]) -> tuple[str, ...]:
+def driven(model: Compiled, drives: Sequence[Point]) -> tuple[str, ...]:
     """Return the coordinates of the components that some drive moves."""
     moved = {moving(point) for point in drives}
     wanted = {c for component in model.components if moved & set(component) for c in component}

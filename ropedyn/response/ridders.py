@@ -13,9 +13,10 @@ from ..chain.compile import remeshed, stations_of
 from ..chain.port import Point
 from ..scene.path import value_at, with_values
 from ..scene.stations import nearest
+from .harmonic import solve_frf
 
 if TYPE_CHECKING:
-    from ..model import Model
+    from ..chain.compiled import Compiled
 
 
 WIDEST, SHRINK, LEVELS = 0.02, 4.0, 12
@@ -26,7 +27,7 @@ SETTLED = 1e-6
 
 
 def frf_difference(
-    model: Model,
+    model: Compiled,
     path: str,
     frequency: Real,
     drives: tuple[Point, ...],
@@ -55,7 +56,7 @@ def frf_difference(
                 f"{path} must be free to change to both sides for a derivative by differences"
             )
         there = remeshed(model, other)
-        return there.frf(frequency, drive=list(drives), response=list(responses)).value
+        return solve_frf(there, frequency, drive=list(drives), response=list(responses)).value
 
     def quotient(h: float) -> Complex:
         above, below = here + h, here - h
@@ -84,7 +85,7 @@ def _extrapolated(quotient: Callable[[float], Complex], step: float) -> Complex:
     return best
 
 
-def _free(model: Model, path: str, here: float) -> float:
+def _free(model: Compiled, path: str, here: float) -> float:
     """Return the size of a number, of a place how far it is from its neighbours."""
     if path.rsplit(".", 1)[-1] not in ("x", "start", "stop", "length"):
         return abs(here)

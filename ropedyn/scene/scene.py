@@ -424,15 +424,11 @@ NodeForce, Stop, AddedMass, LocalChange
         >>> str(scene.compile(tolerance=1e-3, below=20.0).choice).partition(";")[0]
         '21 tensed elements: relative mesh error 0.000932 <= 0.001 of 1 frequency below 20 Hz'
         """
-        if tolerance is not None or below is not None:
-            from ..eigen.tolerance import compile_within
+        from ..model import compile_model
 
-            return compile_within(
-                self, tolerance=tolerance, below=below, elements=elements, element=element
-            )
-        from ..chain.compile import compile_scene
-
-        return compile_scene(self, elements=elements, element=element)
+        return compile_model(
+            self, elements=elements, element=element, tolerance=tolerance, below=below
+        )
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the scene as TOML, whole or not at all.

@@ -18,8 +18,8 @@ from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import FAMILY
 from ...chain.chain import Chain
-from ...chain.compile import check_points, finer
-from ...model import Model
+from ...chain.compile import check_points, compile_scene, finer
+from ...chain.compiled import Compiled
 from ...scene.damping import having
 from ..eigen import check_asked, fractions, largest, lowest, points_for, within
 from ..free_motion import Mesh, Vectors
@@ -73,7 +73,7 @@ class _Found:
 
 
 def solve_damped(
-    model: Model, number: int | None, *, below: float | None, solver: str, points: int | None
+    model: Compiled, number: int | None, *, below: float | None, solver: str, points: int | None
 ) -> DampedModes:
     """Find complex modes; see `Model.modes`."""
     check.one_of(solver, "solver", ("sweep", "lapack"))
@@ -107,7 +107,7 @@ def solve_damped(
 
 
 def _find(
-    model: Model, components: Iterable[tuple[str, ...]], number: int | None, limit: float
+    model: Compiled, components: Iterable[tuple[str, ...]], number: int | None, limit: float
 ) -> _Found:
     """Find the rates of some components, those of the least modulus first."""
     parts = [(c, *span) for c in components for span in model.chain.only(c).spans]
@@ -129,7 +129,7 @@ def _find(
         at += number - len(answer.value)
 
 
-def _undamped(model: Model, parts: list[Part], number: int) -> Real:
+def _undamped(model: Compiled, parts: list[Part], number: int) -> Real:
     """Return the lowest undamped frequencies [rad/s]."""
     found = [
         lowest(model.chain.undamped.only(c).between(first, last), number, math.inf, shaped=False)
@@ -149,7 +149,7 @@ def _where(radius: float) -> str:
     return "there are" if math.isinf(radius) else f"below {radius / (2 * math.pi):.6g} Hz"
 
 
-def _below(model: Model, parts: list[Part], limit: float) -> _Found:
+def _below(model: Compiled, parts: list[Part], limit: float) -> _Found:
     found = [_solve(model, part, limit) for part in parts]
     radius = min(part.radius for part in found)
     value = np.concatenate([part.value for part in found])
@@ -161,7 +161,7 @@ def _below(model: Model, parts: list[Part], limit: float) -> _Found:
     return _Found(parts, found, value[order], error[order], which[order], at[order], radius)
 
 
-def _solve(model: Model, part: Part, limit: float) -> Damped:
+def _solve(model: Compiled, part: Part, limit: float) -> Damped:
     component, first, last = part
     chain = model.chain.only(component).between(first, last)
     try:
@@ -173,7 +173,7 @@ def _solve(model: Model, part: Part, limit: float) -> Damped:
 # --- what follows from the shapes ---------------------------------------------------------------
 
 
-def _vectors(model: Model, answer: _Found, points: int) -> Vectors[np.complex128]:
+def _vectors(model: Compiled, answer: _Found, points: int) -> Vectors[np.complex128]:
     """Shapes at `points` parts of each element, energies with as many as the waves need."""
     value, which, at = answer.value, answer.which, answer.at
     more, fine = 1, model
@@ -246,13 +246,13 @@ def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
 # --- against continuous spans -------------------------------------------------------------------
 
 
-def _mesh(model: Model, answer: _Found) -> Mesh:
+def _mesh(model: Compiled, answer: _Found) -> Mesh:
     """Return the distance to the modes of continuous spans, matched so that all are near."""
     from scipy.optimize import linear_sum_assignment
 
     distance = np.full(len(answer.value), np.inf)
     with suppress(SceneError, SolveError):
-        continuous = model.scene.compile()
+        continuous = compile_scene(model.scene)
         for component in model.components:
             mine = np.flatnonzero([answer.parts[k][0] == component for k in answer.which])
             if len(mine) == 0:

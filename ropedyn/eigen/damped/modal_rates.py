@@ -10,7 +10,7 @@ import numpy as np
 
 from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
-from ...model import Model
+from ...chain.compiled import Compiled
 from ...scene.damping import having, ratios
 from ..eigen import solve_modes
 from ..free_motion import Mesh, Vectors
@@ -19,7 +19,7 @@ from .damped_modes import DampedModes
 
 
 def solve_modal(
-    model: Model, number: int | None, *, below: float | None, points: int | None
+    model: Compiled, number: int | None, *, below: float | None, points: int | None
 ) -> DampedModes:
     """Find the rates omega (-zeta +- sqrt(zeta^2 - 1)) of undamped modes."""
     dampings, effects = model.scene.dampings, model.scene.effects

@@ -14,10 +14,10 @@ from ...base.array import Index, Integer, Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import FAMILY
 from ...chain.compile import remeshed
+from ...chain.compiled import Compiled
 from ...chain.rate import rates_of
 from ...eigen.eigen import spectrum
 from ...eigen.modes import Modes
-from ...model import Model
 from ...scene.path import value_at, with_values
 from .calculated import Predicted
 
@@ -161,7 +161,7 @@ class Tracked:
     number: Index  # (k,) which of them, from 0
 
     @cached_property
-    def model(self) -> Model:
+    def model(self) -> Compiled:
         """That the modes are of, of continuous spans a finer one."""
         return self.modes.sensitivity.shapes.model
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.array import Real
 from ...chain.chain import KINDS, Chain
-from ...model import Model
+from ...chain.compiled import Compiled
 from ...scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, factors
 from ...scene.tension import Tension
 
@@ -33,7 +33,7 @@ class Beside(NamedTuple):
     """Damping of the masses of resonators, of the mass [1/s]."""
 
 
-def plain(model: Model, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:
+def plain(model: Compiled, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:
     """Return the chain with plain lumps and dashpots, and what stands beside it."""
     share = factors(model.scene.dampings, np.array(1.0)).imag
     mass = np.eye(len(component)) * chain.mass
@@ -62,7 +62,7 @@ def plain(model: Model, component: tuple[str, ...], chain: Chain) -> tuple[Chain
     )
 
 
-def _stretching(model: Model, component: tuple[str, ...]) -> float:
+def _stretching(model: Compiled, component: tuple[str, ...]) -> float:
     """Return EA/L where motion of these coordinates adds to the tension [N/m]."""
     scene = model.scene
     if "z" not in component or not isinstance(scene.tension, Tension):
@@ -71,7 +71,7 @@ def _stretching(model: Model, component: tuple[str, ...]) -> float:
     return (stiffness or 0.0) / scene.rope.length
 
 
-def pulsation_of(model: Model, component: tuple[str, ...]) -> Callable[[Real], Real] | None:
+def pulsation_of(model: Compiled, component: tuple[str, ...]) -> Callable[[Real], Real] | None:
     """Return what is added to the tension of these coordinates [N] at times [s]."""
     tension = model.scene.tension
     acts = "z" in component and isinstance(tension, Tension) and tension.pulsates

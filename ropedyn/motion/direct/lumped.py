@@ -13,8 +13,8 @@ from ... import _core
 from ...base.array import Flags, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain.chain import TENSED, Chain
+from ...chain.compiled import Compiled
 from ...chain.port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
-from ...model import Model
 from ...response.deflection import nodal
 from ...response.moved_end import is_end
 from ...scene.damping import having
@@ -202,7 +202,7 @@ def _lumps(
 
 
 def _cut(
-    model: Model, component: tuple[str, ...], drives: list[Point], responses: list[Point]
+    model: Compiled, component: tuple[str, ...], drives: list[Point], responses: list[Point]
 ) -> tuple[Chain, Real]:
     """Return the component's chain, with nodes where forces act and are asked for."""
     chain, x = model.chain.only(component), model.x
@@ -275,7 +275,7 @@ def _feet(chain: Chain, u: Real) -> Real:
     return np.asarray(np.einsum("kc,kc->k", chain.attached_row[:, 0], u[chain.feet]))
 
 
-def refuse(model: Model) -> None:
+def refuse(model: Compiled) -> None:
     """Refuse what the direct method does not take, by name and with what to do."""
     scene = model.scene
     if model.element == "continuous":

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ...base.array import Real
 from ...chain.chain import Chain
+from ...chain.compiled import Compiled
 from ...chain.port import locate, ports
-from ...model import Model
 from ...scene.parts.node import Law
 from ...scene.parts.part import standing
 
@@ -48,7 +48,7 @@ class Standing(NamedTuple):
     law: Law
 
 
-def standing_laws(model: Model, component: tuple[str, ...]) -> list[Standing]:
+def standing_laws(model: Compiled, component: tuple[str, ...]) -> list[Standing]:
     """Return the laws that act on a component."""
     found = []
     for i, part in enumerate(model.scene.parts):

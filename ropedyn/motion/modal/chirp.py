@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import wofz
 
 from ...base.array import Complex, Index, Real
 from ...scene.force import Chirp
@@ -142,5 +141,7 @@ def _by_faddeeva(s: Complex, force: Chirping, t: Real) -> Complex:
 
 
 def _signed(z: Complex) -> Complex:
+    from scipy.special import wofz
+
     sign = np.where(z.real < 0, -1.0, 1.0)
     return np.asarray(sign * wofz(1j * sign * z), dtype=np.complex128)

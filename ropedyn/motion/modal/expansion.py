@@ -19,12 +19,12 @@ from ...base.array import Complex, Flags, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain import tip
 from ...chain.chain import Chain
+from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, moving
 from ...eigen.damped.characteristic import Rates, horizon
 from ...eigen.damped.damped_roots import Damped, damped_roots, most_roots
 from ...eigen.damped.proportional import Proportional, proportional
 from ...eigen.eigen import HIGHEST, count_component, spectrum
-from ...model import Model
 from ...response.harmonic import SOLVERS, Question
 from ...response.modal_sum import LEAST, REACH, ratios_of, refuse_other_damping
 from ...response.moved_end import is_end, moves_ends
@@ -87,7 +87,7 @@ class Share(NamedTuple):
 
 
 def expand(
-    model: Model,
+    model: Compiled,
     drives: Sequence[Any],
     responses: Sequence[Point],
     *,
@@ -110,7 +110,7 @@ def expand(
     return tuple(shares)
 
 
-def refuse_hysteresis(model: Model) -> None:
+def refuse_hysteresis(model: Compiled) -> None:
     """Refuse what is a complex modulus: it has a meaning at each frequency, not in time."""
     losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
     losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
@@ -121,7 +121,7 @@ def refuse_hysteresis(model: Model) -> None:
         )
 
 
-def _coordinate(model: Model, point: Point) -> str:
+def _coordinate(model: Compiled, point: Point) -> str:
     return tip.tip_of(model, point).root[0][0] if tip.is_tip(point) else moving(point)
 
 
@@ -132,7 +132,7 @@ def _coordinate(model: Model, point: Point) -> str:
 class _Asked:
     """Which transfer functions of one component; see `expand`."""
 
-    model: Model
+    model: Compiled
     component: tuple[str, ...]
     drives: list[Any]
     responses: list[Point]

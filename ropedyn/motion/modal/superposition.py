@@ -15,8 +15,9 @@ from ...base.answer import Cost
 from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.progress import silent
+from ...chain.compile import compile_scene
+from ...chain.compiled import Compiled
 from ...eigen.eigen import within
-from ...model import Model
 from ...response.deflection import POINTS
 from ...scene.damping import having
 from ...scene.force import Force
@@ -105,7 +106,7 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
     return error
 
 
-def ratio_beyond(model: Model, expansion: Expansion) -> float:
+def ratio_beyond(model: Compiled, expansion: Expansion) -> float:
     """Return the largest damping ratio of the modes that are left out.
 
     (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.
@@ -146,7 +147,7 @@ def _deviation(run: Run, value: Real) -> Deviation:
 def mesh_error(run: Run, value: Real) -> Real:
     """Return the distance to the motion of continuous spans and the error of that, as value."""
     try:
-        model: Model = run.model.scene.compile()
+        model = compile_scene(run.model.scene)
         true = superpose(dataclasses.replace(run, model=model, modes=None, snapshots=np.zeros(0)))
     except (SceneError, SolveError):
         return np.full(value.shape, np.inf)

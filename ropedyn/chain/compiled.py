@@ -1,0 +1,247 @@
+"""The compiled model: what every solver takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.answer import Frozen
+from ..base.array import Real
+from ..base.errors import SceneError
+from ..scene.damping import having, separable
+from ..scene.parts.stretch import KINDS as STRETCHES
+from ..scene.scene import Scene
+from . import matrices
+from .chain import Chain
+from .mesh_choice import Choice
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
+
+
+EXACT = ("tensed", "continuous")
+"""Elements that can be cut anywhere."""
+
+MOST_STEPS = 10_000_000
+"""A walk over continuous spans has at most so many steps."""
+
+MOST_POINTS = 1_000_000
+"""An answer is given at so many parts of a continuous element at most."""
+
+
+class Triples(NamedTuple):
+    """The distinct elements: u_b = F u_a + G f_b and f_a = F^T f_b - Q u_a.
+
+    Attributes
+    ----------
+    F, G, Q : ndarray, shape (distinct, width, width)
+        Over the model's coordinates, SI units.
+    element : ndarray of int, shape (elements,)
+        Which of them stands where.
+    """
+
+    F: Real
+    G: Real
+    Q: Real
+    element: NDArray[np.int32]
+
+
+class NodeTerms(NamedTuple):
+    """What stands at the nodes: inertia, springs to the ground, supports.
+
+    Attributes
+    ----------
+    mass, stiffness : ndarray, shape (terms, width, width)
+        Over the model's coordinates [kg, kg m, kg m^2; N/m, N, N m].
+    held : ndarray of uint8, shape (terms, width)
+        1 where a coordinate cannot move.
+    term : ndarray of int, shape (nodes,)
+        Which of them stands where.
+    """
+
+    mass: Real
+    stiffness: Real
+    held: NDArray[np.uint8]
+    term: NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Compiled(Frozen):
+    """A scene compiled to plain arrays that the core reads: what solvers take; see `Model`."""
+
+    scene: Scene
+    element: str
+    coordinates: tuple[str, ...]
+    components: tuple[tuple[str, ...], ...]
+    x: Real
+    chain: Chain
+    unknowns: tuple[int, ...]
+    choice: Choice | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns: coordinates of nodes that can move."""
+        return sum(self.unknowns)
+
+    @property
+    def separable(self) -> bool:
+        """Whether damping scales parts of the assembled stiffness that the model keeps apart.
+
+        In a tensed element that bends, sections and tension are one, and in a string that hangs.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope, damping = rd.Rope(1.0, 0.1, bending_stiffness=1.0), rd.StiffnessDamping(1e-4)
+        >>> scene = rd.Scene(rope, tension=100.0, damping=damping)
+        >>> [scene.compile(elements=4, element=kind).separable for kind in ("rigid", "tensed")]
+        [True, False]
+        """
+        bends = "beta" in self.coordinates
+        inseparable = self.element == "tensed" if bends else self.scene.gravity is not None
+        if not inseparable or self.scene.mean_tension == 0:
+            return True
+        return separable(self.scene.dampings)
+
+    @property
+    def triples(self) -> Triples:
+        """The distinct elements, at rest.
+
+        Raises
+        ------
+        SolveError
+            If the compression is exactly the critical load of one element.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4, element="rigid")
+        >>> model.triples.G.round(6), model.triples.element
+        (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
+        """
+        return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
+
+    @property
+    def node_terms(self) -> NodeTerms:
+        """The distinct node terms.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=4, element="rigid")
+        >>> model.node_terms.held.tolist(), model.node_terms.term.tolist()
+        ([[1], [1], [0]], [0, 2, 2, 2, 1])
+        """
+        chain = self.chain
+        return NodeTerms(chain.mass, chain.stiffness, chain.held, chain.term_of)
+
+    def stiffness(self) -> sp.csr_array:
+        """Assemble the stiffness matrix, tension included.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (size, size)
+            Over the free coordinates, node by node in the order of `coordinates` [N/m, N, N m].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=3, element="rigid")
+        >>> print(model.stiffness().toarray().round(6))
+        [[ 600. -300.]
+         [-300.  600.]]
+        """
+        self._refuse_matrices()
+        return matrices.stiffness(self.chain)
+
+    def mass(self) -> sp.csr_array:
+        """Assemble the mass matrix.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (size, size)
+            Over the free coordinates [kg, kg m, kg m^2].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0).compile(elements=3, element="rigid")
+        >>> print(model.mass().toarray().round(6))
+        [[0.1 0. ]
+         [0.  0.1]]
+        """
+        self._refuse_matrices()
+        return matrices.mass(self.chain)
+
+    def damping(self) -> sp.csr_array:
+        """Assemble the damping matrix.
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (size, size)
+            Over the free coordinates [N s/m, N s, N m s].
+
+        Raises
+        ------
+        SceneError
+            If there is none: tensed elements with tension and stiffness damping, a loss factor,
+            modal damping.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0, damping=rd.ViscousDamping(6.0))
+        >>> print(scene.compile(elements=3, element="rigid").damping().toarray().round(6))
+        [[2. 0.]
+         [0. 2.]]
+        """
+        self._refuse_matrices()
+        refuse_nonlinear(self)
+        for one in having(self.scene.dampings, "loss", "ratio"):
+            raise SceneError(
+                f"damping must be in proportion to velocity to have a matrix, got {one}"
+            )
+        if not self.separable:
+            raise SceneError(
+                "damping must scale sections and tension alike for tensed elements or a hanging "
+                f"string to have a damping matrix, got {self.scene.damping}"
+            )
+
+        return matrices.damping(self.chain, self.scene.dampings)
+
+    def _refuse_matrices(self) -> None:
+        if self.element == "continuous":
+            raise SceneError(
+                "elements must be given for matrices: continuous spans have none, their stiffness "
+                "depends on the frequency"
+            )
+        if self.chain.attached_kind is not None:
+            kinds = " or ".join(self.chain.carried)
+            raise SceneError(
+                f"parts must not have a {kinds} for matrices: their stiffness depends on the "
+                "frequency"
+            )
+
+    def component_of(self, coordinate: str) -> tuple[str, ...]:
+        """Return the coordinates that move with this one.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=0.2)
+        >>> rd.Scene(rope, tension=100.0).compile(elements=4).component_of("beta")
+        ('z', 'beta')
+        """
+        return next(c for c in self.components if coordinate in c)
+
+
+def refuse_nonlinear(model: Compiled) -> None:
+    """Refuse a scene with a part that only integration over time takes."""
+    for i, part in enumerate(model.scene.parts):
+        must_be = "" if isinstance(part, STRETCHES) else part.term().nonlinear
+        if must_be:
+            raise SceneError(f"parts[{i}].{must_be}: only integration over time takes others")
