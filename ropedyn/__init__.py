@@ -7,7 +7,11 @@ Numbers are in SI units, frequencies in Hz. Where pint is installed a quantity o
 unit of the dimension.
 """
 
+from functools import partial as _partial
+from importlib import import_module as _import_module
+
 from . import ask, study2015
+from .base import drawing as _drawing
 from .base.answer import Answer, Cost, load
 from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .base.table import Table
@@ -15,6 +19,7 @@ from .chain.mesh_choice import Choice
 from .curves.measured import Measured
 from .curves.peaks import Peaks
 from .curves.resonance import Resonances
+from .eigen.animation import Animation
 from .eigen.damage import Damage
 from .eigen.damped.damped_modes import DampedModes
 from .eigen.modes import Modes
@@ -29,7 +34,6 @@ from .model import Model
 from .motion.history import History
 from .parametric.floquet import Floquet
 from .parametric.stability import StabilityMap
-from .plot.animation import Animation
 from .response.deflection import Deflection
 from .response.frf import FRF
 from .scene.bench.bending_test import BendingTest
@@ -61,6 +65,8 @@ from .study.effect import EffectCost, effect_cost
 from .study.sweep import Sweep, sweep
 
 __version__ = "0.1.0"
+
+_drawing.load = _partial(_import_module, "ropedyn.plot")
 
 __all__ = [
     "FRF",

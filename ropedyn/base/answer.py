@@ -11,6 +11,7 @@ import numpy as np
 
 from . import check
 from .atomic import replacing
+from .drawing import draw
 from .errors import SceneError
 from .table import Table
 
@@ -177,7 +178,7 @@ class Answer(Frozen):
         >>> modes.plot().get_xlabel()
         'position along the rope [m]'
         """
-        raise NotImplementedError
+        return draw(self, "plot", ax)
 
     def __str__(self) -> str:
         return str(self.table())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from ..base.table import Table
 from ..base.unit import QUANTITIES, label, place
 from ..chain.port import Point
 from .resonance import Resonances, resonances
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class Curves(Answer):
@@ -189,12 +186,6 @@ class Curves(Answer):
             columns[f"|{name}|" if name not in columns else name] = np.abs(curve)
             columns[f"phase of {name} [deg]"] = np.degrees(np.angle(curve))
         return columns
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the amplitudes over frequency."""
-        from ..plot.answers import plot_curves
-
-        return plot_curves(self, ax)
 
 
 def named_curves(curves: Curves) -> Iterator[tuple[str, int, Complex]]:

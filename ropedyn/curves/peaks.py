@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +15,6 @@ from ..base.errors import SceneError
 from ..base.table import Table
 from .curves import Curves
 from .resonance import Resonances
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,12 +119,6 @@ class Peaks(Answer):
         if self.damping_ratio is not None:
             columns["damping ratio"] = self.damping_ratio
         return Table.of("peaks", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the peaks as lines over frequency."""
-        from ..plot.answers import plot_peaks
-
-        return plot_peaks(np.asarray(self.frequency), ax)
 
 
 def _each(given: Any, name: str, unit: str, sign: str, peaks: int) -> tuple[float, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,10 +12,6 @@ from ..base.array import Complex, Index, Real
 from ..base.table import Table
 from ..base.unit import QUANTITIES
 from ..signal import one_mode
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 LEVEL = 0.4
 """Lines as high as this part of a peak, and not below, are fitted: 2.3 half widths to each side."""
@@ -73,14 +69,6 @@ class Resonances(Answer):
             "std of damping ratio": self.damping_ratio_std,
         }
         return Table.of(f"peaks of {self.label}", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the peaks as lines over frequency, as high as their amplitudes."""
-        from ..plot.answers import plot_peaks
-
-        ax = plot_peaks(self.frequency, ax, self.amplitude)
-        ax.set_ylabel(f"amplitude of {self.label}")
-        return ax
 
 
 class _Peak(NamedTuple):

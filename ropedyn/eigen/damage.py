@@ -10,6 +10,7 @@ import numpy as np
 from ..base import check
 from ..base.answer import Answer, axes
 from ..base.array import Real
+from ..base.drawing import draw
 from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..chain.compile import lumped
@@ -119,9 +120,7 @@ class Damage(Answer):
 
     def plot(self, ax: Axes | None = None, *, of: str | None = None) -> Axes:
         """Plot the change by a loss of one property, the first one by default, as a map."""
-        from ..plot.answers import plot_damage
-
-        return plot_damage(self, ax, of)
+        return draw(self, "plot", ax, of=of)
 
 
 def damage_of(modes: Modes, shapes: Shapes) -> Damage:

@@ -6,19 +6,18 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base import check
 from ..base.answer import Answer, Frozen, axes
 from ..base.array import Real
+from ..base.errors import SceneError
+from ..base.unit import FAMILY
 from ..chain.chain import CARRIED
-
-if TYPE_CHECKING:
-    from ..plot.animation import Animation
-    from .damped.damped_modes import DampedModes
-    from .modes import Modes
+from .animation import Animation, animated
 
 Number = TypeVar("Number", np.float64, np.complex128)
 
@@ -150,10 +149,26 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         >>> animation.motion.shape == (4, len(modes.x), 1)
         True
         """
-        from ..plot.animation import animated
-
-        modes = cast("Modes | DampedModes", self)
-        return animated(modes, k, path=path, frames=frames, seconds=seconds)
+        frequency = cast("Any", self).frequency
+        check.count(k, "k", least=0, most=len(frequency) - 1)
+        count = check.count(frames, "frames", least=2, most=1000)
+        duration = check.number(seconds, "seconds", "s", sign="positive")
+        if not frequency[k] > 0:
+            raise SceneError(
+                f"k must be that of a mode that oscillates, got {k}, whose frequency is 0"
+            )
+        animation = animated(
+            f"mode {k + 1}: {frequency[k]:.4g} Hz, {self.family[k]}",
+            self.coordinates,
+            self.x,
+            self.shape[k],
+            own=next(c for c in self.coordinates if FAMILY[c] == self.family[k]),
+            frames=count,
+            seconds=duration,
+        )
+        if path is not None:
+            animation.save(path)
+        return animation
 
     @property
     def _shares(self) -> dict[str, Real]:

@@ -12,6 +12,7 @@ import numpy as np
 from ..base import check
 from ..base.answer import TRANSIENT, Cost, axes, nested
 from ..base.array import Real
+from ..base.drawing import draw
 from ..base.errors import SceneError
 from ..base.table import Table
 from .free_motion import FreeMotion, Mesh, Vectors
@@ -264,6 +265,4 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot the shapes of one coordinate along the rope, the first one by default."""
-        from ..plot.answers import plot_modes
-
-        return plot_modes(self, ax, coordinate)
+        return draw(self, "plot", ax, coordinate=coordinate)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..base.answer import Answer, Cost, Frozen, axes, nested
 from ..base.array import Complex, Real
+from ..base.drawing import draw
 from ..base.table import Table
 from ..base.unit import label
 from ..chain.port import Point
@@ -184,12 +185,6 @@ class History(Answer):
         columns |= dict(zip(self.labels, self.value))
         return Table.of(f"{self.quantity} over time", columns)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the responses over time."""
-        from ..plot.time import plot_history
-
-        return plot_history(self, ax)
-
     def plot_snapshots(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot one coordinate along the rope, a line for each snapshot.
 
@@ -214,9 +209,7 @@ class History(Answer):
         >>> history.plot_snapshots().get_ylabel()
         'transverse displacement [m]'
         """
-        from ..plot.time import plot_snapshots
-
-        return plot_snapshots(self, ax, coordinate)
+        return draw(self, "snapshots", ax, coordinate=coordinate)
 
     def spectrum(self, *, window: str = "hann") -> Spectrum:
         """Return the amplitudes of the responses over frequency.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,10 +17,6 @@ from ..chain.compiled import Compiled
 from ..scene.tension import Tension
 from .modal_system import ModalSystem, modal_system
 from .monodromy import finite, monodromy, steps_for
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 EPS = float(np.finfo(float).eps)
 
@@ -120,12 +116,6 @@ class Floquet(Answer):
         }
         verdict = "stable" if self.stable else "unstable"
         return Table.of(f"multipliers of one period, {verdict}", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the multipliers beside the unit circle."""
-        from ..plot.stability import plot_floquet
-
-        return plot_floquet(self, ax)
 
 
 def solve_floquet(model: Compiled, modes: int | None) -> Floquet:

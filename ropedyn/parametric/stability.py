@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,9 +20,6 @@ from .floquet import checked_modes
 from .modal_system import ModalSystem, modal_system
 from .monodromy import exponent
 from .tongue import Tongue, boundaries, threshold, tongues_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,12 +148,6 @@ class StabilityMap(Answer):
             "at [Hz]": self.frequency[largest],
         }
         return Table.of("stability under a tension that pulsates", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot growth as colours, the boundary of stability, and where tongues begin."""
-        from ..plot.stability import plot_stability
-
-        return plot_stability(self, ax)
 
 
 def solve_stability(

@@ -12,7 +12,7 @@ from .. import study2015
 from ..base.atomic import replacing
 from ..base.unit import NAME, UNIT
 from ..model import Model
-from .answers import new_figure
+from .figure import new_figure
 
 FREQUENCY = np.linspace(1.0, 450.0, 1797)
 """Lines of the amplitude-frequency characteristics [Hz]."""

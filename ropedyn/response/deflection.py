@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +21,6 @@ from ..chain.compile import check_points, finer
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,12 +67,6 @@ class Deflection(Answer):
         for k, c in enumerate(self.coordinates):
             columns[f"{FORCE[c]} [{FORCE_UNIT[c]}]"] = self.force[:, k]
         return Table.of("static deflection", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the deflection along the rope, each coordinate to its largest."""
-        from ..plot.answers import plot_deflection
-
-        return plot_deflection(self, ax)
 
 
 def solve_static(

@@ -16,8 +16,6 @@ from .pencil import decaying
 from .spectrum import time_step
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..motion.history import History
 
 
@@ -84,12 +82,6 @@ class RingDown(Answer):
             "residual": self.residual,
         }
         return Table.of(f"ring-down of {self.label}", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot damping ratios over frequency, with standard errors."""
-        from ..plot.time import plot_ring_down
-
-        return plot_ring_down(self, ax)
 
 
 class Band(NamedTuple):

@@ -16,8 +16,6 @@ from ..base.unit import label
 from ..chain.port import Point
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..motion.history import History
 
 
@@ -96,12 +94,6 @@ class Spectrum(Answer):
             columns[f"|{name}|"] = np.abs(value)
             columns[f"phase of {name} [deg]"] = np.degrees(np.angle(value))
         return Table.of(f"spectrum of {self.quantity}", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the amplitudes over frequency."""
-        from ..plot.time import plot_spectrum
-
-        return plot_spectrum(self, ax)
 
 
 def spectrum(history: History, window: str) -> Spectrum:

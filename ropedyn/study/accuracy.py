@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,6 @@ from ..chain.chain import KINDS
 from ..chain.compile import MOST_ELEMENTS
 from ..scene.scene import Scene
 from .trial import CUTS, Trial, Truth, trial, ways, words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
 """Relative errors that the cheapest way is looked for."""
@@ -190,12 +187,6 @@ class AccuracyCost(Answer):
         if self.refusal.any():
             columns["refused"] = tuple(text or None for text in self.refusal.tolist())
         return Table.of(f"{self.question}: relative error against {self.reference}", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot true errors over time from the scene to the answer, the cheapest rows marked."""
-        from ..plot.answers import plot_accuracy
-
-        return plot_accuracy(self, ax)
 
 
 def accuracy_cost(

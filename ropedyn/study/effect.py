@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,6 @@ from ..model import Model
 from ..scene.scene import Scene
 from .difference import Change
 from .trial import answered, ask_once, words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,12 +175,6 @@ class EffectCost(Answer):
         if not asked.all():
             columns["refused"] = (None, *(text or None for text in self.refusal.tolist()))
         return Table.of(f"{self.question}, {self.way}: what each effect changes and costs", columns)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the largest change and the share of time of each effect, a row for each."""
-        from ..plot.answers import plot_effects
-
-        return plot_effects(self, ax)
 
 
 def effect_cost(

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.answer import Cost, axes, nested
 from ...base.array import Complex, Real
+from ...base.drawing import draw
 from ...base.table import Table
 from ..free_motion import FreeMotion, Mesh, Vectors
 
@@ -134,6 +135,4 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:
         """Plot the real parts of the shapes of one coordinate, the first one by default."""
-        from ...plot.answers import plot_modes
-
-        return plot_modes(self, ax, coordinate)
+        return draw(self, "plot", ax, coordinate=coordinate)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from ...base import check
 from ...base.answer import Answer, axes
 from ...base.array import Complex, Flags, Integer, Real
+from ...base.drawing import draw
 from ...base.errors import SceneError
 from ...base.table import Table, numbers
 from ...chain.port import Point
@@ -201,9 +202,7 @@ class Comparison(Answer):
         >>> rd.compare(model, [15.5, 31.0]).plot().get_ylabel()
         'calculated [Hz]'
         """
-        from ...plot.compare import plot_comparison
-
-        return plot_comparison(self, ax, of)
+        return draw(self, "plot", ax, of=of)
 
 
 def compare(

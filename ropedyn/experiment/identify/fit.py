@@ -17,8 +17,6 @@ from ..orders.orders import RunnerUp
 from .identified import Identified
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .alternative import Alternative
     from .fit_peaks import Identification
     from .solution import Solution
@@ -184,9 +182,3 @@ class Fit(Identified):
     def _worse(self) -> str:
         assert self.runner_up is not None
         return f"chi-square larger by {self.runner_up.worse:.3g}"
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot residuals over orders with the uncertainty of the peaks."""
-        from ...plot.fit import plot_fit
-
-        return plot_fit(self, ax)

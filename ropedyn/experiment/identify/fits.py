@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.answer import TRANSIENT, Answer, axes
 from ...base.array import Real
+from ...base.drawing import draw
 from ...base.errors import RopedynError
 from ...base.table import Table, numbers
 from .fit import Fit
@@ -108,6 +109,4 @@ class Fits(Answer, Sequence[Fit | None]):
 
     def plot(self, ax: Axes | None = None, *, unknown: str | None = None) -> Axes:
         """Plot one number of each rope with its standard deviation, the first by default."""
-        from ...plot.fit import plot_fits
-
-        return plot_fits(self, ax, unknown)
+        return draw(self, "plot", ax, unknown=unknown)

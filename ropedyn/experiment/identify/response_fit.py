@@ -16,8 +16,6 @@ from ...chain.port import Point
 from .identified import Identified
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from .solution import Solution
 
 
@@ -114,9 +112,3 @@ class ResponseFit(Identified):
         """Return values, how far responses are off, and notes as text."""
         notes = [f"note: {note}" for note in self.notes]
         return "\n".join([str(self.table()), "", str(self.lines), *notes])
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the amplitudes of both, measured as dots and calculated as lines."""
-        from ...plot.fit import plot_response_fit
-
-        return plot_response_fit(self, ax)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,10 +12,6 @@ from ...base.answer import Answer, axes
 from ...base.array import Integer, Real
 from ...base.table import Table
 from ...base.unit import label, place
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 RATE = 2.56
 """Samples per cycle at the top of the band."""
@@ -192,9 +188,3 @@ class Plan(Answer):
     def _moved(self, k: int) -> str:
         assert self.shift is not None
         return f"{self.shift[k]:.3g} Hz ({100 * self.shift[k] / self.frequency[k]:.2g} %)"
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot how far each mode moves along the rope, and the chosen places."""
-        from ...plot.plan import plot_plan
-
-        return plot_plan(self, ax)

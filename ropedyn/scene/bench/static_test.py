@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,9 +14,6 @@ from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
 from .straight_line import Line
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class StaticTest(Answer):
@@ -151,12 +148,6 @@ class StaticTest(Answer):
         error = f" +- {self.std:.2g}" if math.isfinite(self.std) else ""
         name = self.stiffness_name.replace("_", " ")
         return f"{name} {self.symbol} = {self.stiffness:.6g}{error} N m^2"
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot readings over loads with the straight line."""
-        from ...plot.static_test import plot_static_test
-
-        return plot_static_test(self, ax)
 
 
 def set_readings(test: Any, load: str, reading: str, units: tuple[str, str]) -> None:

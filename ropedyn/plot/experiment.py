@@ -1,4 +1,4 @@
-"""Figures of comparisons: measured and calculated over each other."""
+"""Figures of what was measured: beside what is calculated, and what it tells."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ import numpy as np
 
 from ..base import check
 from ..base.errors import SceneError
-from .answers import new_axes
+from ..experiment.compare.compare import Comparison
+from ..experiment.identify.fit import Fit
+from ..experiment.identify.fits import Fits
+from ..experiment.identify.response_fit import ResponseFit
+from ..scene.bench.static_test import StaticTest
+from .figure import light_grid, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..experiment.compare.compare import Comparison
 
 PAIR, ALONE = "C2", "C3"
 """Of peaks with a partner and without."""
@@ -23,19 +26,18 @@ PHASES = (-180, -90, 0, 90, 180)
 """Ticks [deg]."""
 
 
-def plot_comparison(comparison: Comparison, ax: Axes | None, of: str | None) -> Axes:
+@plots(Comparison)
+def plot_comparison(comparison: Comparison, ax: Axes, of: str | None) -> None:
     """Plot what was compared."""
     if of is None:
         of = "peaks" if comparison.frequency is None else "response"
     draw, needed = KINDS[check.one_of(of, "of", KINDS)]
     if needed is not None and getattr(comparison, needed) is None:
         raise SceneError(f"of must be something that was compared, got {of!r}: no {needed}")
-    ax = new_axes(ax)
     draw(comparison, ax)
-    return ax
 
 
-def plot_pairs(comparison: Comparison, ax: Axes) -> None:
+def _pairs(comparison: Comparison, ax: Axes) -> None:
     """Plot calculated over measured peaks, with the line where both agree."""
     paired = comparison.order > 0
     measured, calculated = comparison.measured[paired], comparison.calculated[paired]
@@ -60,23 +62,23 @@ def plot_pairs(comparison: Comparison, ax: Axes) -> None:
     ax.legend(fontsize="small")
 
 
-def plot_amplitude(comparison: Comparison, ax: Axes) -> None:
+def _amplitude(comparison: Comparison, ax: Axes) -> None:
     """Plot amplitudes, with lines where the peaks are."""
-    _plot_both(comparison, ax, np.abs)
+    _both(comparison, ax, np.abs)
     ax.set_yscale("log")
     _mark_peaks(comparison, ax)
     ax.set(ylabel="amplitude", title="measured and calculated response")
     ax.legend(fontsize="small")
 
 
-def plot_phase(comparison: Comparison, ax: Axes) -> None:
+def _phase(comparison: Comparison, ax: Axes) -> None:
     """Plot phases."""
-    _plot_both(comparison, ax, lambda value: np.degrees(np.angle(value)))
+    _both(comparison, ax, lambda value: np.degrees(np.angle(value)))
     ax.set(ylabel="phase [deg]", title="measured and calculated response", yticks=PHASES)
     ax.legend(fontsize="small")
 
 
-def plot_frac(comparison: Comparison, ax: Axes) -> None:
+def _frac(comparison: Comparison, ax: Axes) -> None:
     """Plot FRAC over frequency."""
     f = comparison.frequency
     assert f is not None
@@ -90,7 +92,7 @@ def plot_frac(comparison: Comparison, ax: Axes) -> None:
     ax.legend(fontsize="small")
 
 
-def plot_mac(comparison: Comparison, ax: Axes) -> None:
+def _mac(comparison: Comparison, ax: Axes) -> None:
     """Plot MAC as colours, each pair of peaks framed."""
     assert comparison.mac is not None
     colours = ax.imshow(comparison.mac, vmin=0.0, vmax=1.0, cmap="viridis", aspect="auto")
@@ -105,7 +107,7 @@ def plot_mac(comparison: Comparison, ax: Axes) -> None:
     ax.figure.colorbar(colours, ax=ax, label="MAC [1], pairs of peaks framed")
 
 
-def _plot_both(comparison: Comparison, ax: Axes, of: Callable[[Any], Any]) -> None:
+def _both(comparison: Comparison, ax: Axes, of: Callable[[Any], Any]) -> None:
     """Plot measured dots and calculated lines, a colour for each response."""
     f = comparison.frequency
     assert f is not None
@@ -136,10 +138,70 @@ def _mark_peaks(comparison: Comparison, ax: Axes) -> None:
 
 
 KINDS = {
-    "response": (plot_amplitude, "frequency"),
-    "phase": (plot_phase, "frequency"),
-    "frac": (plot_frac, "frac"),
-    "mac": (plot_mac, "mac"),
-    "peaks": (plot_pairs, None),
+    "response": (_amplitude, "frequency"),
+    "phase": (_phase, "frequency"),
+    "frac": (_frac, "frac"),
+    "mac": (_mac, "mac"),
+    "peaks": (_pairs, None),
 }
 """What draws each, and the field of a comparison that it needs."""
+
+
+@plots(Fit)
+def plot_fit(fit: Fit, ax: Axes) -> None:
+    """Plot residuals over orders, in per cent of the measured frequency."""
+    used = fit.orders > 0
+    per_cent = 100 / fit.measured[used]
+    error = fit.measured_std[used] * per_cent
+    ax.errorbar(
+        fit.orders[used],
+        fit.residual[used] * per_cent,
+        yerr=np.where(np.isfinite(error), error, 0.0),
+        fmt="o",
+        capsize=3,
+    )
+    ax.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
+    ax.set(xlabel="mode", ylabel="calculated less measured [%]")
+    ax.set_xticks(np.unique(fit.orders[used]))
+    ax.set_title(_found(fit))
+    light_grid(ax)
+
+
+@plots(Fits)
+def plot_fits(fits: Fits, ax: Axes, unknown: str | None) -> None:
+    """Plot one number of many ropes."""
+    path = fits.unknown[0] if unknown is None else check.one_of(unknown, "unknown", fits.unknown)
+    at = fits.unknown.index(path)
+    std = fits.std[:, at]
+    error = np.where(np.isfinite(std), std, 0.0)
+    ax.errorbar(np.arange(len(fits)), fits.value[:, at], yerr=error, fmt="o", capsize=3)
+    ax.set(xlabel="rope", ylabel=path)
+    light_grid(ax)
+
+
+@plots(ResponseFit)
+def plot_response_fit(fit: ResponseFit, ax: Axes) -> None:
+    """Plot measured amplitudes as dots and calculated ones as lines over frequency."""
+    for name, measured, calculated in zip(fit.labels, fit.measured, fit.calculated):
+        (line,) = ax.semilogy(fit.frequency, np.abs(calculated), label=name)
+        ax.semilogy(fit.frequency, np.abs(measured), ".", color=line.get_color(), markersize=3)
+    ax.set(xlabel="frequency [Hz]", ylabel=f"amplitude of the {fit.quantity}")
+    ax.set_title(_found(fit))
+    ax.legend(title="line calculated, dots measured", fontsize="small")
+    light_grid(ax)
+
+
+def _found(fit: Fit | ResponseFit) -> str:
+    """Return what was found in a few digits."""
+    return "identified: " + ", ".join(f"{path} {value:.5g}" for path, value in fit.value.items())
+
+
+@plots(StaticTest)
+def plot_static_test(test: StaticTest, ax: Axes) -> None:
+    """Plot readings over loads, with the line of least squares."""
+    ends = np.array([min(0.0, test.load.min()), max(0.0, test.load.max())])
+    ax.plot(test.load, test.reading, "o", label="readings")
+    ax.plot(ends, test.offset + test.line.slope * ends, label="least squares")
+    ax.set(xlabel=test.load_label, ylabel=test.reading_label, title=test.title)
+    light_grid(ax)
+    ax.legend(fontsize="small")

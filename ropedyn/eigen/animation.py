@@ -1,0 +1,128 @@
+"""Modes in motion: one period of a shape, in a notebook or in a file."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..base import check
+from ..base.answer import Frozen
+from ..base.array import Complex, Real
+from ..base.drawing import draw
+
+SMALL = 1e-6
+"""A coordinate that moves less beside the mode's own (rad, or parts of the length) is not shown."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Animation(Frozen):
+    """One period of a mode, Re(shape e^(i omega t)): a notebook shows it, `save` writes it.
+
+    Attributes
+    ----------
+    title : str
+        Mode, frequency and family.
+    coordinates : tuple of str
+        Those that are shown, the mode's own first, each in a panel of its own: a shape in metres is
+        far larger than a rope moves. The bending rotation is shown where it is the mode's own.
+    x : ndarray, shape (nodes,)
+        Where the shape is given [m].
+    motion : ndarray, shape (frames, nodes, coordinates)
+        The shape at equal steps through the period [m, rad].
+    envelope : ndarray, shape (nodes, coordinates)
+        How far each place moves [m, rad].
+    seconds : float
+        What the period takes on the screen [s].
+    """
+
+    title: str
+    coordinates: tuple[str, ...]
+    x: Real
+    motion: Real
+    envelope: Real
+    seconds: float
+
+    def __repr__(self) -> str:
+        return f"<Animation of {self.title}, {len(self.motion)} frames>"
+
+    def _repr_html_(self) -> str:
+        return self.to_html()
+
+    def to_html(self) -> str:
+        """Return the frames and what plays them as HTML.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
+        >>> modes.animate(0, frames=2).to_html().count("data:image/png;base64")
+        2
+        """
+        from tempfile import TemporaryDirectory
+
+        with TemporaryDirectory() as folder:
+            file = Path(folder, "animation.html")
+            draw(self, "film", file)
+            return file.read_text(encoding="utf-8")
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the animation as a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            ``.gif``, ``.html`` or, where ffmpeg is installed, ``.mp4``.
+
+        Raises
+        ------
+        TypeError
+            If it is no path.
+        SceneError
+            If it has another suffix, or ``.mp4`` and ffmpeg is not installed.
+        OSError
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
+        >>> with TemporaryDirectory() as folder:
+        ...     modes.animate(0, frames=2).save(Path(folder, "mode.gif"))
+        ...     Path(folder, "mode.gif").read_bytes()[:6]
+        b'GIF89a'
+        """
+        draw(self, "film", check.path(path))
+
+
+def animated(
+    title: str,
+    coordinates: tuple[str, ...],
+    x: Real,
+    shape: Real | Complex,
+    *,
+    own: str,
+    frames: int,
+    seconds: float,
+) -> Animation:
+    """Turn a shape, (nodes, coordinates), through a period; `own` is the coordinate of its mode."""
+    shown = _shown(coordinates, x, shape, own)
+    shape = shape[:, [coordinates.index(c) for c in shown]]
+    turn = np.exp(2j * np.pi * np.arange(frames) / frames)
+    motion = (turn[:, None, None] * shape).real
+    return Animation(title, shown, x, motion, np.abs(shape), seconds)
+
+
+def _shown(
+    coordinates: tuple[str, ...], x: Real, shape: Real | Complex, own: str
+) -> tuple[str, ...]:
+    """Return the mode's own coordinate and the others that move; beta follows from z."""
+    length = x[-1] - x[0]
+    far = np.abs(shape).max(axis=0) / np.where(np.isin(coordinates, ("x", "z")), length, 1.0)
+    least = SMALL * far[coordinates.index(own)]
+    others = (c for c, size in zip(coordinates, far) if size > least)
+    return (own, *(c for c in others if c not in (own, "beta")))

@@ -1,0 +1,128 @@
+"""Figures over frequency and over time, and of growth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.unit import place
+from ..curves.curves import Curves, named_curves
+from ..curves.peaks import Peaks
+from ..curves.resonance import Resonances
+from ..motion.history import History
+from ..parametric.floquet import Floquet
+from ..parametric.stability import StabilityMap
+from ..signal.ringdown import RingDown
+from ..signal.spectrum import Spectrum
+from .figure import amplitudes, light_grid, plots
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LABELS = 32
+"""Height of the names of tongues [pt]."""
+
+
+@plots(Curves)
+def plot_curves(curves: Curves, ax: Axes) -> None:
+    """Plot amplitudes over frequency on a logarithmic scale."""
+    for name, _, curve in named_curves(curves):
+        if curve.any():
+            ax.semilogy(curves.frequency, np.abs(curve), label=name)
+    ax.set_title(f"frequency response, driven in {', '.join(map(place, curves.drive))}")
+    amplitudes(ax, curves.quantity)
+
+
+@plots(Spectrum)
+def plot_spectrum(spectrum: Spectrum, ax: Axes) -> None:
+    """Plot amplitudes over frequency on a logarithmic scale."""
+    for name, amplitude in zip(spectrum.labels, spectrum.amplitude):
+        if amplitude.any():
+            ax.semilogy(spectrum.frequency, amplitude, linewidth=1.0, label=name)
+    ax.set_title(f"spectrum, window {spectrum.window}")
+    amplitudes(ax, spectrum.quantity)
+
+
+@plots(Peaks)
+@plots(Resonances)
+def plot_peaks(peaks: Peaks | Resonances, ax: Axes) -> None:
+    """Plot peaks as vertical lines over frequency, as high as their amplitudes if they have any."""
+    height = np.ones_like(peaks.frequency)
+    if isinstance(peaks, Resonances):
+        height = peaks.amplitude
+        ax.set_ylabel(f"amplitude of {peaks.label}")
+    ax.vlines(np.asarray(peaks.frequency), 0.0, height)
+    ax.set(xlabel="frequency [Hz]", title="peaks")
+
+
+@plots(History)
+def plot_history(history: History, ax: Axes) -> None:
+    """Plot the responses over time."""
+    for name, value in zip(history.labels, history.value):
+        ax.plot(history.time, value, linewidth=1.0, label=name)
+    ax.set(xlabel="time [s]", ylabel=history.quantity, title="motion over time")
+    light_grid(ax)
+    ax.legend(fontsize="small")
+
+
+@plots(RingDown)
+def plot_ring_down(found: RingDown, ax: Axes) -> None:
+    """Plot damping ratios over frequency, with standard errors."""
+    ax.errorbar(
+        found.frequency,
+        100 * found.damping_ratio,
+        xerr=found.frequency_std,
+        yerr=100 * found.damping_ratio_std,
+        fmt="o",
+        capsize=3,
+    )
+    ax.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
+    ax.set_title(f"ring-down of {found.label}")
+    light_grid(ax)
+
+
+@plots(Floquet)
+def plot_floquet(floquet: Floquet, ax: Axes) -> None:
+    """Plot multipliers in the complex plane."""
+    angle = np.linspace(0.0, 2 * np.pi, 361)
+    ax.plot(np.cos(angle), np.sin(angle), color="0.7", linewidth=0.8, label="unit circle")
+    grows = np.abs(floquet.multiplier) > 1 + floquet.rounding_error
+    for these, color, name in ((~grows, "C0", "stays or decays"), (grows, "C3", "grows")):
+        value = floquet.multiplier[these]
+        if value.size:
+            ax.plot(value.real, value.imag, "o", color=color, label=name)
+    ax.set(xlabel="real part", ylabel="imaginary part", aspect="equal")
+    ax.set_title(f"multipliers over one period, {1 / floquet.period:.4g} Hz")
+    ax.legend(fontsize="small")
+
+
+@plots(StabilityMap)
+def plot_stability(stability: StabilityMap, ax: Axes) -> None:
+    """Plot growth as colours over frequency and amplitude.
+
+    Dashed: the boundaries of tongues of order 1 without damping, to first order in the amplitude.
+    """
+    f, a = stability.frequency, stability.amplitude
+    shown = np.ma.masked_where(stability.stable, stability.growth)
+    if shown.count():
+        colours = ax.pcolormesh(f, a, shown, shading="nearest", cmap="Reds", vmin=0.0)
+        ax.figure.colorbar(colours, ax=ax, label="growth [1/s]")
+    for tongue in stability.tongues:
+        if tongue.order == 1:
+            side = tongue.spread * a[-1]
+            wedge = tongue.frequency + np.array([-side, 0.0, side])
+            ax.plot(wedge, [a[-1], 0.0, a[-1]], color="0.4", linewidth=0.6, linestyle="--")
+            ax.annotate(
+                tongue.label,
+                (tongue.frequency, 1.0),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                xytext=(0, 3),
+                rotation=60,
+                rotation_mode="anchor",
+                fontsize="x-small",
+            )
+    ax.set(xlabel="frequency of the tension [Hz]", ylabel="amplitude of the tension [N]")
+    ax.set(xlim=(f[0], f[-1]), ylim=(a[0], a[-1]) if len(a) > 1 else None)
+    ax.set_title("where transverse motion grows", pad=LABELS if stability.tongues else None)

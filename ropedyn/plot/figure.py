@@ -1,0 +1,72 @@
+"""Figures that need no display and no pyplot, and what several of them have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+from ..base import check
+from ..base.drawing import draws
+from ..base.unit import NAME, UNIT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Plot = Callable[..., None]
+
+
+def new_figure(rows: int, *, height: float = 4.5) -> tuple[Figure, list[Axes]]:
+    """Return a figure with axes one above the other."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, height * rows), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes: Any = figure.subplots(rows, 1, squeeze=False)
+    return figure, list(axes[:, 0])
+
+
+def plots(
+    kind: type[Any], verb: str = "plot", *, height: Callable[[Any], float] = lambda _: 4.5
+) -> Callable[[Plot], Plot]:
+    """Register what plots a kind into given axes, or those of a new figure of this height [in]."""
+
+    def register(plot: Plot) -> Plot:
+        @draws(kind, verb)
+        @wraps(plot)
+        def drawing(thing: Any, ax: Axes | None, **options: Any) -> Axes:
+            ax = new_figure(1, height=height(thing))[1][0] if ax is None else ax
+            plot(thing, ax, **options)
+            return ax
+
+        return plot
+
+    return register
+
+
+def coordinate_of(thing: Any, coordinate: str | None) -> str:
+    """Return the coordinate to show: the one asked for, else z where there is one."""
+    if coordinate is None:
+        coordinate = "z" if "z" in thing.coordinates else thing.coordinates[0]
+    return check.one_of(coordinate, "coordinate", thing.coordinates)
+
+
+def along_the_rope(ax: Axes, coordinate: str) -> None:
+    """Name the axes of a coordinate along the rope, and mark where it is 0."""
+    ax.axhline(0.0, color="0.7", linewidth=0.8, zorder=0)
+    ax.set(xlabel="position along the rope [m]", ylabel=f"{NAME[coordinate]} [{UNIT[coordinate]}]")
+
+
+def amplitudes(ax: Axes, quantity: str) -> None:
+    """Name the axes of logarithmic amplitudes over frequency, and what is drawn into them."""
+    ax.set(xlabel="frequency [Hz]", ylabel=f"{quantity}, amplitude")
+    ax.grid(True, which="both", color="0.92")
+    if ax.lines:
+        ax.legend(fontsize="small")
+
+
+def light_grid(ax: Axes) -> None:
+    """Draw a grid that stays behind what is drawn."""
+    ax.grid(True, color="0.92")
