@@ -13,15 +13,15 @@ from ..base.answer import Answer, Cost, Frozen, axes, nested
 from ..base.array import Complex, Real
 from ..base.drawing import draw
 from ..base.table import Table
-from ..base.unit import label
+from ..base.unit import MOTIONS, QUANTITIES, label
 from ..chain.port import Point
+from ..curves.measured import Measured
+from ..signal.estimate import estimate
+from ..signal.ringdown import RingDown, ring_down
+from ..signal.spectrum import Spectrum, amplitude, spectrum
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..curves.measured import Measured
-    from ..signal.ringdown import RingDown
-    from ..signal.spectrum import Spectrum
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,9 +248,8 @@ class History(Answer):
         >>> print(spectrum.frequency[spectrum.amplitude[0].argmax()])
         5.0
         """
-        from ..signal.spectrum import spectrum
-
-        return spectrum(self, window)
+        of, quantity = self.response, self.quantity
+        return spectrum(self.time, self.value, window, response=of, quantity=quantity)
 
     def amplitude(self, frequency: ArrayLike, *, last: float | None = None) -> Complex:
         """Fit steady motion at one or several frequencies.
@@ -292,9 +291,7 @@ class History(Answer):
         >>> print(abs(ratio).round(6))
         [1.]
         """
-        from ..signal.steady import amplitude
-
-        return amplitude(self, frequency, last)
+        return amplitude(self.time, self.value, frequency, last)
 
     def damping(
         self,
@@ -352,9 +349,8 @@ class History(Answer):
         >>> print(history.damping().damping_ratio.round(6))
         [0.01]
         """
-        from ..signal.ringdown import ring_down
-
-        return ring_down(self, near, response, since)
+        over_time = self.time, self.value, self.force
+        return ring_down(*over_time, labels=self.labels, response=response, near=near, since=since)
 
     def frf(
         self,
@@ -410,6 +406,22 @@ class History(Answer):
         >>> measured.peaks()[0].frequency.round(2)
         array([ 5.  , 14.99])
         """
-        from ..signal.estimate import estimate
-
-        return estimate(self, drive, segments, window, band)
+        order = MOTIONS[self.quantity]
+        over_time = self.time, self.value, self.force
+        found = estimate(
+            *over_time,
+            drive=drive,
+            segments=segments,
+            window=window,
+            band=band,
+            at_rest=order == 0,
+        )
+        return Measured(
+            frequency=found.frequency,
+            value=found.value,
+            drive=(self.drive[drive],),
+            response=self.response,
+            quantity=list(QUANTITIES)[order],
+            coherence=found.coherence,
+            averages=found.averages,
+        )

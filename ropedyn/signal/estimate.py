@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..base import check
-from ..base.array import Flags, Real
+from ..base.array import Complex, Flags, Real
 from ..base.errors import SceneError
-from ..base.unit import MOTIONS, QUANTITIES
-from ..curves.measured import Measured
 from .spectrum import time_step, window_weights
-
-if TYPE_CHECKING:
-    from ..motion.history import History
 
 OVERLAPPING = 0.53
 """Segments of Hann's window that half overlap count so many times as independent ones: Bendat and
@@ -24,14 +19,34 @@ FLOOR = 1e-3
 """Lines where the force is less than this part of its largest line are left out."""
 
 
+class Estimate(NamedTuple):
+    """Responses per force."""
+
+    frequency: Real  # (f,) [Hz]
+    value: Complex  # (responses, f)
+    coherence: Real | None  # (responses, f), of several segments
+    averages: float | None  # as so many independent ones, where the window tells
+
+
 def estimate(
-    history: History, drive: int, segments: int, window: str | None, band: Any
-) -> Measured:
-    """Estimate the response per force; see `History.frf`."""
+    time: Real,
+    value: Real,
+    force: Real,
+    *,
+    drive: int,
+    segments: int,
+    window: str | None,
+    band: Any,
+    at_rest: bool,
+) -> Estimate:
+    """Estimate responses (responses, t) per force of one of the drives (drives, t).
+
+    See `History.frf`; the line at 0 Hz is left out unless it says what holds at rest.
+    """
     from scipy import signal
 
-    step, n = time_step(history.time), len(history.time)
-    force = _force(history, drive)
+    step, n = time_step(time), len(time)
+    push = _alone(force, drive)
     most = max(1, n // 8)
     length = int(2 * n // (check.count(segments, "segments", most=most) + 1))
     if segments == 1:
@@ -44,39 +59,31 @@ def estimate(
         "noverlap": 0 if segments == 1 else length // 2,
         "detrend": False,
     }
-    frequency, cross = signal.csd(force, history.value, **how)
-    _, power = signal.welch(force, **how)
-    kept = _kept(frequency, power, _band(band), history.quantity)
-    coherence = None
+    frequency, cross = signal.csd(push, value, **how)
+    _, power = signal.welch(push, **how)
+    kept = _kept(frequency, power, _band(band), at_rest)
+    coherence = averages = None
     if segments > 1:
         # rounding may lift it above 1
-        coherence = np.minimum(signal.coherence(force, history.value, **how)[1][:, kept], 1.0)
-    names = {times: name for name, times in QUANTITIES.items()}
-    return Measured(
-        frequency=frequency[kept],
-        value=cross[:, kept] / power[kept],
-        drive=(history.drive[drive],),
-        response=history.response,
-        quantity=names[MOTIONS[history.quantity]],
-        coherence=coherence,
-        averages=OVERLAPPING * segments if coherence is not None and window == "hann" else None,
-    )
+        coherence = np.minimum(signal.coherence(push, value, **how)[1][:, kept], 1.0)
+        averages = OVERLAPPING * segments if window == "hann" else None
+    return Estimate(frequency[kept], cross[:, kept] / power[kept], coherence, averages)
 
 
-def _force(history: History, drive: int) -> Real:
+def _alone(force: Real, drive: int) -> Real:
     """Return the force that alone drives."""
-    if not history.drive:
+    if len(force) == 0:
         raise SceneError("drive must be there for a response per force: the motion is free")
-    check.count(drive, "drive", least=0, most=len(history.drive) - 1)
-    for k, force in enumerate(history.force):
-        if k != drive and force.any():
+    check.count(drive, "drive", least=0, most=len(force) - 1)
+    for k, other in enumerate(force):
+        if k != drive and other.any():
             raise SceneError(f"force must be 0 at other drives than {drive}, got some at {k}")
-    if not history.force[drive].any():
+    if not force[drive].any():
         raise SceneError(
             f"force of drive {drive} must be known at the times, got 0 at all of them: "
             "a blow needs a duration"
         )
-    return history.force[drive]
+    return np.asarray(force[drive])
 
 
 def _band(given: Any) -> Real | None:
@@ -91,19 +98,14 @@ def _band(given: Any) -> Real | None:
     return band
 
 
-def _kept(
-    frequency: Real,
-    power: Real,
-    band: Real | None,
-    quantity: str,
-) -> Flags:
+def _kept(frequency: Real, power: Real, band: Real | None, at_rest: bool) -> Flags:
     """Return which lines are told: those of the band, or where the force is not small."""
     if band is None:
         kept = power > FLOOR**2 * power.max()
     else:
         kept = (frequency >= band[0]) & (frequency <= band[1]) & (power > 0)
     # a velocity at 0 Hz says nothing of the displacement there
-    kept &= (frequency > 0) | (quantity == "displacement")
+    kept &= (frequency > 0) | at_rest
     if not kept.any():
         raise SceneError(f"band must hold a frequency the force has, got {check.shown(band)}")
     return kept

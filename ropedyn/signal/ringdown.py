@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,10 +15,6 @@ from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from .pencil import decaying
 from .spectrum import time_step
-
-if TYPE_CHECKING:
-    from ..motion.history import History
-
 
 LEAST = 16
 """Times that a record of free motion must have."""
@@ -91,36 +88,45 @@ class Band(NamedTuple):
     """
 
     y: Complex
-    step: float
-    """Between the times of y [s]."""
-    shift: float
-    """[rad/s]."""
+    step: float  # between the times of y [s]
+    shift: float  # [rad/s]
     taps: Real
-    fine: float
-    """Between the times of the record [s]."""
+    fine: float  # between the times of the record [s]
 
 
-def ring_down(history: History, near: Any, response: int, since: float | None) -> RingDown:
-    """Estimate modes of free motion; see `History.damping`."""
-    check.count(response, "response", least=0, most=len(history.response) - 1)
-    step = time_step(history.time)
-    first = _first_free(history, since)
-    x = history.value[response, first:]
+def ring_down(
+    time: Real,
+    value: Real,
+    force: Real,
+    *,
+    labels: Sequence[str],
+    response: int,
+    near: Any,
+    since: float | None,
+) -> RingDown:
+    """Estimate modes of free motion, of one of the responses (responses, t).
+
+    See `History.damping`; motion is free since the forces (drives, t) last changed.
+    """
+    check.count(response, "response", least=0, most=len(value) - 1)
+    step = time_step(time)
+    first = _first_free(time, force, since)
+    x = value[response, first:]
     if len(x) < LEAST:
         raise SceneError(
             f"since must leave {LEAST} times of free motion at least, got {len(x)} from "
-            f"{float(history.time[min(first, len(history.time) - 1)])!r} s on"
+            f"{float(time[min(first, len(time) - 1)])!r} s on"
         )
     if not x.any():
-        raise SolveError(f"nothing moves in response {response} since {history.time[first]:g} s")
+        raise SolveError(f"nothing moves in response {response} since {time[first]:g} s")
     frequencies = _strongest(x, step) if near is None else _checked_near(near, step)
     rows = [_mode_near(_band(x, step, f), f) for f in frequencies.tolist()]
     rate, size, variance, residual = (np.array(column) for column in zip(*rows))
     modulus = np.abs(rate)
     std = np.sqrt(variance / 2)
     return RingDown(
-        label=history.labels[response],
-        since=float(history.time[first]),
+        label=labels[response],
+        since=float(time[first]),
         frequency=modulus / (2 * np.pi),
         frequency_std=std / (2 * np.pi),
         damping_ratio=-rate.real / modulus,
@@ -130,12 +136,11 @@ def ring_down(history: History, near: Any, response: int, since: float | None) -
     )
 
 
-def _first_free(history: History, since: float | None) -> int:
+def _first_free(time: Real, force: Real, since: float | None) -> int:
     """Return the first time from which on no force changes."""
     if since is not None:
-        wanted = check.number(since, "since", "s")
-        return int(np.searchsorted(history.time, wanted))
-    changes = np.flatnonzero((np.diff(history.force, axis=1) != 0).any(axis=0))
+        return int(np.searchsorted(time, check.number(since, "since", "s")))
+    changes = np.flatnonzero((np.diff(force, axis=1) != 0).any(axis=0))
     return int(changes[-1]) + 1 if len(changes) else 0
 
 

@@ -1,9 +1,9 @@
-"""Spectra of motion over time."""
+"""Amplitudes of motion over frequency."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +13,6 @@ from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import label
-from ..chain.port import Point
-
-if TYPE_CHECKING:
-    from ..motion.history import History
-
 
 UNIFORM = 1e-6
 """Times this part of a step away from equal steps are at equal steps."""
@@ -59,7 +54,7 @@ class Spectrum(Answer):
     1.0
     """
 
-    response: tuple[Point, ...]
+    response: tuple[tuple[str, float], ...]
     quantity: str
     window: str
     bandwidth: float
@@ -96,24 +91,25 @@ class Spectrum(Answer):
         return Table.of(f"spectrum of {self.quantity}", columns)
 
 
-def spectrum(history: History, window: str) -> Spectrum:
-    """Return the spectrum of the responses; see `History.spectrum`."""
-    step = time_step(history.time)
-    n = len(history.time)
+def spectrum(
+    time: Real, value: Real, window: str, *, response: tuple[Any, ...], quantity: str
+) -> Spectrum:
+    """Return the spectrum of responses over time, (responses, t); see `History.spectrum`."""
+    step, n = time_step(time), len(time)
     weight = window_weights(window, n)
     frequency = np.arange(n // 2 + 1) / (n * step)
-    lines = np.fft.rfft(weight * history.value) * (2 / weight.sum())
+    lines = np.fft.rfft(weight * value) * (2 / weight.sum())
     # 0 and half the rate have no partner at a negative frequency
     lines[:, 0] /= 2
     if n % 2 == 0:
         lines[:, -1] /= 2
     return Spectrum(
-        response=history.response,
-        quantity=history.quantity,
+        response=response,
+        quantity=quantity,
         window=window,
         bandwidth=float((weight**2).sum() / weight.sum() ** 2 / step),
         frequency=frequency,
-        value=lines * np.exp(-2j * np.pi * frequency * history.time[0]),
+        value=lines * np.exp(-2j * np.pi * frequency * time[0]),
     )
 
 
@@ -142,3 +138,35 @@ def time_step(time: Real) -> float:
             f"{float(time[k])!r} s"
         )
     return step
+
+
+def amplitude(time: Real, value: Real, frequency: Any, last: float | None) -> Complex:
+    """Fit steady motion to responses over time, (responses, t); see `History.amplitude`."""
+    given = check.frequencies(frequency)
+    if last is not None:
+        first = time[-1] - check.number(last, "last", "s", sign="positive")
+        time = time[time >= first]
+    if len(np.unique(given)) < len(given) or (given == 0).any():
+        raise SceneError(f"frequency must be different numbers > 0, got {check.shown(frequency)}")
+    n, unknowns = len(time), 2 * len(given) + 2
+    if n < unknowns:
+        raise SceneError(f"last must hold {unknowns} times at least, got {n}")
+    rate = (n - 1) / (time[-1] - time[0])
+    if given.max() >= rate / 2:
+        raise SceneError(
+            f"frequency must be below half the rate of the times, {rate / 2:g} Hz, got "
+            f"{float(given.max())!r}"
+        )
+    turn = np.exp(2j * np.pi * np.outer(time, given))
+    # Re(value turn) = value' turn' - value'' turn''; what stands still, what drifts
+    drift = np.linspace(-1, 1, n) if n == 1 else 2 * (time - time[0]) / (time[-1] - time[0]) - 1
+    basis = np.column_stack([turn.real, -turn.imag, np.ones(n), drift])
+    found, _, rank, _ = np.linalg.lstsq(basis, value[:, -n:].T, rcond=1e-9)
+    if rank < unknowns:
+        raise SceneError(
+            f"last must be long enough to tell {check.shown(frequency)} Hz from what stands still "
+            f"or drifts, got {float(time[-1] - time[0]):g} s"
+        )
+    k = len(given)
+    size = (found[:k] + 1j * found[k : 2 * k]).T
+    return size if np.ndim(frequency) else size[:, 0]
