@@ -19,8 +19,8 @@ from .eigen.eigen import count_modes, solve_modes
 from .eigen.modes import Modes
 from .eigen.tolerance import compile_within
 from .motion.history import History
-from .motion.stepped_sine import solve_stepped_sine
-from .motion.transient import solve_transient
+from .motion.request import Run, SteppedSine
+from .motion.transient import solve_stepped_sine, solve_transient
 from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
@@ -419,7 +419,7 @@ class Model(Compiled):
         >>> print(history.value[0].round(3) + 0.0)
         [ 0.01 -0.01]
         """
-        return solve_transient(
+        run = Run.of(
             self,
             time,
             drive=drive,
@@ -436,6 +436,7 @@ class Model(Compiled):
             progress=progress,
             partial=partial,
         )
+        return solve_transient(run)
 
     def floquet(self, modes: int | None = 4) -> Floquet:
         """Find how free motion grows or decays under the tension that pulsates.
@@ -601,7 +602,7 @@ class Model(Compiled):
         >>> bool(abs(stepped.value / model.frf(lines, drive=drive).value - 1).max() < 1e-8)
         True
         """
-        return solve_stepped_sine(
+        asked = SteppedSine.of(
             self,
             frequency,
             drive=drive,
@@ -612,6 +613,7 @@ class Model(Compiled):
             tolerance=tolerance,
             progress=progress,
         )
+        return solve_stepped_sine(asked)
 
 
 def compile_model(

@@ -12,7 +12,7 @@ from ..base.array import Real
 from ..base.check import shown
 from ..base.errors import SceneError
 from ..base.unit import MOTIONS
-from ..motion.transient import METHODS
+from ..motion.request import METHODS
 from ..scene.force import Chirp, Impulse, Sine, Step
 from .options import compiled, drive, point, progress_option, scene_command, show, spaced
 

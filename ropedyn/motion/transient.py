@@ -1,190 +1,56 @@
-"""Motion over time: what is asked, and who answers."""
+"""Motion over time and steady states: who answers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+import time
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
-from ..base import check
-from ..base.array import Real
-from ..base.errors import SceneError
-from ..base.progress import reporter
-from ..base.unit import MOTIONS, push_unit
-from ..chain.compiled import Compiled
-from ..chain.place import observed, points
-from ..chain.port import Point
-from ..response.deflection import Deflection, checked_loads
-from ..scene.force import Force, forces
-from ..scene.parts.part import standing
-from ..scene.tension import Tension
+from ..base.answer import Cost
+from ..base.unit import QUANTITIES
+from ..eigen.mesh_error import mesh_of_frf
+from ..response.frf import FRF, Mesh
+from .direct.direct import march
+from .direct.steady_states import march_steadily
 from .history import History
-
-METHODS = ("auto", "modal", "direct")
-
-
-@dataclass(frozen=True, eq=False)
-class Run:
-    """What is asked of a model over time."""
-
-    model: Compiled  # linear or not
-    time: Real  # (t,) [s], increasing; motion begins at the first
-    # a coordinate and a position, or ("end", 0 or 1, coordinate): motion of an end is given
-    drives: tuple[Point, ...]
-    forces: tuple[Force, ...]  # one for each
-    responses: tuple[Point, ...]  # Motion, internal forces, tips of wires
-    order: int  # how often the displacement is differentiated
-    # under which the rope rests before the first time, when it is let go
-    loads: Mapping[Point, float]
-    snapshots: Real  # (s,) when the whole rope is looked at [s]
-    modes: int | None  # of each component, that the modal method sums
-    step: float | None  # of the direct method: one of them at most
-    tolerance: float | None  # of the direct method: one of them at most
-    spectral_radius: float  # of the direct method at infinite frequency
-    progress: Callable[[float], Any]  # takes the fraction that is done
-    partial: bool  # whether what was computed until the numbers fail is an answer
-
-    @property
-    def quantity(self) -> str:
-        """Name of the displacement, differentiated so often."""
-        return list(MOTIONS)[self.order]
-
-    @property
-    def push(self) -> Real:
-        """What drives, at the times, shape (drives, t)."""
-        still = np.zeros((0, len(self.time)))
-        return np.stack([one.value(self.time) for one in self.forces]) if self.forces else still
+from .modal.steady_states import superpose_steadily
+from .modal.superposition import superpose
+from .request import Run, SteppedSine, why_direct
 
 
-def solve_transient(
-    model: Compiled,
-    time: Any,
-    *,
-    drive: Any,
-    force: Any,
-    response: Any,
-    quantity: str,
-    start: Mapping[Point, float] | Deflection | None,
-    method: str,
-    modes: int | None,
-    step: float | None,
-    tolerance: float | None,
-    spectral_radius: float,
-    snapshots: Any,
-    progress: Any,
-    partial: bool,
-) -> History:
+def solve_transient(run: Run) -> History:
     """Integrate over time; see `Model.transient`."""
-    direct = is_direct(model, method)
-    check.one_of(quantity, "quantity", MOTIONS)
-    t = _times(time)
-    drives, given = _driven(model, drive, force, t)
-    responses = observed(model, response, drives)
-    run = Run(
-        model=model,
-        time=t,
-        drives=drives,
-        forces=given,
-        responses=responses,
-        order=MOTIONS[quantity],
-        loads=_loads(model, start),
-        snapshots=_snapshots(snapshots, t),
-        modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
-        step=check.optional(step, "step", "s", sign="positive"),
-        tolerance=check.optional(tolerance, "tolerance", sign="positive"),
-        spectral_radius=_radius(spectral_radius),
-        progress=reporter(progress),
-        partial=check.instance(partial, "partial", bool, "True or False"),
+    return march(run) if run.direct else superpose(run)
+
+
+def solve_stepped_sine(asked: SteppedSine) -> FRF:
+    """Step a sine through frequencies; see `Model.stepped_sine`."""
+    start = time.perf_counter()
+    found = march_steadily(asked) if asked.direct else superpose_steadily(asked)
+    seconds = time.perf_counter() - start
+    model, f, drives = asked.model, asked.frequency, (asked.drive,)
+    quantity, responses = asked.quantity, asked.responses
+    value = found.value * (2j * np.pi * f) ** QUANTITIES[quantity]
+    mesh: Mesh | Callable[[], Mesh]
+    mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
+    if why_direct(model):
+        mesh = Mesh(np.full(value.shape, np.inf))
+    return FRF(
+        drive=drives,
+        response=responses,
+        quantity=quantity,
+        frequency=f,
+        value=value,
+        rounding_error=found.error,
+        cost=Cost(
+            seconds,
+            found.method,
+            len(model.x) - 1,
+            found.unknowns,
+            sweeps=found.sweeps,
+            factorisations=found.factorisations,
+        ),
+        mesh_source=mesh,
     )
-    if direct:
-        from .direct.direct import march
-
-        return march(run)
-    from .modal.superposition import superpose
-
-    return superpose(run)
-
-
-def is_direct(model: Compiled, method: str) -> bool:
-    """Whether a method is the direct one; refuse modes where they do not tell the motion."""
-    check.one_of(method, "method", METHODS)
-    why = why_direct(model)
-    if method == "modal" and why:
-        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
-    return method == "direct" or (method == "auto" and bool(why))
-
-
-def why_direct(model: Compiled) -> str:
-    """Say why modes do not tell the motion, with nothing where they do."""
-    for i, part in enumerate(model.scene.parts):
-        if part in standing([part]) and part.term().laws:
-            return f"parts[{i}] is not linear"
-    tension = model.scene.tension
-    if isinstance(tension, Tension):
-        return "the tension pulsates" if tension.pulsates else "the tension is stretching"
-    return ""
-
-
-def _times(given: Any) -> Real:
-    t = check.numbers(given, "time", "s", sign="nonnegative")
-    if len(t) < 2:
-        raise SceneError(f"time must hold two times at least [s], got {len(t)}")
-    falls = np.flatnonzero(~(np.diff(t) > 0))
-    if len(falls):
-        k = int(falls[0])
-        raise SceneError(
-            f"time must increase, got time[{k}] = {float(t[k])!r} and time[{k + 1}] = "
-            f"{float(t[k + 1])!r} s"
-        )
-    return t
-
-
-def _driven(
-    model: Compiled, drive: Any, force: Any, time: Real
-) -> tuple[tuple[Point, ...], tuple[Force, ...]]:
-    """Return what is driven and by which forces."""
-    if (drive is None) != (force is None):
-        raise SceneError("give both drive and force, or neither")
-    if drive is None:
-        return (), ()
-    drives, several = points(model, drive, "drive", forces=False, ends=True)
-    if not several:
-        return drives, (forces(force, "force", time, push_unit(drives[0])),)
-    if not isinstance(force, (tuple, list, np.ndarray)) or len(force) != len(drives):
-        raise SceneError(
-            f"force must be one for each of the {len(drives)} drives, got {check.shown(force)}"
-        )
-    return drives, tuple(
-        forces(one, f"force[{k}]", time, push_unit(drive))
-        for k, (one, drive) in enumerate(zip(force, drives))
-    )
-
-
-def _loads(model: Compiled, start: Any) -> dict[Point, float]:
-    """Return the loads that are let go."""
-    if start is None:
-        return {}
-    if isinstance(start, Deflection):
-        return dict(start.load)
-    return checked_loads(model, start, "start")
-
-
-def _snapshots(given: Any, time: Real) -> Real:
-    if given is None:
-        return np.zeros(0)
-    when = check.numbers(given, "snapshots", "s", sign="nonnegative")
-    if (when < time[0]).any() or (when > time[-1]).any() or (np.diff(when) <= 0).any():
-        raise SceneError(
-            f"snapshots must increase within time, {float(time[0])!r} to {float(time[-1])!r} s, "
-            f"got {check.shown(given)}"
-        )
-    return when
-
-
-def _radius(given: Any) -> float:
-    radius = check.number(given, "spectral_radius", sign="nonnegative")
-    if radius > 1:
-        raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
-    return radius

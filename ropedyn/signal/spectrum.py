@@ -170,3 +170,9 @@ def amplitude(time: Real, value: Real, frequency: Any, last: float | None) -> Co
     k = len(given)
     size = (found[:k] + 1j * found[k : 2 * k]).T
     return size if np.ndim(frequency) else size[:, 0]
+
+
+def amplitudes(value: Real, samples: int) -> Complex:
+    """Return the complex amplitudes over each of some periods, shape (responses, periods)."""
+    turn = np.exp(-2j * np.pi * np.arange(samples) / samples)
+    return np.asarray(2 / samples * (value.reshape(len(value), -1, samples) @ turn))

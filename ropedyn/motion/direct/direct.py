@@ -14,11 +14,12 @@ from ...base.errors import SceneError, SolveError
 from ...base.unit import WIRE
 from ...chain.port import is_force
 from ..history import Balance, Deviation, History
-from ..transient import Run, why_direct
+from ..modal.superposition import mesh_error
+from ..request import Run, why_direct
 from .lumped import Lumps, lumped_chains, refuse
 from .march import stage_of
 from .run import Passage, Walk
-from .steps import Pace, halved, quiet, steps_of, within
+from .steps import Pace, halved, steps_of, within
 
 ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")
 """Of a passage, in its order."""
@@ -71,19 +72,13 @@ def _paced(run: Run, chains: list[Lumps], g: float) -> Pace:
 def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> History:
     passage, model = pace.passage, run.model
     kept, seen = slice(passage.reached), slice(passage.seen)
-    asked = replace(quiet(run), time=run.time[kept], snapshots=run.snapshots[seen])
+    asked = replace(run.kept, time=run.time[kept], snapshots=run.snapshots[seen])
     value = passage.value[:, kept]
     deviation = partial(_deviation, asked, value, pace.error[:, kept])
     return History(
-        drive=run.drives,
-        response=run.responses,
-        quantity=run.quantity,
-        coordinates=model.coordinates,
-        time=asked.time,
+        **asked.told,
         value=value,
-        force=asked.push,
         truncation_error=np.zeros(len(run.responses)),
-        snapshot_time=asked.snapshots,
         x=model.x,
         snapshot=passage.snapshot[seen],
         cost=Cost(
@@ -125,6 +120,4 @@ def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
         step_error = 4 / 3 * np.abs(value - finer)
     if why_direct(run.model):
         return Deviation(step_error, np.full(value.shape, np.inf))
-    from ..modal.superposition import mesh_error
-
     return Deviation(step_error, mesh_error(run, value))

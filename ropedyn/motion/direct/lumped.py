@@ -19,7 +19,7 @@ from ...response.deflection import nodal
 from ...response.moved_end import is_end
 from ...scene.damping import having
 from ...scene.force import Force
-from ..transient import Run
+from ..request import Run
 from .beside import Beside, plain, pulsation_of
 from .point_law import Call, Laws, Standing, laws_of, standing_laws
 from .readout import Reading, reading

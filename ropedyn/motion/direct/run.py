@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.array import Real
-from ..transient import Run
+from ..request import Run
 from .jumps import Onset, onset
 from .lumped import Lumps
 from .march import DISSIPATED, ENERGIES, INPUT, Motion, Stride

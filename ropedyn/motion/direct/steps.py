@@ -14,7 +14,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from ...base.errors import SolveError
 from ...chain.port import is_force, moving
 from ...scene.force import is_sampled
 from ...scene.tension import Tension
-from ..transient import Run
+from ..request import Run
 from .lumped import Lumps
 from .run import Passage, Walk
 from .timeline import Timeline, timeline
@@ -242,12 +242,3 @@ def _others(run: Run, passage: Passage) -> Real:
 def halved(run: Run, chains: list[Lumps], g: float) -> Passage:
     """March with half the steps that are asked for."""
     return Walk(run, chains, steps_of(run, chains).finer(2), g).through()
-
-
-def silent(fraction: float) -> None:
-    """Say nothing."""
-
-
-def quiet(run: Run) -> Run:
-    """Return a run that can be kept and pickled."""
-    return replace(run, progress=silent)

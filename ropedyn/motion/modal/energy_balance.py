@@ -31,7 +31,7 @@ from ...response.moved_end import is_end
 from ...scene import damping
 from ...scene.force import Force, Sum
 from ..history import Balance
-from ..transient import Run
+from ..request import Run
 from .convolution import move
 from .expansion import Expansion, Share, expand
 

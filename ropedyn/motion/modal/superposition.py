@@ -22,7 +22,7 @@ from ...response.deflection import POINTS
 from ...scene.damping import having
 from ...scene.force import Force
 from ..history import Deviation, History
-from ..transient import Run
+from ..request import Run
 from .convolution import left_out, move
 from .energy_balance import balance
 from .expansion import Expansion, Share, expand
@@ -41,21 +41,14 @@ def superpose(run: Run) -> History:
     x, snapshot = _snapshots(run, drives, resolved)
     seconds = clock.perf_counter() - start
     truncation = _truncation(run, shares)
-    # what is computed later says nothing, and pickles
-    run = dataclasses.replace(run, progress=silent)
+    run = run.kept
     deviation: Deviation | Callable[[], Deviation] = partial(_deviation, run, value)
     if run.model.element == "continuous":
         deviation = Deviation(np.zeros(value.shape), np.zeros(value.shape))
     return History(
-        drive=run.drives,
-        response=run.responses,
-        quantity=run.quantity,
-        coordinates=run.model.coordinates,
-        time=run.time,
+        **run.told,
         value=value,
-        force=run.push,
         truncation_error=truncation,
-        snapshot_time=run.snapshots,
         x=x,
         snapshot=snapshot,
         cost=Cost(

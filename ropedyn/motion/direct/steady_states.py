@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.array import Complex, Real
-from ..base.errors import SolveError
-from ..scene.force import Sine
-from ..scene.tension import Tension
-from .direct.direct import refuse_responses
-from .direct.lumped import Lumps, lumped_chains, refuse
-from .direct.march import Motion, stage_of
-from .stepped_sine import Steady, Steps, amplitudes
-from .transient import Run
+from ...base.array import Complex, Real
+from ...base.errors import SolveError
+from ...scene.force import Sine
+from ...scene.tension import Tension
+from ...signal.spectrum import amplitudes
+from ..request import Run, SteadyStates, SteppedSine
+from .direct import refuse_responses
+from .lumped import Lumps, lumped_chains, refuse
+from .march import Motion, stage_of
 
 FEWEST, MOST = 32, 1 << 14
 """Steps of a period."""
@@ -39,21 +39,22 @@ LONGEST = 100_000
 KEEPS = stage_of(1.0)
 
 
-def march_steadily(steps: Steps) -> Steady:
+def march_steadily(asked: SteppedSine) -> SteadyStates:
     """Follow the motion through the frequencies in their order, see `Model.stepped_sine`."""
-    refuse(steps.model)
-    run = _run(steps)
+    refuse(asked.model)
+    still, push = np.array([0.0, 1.0]), _push(asked, float(asked.frequency[0]))
+    run = Run(asked.model, still, (asked.drive,), (push,), asked.responses, direct=True, step=1.0)
     refuse_responses(run)
     motions = [Motion(lumps, refined=False) for lumps in lumped_chains(run)]
-    value = np.zeros((len(steps.responses), len(steps.frequency)), dtype=np.complex128)
+    value = np.zeros((len(asked.responses), len(asked.frequency)), dtype=np.complex128)
     error = np.zeros(value.shape)
-    for k, f in enumerate(steps.frequency.tolist()):
-        found, wrong = _converged(steps, motions, f)
+    for k, f in enumerate(asked.frequency.tolist()):
+        found, wrong = _converged(asked, motions, f)
         size = np.abs(found)
         relative = np.divide(wrong, size, out=np.zeros_like(size), where=size > 0)
-        value[:, k], error[:, k] = found / steps.amplitude, relative
-        steps.progress((k + 1) / len(steps.frequency))
-    return Steady(
+        value[:, k], error[:, k] = found / asked.amplitude, relative
+        asked.progress((k + 1) / len(asked.frequency))
+    return SteadyStates(
         value,
         error,
         "direct",
@@ -63,40 +64,20 @@ def march_steadily(steps: Steps) -> Steady:
     )
 
 
-def _run(steps: Steps) -> Run:
-    """Return a run that is pushed as the first frequency does."""
-    return Run(
-        model=steps.model,
-        time=np.array([0.0, 1.0]),
-        drives=(steps.drive,),
-        forces=(_push(steps, float(steps.frequency[0])),),
-        responses=steps.responses,
-        order=0,
-        loads={},
-        snapshots=np.zeros(0),
-        modes=None,
-        step=1.0,
-        tolerance=None,
-        spectral_radius=1.0,
-        progress=steps.progress,
-        partial=False,
-    )
+def _push(asked: SteppedSine, frequency: float) -> Sine:
+    return Sine(asked.amplitude, frequency, phase=math.pi / 2)
 
 
-def _push(steps: Steps, frequency: float) -> Sine:
-    return Sine(steps.amplitude, frequency, phase=math.pi / 2)
-
-
-def _converged(steps: Steps, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:
+def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:
     """Return the amplitudes with ever shorter steps, extrapolated, and how far they are off."""
     count = FEWEST
-    before = _settled(steps, motions, frequency, count)
+    before = _settled(asked, motions, frequency, count)
     while count < MOST:
         count *= 2
-        after = _settled(steps, motions, frequency, count)
+        after = _settled(asked, motions, frequency, count)
         # of second order: a third of the change is what is left of it
         off = np.abs(after.value - before.value) / 3
-        if (off <= steps.tolerance * np.abs(after.value).max()).all():
+        if (off <= asked.tolerance * np.abs(after.value).max()).all():
             return after.value + (after.value - before.value) / 3, off + after.left
         before = after
     raise SolveError(
@@ -112,22 +93,22 @@ class _Settled(NamedTuple):
     """(responses,) what may still change."""
 
 
-def _settled(steps: Steps, motions: list[Motion], frequency: float, count: int) -> _Settled:
+def _settled(asked: SteppedSine, motions: list[Motion], frequency: float, count: int) -> _Settled:
     """Follow the motion until its amplitude stays, with so many steps a period."""
     for motion in motions:
-        motion.lumps = _pushed(motion.lumps, _push(steps, frequency))
-    periods = _together(steps, frequency)
+        motion.lumps = _pushed(motion.lumps, _push(asked, frequency))
+    periods = _together(asked, frequency)
     seen: list[Complex] = []
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         seen.append(
-            _window(steps, motions, frequency, count, range(k * periods, (k + 1) * periods))
+            _window(asked, motions, frequency, count, range(k * periods, (k + 1) * periods))
         )
         if len(seen) <= LOOKS:
             continue
         changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
         size = np.abs(seen[-1]).max()
         left = _left(changes)
-        if left <= steps.tolerance / 2 * size:
+        if left <= asked.tolerance / 2 * size:
             return _Settled(seen[-1], np.full(len(seen[-1]), left))
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
@@ -135,9 +116,9 @@ def _settled(steps: Steps, motions: list[Motion], frequency: float, count: int) 
     )
 
 
-def _together(steps: Steps, frequency: float) -> int:
+def _together(asked: SteppedSine, frequency: float) -> int:
     """Return after how many periods drive and tension both begin anew, `WINDOW` at least."""
-    tension = steps.model.scene.tension
+    tension = asked.model.scene.tension
     if not isinstance(tension, Tension) or not tension.pulsates:
         return WINDOW
     turns = tension.frequency / frequency * np.arange(1, TOGETHER + 1)
@@ -169,10 +150,10 @@ def _pushed(lumps: Lumps, force: Sine) -> Lumps:
 
 
 def _window(
-    steps: Steps, motions: list[Motion], frequency: float, count: int, periods: range
+    asked: SteppedSine, motions: list[Motion], frequency: float, count: int, periods: range
 ) -> Complex:
     """Follow all chains through some periods; return the mean of their amplitudes."""
-    found = np.zeros(len(steps.responses), dtype=np.complex128)
+    found = np.zeros(len(asked.responses), dtype=np.complex128)
     most = max(BLOCK // count, 1)
     # samples are at the ends of steps, the first one step after a period begins
     turn = np.exp(-2j * np.pi / count) / len(periods)

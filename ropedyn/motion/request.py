@@ -1,0 +1,263 @@
+"""What is asked of a model over time, checked once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..base import check
+from ..base.array import Complex, Real
+from ..base.errors import SceneError
+from ..base.progress import reporter, silent
+from ..base.unit import MOTIONS, QUANTITIES, push_unit
+from ..chain.compiled import Compiled
+from ..chain.place import observed, points
+from ..chain.port import Point
+from ..response.deflection import Deflection, checked_loads
+from ..scene.force import Force, forces
+from ..scene.parts.part import standing
+from ..scene.tension import Tension
+
+METHODS = ("auto", "modal", "direct")
+
+MODAL, DIRECT = 1e-9, 1e-3
+"""Tolerance of a steady state that each method keeps where none is given."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Motion over time, as solvers are asked for it; see `Model.transient`."""
+
+    model: Compiled  # linear or not
+    time: Real  # (t,) [s], increasing; motion begins at the first
+    # a coordinate and a position, or ("end", 0 or 1, coordinate): motion of an end is given
+    drives: tuple[Point, ...]
+    forces: tuple[Force, ...]  # one for each
+    responses: tuple[Point, ...]  # Motion, internal forces, tips of wires
+    direct: bool  # whether steps answer, not modes
+    order: int = 0  # how often the displacement is differentiated
+    # under which the rope rests before the first time, when it is let go
+    loads: Mapping[Point, float] = field(default_factory=dict)
+    snapshots: Real = field(default_factory=lambda: np.zeros(0))  # (s,) looks at all of it [s]
+    modes: int | None = None  # of each component, that the modal method sums
+    step: float | None = None  # of the direct method: one of them at most [s]
+    tolerance: float | None = None  # of the direct method: one of them at most
+    spectral_radius: float = 1.0  # of the direct method at infinite frequency
+    progress: Callable[[float], Any] = silent  # takes the fraction that is done
+    partial: bool = False  # whether what was computed until the numbers fail is an answer
+
+    @classmethod
+    def of(
+        cls,
+        model: Compiled,
+        time: Any,
+        *,
+        drive: Any,
+        force: Any,
+        response: Any,
+        quantity: str,
+        start: Mapping[Point, float] | Deflection | None,
+        method: str,
+        modes: int | None,
+        step: float | None,
+        tolerance: float | None,
+        spectral_radius: float,
+        snapshots: Any,
+        progress: Any,
+        partial: bool,
+    ) -> Run:
+        """Check what is asked."""
+        direct = is_direct(model, method)
+        check.one_of(quantity, "quantity", MOTIONS)
+        t = _times(time)
+        drives, given = _driven(model, drive, force, t)
+        return cls(
+            model,
+            t,
+            drives,
+            given,
+            responses=observed(model, response, drives),
+            direct=direct,
+            order=MOTIONS[quantity],
+            loads=_loads(model, start),
+            snapshots=_snapshots(snapshots, t),
+            modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
+            step=check.optional(step, "step", "s", sign="positive"),
+            tolerance=check.optional(tolerance, "tolerance", sign="positive"),
+            spectral_radius=_radius(spectral_radius),
+            progress=reporter(progress),
+            partial=check.instance(partial, "partial", bool, "True or False"),
+        )
+
+    @property
+    def push(self) -> Real:
+        """What drives, at the times, shape (drives, t)."""
+        still = np.zeros((0, len(self.time)))
+        return np.stack([one.value(self.time) for one in self.forces]) if self.forces else still
+
+    @property
+    def kept(self) -> Run:
+        """The same for what is computed later: it says nothing, and pickles."""
+        return replace(self, progress=silent)
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What a history says of it."""
+        return {
+            "drive": self.drives,
+            "response": self.responses,
+            "quantity": list(MOTIONS)[self.order],
+            "coordinates": self.model.coordinates,
+            "time": self.time,
+            "force": self.push,
+            "snapshot_time": self.snapshots,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class SteppedSine:
+    """Steady states at frequencies, as solvers are asked for them; see `Model.stepped_sine`."""
+
+    model: Compiled  # that is driven
+    frequency: Real  # (f,) in the order they are stepped through [Hz]
+    drive: Point  # what moves by, or is pushed with, amplitude cos(omega t)
+    amplitude: float  # [N, N m; m, rad of an end]
+    responses: tuple[Point, ...]  # what is watched
+    quantity: str  # of the answer
+    direct: bool  # whether steps answer, not modes
+    tolerance: float  # of the steady state, relative
+    progress: Callable[[float], Any]  # takes the fraction that is done
+
+    @classmethod
+    def of(
+        cls,
+        model: Compiled,
+        frequency: Any,
+        *,
+        drive: Any,
+        amplitude: float,
+        response: Any,
+        quantity: str,
+        method: str,
+        tolerance: float | None,
+        progress: Any,
+    ) -> SteppedSine:
+        """Check what is asked."""
+        check.one_of(quantity, "quantity", QUANTITIES)
+        direct = is_direct(model, method)
+        given = check.optional(tolerance, "tolerance", sign="positive")
+        drives, several = points(model, drive, "drive", forces=False, ends=True)
+        if several:
+            raise SceneError(f"drive must be one point, got {len(drives)}")
+        f = check.frequencies(frequency)
+        if not f.min() > 0:
+            least = float(f.min())
+            raise SceneError(f"frequency must be > 0 [Hz], got {least!r}: that is `static`")
+        return cls(
+            model,
+            f,
+            drives[0],
+            check.number(amplitude, "amplitude", push_unit(drives[0]), sign="positive"),
+            observed(model, response, drives),
+            quantity,
+            direct,
+            tolerance=given or (DIRECT if direct else MODAL),
+            progress=reporter(progress),
+        )
+
+
+class SteadyStates(NamedTuple):
+    """What solvers answer to a stepped sine."""
+
+    value: Complex  # (responses, f) per amplitude
+    error: Real  # (responses, f) estimated relative error
+    method: str
+    unknowns: int
+    sweeps: int = 0
+    factorisations: int = 0
+
+
+def is_direct(model: Compiled, method: str) -> bool:
+    """Whether a method is the direct one; refuse modes where they do not tell the motion."""
+    check.one_of(method, "method", METHODS)
+    why = why_direct(model)
+    if method == "modal" and why:
+        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
+    return method == "direct" or (method == "auto" and bool(why))
+
+
+def why_direct(model: Compiled) -> str:
+    """Say why modes do not tell the motion, with nothing where they do."""
+    for i, part in enumerate(model.scene.parts):
+        if part in standing([part]) and part.term().laws:
+            return f"parts[{i}] is not linear"
+    tension = model.scene.tension
+    if isinstance(tension, Tension):
+        return "the tension pulsates" if tension.pulsates else "the tension is stretching"
+    return ""
+
+
+def _times(given: Any) -> Real:
+    t = check.numbers(given, "time", "s", sign="nonnegative")
+    if len(t) < 2:
+        raise SceneError(f"time must hold two times at least [s], got {len(t)}")
+    falls = np.flatnonzero(~(np.diff(t) > 0))
+    if len(falls):
+        k = int(falls[0])
+        raise SceneError(
+            f"time must increase, got time[{k}] = {float(t[k])!r} and time[{k + 1}] = "
+            f"{float(t[k + 1])!r} s"
+        )
+    return t
+
+
+def _driven(
+    model: Compiled, drive: Any, force: Any, time: Real
+) -> tuple[tuple[Point, ...], tuple[Force, ...]]:
+    """Return what is driven and by which forces."""
+    if (drive is None) != (force is None):
+        raise SceneError("give both drive and force, or neither")
+    if drive is None:
+        return (), ()
+    drives, several = points(model, drive, "drive", forces=False, ends=True)
+    if not several:
+        return drives, (forces(force, "force", time, push_unit(drives[0])),)
+    if not isinstance(force, (tuple, list, np.ndarray)) or len(force) != len(drives):
+        raise SceneError(
+            f"force must be one for each of the {len(drives)} drives, got {check.shown(force)}"
+        )
+    return drives, tuple(
+        forces(one, f"force[{k}]", time, push_unit(drive))
+        for k, (one, drive) in enumerate(zip(force, drives))
+    )
+
+
+def _loads(model: Compiled, start: Any) -> dict[Point, float]:
+    """Return the loads that are let go."""
+    if start is None:
+        return {}
+    if isinstance(start, Deflection):
+        return dict(start.load)
+    return checked_loads(model, start, "start")
+
+
+def _snapshots(given: Any, time: Real) -> Real:
+    if given is None:
+        return np.zeros(0)
+    when = check.numbers(given, "snapshots", "s", sign="nonnegative")
+    if (when < time[0]).any() or (when > time[-1]).any() or (np.diff(when) <= 0).any():
+        raise SceneError(
+            f"snapshots must increase within time, {float(time[0])!r} to {float(time[-1])!r} s, "
+            f"got {check.shown(given)}"
+        )
+    return when
+
+
+def _radius(given: Any) -> float:
+    radius = check.number(given, "spectral_radius", sign="nonnegative")
+    if radius > 1:
+        raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
+    return radius
