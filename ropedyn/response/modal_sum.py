@@ -50,24 +50,15 @@ TOGETHER = 8
 class Poles(NamedTuple):
     """Modes of one component that are summed up; equal ones are one."""
 
-    eigenvalue: Real
-    """(k,) [rad^2/s^2]."""
-    error: Real
-    """(k,) of the eigenvalue."""
-    radius: Real
-    """(k,) of a circle with no other mode in it."""
-    ratio: Real
-    """(k,) of damping."""
-    unlike: Real
-    """(k,) how far the ratios of equal modes are from that."""
-    beyond: float
-    """The first eigenvalue that is left out; infinite where none is."""
-    shift: float
-    """s."""
-    probe: float
-    """-z at which the sum is compared with the undamped response, more than s."""
-    largest: float
-    """Largest damping ratio."""
+    eigenvalue: Real  # (k,) [rad^2/s^2]
+    error: Real  # (k,) of the eigenvalue
+    radius: Real  # (k,) of a circle with no other mode in it
+    ratio: Real  # (k,) of damping
+    unlike: Real  # (k,) how far the ratios of equal modes are from that
+    beyond: float  # The first eigenvalue that is left out; infinite where none is
+    shift: float  # s
+    probe: float  # -z at which the sum is compared with the undamped response, more than s
+    largest: float  # Largest damping ratio
 
 
 def refuse_other_damping(
@@ -95,14 +86,11 @@ def refuse_other_damping(
 class Summed(NamedTuple):
     """Response of one component."""
 
-    value: Complex
-    """(drives, responses, f)."""
-    rounding: Real
-    """Estimated relative error of rounding, as value."""
+    value: Complex  # (drives, responses, f)
+    rounding: Real  # Estimated relative error of rounding, as value
+    # Bound of the relative error that the modes cause which are left out, as value
     truncation: Real
-    """Bound of the relative error that the modes cause which are left out, as value."""
-    lines: int
-    """Lines of the solver that it took."""
+    lines: int  # Lines of the solver that it took
 
 
 def modal_sum(question: Question, solver: Solver) -> Summed:

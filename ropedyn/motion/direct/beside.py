@@ -19,18 +19,12 @@ RIGID = KINDS.index("rigid")
 class Beside(NamedTuple):
     """What acts beside the chain; see csrc/march.h."""
 
-    rate: Real
-    """(distinct,) damping of each element's own stiffness [s]."""
-    spring_rate: float
-    """Damping of node springs [s]."""
-    string: Real
-    """(distinct,) tension of a string in parallel to each element [N]."""
-    string_drag: Real
-    """(distinct,) that times its damping [N s]."""
-    stretching: float
-    """EA/L [N/m]."""
-    mass_rate: float
-    """Damping of the masses of resonators, of the mass [1/s]."""
+    rate: Real  # (distinct,) damping of each element's own stiffness [s]
+    spring_rate: float  # Damping of node springs [s]
+    string: Real  # (distinct,) tension of a string in parallel to each element [N]
+    string_drag: Real  # (distinct,) that times its damping [N s]
+    stretching: float  # EA/L [N/m]
+    mass_rate: float  # Damping of the masses of resonators, of the mass [1/s]
 
 
 def plain(model: Compiled, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:

@@ -28,13 +28,10 @@ LEAST = 1e-12
 class Change(NamedTuple):
     """How functions of time change at one time, each shape (functions,)."""
 
-    value: Real
-    """After it."""
+    value: Real  # After it
     jump: Real
-    rate: Real
-    """After it [1/s]."""
-    bend: Flags
-    """Whether the rate jumps."""
+    rate: Real  # After it [1/s]
+    bend: Flags  # Whether the rate jumps
 
 
 @dataclass(frozen=True, eq=False)

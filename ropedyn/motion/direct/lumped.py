@@ -28,16 +28,11 @@ from .readout import Reading, reading
 class State(NamedTuple):
     """A motion, changed in place."""
 
-    u: Real
-    """(nodes, width) displacement."""
-    v: Real
-    """(nodes, width) velocity."""
-    f: Real
-    """(nodes - 1, width) elastic force on the right ends of elements."""
-    y: Real
-    """(attached,) displacement of the masses of resonators."""
-    w: Real
-    """(attached,) their velocity."""
+    u: Real  # (nodes, width) displacement
+    v: Real  # (nodes, width) velocity
+    f: Real  # (nodes - 1, width) elastic force on the right ends of elements
+    y: Real  # (attached,) displacement of the masses of resonators
+    w: Real  # (attached,) their velocity
 
     def copy(self) -> State:
         """Return one of its own."""

@@ -40,12 +40,9 @@ def stage_of(spectral_radius: float) -> float:
 class Push(NamedTuple):
     """What pushes a chain during steps."""
 
-    force: Real
-    """(steps, 2, drives) at the stages [N, N m]."""
-    speed: Real
-    """(steps, 2, moved) of ends [m/s, rad/s]."""
-    extra: Real | None
-    """(steps, 2) tension [N]."""
+    force: Real  # (steps, 2, drives) at the stages [N, N m]
+    speed: Real  # (steps, 2, moved) of ends [m/s, rad/s]
+    extra: Real | None  # (steps, 2) tension [N]
 
 
 @dataclass(frozen=True, eq=False)

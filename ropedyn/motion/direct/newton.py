@@ -40,16 +40,11 @@ class Stage(NamedTuple):
     """
 
     lumps: Lumps
-    theta: float
-    """[s]."""
-    time: float
-    """[s]."""
-    x: Real
-    """(laws,)."""
-    C: Real
-    """(laws, laws)."""
-    q: Real
-    """(laws,) displacement that increments start from."""
+    theta: float  # [s]
+    time: float  # [s]
+    x: Real  # (laws,)
+    C: Real  # (laws, laws)
+    q: Real  # (laws,) displacement that increments start from
 
     @property
     def calls(self) -> list[int]:

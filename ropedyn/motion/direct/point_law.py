@@ -31,20 +31,16 @@ class Laws(NamedTuple):
 class Call(NamedTuple):
     """A law in Python."""
 
-    law: int
-    """Number among the laws."""
-    part: int
-    """Number among the parts."""
+    law: int  # Number among the laws
+    part: int  # Number among the parts
     call: Callable[[float, float, float], float]
 
 
 class Standing(NamedTuple):
     """A law of a scene."""
 
-    part: int
-    """Number among the parts."""
-    x: float
-    """Where it acts [m]."""
+    part: int  # Number among the parts
+    x: float  # Where it acts [m]
     law: Law
 
 

@@ -44,19 +44,13 @@ class LeftForce:
     s is the force of the string beside the first element.
     """
 
-    channel: list[int]
-    """Which of them are asked for."""
-    F: Real
-    """(width, width)."""
+    channel: list[int]  # Which of them are asked for
+    F: Real  # (width, width)
     Q: Real
-    rate: float
-    """[s]."""
-    string: float
-    """[N/m]."""
-    drag: float
-    """[N s/m]."""
-    extra: Callable[[Real], Real]
-    """[N/m] at times."""
+    rate: float  # [s]
+    string: float  # [N/m]
+    drag: float  # [N s/m]
+    extra: Callable[[Real], Real]  # [N/m] at times
     z: int | None
 
     def values(self, read: Real, time: Real) -> Real:

@@ -87,10 +87,8 @@ def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> t
 
 
 class _Settled(NamedTuple):
-    value: Complex
-    """(responses,)."""
-    left: Real
-    """(responses,) what may still change."""
+    value: Complex  # (responses,)
+    left: Real  # (responses,) what may still change
 
 
 def _settled(asked: SteppedSine, motions: list[Motion], frequency: float, count: int) -> _Settled:

@@ -17,15 +17,12 @@ ROUNDING = 16 * np.finfo(float).eps
 class Block(NamedTuple):
     """Equal steps one after another."""
 
-    first: int
-    """Interval that they begin in."""
+    first: int  # Interval that they begin in
     steps: int
-    h: float
-    """[s]."""
-    time: Real
-    """(steps + 1,) where they begin and end [s]."""
+    h: float  # [s]
+    time: Real  # (steps + 1,) where they begin and end [s]
+    # (marks,) step after which a mark is reached, of the marks after `first` one by one
     ends: Index
-    """(marks,) step after which a mark is reached, of the marks after `first` one by one."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,16 +22,11 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 class Chirping(NamedTuple):
     """amplitude sin(phase + frequency t + growth t^2/2), t since the motion began."""
 
-    amplitude: float
-    """[N]."""
-    phase: float
-    """[rad]."""
-    frequency: float
-    """[rad/s]."""
-    growth: float
-    """[rad/s^2]."""
-    span: float
-    """How long it is asked for [s]."""
+    amplitude: float  # [N]
+    phase: float  # [rad]
+    frequency: float  # [rad/s]
+    growth: float  # [rad/s^2]
+    span: float  # How long it is asked for [s]
 
     @property
     def is_steady(self) -> bool:

@@ -74,10 +74,8 @@ class Group(NamedTuple):
     """Modes that are integrated together."""
 
     modes: Index
-    rate: float
-    """Highest angular frequency, or rate of slow decay or growth [rad/s]."""
-    decay: float
-    """Fastest rate of what only decays [1/s], 0 of none."""
+    rate: float  # Highest angular frequency, or rate of slow decay or growth [rad/s]
+    decay: float  # Fastest rate of what only decays [1/s], 0 of none
 
 
 @dataclass(frozen=True)

@@ -55,34 +55,25 @@ class Expansion(NamedTuple):
     alone.
     """
 
-    sigma: Real
-    """(k,) [1/s]."""
-    square: Real
-    """(k,) [rad^2/s^2]."""
-    a: Real
-    """(drives, responses, k)."""
-    b: Real
-    """(drives, responses, k); 0 where damping is proportional."""
-    p: Real
-    """(j,) [1/s]."""
-    r: Real
-    """(drives, responses, j)."""
-    rest: Real
-    """(drives, responses) of what is left out: it follows at once."""
+    sigma: Real  # (k,) [1/s]
+    square: Real  # (k,) [rad^2/s^2]
+    a: Real  # (drives, responses, k)
+    b: Real  # (drives, responses, k); 0 where damping is proportional
+    p: Real  # (j,) [1/s]
+    r: Real  # (drives, responses, j)
+    rest: Real  # (drives, responses) of what is left out: it follows at once
+    # (drives, responses) |H_out(0)| of the modes that are left out, at most; 0 where none is
     bound: Real
-    """(drives, responses) |H_out(0)| of the modes that are left out, at most; 0 where none is."""
+    # Angular frequency of the lowest that is left out [rad/s], infinite where none is
     beyond: float
-    """Angular frequency of the lowest that is left out [rad/s], infinite where none is."""
 
 
 class Share(NamedTuple):
     """What one component has of all drives and responses; others are not coupled."""
 
     component: tuple[str, ...]
-    drive: Index
-    """Which of the drives are on it."""
-    response: Index
-    """Which of the responses."""
+    drive: Index  # Which of the drives are on it
+    response: Index  # Which of the responses
     expansion: Expansion
 
 
@@ -305,8 +296,7 @@ class _Poles(NamedTuple):
 
     value: Complex
     error: Real
-    radius: float
-    """None of a modulus below this is missing."""
+    radius: float  # None of a modulus below this is missing
 
 
 def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> Expansion:

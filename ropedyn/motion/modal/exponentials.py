@@ -34,12 +34,9 @@ CLOSE = 0.5
 class Exponentials(NamedTuple):
     """Terms Re(weight e^(rate t)), each of one mode."""
 
-    rate: Complex
-    """(j,) [1/s]."""
-    weight: Complex
-    """(j,)."""
-    mode: Index
-    """(j,)."""
+    rate: Complex  # (j,) [1/s]
+    weight: Complex  # (j,)
+    mode: Index  # (j,)
 
 
 def rates(sigma: Real, square: Real) -> Complex:

@@ -13,14 +13,10 @@ from .expansion import Expansion
 class Pairs(NamedTuple):
     """Modes q'' + 2 sigma q' + square q = f that move responses by a q + b q'."""
 
-    sigma: Real
-    """(k,) [1/s]."""
-    square: Real
-    """(k,) [rad^2/s^2]."""
-    a: Real
-    """(responses, k)."""
-    b: Real
-    """(responses, k)."""
+    sigma: Real  # (k,) [1/s]
+    square: Real  # (k,) [rad^2/s^2]
+    a: Real  # (responses, k)
+    b: Real  # (responses, k)
 
     def derivative(self) -> tuple[Pairs, Real]:
         """Return the pairs of the responses' derivative, and what f itself adds, (responses,)."""

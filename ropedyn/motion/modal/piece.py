@@ -17,16 +17,11 @@ class Piece(NamedTuple):
     A blow at its start moves what it hits by `kick`.
     """
 
-    start: float
-    """[s]."""
-    frequency: float = 0.0
-    """w [rad/s]."""
-    cosine: float = 0.0
-    """[N]."""
-    sine: float = 0.0
-    """[N]."""
-    kick: float = 0.0
-    """[N s]."""
+    start: float  # [s]
+    frequency: float = 0.0  # w [rad/s]
+    cosine: float = 0.0  # [N]
+    sine: float = 0.0  # [N]
+    kick: float = 0.0  # [N s]
 
     def value(self, time: Real, order: int) -> Real:
         """Return the force at times [s], `order` times differentiated."""

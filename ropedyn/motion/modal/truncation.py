@@ -14,10 +14,8 @@ from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 class Change(NamedTuple):
     """How a derivative of a force changes while it acts, from nothing before it."""
 
-    jump: float
-    """Sum of the magnitudes of its jumps, that from nothing included."""
-    total: float
-    """Total variation: of the jumps and in between."""
+    jump: float  # Sum of the magnitudes of its jumps, that from nothing included
+    total: float  # Total variation: of the jumps and in between
 
 
 STILL = Change(0.0, 0.0)
