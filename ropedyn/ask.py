@@ -28,10 +28,16 @@ from .base.unit import QUANTITIES, place
 from .chain.port import Point
 from .eigen import eigen
 from .eigen.modes import Modes
+from .experiment.compare.difference import (
+    OF_FRF,
+    OF_MODES,
+    AnswerChange,
+    change_of_frf,
+    change_of_modes,
+)
 from .model import Model
 from .response import harmonic
 from .response.frf import FRF
-from .study.difference import OF_FRF, OF_MODES, Change, change_of_frf, change_of_modes
 
 
 @dataclass(frozen=True)
@@ -113,7 +119,7 @@ class ModesQuestion:
         size = np.abs(self.values(answer))
         return np.divide(error, size, out=np.zeros_like(size), where=size > 0)
 
-    def change(self, answer: Modes, model: Model, *, solver: str = "sweep") -> Change:
+    def change(self, answer: Modes, model: Model, *, solver: str = "sweep") -> AnswerChange:
         """Compare an answer with that of a model from which something was left out."""
         return change_of_modes(answer, model, solver)
 
@@ -209,7 +215,7 @@ class FRFQuestion(Frozen):
         """Return the estimated relative error that rounding causes."""
         return answer.rounding_error
 
-    def change(self, answer: FRF, model: Model, *, solver: str = "sweep") -> Change:
+    def change(self, answer: FRF, model: Model, *, solver: str = "sweep") -> AnswerChange:
         """Compare an answer with that of a model from which something was left out."""
         return change_of_frf(answer, self.of(model, solver=solver, threads=1))
 

@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import FRFQuestion, ModesQuestion, Question
+from ..ask import Question
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Integer, Real
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
-from ..base.stopwatch import timed
 from ..base.table import Table, numbers
 from ..base.unit import power
 from ..chain.chain import KINDS
 from ..chain.compile import MOST_ELEMENTS
 from ..scene.scene import Scene
-from .trial import CUTS, Trial, Truth, trial, ways, words
+from .truth import CUTS, Truth
+from .way import check_question, priced, words
 
+# relative errors within which the cheapest way is looked for
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
-"""Relative errors that the cheapest way is looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,9 +248,7 @@ def accuracy_cost(
     >>> print(cost.error[-1] < 1e-14)  # continuous spans
     True
     """
-    check.instance(scene, "scene", Scene, "a Scene")
-    kinds_of_question = (ModesQuestion, FRFQuestion)
-    check.instance(question, "question", kinds_of_question, "made by ropedyn.ask")
+    check_question(scene, question)
     kinds = _words(element, "element", KINDS)
     solvers = _words(solver, "solver", question.solvers)
     counts = None if elements is None else _counts(elements)
@@ -258,35 +257,20 @@ def accuracy_cost(
     if kinds == ("continuous",) and "sweep" not in solvers:
         raise SceneError(f'solver must have "sweep" for continuous spans, got {solvers}')
     truth = Truth.of(scene, question)
-    every = ways(truth, kinds, counts, solvers)
-    if not every:
+    ways = truth.ways(kinds, counts, solvers)
+    if not ways:
         raise SceneError(
             f"elements must be given where {' and '.join(solvers)} would take more than about a "
             "second, got None"
         )
-    tried = []
-    for k, way in enumerate(every):
-        tried.append(trial(truth, way))
-        report((k + 1) / len(every) / 2)
-    return _timed(question, tried, repeat, lambda fraction: report((1 + fraction) / 2))
-
-
-def _timed(
-    question: Question, tried: Sequence[Trial], repeat: int, report: Callable[[float], Any]
-) -> AccuracyCost:
-    """Time what has been tried."""
-    times = timed([one.calls for one in tried], repeat, report)
+    nothing = dict.fromkeys(("error", "estimated_error", "digits_lost"), np.nan)
+    columns, times = priced([partial(truth.tried, *way) for way in ways], nothing, repeat, report)
     return AccuracyCost(
         question=str(question),
         reference=f"continuous spans, of these against cuts into {_listed(CUTS)} parts",
-        element=np.array([one.element for one in tried]),
-        elements=np.array([one.elements for one in tried]),
-        solver=np.array([one.solver for one in tried]),
+        **{name: np.array(c) for name, c in zip(("element", "elements", "solver"), zip(*ways))},
         **times._asdict(),
-        error=np.array([one.error for one in tried]),
-        estimated_error=np.array([one.estimated_error for one in tried]),
-        digits_lost=np.array([one.digits_lost for one in tried]),
-        refusal=np.array([one.refusal for one in tried]),
+        **columns,
     )
 
 

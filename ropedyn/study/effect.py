@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -10,18 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import FRFQuestion, ModesQuestion, Question
+from ..ask import Question
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Flags, Integer, Real
-from ..base.errors import RopedynError
 from ..base.progress import Progress, reporter
-from ..base.stopwatch import Times, timed
 from ..base.table import Table, numbers
-from ..model import Model
+from ..experiment.compare.difference import AnswerChange
 from ..scene.scene import Scene
-from .difference import Change
-from .trial import answered, ask_once, words
+from .way import Way, answered, check_question, priced
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,87 +233,24 @@ def effect_cost(
     >>> print(cost.refusal[0][:53])
     rope must have a stiffness or the scene a tension: te
     """
-    check.instance(scene, "scene", Scene, "a Scene")
-    kinds_of_question = (ModesQuestion, FRFQuestion)
-    check.instance(question, "question", kinds_of_question, "made by ropedyn.ask")
+    check_question(scene, question)
     check.one_of(solver, "solver", question.solvers)
     check.count(repeat, "repeat", most=10_000)
     report = reporter(progress)
-    whole = Whole.of(scene, question, {"elements": elements, "element": element}, solver)
-    left: list[Left] = []
-    for effect in scene.effects:
-        left.append(_without(whole, effect))
-        report(len(left) / len(scene.effects) / 2)
-    calls = [whole.calls(scene, whole.model), *(one.calls for one in left)]
-    times = timed(calls, repeat, lambda fraction: report((1 + fraction) / 2))
-    return _result(whole, left, times)
-
-
-@dataclass(frozen=True, eq=False)
-class Whole:
-    """The scene with all its effects, and how it is asked."""
-
-    scene: Scene  # as in `effect_cost`
-    question: Question  # as in `effect_cost`
-    how: dict[str, Any]  # arguments of `Scene.compile`
-    solver: str  # as in `effect_cost`
-    model: Model  # of the whole scene
-    answer: Any  # to the question
-
-    @staticmethod
-    def of(scene: Scene, question: Question, how: dict[str, Any], solver: str) -> Whole:
-        """Compile and ask the whole scene."""
-        model = scene.compile(**how)
-        return Whole(scene, question, how, solver, model, answered(question, model, solver))
-
-    def calls(self, scene: Scene, model: Model) -> tuple[Callable[[], Any], ...]:
-        """Return what compiles a scene and what asks its model."""
-        asked = partial(ask_once, self.question, model, self.solver)
-        return partial(scene.compile, **self.how), asked
-
-
-@dataclass(frozen=True, eq=False)
-class Left:
-    """What is left without an effect."""
-
-    effect: str  # which one
-    change: Change  # of the answer
-    unknowns: int = 0  # of what was solved
-    refusal: str = ""  # why there is no answer
-    # what compiles and what asks, nothing where there is no answer
-    calls: tuple[Callable[[], Any], ...] = ()
-
-
-def _without(whole: Whole, effect: str) -> Left:
-    """Ask what is left of a scene without an effect."""
-    question, solver = whole.question, whole.solver
-    try:
-        scene = whole.scene.without(effect)
-        model = scene.compile(**whole.how)
-        unknowns = ask_once(question, model, solver).cost.unknowns
-        change = question.change(whole.answer, model, solver=solver)
-    except RopedynError as refusal:
-        return Left(effect, Change.unknown(question.measures), refusal=str(refusal))
-    return Left(effect, change, unknowns, calls=whole.calls(scene, model))
-
-
-def _result(whole: Whole, left: Sequence[Left], times: Times) -> EffectCost:
-    """Lay out what has been tried and timed, the whole scene first among the times."""
+    whole = answered(question, scene, {"elements": elements, "element": element}, solver)
+    attempts = [partial(_without, whole, effect) for effect in scene.effects]
+    nothing = _numbers(AnswerChange.unknown(question.measures), 0)
+    columns, times = priced(attempts, nothing, repeat, report, whole)
     middle, lower, upper = (
         times.compile_seconds + part
         for part in (times.seconds, times.lower_quartile, times.upper_quartile)
     )
-    question, model, elements = whole.question, whole.model, len(whole.model.x) - 1
-    changes = [one.change for one in left]
     return EffectCost(
         question=str(question),
-        way=words(model.element, elements, whole.solver),
-        elements=elements,
-        effect=np.array([one.effect for one in left]),
-        change={name: np.array([c.size[name] for c in changes]) for name in question.measures},
-        error=np.array([c.error for c in changes]),
-        beyond_error=np.array([c.beyond_error for c in changes]),
-        only_with=np.array([c.lost for c in changes]),
+        way=str(whole),
+        elements=len(whole.model.x) - 1,
+        effect=np.array(scene.effects),
+        change={name: columns.pop(name) for name in question.measures},
         seconds_with=float(middle[0]),
         lower_quartile_with=float(lower[0]),
         upper_quartile_with=float(upper[0]),
@@ -325,9 +258,25 @@ def _result(whole: Whole, left: Sequence[Left], times: Times) -> EffectCost:
         lower_quartile_without=lower[1:],
         upper_quartile_without=upper[1:],
         unknowns_with=whole.answer.cost.unknowns,
-        unknowns_without=np.array([one.unknowns for one in left]),
-        refusal=np.array([one.refusal for one in left]),
+        **columns,
     )
+
+
+def _without(whole: Way, effect: str) -> tuple[Way, dict[str, Any]]:
+    """Ask what is left of a scene without an effect."""
+    left = Way.of(whole.question, whole.scene.without(effect), whole.how, whole.solver)
+    change = whole.question.change(whole.answer, left.model, solver=whole.solver)
+    return left, _numbers(change, left.answer.cost.unknowns)
+
+
+def _numbers(change: AnswerChange, unknowns: int) -> dict[str, Any]:
+    """Return the cells of a row."""
+    return change.size | {
+        "error": change.error,
+        "beyond_error": change.beyond_error,
+        "only_with": change.lost,
+        "unknowns_without": unknowns,
+    }
 
 
 def _where(asked: Flags, values: Integer) -> tuple[int | None, ...]:

@@ -9,7 +9,8 @@ from exact_waves import beam_eigenvalue
 
 import ropedyn as rd
 from ropedyn.base import stopwatch
-from ropedyn.study import trial
+from ropedyn.experiment.compare.difference import relative
+from ropedyn.study import truth
 from ropedyn.study.accuracy import TOLERANCES
 
 EPS = np.finfo(float).eps
@@ -112,7 +113,7 @@ def test_rounding_is_measured_against_the_sweep_of_the_same_chain():
     [(1.5, 1.0, 0.5), (0.0, 0.0, 0.0), (2.0, 0.0, 1.0), (-1.0, 1.0, 2.0)],
 )
 def test_relative_errors_of_zeros_are_nothing_or_everything(found, right, error):
-    assert trial.relative(np.array([found]), np.array([right])).tolist() == [error]
+    assert relative(np.array([found]), np.array([right])).tolist() == [error]
 
 
 def test_responses_that_are_zero_by_symmetry_are_left_out():
@@ -165,22 +166,22 @@ def test_a_word_and_a_number_stand_for_one():
 
 
 def test_without_elements_chains_are_doubled_until_they_are_long_or_slow(monkeypatch):
-    monkeypatch.setattr(trial, "MOST", 6)
+    monkeypatch.setattr(truth, "MOST", 6)
     answer = cost(BEAM, rd.ask.modes(1), element="tensed", solver="sweep")
     assert answer.elements.tolist() == [8, 16, 32, 64]
-    monkeypatch.setattr(trial, "LONGEST", rd.ask.modes(1).work(BEAM.compile(elements=16)))
+    monkeypatch.setattr(truth, "LONGEST", rd.ask.modes(1).work(BEAM.compile(elements=16)))
     answer = cost(BEAM, rd.ask.modes(1), element="tensed", solver="lapack")
     assert answer.elements.tolist() == [8, 16]
 
 
 def test_elements_must_be_given_where_none_is_quick_enough(monkeypatch):
-    monkeypatch.setattr(trial, "LONGEST", 0.0)
+    monkeypatch.setattr(truth, "LONGEST", 0.0)
     with pytest.raises(rd.SceneError, match="elements must be given where lapack would"):
         cost(BEAM, rd.ask.modes(1), element="tensed", solver="lapack")
 
 
 def test_without_elements_there_are_as_many_as_spans(monkeypatch):
-    monkeypatch.setattr(trial, "MOST", 5)
+    monkeypatch.setattr(truth, "MOST", 5)
     held = BEAM.replace(parts=[rd.Support(0.1 * k) for k in range(1, 11)])
     answer = cost(held, rd.ask.modes(1), element=("rigid", "continuous"), solver="sweep")
     assert answer.elements.tolist() == [16, 32, 64, 128, 11]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
-from ropedyn.study.difference import motions
+from ropedyn.experiment.compare.difference import motions
 
 EPS = np.finfo(float).eps
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)

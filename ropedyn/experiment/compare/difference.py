@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.array import Real
-from ..chain.chain import CARRIED
-from ..eigen.eigen import solve_modes
-from ..eigen.mesh_error import in_hertz
-from ..eigen.modes import Modes
-from ..model import Model
-from ..response.frf import FRF
+from ...base.array import Real
+from ...chain.chain import CARRIED
+from ...eigen.eigen import solve_modes
+from ...eigen.mesh_error import in_hertz
+from ...eigen.modes import Modes
+from ...model import Model
+from ...response.frf import FRF
 
 MOTIONS = {
     "axial": ("x",),
@@ -37,7 +37,7 @@ OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
 
 
 @dataclass(frozen=True)
-class Change:
+class AnswerChange:
     """What leaving something out changes."""
 
     # measures of the change with their units, the largest change first; NaN where nothing is left
@@ -49,9 +49,9 @@ class Change:
     lost: int  # modes or responses that are only there with it
 
     @staticmethod
-    def unknown(measures: Sequence[str]) -> Change:
+    def unknown(measures: Sequence[str]) -> AnswerChange:
         """Return the change of what has no answer."""
-        return Change(dict.fromkeys(measures, np.nan), np.nan, beyond_error=False, lost=0)
+        return AnswerChange(dict.fromkeys(measures, np.nan), np.nan, beyond_error=False, lost=0)
 
 
 def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
@@ -63,7 +63,7 @@ def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
 # --- modes ------------------------------------------------------------------------------------
 
 
-def change_of_modes(whole: Modes, model: Model, solver: str) -> Change:
+def change_of_modes(whole: Modes, model: Model, solver: str) -> AnswerChange:
     """Compare modes with those of a model from which something was left out.
 
     Modes are paired by their motion and their order among those of the same motion; where the
@@ -78,7 +78,7 @@ def change_of_modes(whole: Modes, model: Model, solver: str) -> Change:
     error = error + uncertain
     lost = len(mine) - len(after)
     size = [measure(each) for each in (hertz, percent) for measure in (_largest, _root_mean_square)]
-    return Change(
+    return AnswerChange(
         size=dict(zip(OF_MODES, (*size, _largest_known(np.abs(left - ratio))))),
         error=_at_largest(error, hertz),
         beyond_error=bool(lost > 0 or (hertz > error).any()),
@@ -152,7 +152,7 @@ def _numbers(modes: Modes) -> Real:
 # --- frequency response -----------------------------------------------------------------------
 
 
-def change_of_frf(whole: FRF, left: FRF) -> Change:
+def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
     """Compare a frequency response with that of what is left, line by line.
 
     A value without a correct digit, as one that is 0 by symmetry, counts as 0.
@@ -163,7 +163,7 @@ def change_of_frf(whole: FRF, left: FRF) -> Change:
     level = _level(before[~gone], after[~gone])
     error = _decibel(_relative_error(whole) + _relative_error(left)).reshape(-1, lines)[~gone]
     size = (_largest(level), _median(level), _peak_shift(whole, left))
-    return Change(
+    return AnswerChange(
         size=dict(zip(OF_FRF, size)),
         error=_at_largest(error, level),
         beyond_error=bool(gone.any() or (level > error).any()),

@@ -1,0 +1,110 @@
+"""What answers are measured against, and which ways to the answer are worth a trial."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..ask import Question
+from ..base.array import Flags, Real
+from ..base.errors import SolveError
+from ..experiment.compare.difference import relative
+from ..scene.scene import Scene
+from .way import Way, answered, ask_once
+
+# spans are cut into so many parts for other arithmetic; powers of two would join to the same bits
+CUTS = (3, 5, 7)
+# chains are tried between these powers of two
+FEWEST, MOST = 3, 12
+# assembled solvers that nobody asked for by number of elements may take so long [s]
+LONGEST = 1.0
+EPSILON = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What answers are measured against: continuous spans."""
+
+    scene: Scene  # what is asked about
+    question: Question  # what is asked, and timed
+    same: Question  # the same for exactly as many values as the true answer has
+    values: NDArray[Any]  # true ones
+    # which of them have a correct digit: what is 0 by symmetry is nothing but rounding
+    known: Flags
+    error: float  # their own largest relative error, seen in other cuts of the same spans
+    spans: int  # how many
+
+    @staticmethod
+    def of(scene: Scene, question: Question) -> Truth:
+        """Ask continuous spans, whole and cut."""
+        whole = answered(question, scene, {})
+        values = question.values(whole.answer)
+        known = question.rounding(whole.answer) < 1
+        if not known.any():
+            raise SolveError(f"continuous spans have no correct digit of the {question}")
+        same, spans = question.like(whole.answer), len(whole.model.x) - 1
+        error = 0.0
+        for parts in CUTS:
+            cut = Way.of(same, scene, {"elements": parts * spans, "element": "continuous"}).answer
+            error = max(error, _largest(relative(same.values(cut), values), known))
+        return Truth(scene, question, same, values, known, error, spans)
+
+    def ways(
+        self, kinds: Sequence[str], counts: Sequence[int] | None, solvers: Sequence[str]
+    ) -> list[tuple[str, int, str]]:
+        """Return element, number of elements and solver of every way to the answer."""
+        found: list[tuple[str, int, str]] = []
+        for kind in kinds:
+            if kind != "continuous":
+                found += [(kind, n, s) for s in solvers for n in counts or self._sensible(kind, s)]
+            elif "sweep" in solvers:
+                found.append((kind, self.spans, "sweep"))
+        return found
+
+    def _sensible(self, kind: str, solver: str) -> Iterator[int]:
+        """Return powers of two from 8, or from the number of spans, that are not too slow."""
+        first = max(FEWEST, (self.spans - 1).bit_length())
+        for power in range(first, max(MOST, first + 3) + 1):
+            model = self.scene.compile(elements=2**power, element=kind)
+            if solver == "lapack" and self.question.work(model) > LONGEST:
+                return
+            yield 2**power
+
+    def tried(self, kind: str, elements: int, solver: str) -> tuple[Way, dict[str, float]]:
+        """Try a way, and return it with its errors and the digits that it loses."""
+        continuous = kind == "continuous"
+        how = {} if continuous else {"elements": elements, "element": kind}
+        way = same = Way.of(self.same, self.scene, how, solver)
+        if self.same is not self.question:
+            way = Way.of(self.question, self.scene, how, solver)
+        values, bound = self.same.values(same.answer), self.same.rounding(same.answer)
+        error, estimated = self.error, bound
+        if not continuous:
+            error = _largest(relative(values, self.values), self.known)
+            estimated = self.same.mesh(same.answer) + bound
+        lost = bound if solver == "sweep" else self._rounding(way, values, bound)
+        return way, {
+            "error": max(error, EPSILON / 2),
+            "estimated_error": _largest(estimated, self.known),
+            "digits_lost": _digits(_largest(lost, self.known)),
+        }
+
+    def _rounding(self, way: Way, values: NDArray[Any], bound: Real) -> Real:
+        """Return how far values are from those of the sweep along the same chain, if it has any."""
+        try:
+            return relative(values, self.same.values(ask_once(self.same, way.model)))
+        except SolveError:
+            return bound
+
+
+def _largest(errors: Real, known: Flags) -> float:
+    return float(errors[known].max())
+
+
+def _digits(rounding: float) -> float:
+    """Return how many of the decimal digits there are a relative error by rounding takes."""
+    return float(np.log10(min(max(rounding / EPSILON, 1.0), 1 / EPSILON)))

@@ -1,0 +1,104 @@
+"""A question put to several ways of solving: what each answers, and how long it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..ask import FRFQuestion, ModesQuestion, Question
+from ..base import check
+from ..base.errors import RopedynError, SceneError
+from ..base.stopwatch import Times, timed
+from ..model import Model
+from ..scene.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """One way of answering a question."""
+
+    question: Question
+    scene: Scene
+    how: Mapping[str, Any]  # arguments of `Scene.compile`
+    solver: str
+    model: Model
+    answer: Any
+
+    @classmethod
+    def of(
+        cls, question: Question, scene: Scene, how: Mapping[str, Any], solver: str = "sweep"
+    ) -> Way:
+        """Compile and ask."""
+        model = scene.compile(**how)
+        return cls(question, scene, how, solver, model, ask_once(question, model, solver))
+
+    @property
+    def calls(self) -> tuple[Callable[[], Any], ...]:
+        """What compiles and what asks, to be timed."""
+        asked = partial(ask_once, self.question, self.model, self.solver)
+        return partial(self.scene.compile, **self.how), asked
+
+    def __str__(self) -> str:
+        return words(self.model.element, len(self.model.x) - 1, self.solver)
+
+
+def ask_once(question: Question, model: Model, solver: str = "sweep") -> Any:
+    """Ask a model as it is timed: in one thread."""
+    return question.of(model, solver=solver, threads=1)
+
+
+def answered(
+    question: Question, scene: Scene, how: Mapping[str, Any], solver: str = "sweep"
+) -> Way:
+    """Ask a scene, and refuse a question whose answer is empty."""
+    way = Way.of(question, scene, how, solver)
+    if question.values(way.answer).size == 0:
+        raise SceneError(f"question must have an answer, got {question}: there are none")
+    return way
+
+
+def words(element: str, elements: int, solver: str) -> str:
+    """Say a way in words; continuous spans are only swept."""
+    return element if element == "continuous" else f"{element}, {elements}, {solver}"
+
+
+Attempt = Callable[[], tuple[Way, Mapping[str, Any]]]
+"""Tries a way, and returns it with the numbers of its row."""
+
+
+def check_question(scene: Scene, question: Question) -> None:
+    """Refuse what is no scene, and what is no question."""
+    check.instance(scene, "scene", Scene, "a Scene")
+    check.instance(question, "question", (ModesQuestion, FRFQuestion), "made by ropedyn.ask")
+
+
+def priced(
+    attempts: Sequence[Attempt],
+    nothing: Mapping[str, Any],
+    repeat: int,
+    report: Callable[[float], Any],
+    *first: Way,
+) -> tuple[dict[str, NDArray[Any]], Times]:
+    """Try ways and time them after those that come first; return columns and times.
+
+    A way that refuses is a row with the numbers of nothing and the reason.
+    """
+    rows: list[Mapping[str, Any]] = []
+    calls = [way.calls for way in first]
+    for attempt in attempts:
+        try:
+            way, numbers = attempt()
+        except RopedynError as refusal:
+            rows.append({**nothing, "refusal": str(refusal)})
+            calls.append(())
+        else:
+            rows.append({**numbers, "refusal": ""})
+            calls.append(way.calls)
+        report(len(rows) / len(attempts) / 2)
+    columns = {name: np.array([row[name] for row in rows]) for name in (*nothing, "refusal")}
+    return columns, timed(calls, repeat, lambda fraction: report((1 + fraction) / 2))
