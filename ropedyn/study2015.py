@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,42 +19,32 @@ from .base.array import Real
 from .base.errors import SceneError
 from .base.table import Table
 from .curves.peaks import Peaks
+from .experiment.identify.identify import identify
 from .model import Model
 from .scene.damping import StiffnessDamping
 from .scene.rope import Rope
 from .scene.scene import Scene
+from .study.implied import CATALOGUE_DENSITY, Implied, fitted_by_ends
 
-if TYPE_CHECKING:
-    from .study.implied import Implied
-
-ELEMENTS = 8
-"""Elements of the study's chain."""
-ELEMENT_LENGTH = 0.16875
-"""Length of one [m]."""
-LENGTH = ELEMENTS * ELEMENT_LENGTH
-"""Of the fragment of rope [m]."""
-MASS = 0.13725
-"""Printed as the mass at each of the seven nodes; in our reading that of the whole rope [kg]."""
-TWIST_INERTIA = 2.352e-8
-"""I_alpha of each mass [kg m^2]."""
-BENDING_INERTIA = 7.8168e-5
-"""I_beta of each mass [kg m^2]."""
-TORSIONAL_STIFFNESS = 0.1485
-"""C [N m^2]."""
-BENDING_STIFFNESS = 54.626
-"""B [N m^2]."""
-LAY_SLOPE = 0.01
-"""H [1]."""
-GAMMA = 1e-4
-"""Damping matrix over stiffness matrix [s]."""
-DIAMETER = 4e-3
-"""Of the measured rope [m]."""
-STEEL = 2.1e11
-"""Young's modulus of steel, for the comparison with a solid rod [N/m^2]."""
-MASSES = tuple(k * ELEMENT_LENGTH for k in range(1, ELEMENTS))
-"""Where the seven masses stand [m]."""
-DRIVE = ("z", MASSES[2])
-"""The transverse force on the third mass."""
+ELEMENTS = 8  # of the study's chain
+ELEMENT_LENGTH = 0.16875  # [m]
+LENGTH = ELEMENTS * ELEMENT_LENGTH  # of the fragment of rope [m]
+MASS = 0.13725  # printed as that of each of the seven nodes; in our reading of the rope [kg]
+TWIST_INERTIA = 2.352e-8  # I_alpha of each mass [kg m^2]
+BENDING_INERTIA = 7.8168e-5  # I_beta of each mass [kg m^2]
+TORSIONAL_STIFFNESS = 0.1485  # C [N m^2]
+BENDING_STIFFNESS = 54.626  # B [N m^2]
+LAY_SLOPE = 0.01  # H [1]
+GAMMA = 1e-4  # damping matrix over stiffness matrix [s]
+DIAMETER = 4e-3  # of the measured rope [m]
+STEEL = 2.1e11  # Young's modulus, for the comparison with a solid rod [N/m^2]
+MASSES = tuple(k * ELEMENT_LENGTH for k in range(1, ELEMENTS))  # where the seven masses stand [m]
+DRIVE = ("z", MASSES[2])  # the transverse force acts on the third mass
+DENSITIES = {  # what the rope may weigh [kg/m]
+    "0.13725 kg the whole rope": MASS / LENGTH,
+    "a 4 mm rope of a catalogue": CATALOGUE_DENSITY,
+    "0.13725 kg at each mass": MASS / ELEMENT_LENGTH,
+}
 
 LITERAL = "study's kinematics, 0.13725 kg at each mass"
 WHOLE = "study's kinematics, 0.13725 kg the whole rope"
@@ -152,8 +142,6 @@ def fitted_beam() -> Scene:
     >>> round(fitted.tension), round(fitted.rope.bending_stiffness, 2)
     (2960, 0.42)
     """
-    from .experiment.identify.identify import identify
-
     return identify(tensed_beam(1000.0, 1.0), measured, ["tension", "bending_stiffness"]).scene
 
 
@@ -181,9 +169,8 @@ def implied(peaks: Peaks = measured) -> Implied:
     >>> print(rd.study2015.implied().fits["clamped"].value["tension"].round())
     2960.0
     """
-    from .study import implied as study_implied
-
-    return study_implied.implied(peaks)
+    fits = fitted_by_ends(peaks, tensed_beam(1000.0, 1.0))
+    return Implied(peaks, DENSITIES, fits, scene(), BENDING_STIFFNESS, solid_rod_stiffness())
 
 
 def solid_rod_stiffness() -> float:

@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 
-from .. import study2015
 from ..base import check
 from ..base.errors import IdentifyWarning
 from ..base.named import Named
@@ -16,23 +15,11 @@ from ..base.table import Table
 from ..curves.peaks import Peaks
 from ..experiment.identify.fit import Fit
 from ..experiment.identify.identify import identify
-from ..scene.rope import Rope
 from ..scene.scene import Scene
 
-CATALOGUE_DENSITY = 0.061
-"""Of a 4 mm steel rope, as catalogues have it [kg/m]."""
-DENSITIES = {
-    "0.13725 kg the whole rope": study2015.MASS / study2015.LENGTH,
-    "a 4 mm rope of a catalogue": CATALOGUE_DENSITY,
-    "0.13725 kg at each mass": study2015.MASS / study2015.ELEMENT_LENGTH,
-}
-"""What the study's rope may weigh [kg/m]."""
-FITTED = next(iter(DENSITIES.values()))
-"""Of the rope that is fitted [kg/m]."""
-ENDS = ("clamped", "pinned")
-"""How its ends may be held."""
-STATED_TENSION = 300.0
-"""Stated in one place of the study [N]; in another it is 90 % of the nominal strength."""
+CATALOGUE_DENSITY = 0.061  # of a 4 mm steel rope, as catalogues have it [kg/m]
+ENDS = ("clamped", "pinned")  # how the ends of the rope may be held
+STATED_TENSION = 300.0  # in one place of the study [N]; in another 90 % of the nominal strength
 UNKNOWN = ("tension", "bending_stiffness")
 
 
@@ -45,7 +32,11 @@ class Implied:
     """
 
     peaks: Peaks  # of the study
-    fits: dict[str, Fit]  # by ends, of the rope that weighs what the first of `DENSITIES` says
+    densities: dict[str, float]  # what its rope may weigh [kg/m]
+    fits: dict[str, Fit]  # by ends
+    own: Scene  # the study's rope
+    bending_stiffness: float  # of the study's rope, as printed [N m^2]
+    rod_stiffness: float  # of a solid rod as thick [N m^2]
 
     @cached_property
     def intervals(self) -> dict[str, Named]:
@@ -54,17 +45,20 @@ class Implied:
 
     def table(self) -> Table:
         """Return one row for each reading, with intervals of 95 %."""
-        readings = [(rope, ends) for rope in DENSITIES for ends in self.fits]
+        readings = [(rope, ends) for rope in self.densities for ends in self.fits]
         columns: dict[str, list[object]] = {
             "rope": [rope for rope, _ in readings],
             "ends": [ends for _, ends in readings],
         }
         for path, unit in zip(UNKNOWN, ("N", "N m^2")):
             told = {e: [f.value[path], *self.intervals[e][path]] for e, f in self.fits.items()}
-            rows = [DENSITIES[rope] / FITTED * np.array(told[ends]) for rope, ends in readings]
+            rows = [self._over_fitted(rope) * np.array(told[ends]) for rope, ends in readings]
             names = (f"{path} [{unit}]", f"95 % from [{unit}]", f"to [{unit}]")
             columns |= dict(zip(names, np.transpose(rows).tolist()))
         return Table.of("what the peaks imply", columns)
+
+    def _over_fitted(self, rope: str) -> float:
+        return self.densities[rope] / self.fits[ENDS[0]].scene.rope.linear_density
 
     @property
     def verdict(self) -> str:
@@ -74,9 +68,31 @@ class Implied:
             [
                 _width(fit, interval),
                 _density(fit),
-                _rod(*interval["bending_stiffness"]),
-                _torsion(fit, float(np.asarray(self.peaks.frequency)[2])),
+                self._rod(*interval["bending_stiffness"]),
+                self._torsion(fit, float(np.asarray(self.peaks.frequency)[2])),
             ]
+        )
+
+    def _rod(self, low: float, high: float) -> str:
+        def place(bending: float) -> str:
+            return "inside" if low <= bending <= high else "outside"
+
+        rod, stated = self.rod_stiffness, self.bending_stiffness
+        return (
+            f"A solid steel rod has {rod:.2f} N m^2, {place(rod)} the interval; the study's "
+            f"{stated:.1f} N m^2, {stated / rod:.0f} times as much, is {place(stated)}."
+        )
+
+    def _torsion(self, fit: Fit, third: float) -> str:
+        modes = self.own.compile().modes(12)
+        twist = float(modes.frequency[modes.family == "torsional"][0])
+        more = fit.scene.replace(tension=1.1 * fit.scene.mean_tension)
+        rise = 100 * (_third(more) / _third(fit.scene) - 1)
+        return (
+            f"The study's own constants twist at {twist:.0f} Hz, twice {twist / 2:.0f} Hz, which "
+            f"is {100 * abs(twist / 2 / third - 1):.1f} % from the third peak. One frequency "
+            "cannot decide, tension can: 10 % more of it raises the transverse mode by "
+            f"{rise:.1f} %, and torsion not at all."
         )
 
     def __str__(self) -> str:
@@ -87,19 +103,13 @@ class Implied:
         return self.table()._repr_html_() + paragraphs
 
 
-def implied(peaks: Peaks) -> Implied:
-    """Fit a tensed beam to peaks of the study; see `study2015.implied`."""
+def fitted_by_ends(peaks: Peaks, beam: Scene) -> dict[str, Fit]:
+    """Fit a tensed beam to peaks, for each kind of its ends."""
     check.instance(peaks, "peaks", Peaks, "Peaks")
     with warnings.catch_warnings():
         # that a stiffness does not show is what the table says
         warnings.simplefilter("ignore", IdentifyWarning)
-        fits = {ends: identify(_scene(ends), peaks, UNKNOWN) for ends in ENDS}
-    return Implied(peaks, fits)
-
-
-def _scene(ends: str) -> Scene:
-    rope = Rope(study2015.LENGTH, FITTED, bending_stiffness=1.0)
-    return Scene(rope, tension=1000.0, ends=(ends, ends))
+        return {end: identify(beam.replace(ends=(end, end)), peaks, UNKNOWN) for end in ENDS}
 
 
 def _width(fit: Fit, interval: Named) -> str:
@@ -119,30 +129,6 @@ def _density(fit: Fit) -> str:
         f"What they tell is tension over density, {speed:.0f} N m/kg: the {STATED_TENSION:.0f} N "
         f"that the study states would take a rope of {density:.3f} kg/m, "
         f"{100 * density / CATALOGUE_DENSITY:.0f} % of a catalogue's."
-    )
-
-
-def _rod(low: float, high: float) -> str:
-    def place(bending: float) -> str:
-        return "inside" if low <= bending <= high else "outside"
-
-    rod, stated = study2015.solid_rod_stiffness(), study2015.BENDING_STIFFNESS
-    return (
-        f"A solid steel rod has {rod:.2f} N m^2, {place(rod)} the interval; the study's "
-        f"{stated:.1f} N m^2, {stated / rod:.0f} times as much, is {place(stated)}."
-    )
-
-
-def _torsion(fit: Fit, third: float) -> str:
-    modes = study2015.scene().compile().modes(12)
-    twist = float(modes.frequency[modes.family == "torsional"][0])
-    more = fit.scene.replace(tension=1.1 * fit.scene.mean_tension)
-    rise = 100 * (_third(more) / _third(fit.scene) - 1)
-    return (
-        f"The study's own constants twist at {twist:.0f} Hz, twice {twist / 2:.0f} Hz, which is "
-        f"{100 * abs(twist / 2 / third - 1):.1f} % from the third peak. One frequency cannot "
-        f"decide, tension can: 10 % more of it raises the transverse mode by {rise:.1f} %, and "
-        "torsion not at all."
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,35 +17,28 @@ from ...eigen.modes import Modes
 from ...model import Model
 from ...response.frf import FRF
 
+# Modes are told apart by whose kinetic energy they have: a cross section that turns with dz/dx
+# belongs to z, and what the rope carries has modes of its own.
 MOTIONS = {
     "axial": ("x",),
     "transverse": ("z", "beta"),
     "torsional": ("alpha",),
     **{kind: (name,) for kind, name in CARRIED.items()},
 }
-"""What modes are told apart by: which kinetic energies are whose.
-
-A cross section that turns with dz/dx belongs to z; what the rope carries has modes of its own.
-"""
-
+# Modes are paired with those among at most so many times as many as were asked for.
 FURTHEST = 16
-"""Times as many modes as were asked for, among which the partners of modes are looked for."""
-
+# What is measured of a change, the largest first.
 OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
-"""What is measured of a change, the largest first."""
 
 
 @dataclass(frozen=True)
 class AnswerChange:
     """What leaving something out changes."""
 
-    # measures of the change with their units, the largest change first; NaN where nothing is left
-    # to compare
-    size: dict[str, float]
+    size: dict[str, float]  # by what is measured with its unit; NaN where nothing can be compared
     error: float  # error bars of both answers where the change is largest, in the same unit
-    # whether any part of the change is larger than its error bars, or something is lost
-    beyond_error: bool
+    beyond_error: bool  # whether any change is larger than its error bars, or something is lost
     lost: int  # modes or responses that are only there with it
 
     @staticmethod
@@ -64,36 +57,33 @@ def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
 
 
 def change_of_modes(whole: Modes, model: Model, solver: str) -> AnswerChange:
-    """Compare modes with those of a model from which something was left out.
+    """Compare each mode with that of the same order among those of the same motion of a model.
 
-    Modes are paired by their motion and their order among those of the same motion; where the
-    model has none of a motion, or too few, the others are only there in the whole.
+    Where the model has none of a motion, or too few, the others are only there in the whole.
     """
     mine = motions(whole)
-    partners = _partners(mine, model, solver)
-    paired = [np.flatnonzero(mine == motion)[: len(one)] for motion, one in partners.items()]
+    others = _modes_alike(mine, model, solver)
+    paired = [np.flatnonzero(mine == motion)[: len(one)] for motion, one in others.items()]
     before, error, ratio = _numbers(whole)[np.concatenate(paired)].T
-    after, uncertain, left = np.concatenate(list(partners.values())).T
+    after, uncertain, left = np.concatenate(list(others.values())).T
     hertz, percent = np.abs(after - before), 100 * relative(after, before)
     error = error + uncertain
     lost = len(mine) - len(after)
-    size = [measure(each) for each in (hertz, percent) for measure in (_largest, _root_mean_square)]
+    size = [_of(each, of) for of in (hertz, percent) for each in (np.max, _root_mean_square)]
+    damping = np.abs(left - ratio)
     return AnswerChange(
-        size=dict(zip(OF_MODES, (*size, _largest_known(np.abs(left - ratio))))),
-        error=_at_largest(error, hertz),
+        size=dict(zip(OF_MODES, (*size, _of(np.max, damping[~np.isnan(damping)])))),
+        error=_of(lambda of: error[of.argmax()], hertz),
         beyond_error=bool(lost > 0 or (hertz > error).any()),
         lost=lost,
     )
 
 
 def motions(modes: Modes) -> NDArray[np.str_]:
-    """Say of each mode which motion it is, one of `MOTIONS`.
-
-    By kinetic energy. Where a coupling mixes two modes in equal parts, each has about half of
-    either motion, and both could be called the same: so what a mode has of the motions that it is
-    not called is owed to them, and the next mode pays. Of two mixed modes one is always each. The
-    shares that a resonator has of all modes there are have the sum 1: it is given one of them.
-    """
+    """Say of each mode which motion it is, one of `MOTIONS`, by its kinetic energy."""
+    # Where a coupling mixes two modes in equal parts, both could be called the same: so what a mode
+    # has of the motions that it is not called is owed to them, and the next mode pays. The shares
+    # that a resonator has of all modes there are have the sum 1: it is given one of them.
     moving = _moving(modes.energy)
     names = np.array(list(moving))
     shares = {motion: sum(modes.energy[c] for c in own) for motion, own in moving.items()}
@@ -111,8 +101,8 @@ def _moving(energies: Collection[str]) -> dict[str, tuple[str, ...]]:
     return {motion: own for motion, own in present.items() if own}
 
 
-def _partners(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str, Real]:
-    """Return frequencies of a model, for each motion as many as wanted or as there are."""
+def _modes_alike(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str, Real]:
+    """Return modes of a model, for each motion as many as wanted or as there are."""
     energies = (*model.coordinates, *(CARRIED[kind] for kind in model.chain.carried))
     wanted = {
         motion: min(int(np.sum(mine == motion)), _most(model, motion, own))
@@ -153,25 +143,23 @@ def _numbers(modes: Modes) -> Real:
 
 
 def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
-    """Compare a frequency response with that of what is left, line by line.
-
-    A value without a correct digit, as one that is 0 by symmetry, counts as 0.
-    """
+    """Compare a frequency response with that of what is left, line by line."""
     lines = len(whole.frequency)
     before, after = (_size(frf).reshape(-1, lines) for frf in (whole, left))
     gone = before.any(axis=1) & ~after.any(axis=1)
     level = _level(before[~gone], after[~gone])
     error = _decibel(_relative_error(whole) + _relative_error(left)).reshape(-1, lines)[~gone]
-    size = (_largest(level), _median(level), _peak_shift(whole, left))
+    size = (_of(np.max, level), _of(np.median, level), _peak_shift(whole, left))
     return AnswerChange(
         size=dict(zip(OF_FRF, size)),
-        error=_at_largest(error, level),
+        error=_of(lambda of: error.flat[of.argmax()], level),
         beyond_error=bool(gone.any() or (level > error).any()),
         lost=int(gone.sum()),
     )
 
 
 def _size(frf: FRF) -> Real:
+    """Return amplitudes; one without a correct digit, as by symmetry, counts as 0."""
     return np.where(frf.rounding_error < 1, np.abs(frf.value), 0.0)
 
 
@@ -195,8 +183,7 @@ def _decibel(relative_error: Real) -> Real:
 def _peak_shift(whole: FRF, left: FRF) -> float:
     """Return how far the largest peak moves [Hz], of several responses the furthest.
 
-    NaN where there is none, or where the nearest peak of what is left has another number: then it
-    is not clear which one the peak has become.
+    NaN where the nearest peak that is left has another number: which one it became is not clear.
     """
     shifts = []
     drives = len(whole.drive) if whole.value.ndim == 3 else 1
@@ -211,24 +198,10 @@ def _peak_shift(whole: FRF, left: FRF) -> float:
     return max(shifts, key=abs, default=np.nan)
 
 
-# --- measures ---------------------------------------------------------------------------------
+def _of(measure: Callable[[Real], Any], change: Real) -> float:
+    """Return a measure of changes, NaN of none."""
+    return float(measure(change)) if change.size else np.nan
 
 
-def _largest(change: Real) -> float:
-    return float(change.max()) if change.size else np.nan
-
-
-def _largest_known(change: Real) -> float:
-    return _largest(change[~np.isnan(change)])
-
-
-def _median(change: Real) -> float:
-    return float(np.median(change)) if change.size else np.nan
-
-
-def _root_mean_square(change: Real) -> float:
-    return float(np.sqrt(np.mean(change**2))) if change.size else np.nan
-
-
-def _at_largest(error: Real, change: Real) -> float:
-    return float(error.flat[change.argmax()]) if change.size else np.nan
+def _root_mean_square(change: Real) -> Any:
+    return np.sqrt(np.mean(change**2))
