@@ -14,8 +14,7 @@ from ..base.unit import NAME, UNIT
 from ..model import Model
 from .figure import new_figure
 
-FREQUENCY = np.linspace(1.0, 450.0, 1797)
-"""Lines of the amplitude-frequency characteristics [Hz]."""
+FREQUENCY = np.linspace(1.0, 450.0, 1797)  # Lines of the amplitude-frequency characteristics [Hz].
 
 
 def draw(folder: Path) -> list[Path]:

@@ -13,8 +13,7 @@ from ..base.errors import RopedynError
 
 One = TypeVar("One")
 
-SLICE = 0.5
-"""Scenes that have taken longer together [s] leave the rest to another call."""
+SLICE = 0.5  # Scenes that have taken longer together [s] leave the rest to another call.
 
 
 class Failure:

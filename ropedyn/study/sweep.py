@@ -28,11 +28,9 @@ if TYPE_CHECKING:
 One = TypeVar("One")
 Result = TypeVar("Result")
 
-CHUNKS = 128
-"""Scenes are sent in so many chunks, or one by one where there are fewer."""
-
+CHUNKS = 128  # Scenes are sent in so many chunks, or one by one where there are fewer.
+# These have columns of their own in the table, of a row at most so many.
 NUMBERS, WIDEST = (bool, int, float, complex), 20
-"""What has columns of its own in the table, and how many of them a row has at most."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

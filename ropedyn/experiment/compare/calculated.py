@@ -20,8 +20,8 @@ from ...response.frf import FRF
 from ...signal.response_shape import residues
 from .measured import peaks_in
 
+# A smaller product of a shape at the drive and at a response is rounding at a node of the shape.
 UNSEEN = 1e-9
-"""Product of a shape at the drive and at a response: less is rounding at a node of the shape."""
 
 
 @dataclass(frozen=True, eq=False)

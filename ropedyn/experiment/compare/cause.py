@@ -21,29 +21,18 @@ from ...eigen.modes import Modes
 from ...scene.path import value_at, with_values
 from .calculated import Predicted
 
+# What explains differences leaves some that rounding and noise exceed at least so often.
 LIKELY = 0.05
-"""What explains differences leaves some that rounding and noise exceed at least so often."""
-
+# What leaves some that they exceed more rarely does not explain them; so rare must differences be
+# at all, and differences at random that one number explains as well.
 EXCLUDED = 1e-3
-"""What leaves some that they exceed more rarely does not explain them; so rare must differences be
-at all, and differences at random that one number explains as well."""
-
-FEWEST = 3
-"""Pairs: two are explained by one number too easily."""
-
-MOST = 4
-"""Numbers that explain the same are named, more say nothing."""
-
+FEWEST = 3  # Fewer pairs are explained by one number too easily.
+MOST = 4  # At most so many numbers that explain the same are named, more say nothing.
 ITERATIONS = 20
 
-FARTHEST = 3.0
-"""Logarithm of the factor at most: a number is not looked for beyond 20 times what it is."""
-
-NOTHING = 1e-12
-"""Relative change that rounding makes."""
-
-SETTLED = 1e-3
-"""Of its standard uncertainty: where a number stops."""
+FARTHEST = 3.0  # A number is not looked for beyond exp(3) = 20 times what it is.
+NOTHING = 1e-12  # Relative changes below this are made by rounding.
+SETTLED = 1e-3  # A number stops when it moves by less than this share of its standard uncertainty.
 
 
 class Cause(NamedTuple):

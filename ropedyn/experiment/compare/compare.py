@@ -34,11 +34,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+# FRAC at each line is taken over this part of the measured range, where nothing else is said.
 BAND = 0.1
-"""Share of the measured range that FRAC is taken over at each line, where nothing else is said."""
-
-FEWEST = 10
-"""Lines in that at least."""
+FEWEST = 10  # That part has so many lines at least.
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,7 @@ from ...model import Model
 from ...response.frf import FRF
 from .calculated import index
 
-SAME = 1e-9
-"""Lines that differ by this share are one."""
+SAME = 1e-9  # Lines that differ by less than this share are one.
 
 
 def drive_of(calculated: FRF, measured: Measured) -> int:

@@ -8,14 +8,10 @@ import numpy as np
 
 from ...base.array import Integer, Real
 
+# Calculated frequencies nearer than this part of their mean distance are close to each other.
 CLOSE = 0.1
-"""Of the mean distance of calculated frequencies: nearer ones are close to each other."""
-
-ALONE = math.log(2.0)
-"""Spacing of a frequency that has no neighbour: that of the first two of a string."""
-
-SPREAD = 3.0
-"""Standard uncertainties that a measured frequency may be off."""
+ALONE = math.log(2.0)  # A frequency without neighbour is spaced like the first two of a string.
+SPREAD = 3.0  # A measured frequency may be off by so many standard uncertainties.
 
 
 def reach(calculated: Real) -> Real:

@@ -11,20 +11,14 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from .misfit import Misfit
 
-BLIND = 1e-8
-"""Of the largest singular value: less is the rounding of derivatives."""
-
+BLIND = 1e-8  # Singular values below this share of the largest are the rounding of derivatives.
+# No variable leaves its start by more, a logarithm of ten decades: nothing depends on it there.
 FARTHEST = 23.0
-"""From the start, as a logarithm: ten decades, beyond which nothing depends on a number."""
-
+# ftol is the square of 1e-4 standard deviations, gtol the rounding of relative residuals.
 DIGITS = {"ftol": 1e-8, "gtol": 1e-14, "xtol": 1e-13}
-"""ftol: 1e-4 of a standard deviation, squared; gtol: rounding of relative residuals."""
-
+# The trust region measures first by factors e, then, for narrow valleys, by what residuals feel.
 SCALES: tuple[float | str, ...] = (1.0, "jac")
-"""Of the trust region: a factor e of every number; in narrow valleys what residuals feel."""
-
-EVALUATIONS = 50
-"""With each scale."""
+EVALUATIONS = 50  # With each of the scales residuals are computed so often at most.
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ import numpy as np
 from ...base.array import Index, Real
 from .unknown import Unknowns
 
+# Takes variables u, shape (p,); returns residuals (m,) and their slopes (m, p).
 Misfit = Callable[[Real], tuple[Real, Real]]
-"""From variables u, shape (p,), to residuals (m,) and their slopes (m, p)."""
 
 
 @dataclass(frozen=True, eq=False)

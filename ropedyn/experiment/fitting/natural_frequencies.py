@@ -14,11 +14,8 @@ from ...eigen.sensitivity import Sensitivity, Shapes
 from ...model import Model
 from .unknown import Unknowns
 
-REMEMBERED = 8
-"""Answers."""
-
-MARGIN = 1.5
-"""How much larger the highest eigenvalue is thought to be than the last one."""
+REMEMBERED = 8  # So many answers are kept.
+MARGIN = 1.5  # The highest eigenvalue is thought to be at most so many times the last one.
 
 
 @dataclass(frozen=True, eq=False)

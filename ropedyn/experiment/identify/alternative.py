@@ -14,11 +14,8 @@ from .solution import LEAST_NOISE
 if TYPE_CHECKING:
     from .fit import Fit
 
-WORDS = ("pinned", "clamped")
-"""Ends that are tried in place of each other."""
-
-LEVEL = 0.95
-"""Of the test whether something fits worse."""
+WORDS = ("pinned", "clamped")  # Ends that are tried in place of each other.
+LEVEL = 0.95  # Level of the test whether something fits worse.
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,20 +19,11 @@ from .response_fit import ResponseFit
 from .response_start import start_of_response
 from .solution import Solution, solve
 
-ROUGH = {"ftol": 1e-4, "xtol": 1e-6, "gtol": 1e-8}
-"""Tolerances of what only leads on."""
-
-ROUNDS = 4
-"""Of noise and fit, in turn."""
-
-SETTLED = 0.1
-"""Standard deviations that another round need not move by."""
-
-EXACT = 1e-8
-"""Of the root mean square: differences that no measurement shows."""
-
-ALIKE = 0.5
-"""Correlation of the residuals of neighbouring lines that is no noise."""
+ROUGH = {"ftol": 1e-4, "xtol": 1e-6, "gtol": 1e-8}  # Tolerances of a fit that only leads on.
+ROUNDS = 4  # Noise and fit take turns so often at most.
+SETTLED = 0.1  # Noise and fit are settled when the fit moves by less, in standard deviations.
+EXACT = 1e-8  # Differences below this share of the root mean square show in no measurement.
+ALIKE = 0.5  # Residuals of neighbouring lines that are correlated by more are no noise.
 
 
 def fit_response(response: Response, known: Known | None) -> ResponseFit:

@@ -29,12 +29,10 @@ from .fit_peaks import Identification
 from .fits import Fits
 from .response_fit import ResponseFit
 
-MOST = 64
-"""Modes that are missing, and peaks that are none."""
-
+MOST = 64  # A search lets at most so many modes be missing, and so many peaks be none.
+# Peaks [Hz], their relative standard deviations and what is known beforehand relative to the guess
+# are between these: squares of all that is between do not overflow.
 SIZES = (1e-50, 1e50)
-"""Of peaks [Hz] and, relative to them, of their standard deviations; of what is known beforehand,
-relative to the guess: squares of all that is between do not overflow."""
 
 
 @overload

@@ -10,11 +10,8 @@ from ...base.array import Index, Real
 from .solution import Solution
 from .uncertainty import freedom_of
 
-INVOLVED = 1e-6
-"""Share of a direction from which on a number takes part in it."""
-
-UNLIKELY = 1e-3
-"""Probability of residuals as large as that by chance."""
+INVOLVED = 1e-6  # A number takes part in a direction from this share on.
+UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability are no noise.
 
 
 class Data(NamedTuple):

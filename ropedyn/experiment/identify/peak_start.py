@@ -9,17 +9,13 @@ from ...base.errors import SceneError, SolveError
 from ..fitting.minimum import BLIND, told
 from ..fitting.peak_misfit import PeakMisfit
 
-LEAST = 0.1
-"""A number falls to no less than this part of itself in a step."""
-NEAR = 0.1
-"""Relative changes that need no further step."""
+LEAST = 0.1  # A number falls to no less than this part of itself in a step.
+NEAR = 0.1  # Smaller relative changes need no further step.
 STEPS = 8
 
-SETTLED = 0.9
-"""Of the sum of squared logarithms before: what falls on without changing them goes too far."""
-
+SETTLED = 0.9  # Of the sum of squares before: what falls on without changing it much goes too far.
+# What fell until frequencies hardly feel it goes back to where they do, at most to its guess.
 UNFELT, BACK = 1e-4, 1e-2
-"""What fell until frequencies hardly feel it goes back to where they do, at most to its guess."""
 
 
 def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:

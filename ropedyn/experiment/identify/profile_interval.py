@@ -12,14 +12,11 @@ from ...base.errors import SceneError, SolveError
 from ..fitting.minimum import Minimum, minimise, told
 from ..fitting.misfit import Misfit
 
+# A bound is known to this share of its distance, which changes what is covered by 1e-4.
 CLOSE = 1e-3
-"""Of the bound's distance in standard deviations: it changes what is covered by 1e-4."""
-
+# A linear step may take off this share of the growth: what it leaves is its square.
 ACCEPTED = 0.02
-"""Share of the growth that a linear step may take off: what it leaves is its square."""
-
-OTHERS = (-0.9, 9.0)
-"""Relative changes that others are guessed to have."""
+OTHERS = (-0.9, 9.0)  # Relative changes that others are guessed to have are between these.
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,14 +7,9 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...curves.measured import Measured
 
-LEAST = 1e-12
-"""Of a line: less is rounding."""
-
-LIKELIER = 2.0
-"""Logarithm by which two kinds of noise must be likelier than one (Akaike: 1)."""
-
-FAINT = 1e-12
-"""Part of a kind that is none."""
+LEAST = 1e-12  # Noise below this share of a line is rounding.
+LIKELIER = 2.0  # Two kinds of noise are likelier than one by at least this logarithm (Akaike: 1).
+FAINT = 1e-12  # A kind of noise that has less than this part is none.
 
 
 def line_std(measured: Measured, off: Complex) -> Real:

@@ -21,20 +21,12 @@ from ..fitting.response_misfit import LogMisfit, Response
 from ..fitting.unknown import CALIBRATION
 from .peak_start import start_of_peaks
 
+# Modes with less than this part of the largest residue are not looked for among the peaks.
 SEEN = 1e-3
-"""Of the largest residue: modes with less are not looked for among the peaks."""
-
-HIDDEN = 3
-"""So many of the lowest modes may be missing below the first line."""
-
-LINES = 200
-"""That starts are compared by."""
-
-CLOSE = 0.2
-"""Root mean square of logarithms that no other start has to better."""
-
-ROUGH = {"ftol": 1e-2, "xtol": 1e-3, "gtol": 1e-6}
-"""Tolerances of starts."""
+HIDDEN = 3  # So many of the lowest modes may be missing below the first line.
+LINES = 200  # Starts are compared on so many lines.
+CLOSE = 0.2  # No other start has to better this root mean square of logarithms.
+ROUGH = {"ftol": 1e-2, "xtol": 1e-3, "gtol": 1e-6}  # Tolerances of the fit of a start.
 
 
 class Start(NamedTuple):

@@ -17,26 +17,14 @@ from ..fitting.unknown import Unknowns
 from .profile_interval import Profile
 from .uncertainty import Uncertainty, freedom_of, quantile
 
-NOMINAL = 1e-3
-"""Relative noise that is thought of where nothing tells it."""
-
+NOMINAL = 1e-3  # Where nothing tells the noise this relative one is thought of.
+# Relative residuals below this are the rounding of frequencies.
 LEAST_NOISE = float(np.finfo(float).eps)
-"""Of relative residuals: less is the rounding of frequencies."""
-
-ROUNDING = 1e-12
-"""Noise that frequencies themselves may have, which does not settle."""
-
-NARROW = 1e-8
-"""Standard deviation of a variable below which its profile is a parabola, but for rounding."""
-
-UNFELT = 100.0
-"""Standard deviation of a logarithm from which on the number is gone to 0 or infinity."""
-
-BACK = 0.1
-"""Share of what the residuals feel most, at which such a number is tried again."""
-
-FAR = 2.0
-"""How far it has then gone from its start, as a logarithm."""
+ROUNDING = 1e-12  # Frequencies themselves may have this relative noise, which does not settle.
+NARROW = 1e-8  # Below this standard deviation a variable's profile is a parabola, but for rounding.
+UNFELT = 100.0  # A number whose logarithm has a larger standard deviation is gone to 0 or infinity.
+BACK = 0.1  # Such a number is tried again where it has this share of what the residuals feel most.
+FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ import numpy as np
 from ...base.array import Flags, Real
 from ..fitting.minimum import Minimum, told
 
+# A number that has more than this share in directions that nothing tells is not told itself.
 APART = 1e-6
-"""Share of a number in directions that nothing tells, from which on it is not told itself."""
 
 
 def freedom_of(minimum: Minimum, peaks: int) -> float:

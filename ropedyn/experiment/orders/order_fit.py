@@ -11,17 +11,11 @@ from .order_grid import Calculated, quotients_at
 from .order_likelihood import Likelihood
 from .rayleigh import Quotients
 
-SETTLED = 0.02
-"""Error of the frequencies, in standard uncertainties, that ends a fit."""
-
-ROUNDS = 8
-"""Calculations for one fit, at most."""
-
+SETTLED = 0.02  # A fit ends when frequencies are off by less, in standard uncertainties.
+ROUNDS = 8  # One fit takes so many calculations at most.
+# The fit of an assignment is given up when it is dearer than the second best by more.
 HOPELESS = 50.0
-"""How much dearer than the second best an assignment is whose fit is given up."""
-
-STRIDE = 4.0
-"""Factor that a parameter may change by at once."""
+STRIDE = 4.0  # A parameter changes by at most this factor at once.
 
 
 @dataclass(frozen=True, eq=False)

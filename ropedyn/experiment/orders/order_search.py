@@ -14,36 +14,20 @@ from .order_fit import OrderFit, OrderFits
 from .order_grid import COARSE, STEP, Calculated, Grid
 from .order_likelihood import Likelihood
 
-OVERLOOKED = 0.1
-"""Probability that a mode of the band is not among the peaks."""
-
-STRAY = 0.5
-"""Peaks that are no mode, on average."""
-
-REACH = 30.0
-"""How many times larger or smaller than its start each parameter may be."""
-
-KEPT = 5
-"""Assignments that are returned at most."""
-
+OVERLOOKED = 0.1  # A mode of the band is not among the peaks with this probability.
+STRAY = 0.5  # On average so many peaks are no mode.
+REACH = 30.0  # Each parameter may be so many times larger or smaller than its start.
+KEPT = 5  # At most so many assignments are returned.
+# Relative standard uncertainties that are tried where none is given: of good peaks of a rope the
+# model describes, to those of one it describes by a per cent.
 NOISES = (0.0005, 0.002, 0.008)
-"""Relative standard uncertainties that are tried where none is given: of good peaks of a rope the
-model describes, to those of one it describes by a per cent."""
-
-FINEST = 1e-6
-"""Relative standard uncertainty that measured frequencies have at least."""
-
-CANDIDATES = 8
-"""Numberings of the grid that are fitted to the calculation itself."""
-
+FINEST = 1e-6  # Measured frequencies have at least this relative standard uncertainty.
+CANDIDATES = 8  # So many numberings of the grid are fitted to the calculation itself.
+# So many modes may be missing, unless told: what a search costs grows by their square.
 MISSING = 32
-"""Modes that may be missing, unless told: what a search costs grows by their square."""
-
+# So many pairs of peaks are taken for any two modes, unless more peaks may be spurious.
 SUBSETS = 4
-"""Of two peaks each that are taken for any two modes, unless more may be spurious."""
-
-ROUNDS = 3
-"""Times that peaks are numbered on the grid, each after a fit."""
+ROUNDS = 3  # Peaks are numbered on the grid so often, each time after a fit.
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,12 +15,12 @@ from ...curves.peaks import Peaks
 from ..fitting.minimum import BLIND
 from ..fitting.natural_frequencies import NaturalFrequencies
 
+# Peaks without a standard deviation have this relative one, to judge the lowest modes alone.
 NOISE = 0.005
-"""Relative standard deviation of peaks that have none, to judge the lowest modes alone."""
 
 
+# Noise alone puts the lowest modes off by more than what is accepted with this probability.
 UNLIKELY = 0.05
-"""Probability that noise alone puts the lowest modes off by more than what is accepted."""
 
 
 class RunnerUp(NamedTuple):

@@ -9,20 +9,12 @@ import numpy as np
 
 from ...base.array import Index, Integer, Real
 
-STEPS = 3
-"""Of Gauss and Newton; for stiffnesses alone the first is exact."""
-
-STEEPEST = 4.0
-"""Power of a parameter that f^2 may follow: of the length of a beam."""
-
+STEPS = 3  # Gauss and Newton take so many steps; for stiffnesses alone the first is exact.
+STEEPEST = 4.0  # f^2 may follow at most this power of a parameter: that of the length of a beam.
+# A side of the quotient that is changed to less of itself is beyond what the shapes tell.
 LEAST = 0.01
-"""Of a changed side of the quotient; less is beyond what the shapes tell."""
-
-ROUNDING = 1e-13
-"""Of normal equations, relative."""
-
-FIRM = 1e4
-"""How much narrower the pull is that holds a ratio at its bound."""
+ROUNDING = 1e-13  # Normal equations have this relative rounding.
+FIRM = 1e4  # The pull that holds a ratio at its bound is so many times narrower.
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,7 @@ from ...base.array import Integer, Real
 from ...base.table import Table
 from ...base.unit import label, place
 
-RATE = 2.56
-"""Samples per cycle at the top of the band."""
+RATE = 2.56  # A cycle at the top of the band has so many samples.
 
 
 @dataclass(frozen=True, eq=False)

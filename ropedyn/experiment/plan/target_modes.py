@@ -15,14 +15,10 @@ if TYPE_CHECKING:
     from ...model import Model
 
 
-GRID = 512
-"""Places along the rope that are looked at, at least."""
-
+GRID = 512  # At least so many places along the rope are looked at.
+# A mode that moves another coordinate by less than this share of its own does not move it.
 UNMOVED = 1e-9
-"""Of the largest motion of a mode in its own coordinate: less in another is none."""
-
-MOST_MODES = 4096
-"""That are solved for, to find enough of them that move."""
+MOST_MODES = 4096  # At most so many modes are solved for, to find enough of them that move.
 
 
 class Wanted(NamedTuple):
