@@ -1139,7 +1139,7 @@ def test_one_symbol_is_exported():
 def test_the_module_can_be_imported_again():
     code = """
 import sys, importlib
-import ropedyn
+import ropedyn, ropedyn._core
 first = sys.modules.pop("ropedyn._core")
 second = importlib.import_module("ropedyn._core")
 try:

@@ -1,15 +1,18 @@
-"""`import ropedyn` brings NumPy and the core; what else is needed comes when it is used."""
+"""`import ropedyn` brings nothing; what is needed comes when a name is used."""
 
 import subprocess
 import sys
 
 import pytest
 
+import ropedyn as rd
+
 LATER = ("scipy", "matplotlib", "pandas", "xarray", "h5netcdf", "h5py", "pyuff", "tomli_w", "pint")
 LATER += ("dask", "distributed", "cloudpickle", "multiprocessing")
 ROPE = "rd.Rope(1.0, 0.1, bending_stiffness=1.0)"
 WORK = {
     "import": "",
+    "names": "[getattr(rd, name) for name in rd.__all__]",
     "scene": f"rd.Scene({ROPE}).without('tension')",
     "modes": f"rd.Scene({ROPE}).compile(elements=4).modes(2)",
     "frf": f"rd.Scene({ROPE}).compile(elements=4).frf([1.0], drive=('z', 0.5)).table()",
@@ -67,6 +70,24 @@ def test_import_prints_nothing():
 
 def test_star_import_brings_the_public_names_alone():
     code = "before = set(dir())\nfrom ropedyn import *\nprint(*set(dir()) - before - {'before'})"
-    import ropedyn
+    assert set(run(code).split()) == set(rd.__all__)
 
-    assert set(run(code).split()) == set(ropedyn.__all__)
+
+def test_dir_shows_the_public_names_and_no_folders():
+    shown = run("import ropedyn as rd\nfrom ropedyn import *\nprint(*dir(rd))").split()
+    assert shown == sorted(rd.__all__)
+
+
+def test_verbs_hide_behind_no_module_of_their_name():
+    code = "print(*[n for n in ('modes', 'frf', 'fit', 'peaks') if hasattr(rd, n)])"
+    assert run("from ropedyn import *\nimport ropedyn as rd\n" + code).split() == []
+
+
+def test_a_saved_answer_is_loaded_where_nothing_was_asked_before(tmp_path):
+    path = str(tmp_path / "peaks.nc")
+    rd.Peaks([1.0]).save(path)
+    # libraries of the file may warn: what counts is what is loaded
+    code = f"import ropedyn as rd\nprint(type(rd.load({path!r})).__name__)"
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "Peaks"

@@ -1,0 +1,125 @@
+from . import ask, study2015
+from .base.answer import Answer, Cost, load
+from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
+from .base.table import Table
+from .chain.mesh_choice import Choice
+from .curves.measured import Measured
+from .curves.peaks import Peaks
+from .curves.resonance import Resonances
+from .eigen.animation import Animation
+from .eigen.damage import Damage
+from .eigen.damped.damped_modes import DampedModes
+from .eigen.modes import Modes
+from .experiment.compare.compare import Comparison, compare
+from .experiment.identify.fit import Fit
+from .experiment.identify.fits import Fits
+from .experiment.identify.identify import identify
+from .experiment.identify.response_fit import ResponseFit
+from .experiment.plan.plan import Plan
+from .experiment.plan.planning import plan_measurement
+from .model import Model
+from .motion.history import History
+from .parametric.floquet import Floquet
+from .parametric.stability import StabilityMap
+from .response.deflection import Deflection
+from .response.frf import FRF
+from .scene.bench.bending_test import BendingTest
+from .scene.bench.torsion_test import TorsionTest
+from .scene.damping import (
+    LossFactor,
+    ModalDamping,
+    RayleighDamping,
+    StiffnessDamping,
+    ViscousDamping,
+)
+from .scene.end import End
+from .scene.force import Chirp, Impulse, Sine, Step
+from .scene.gravity import Gravity
+from .scene.parts.broken_wire import BrokenWire
+from .scene.parts.node_force import NodeForce
+from .scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
+from .scene.parts.resonator import Resonator
+from .scene.parts.stop import Stop
+from .scene.parts.stretch import AddedMass, LocalChange
+from .scene.prior import Prior
+from .scene.rope import Rope
+from .scene.scene import Scene
+from .scene.tension import Tension
+from .signal.ringdown import RingDown
+from .signal.spectrum import Spectrum
+from .study.accuracy import AccuracyCost, accuracy_cost
+from .study.effect import EffectCost, effect_cost
+from .study.sweep import Sweep, sweep
+
+__version__: str
+
+__all__ = [
+    "FRF",
+    "AccuracyCost",
+    "AddedMass",
+    "Animation",
+    "Answer",
+    "BendingTest",
+    "BrokenWire",
+    "Chirp",
+    "Choice",
+    "Comparison",
+    "Cost",
+    "Damage",
+    "DampedModes",
+    "Dashpot",
+    "Deflection",
+    "EffectCost",
+    "End",
+    "Fit",
+    "Fits",
+    "Floquet",
+    "Gravity",
+    "Hinge",
+    "History",
+    "IdentifyWarning",
+    "Impulse",
+    "LocalChange",
+    "LossFactor",
+    "Measured",
+    "ModalDamping",
+    "Model",
+    "Modes",
+    "NodeForce",
+    "Peaks",
+    "Plan",
+    "PointMass",
+    "Prior",
+    "RayleighDamping",
+    "Resonances",
+    "Resonator",
+    "ResponseFit",
+    "RingDown",
+    "Rope",
+    "RopedynError",
+    "Scene",
+    "SceneError",
+    "Sine",
+    "SolveError",
+    "Spectrum",
+    "Spring",
+    "StabilityMap",
+    "Step",
+    "StiffnessDamping",
+    "Stop",
+    "Support",
+    "Sweep",
+    "Table",
+    "Tension",
+    "TorsionTest",
+    "ViscousDamping",
+    "accuracy_cost",
+    "ask",
+    "compare",
+    "effect_cost",
+    "identify",
+    "load",
+    "plan_measurement",
+    "study2015",
+    "sweep",
+]
