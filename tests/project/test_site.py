@@ -8,9 +8,27 @@ import ropedyn as rd
 ROOT = Path(__file__).parent.parent.parent
 
 
+PAGES = {
+    path.stem: re.findall(r"^   (\w+)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    for path in (ROOT / "docs/api").glob("*.rst")
+}
+ABOVE_THE_FOLDERS = {"ask": "study", "study2015": "study", "Choice": "model"}
+"""Names on the page of another folder than the one they are in."""
+
+
 def test_every_public_name_stands_once_in_the_reference():
-    names = re.findall(r"^   (\w+)$", (ROOT / "docs/api/index.rst").read_text(), re.MULTILINE)
+    names = [name for page, listed in PAGES.items() if page != "index" for name in listed]
     assert sorted(names) == sorted(rd.__all__)
+
+
+def test_every_page_of_the_reference_is_that_of_a_folder():
+    assert sorted(PAGES["index"]) == sorted(PAGES.keys() - {"index"})
+    for page in PAGES.keys() - {"index"}:
+        for name in PAGES[page]:
+            # errors say that they are of the package: users find them there
+            module = getattr(getattr(rd, name), "__module__", "").split(".")
+            folder = "base" if module == ["ropedyn"] else module[1] if module[1:] else ""
+            assert ABOVE_THE_FOLDERS.get(name, folder) == page, name
 
 
 def test_every_notebook_stands_in_the_gallery():
