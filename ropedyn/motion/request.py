@@ -93,6 +93,16 @@ class Run:
         )
 
     @property
+    def places(self) -> list[Any]:
+        """What forces and loads act on."""
+        return [*self.drives, *self.loads]
+
+    @property
+    def pushes(self) -> list[Force | float]:
+        """What acts there: forces, and loads that are let go."""
+        return [*self.forces, *self.loads.values()]
+
+    @property
     def push(self) -> Real:
         """What drives, at the times, shape (drives, t)."""
         still = np.zeros((0, len(self.time)))

@@ -15,6 +15,7 @@ from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
 from ..chain.compiled import Compiled
 from ..eigen.eigen import SOLVERS, Found, pieces_of, spectrum
+from ..response.modal_sum import mode_numbers
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
 from ..signal.cluster import clusters
 
@@ -323,9 +324,7 @@ def _damping(model: Compiled, basis: _Basis) -> Real:
 
 def _modal(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
     """Return 2 zeta omega of damping ratios, in the order of all modes of the model."""
-    others = [spectrum(model, c, len(eigenvalue))[0] for c in model.components if c != component]
-    number = np.arange(len(eigenvalue))
-    number += sum(np.searchsorted(np.sort(one), eigenvalue) for one in others)
+    number = mode_numbers(model, component, eigenvalue)
     ratio = ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)[number]
     if np.isnan(ratio).any():
         raise SceneError(

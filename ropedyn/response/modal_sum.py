@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import _core
-from ..base.array import Complex, Real
+from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force
@@ -36,18 +36,16 @@ Solver = Callable[["Question"], tuple[Complex, Real]]
 
 REACH, LEAST, MOST = 8.0, 64, 5_000
 """Modes below so many times the highest frequency are summed up, at least and at most so many."""
-
 ROUND, NEAR = 16, 1 / 8
-"""Points of a circle, and its radius over the distance to the next mode: 8^-16 of that is seen."""
-
+"""A circle has so many points, and this radius over the distance to the next mode: 8^-16 is seen.
+"""
 ALIKE = 2.0**-26
 """Eigenvalues that differ by this share, the root of eps, are one: apart they would lose more."""
-
 TOGETHER = 8
-"""Points whose own responses are computed at once."""
+"""The own responses of so many points are computed at once."""
 
 
-class Poles(NamedTuple):
+class UndampedPoles(NamedTuple):
     """Modes of one component that are summed up; equal ones are one."""
 
     eigenvalue: Real  # (k,) [rad^2/s^2]
@@ -120,7 +118,7 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     return Summed(value, _over(error, value), _over(neglected, value), lines)
 
 
-class Known(NamedTuple):
+class Estimated(NamedTuple):
     """Numbers and their absolute errors."""
 
     value: Real
@@ -130,7 +128,7 @@ class Known(NamedTuple):
 # --- which modes --------------------------------------------------------------------------------
 
 
-def _poles(question: Question) -> Poles:
+def _poles(question: Question) -> UndampedPoles:
     """Find the modes, each with its damping ratio."""
     model, component = question.model, question.component
     fastest = float(question.frequency.max())
@@ -143,14 +141,12 @@ def _poles(question: Question) -> Poles:
     if wanted > MOST:
         raise _too_high(question, f"{wanted} below {REACH:g} times it, more than {MOST}")
     eigenvalue, error = spectrum(model, component, wanted + 1)
-    eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
-    ratio = ratios_of(model, component, eigenvalue)
-    known = int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])
-    poles = _grouped(eigenvalue, error, ratio[: min(known, wanted)], highest)
+    ratio = known_ratios(model, component, eigenvalue)
+    poles = _grouped(eigenvalue, error, ratio[:wanted], highest)
     if not poles.beyond > highest:
         raise SceneError(
             "damping ratio must be one number or one for each mode up to the highest frequency, "
-            f"got {known} for those of ({', '.join(component)}) up to {fastest!r} Hz"
+            f"got {len(ratio)} for those of ({', '.join(component)}) up to {fastest!r} Hz"
         )
     return poles
 
@@ -162,18 +158,42 @@ def _too_high(question: Question, why: str) -> SolveError:
     )
 
 
-def ratios_of(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
-    """Return the damping ratios: modes are numbered over all components."""
+def mode_numbers(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Index:
+    """Return the numbers of modes of one component among those of all, from 0."""
     number = np.arange(len(eigenvalue))
     for other in model.components:
         if other != component:
             below = _core.count(model.chain.only(other), np.minimum(eigenvalue, HIGHEST))
             number = number + below.astype(np.intp)
-    last = int(number.max(initial=-1))
-    return damping.ratios(model.scene.dampings, last + 1)[number]
+    return number
 
 
-def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Poles:
+def known_ratios(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
+    """Return the damping ratios of modes up to the first that has none."""
+    number = mode_numbers(model, component, eigenvalue)
+    ratio = damping.ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)[number]
+    return np.asarray(ratio[: int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])])
+
+
+def shift_of(eigenvalue: Real) -> float:
+    """Return -lambda where the static response is taken: 0, where nothing is rigid."""
+    if not (eigenvalue == 0).any():
+        return 0.0
+    elastic = eigenvalue[eigenvalue > 0]
+    shift = float(elastic[0]) if len(elastic) else 1.0
+    while (np.abs(eigenvalue + shift) < 0.1 * shift).any():
+        shift *= 1.5
+    return shift
+
+
+def undamped_factors(z: Complex) -> Complex:
+    """Return the factors of the parts of the dynamic stiffness without damping, (5, n)."""
+    factor = np.ones((len(damping.PARTS), len(z)), dtype=np.complex128)
+    factor[damping.INERTIA], factor[damping.DASHPOT] = -z, 0.0
+    return factor
+
+
+def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> UndampedPoles:
     """Make one of the modes that cannot be told apart, and draw the circles.
 
     Where not all of those that are one have a ratio, none is kept.
@@ -195,9 +215,9 @@ def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Pole
     gap = np.minimum(gap[:-1], gap[1:])
     elastic = middle[middle > 0]
     first = float(elastic[0]) if len(elastic) else 1.0
-    shift = first if (middle == 0).any() else 0.0
+    shift = shift_of(middle)
     radius = NEAR * np.minimum(gap, np.where(middle == 0, first, np.abs(middle)))
-    return Poles(
+    return UndampedPoles(
         eigenvalue=middle,
         error=spread,
         radius=radius,
@@ -213,25 +233,26 @@ def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Pole
 # --- what they give -----------------------------------------------------------------------------
 
 
-def _taken_apart(question: Question, solver: Solver, poles: Poles) -> tuple[Known, Known, Known]:
+def _taken_apart(
+    question: Question, solver: Solver, poles: UndampedPoles
+) -> tuple[Estimated, Estimated, Estimated]:
     """Return H(-s), the residues, (drives, responses, k), and H at the probe."""
     angle = np.pi * (np.arange(ROUND // 2) + 0.5) / (ROUND // 2)
     step = np.multiply.outer(poles.radius, np.exp(1j * angle))  # H of the other half is conjugate
     circles = poles.eigenvalue[:, None] + step
     z = np.concatenate([circles.ravel(), [-poles.shift, -poles.probe]])
-    factor = np.ones((len(damping.PARTS), len(z)), dtype=np.complex128)
-    factor[damping.INERTIA], factor[damping.DASHPOT] = -z, 0.0
+    factor = undamped_factors(z)
     hertz = np.sqrt(np.abs(z)) / (2 * np.pi)
     value, relative = solver(dataclasses.replace(question, factor=factor, frequency=hertz))
     error = np.where(value == 0, 0.0, relative) * np.abs(value)
     around = (*value.shape[:2], *step.shape)
     residue = (-step * value[..., :-2].reshape(around)).real.mean(axis=-1)
     spread = (poles.radius[:, None] * error[..., :-2].reshape(around)).mean(axis=-1)
-    static, probed = (Known(value[..., k].real, error[..., k]) for k in (-2, -1))
-    return static, Known(residue, spread), probed
+    static, probed = (Estimated(value[..., k].real, error[..., k]) for k in (-2, -1))
+    return static, Estimated(residue, spread), probed
 
 
-def _left_out(question: Question, solver: Solver, poles: Poles) -> dict[Point, float]:
+def _left_out(question: Question, solver: Solver, poles: UndampedPoles) -> dict[Point, float]:
     """Bound H(-s) of the modes that are left out at each of all points, driven there."""
     points = list(dict.fromkeys([*question.drives, *question.responses]))
     own: list[float] = []
@@ -246,7 +267,9 @@ def _left_out(question: Question, solver: Solver, poles: Poles) -> dict[Point, f
     return dict(zip(points, own))
 
 
-def _missing(poles: Poles, static: Known, residue: Known, probed: Known) -> Real:
+def _missing(
+    poles: UndampedPoles, static: Estimated, residue: Estimated, probed: Estimated
+) -> Real:
     """Return what the sum lacks at the probe beyond rounding, shape (drives, responses).
 
     Masses of tensed elements are indefinite: their negative eigenvalues are no modes.
@@ -262,7 +285,9 @@ def _slices(count: int, modes: int) -> Iterator[slice]:
     return (slice(k, k + size) for k in range(0, count, size))
 
 
-def _weights(question: Question, poles: Poles, omega: Real, part: slice) -> tuple[Complex, Real]:
+def _weights(
+    question: Question, poles: UndampedPoles, omega: Real, part: slice
+) -> tuple[Complex, Real]:
     """Return g and what rounding of the eigenvalue makes of it, each (k, f).
 
     g = (z + s - 2 i zeta omega sqrt(lambda))/((lambda + s) (lambda - z + the same)), without the
@@ -286,7 +311,7 @@ def _weights(question: Question, poles: Poles, omega: Real, part: slice) -> tupl
     return np.asarray(g, dtype=np.complex128), slope
 
 
-def _most(poles: Poles, omega: Real) -> Real:
+def _most(poles: UndampedPoles, omega: Real) -> Real:
     """Return the largest (lambda + s) |g| of the modes that are left out, shape (f,).
 
     |z + s - 2 i zeta omega sqrt(lambda)|/|lambda - z + the same| falls where lambda > z.

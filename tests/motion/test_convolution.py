@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ropedyn as rd
-from ropedyn.motion.modal.convolution import convolve, left_out, release
+from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
 from ropedyn.motion.modal.exponentials import is_uniform
+from ropedyn.motion.modal.truncation import left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
 
 # sigma [1/s], square [rad^2/s^2]

@@ -7,15 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Complex, Index, Real
+from ...base.array import Complex, Real
 from ...scene.force import Chirp
-from .exponentials import SLICE, Exponentials, invert, rates
-from .pair import Pairs
+from .exponentials import SLICE, Oscillators, invert, rates, unity
 
 STEADY = 1e-17
-"""Growth of the frequency [rad/s^2] times time^2 up to which a chirp is a sine."""
+"""Up to this growth of the frequency [rad/s^2] times time^2 a chirp is a sine."""
 SMOOTH = 4.0
-"""Change of the exponent up to which a rule of Gauss has all digits."""
+"""Up to this change of the exponent a rule of Gauss has all digits."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
@@ -55,11 +54,11 @@ def chirping(force: Chirp, begin: float, end: float) -> Chirping:
 
 
 def while_it_lasts(
-    modes: Pairs, rest: Real, force: Chirping, t: Real, order: int
+    modes: Oscillators, rest: Real, force: Chirping, t: Real, order: int
 ) -> tuple[Real, Real, Real]:
     """Return the responses at times since the motion began, and q and q' at the end."""
     value = rest * force.value(t, order)
-    terms = invert(rates(modes.sigma, modes.square), _one, force.span)
+    terms = invert(rates(modes.sigma, modes.square), unity, force.span)
     seen = modes
     for k in range(order):
         seen, direct = seen.derivative()
@@ -70,18 +69,8 @@ def while_it_lasts(
         now = slice(first, first + step)
         wave = follow(terms.rate, force, t[now])
         value[:, now] += weight.real @ wave.real - weight.imag @ wave.imag
-    return value, *_state(terms, force, len(modes.sigma))
-
-
-def _one(s: Complex, k: Index) -> Complex:
-    return np.ones(len(k), dtype=complex)
-
-
-def _state(terms: Exponentials, force: Chirping, modes: int) -> tuple[Real, Real]:
-    part = terms.weight * follow(terms.rate, force, np.array([force.span]))[:, 0]
-    state = [part.real, (part * terms.rate).real]
-    q, v = (np.bincount(terms.mode, each, modes).astype(np.float64) for each in state)
-    return q, v
+    end = terms.weight * follow(terms.rate, force, np.array([force.span]))[:, 0]
+    return value, *terms.state(end, len(modes.sigma))
 
 
 def follow(rate: Complex, force: Chirping, t: Real) -> Complex:

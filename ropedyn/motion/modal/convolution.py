@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
 from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
-from ...scene.force import Chirp, Force, Samples, Sum
+from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .chirp import chirping, while_it_lasts
 from .expansion import Expansion
-from .exponentials import Exponentials, evaluate, invert, rates
-from .pair import Pairs, pairs
-from .piece import Piece, pieces, sine
+from .exponentials import Exponentials, Oscillators, evaluate, invert, rates
 from .recurrence import straight_lines
-from .truncation import left_out
-
-__all__ = ["convolve", "left_out", "move", "release"]
-
 
 LARGEST = 1e300
-"""What a growing mode may reach."""
+"""A growing mode may reach this."""
 
 
 def move(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:
@@ -39,7 +36,7 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
     if isinstance(force, Sum):
         still = np.zeros((len(expansion.rest[drive]), len(time)))
         return sum((convolve(expansion, drive, one, time, order) for one in force.forces), still)
-    modes = pairs(expansion, drive)
+    modes = _oscillators(expansion, drive)
     rest = expansion.rest[drive][:, None]
     with np.errstate(all="ignore"):  # numbers that are not finite are refused at the end
         if isinstance(force, Chirp):
@@ -47,24 +44,35 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
         elif isinstance(force, Samples):
             value = straight_lines(modes, rest, force, time, order)
         else:
-            value = _sines(modes, rest, pieces(force, float(time[0])), time, order)
-    return checked(value, time)
+            value = _sines(modes, rest, _pieces(force, float(time[0])), time, order)
+    return _checked(value, time)
 
 
 def release(expansion: Expansion, drive: int, load: float, time: Real, order: int) -> Real:
     """Return the motion after a static load is let go at the first time, shape (responses, t)."""
-    modes = pairs(expansion, drive)
+    modes = _oscillators(expansion, drive)
     growing = np.concatenate([expansion.square <= 0, expansion.p >= 0])
     if (growing & ((modes.a != 0) | (modes.b != 0)).any(axis=0)).any():
         raise SceneError("start must be None where the rope has no rest under a load")
     rest = load * np.divide(1.0, modes.square, out=np.zeros_like(modes.square), where=~growing)
     with np.errstate(all="ignore"):  # as above
-        terms = _motion(modes, Piece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
+        terms = _motion(modes, SinePiece(time[0]), rest, np.zeros_like(rest), time[-1] - time[0])
         value = evaluate(terms.rate, _seen(modes, terms, order), time - time[0])
-    return checked(value, time)
+    return _checked(value, time)
 
 
-def checked(value: Real, time: Real) -> Real:
+def _oscillators(expansion: Expansion, drive: int) -> Oscillators:
+    """Return the modes that a drive moves; r/(s - p) is r (s - p)/(s - p)^2."""
+    a, b, p, r = expansion.a[drive], expansion.b[drive], expansion.p, expansion.r[drive]
+    return Oscillators(
+        np.concatenate([expansion.sigma, -p]),
+        np.concatenate([expansion.square, p * p]),
+        np.concatenate([a, -r * p], axis=1),
+        np.concatenate([b, r], axis=1),
+    )
+
+
+def _checked(value: Real, time: Real) -> Real:
     """Refuse what has left the numbers."""
     bad = ~(np.abs(value) <= LARGEST).all(axis=0)
     if bad.any():
@@ -73,44 +81,45 @@ def checked(value: Real, time: Real) -> Real:
     return value
 
 
-def _chirp(modes: Pairs, rest: Real, force: Chirp, time: Real, order: int) -> Real:
+def _chirp(modes: Oscillators, rest: Real, force: Chirp, time: Real, order: int) -> Real:
     """Return the responses to a chirp: while it lasts, and free after it."""
     begin, end = float(time[0]), force.duration
     if begin >= end:
         return np.zeros((len(rest), len(time)))
     now = chirping(force, begin, min(end, float(time[-1])))
     if now.is_steady:
-        turns = [sine(begin, now.frequency, now.amplitude, now.phase), Piece(end)]
+        turns = [_sine(begin, now.frequency, now.amplitude, now.phase), SinePiece(end)]
         return _sines(modes, rest, turns, time, order)
     last = np.searchsorted(time, end)
     value = np.zeros((len(rest), len(time)))
     value[:, :last], q, v = while_it_lasts(modes, rest, now, time[:last] - begin, order)
     if last < len(time):
-        terms = _motion(modes, Piece(end), q, v, time[-1] - end or now.span)
+        terms = _motion(modes, SinePiece(end), q, v, time[-1] - end or now.span)
         value[:, last:] = evaluate(terms.rate, _seen(modes, terms, order), time[last:] - end)
     return value
 
 
-def _sines(modes: Pairs, rest: Real, turns: list[Piece], time: Real, order: int) -> Real:
+def _sines(modes: Oscillators, rest: Real, turns: list[SinePiece], time: Real, order: int) -> Real:
     """Return the responses to pieces of sines."""
     value = np.zeros((len(rest), len(time)))
     q = v = np.zeros_like(modes.sigma)
     turns = [piece for piece in turns if piece.start <= time[-1]]
     for piece, following in zip(turns, [*turns[1:], None]):
         stop = time[-1] if following is None else following.start
-        last = len(time) if following is None else np.searchsorted(time, stop)
-        now = slice(np.searchsorted(time, piece.start), last)
+        until = len(time) if following is None else np.searchsorted(time, stop)
+        now = slice(np.searchsorted(time, piece.start), until)
         v = v + piece.kick
         terms = _motion(modes, piece, q, v, stop - piece.start or time[-1] - time[0])
         value[:, now] = evaluate(terms.rate, _seen(modes, terms, order), time[now] - piece.start)
         if rest.any():
             value[:, now] += rest * piece.value(time[now], order)
         if following is not None:
-            q, v = _state(terms, len(q), stop - piece.start)
+            last = terms.weight * np.exp(terms.rate * (stop - piece.start))
+            q, v = terms.state(last, len(q))
     return value
 
 
-def _motion(modes: Pairs, piece: Piece, q: Real, v: Real, span: float) -> Exponentials:
+def _motion(modes: Oscillators, piece: SinePiece, q: Real, v: Real, span: float) -> Exponentials:
     """Return the motion of each mode under a piece from a state.
 
     Q(s) = ((cosine s + sine w)/(s^2 + w^2) + v + (s + 2 sigma) q)/(s^2 + 2 sigma s + square)
@@ -131,15 +140,51 @@ def _motion(modes: Pairs, piece: Piece, q: Real, v: Real, span: float) -> Expone
     return invert(poles, numerator, span)
 
 
-def _seen(modes: Pairs, terms: Exponentials, order: int) -> Complex:
+def _seen(modes: Oscillators, terms: Exponentials, order: int) -> Complex:
     """Return the weights of the responses, shape (responses, j)."""
     k, s = terms.mode, terms.rate
     return (modes.a[:, k] + modes.b[:, k] * s) * s**order * terms.weight
 
 
-def _state(terms: Exponentials, modes: int, time: float) -> tuple[Real, Real]:
-    """Return q and q' of each mode at a time."""
-    part = terms.weight * np.exp(terms.rate * time)
-    state = [part.real, (part * terms.rate).real]
-    q, v = (np.bincount(terms.mode, each, modes).astype(np.float64) for each in state)
-    return q, v
+# --- forces as pieces of sines --------------------------------------------------------------------
+
+
+class SinePiece(NamedTuple):
+    """A force cosine cos(w (t - start)) + sine sin(w (t - start)) until the next piece.
+
+    A blow at its start moves what it hits by `kick`.
+    """
+
+    start: float  # [s]
+    frequency: float = 0.0  # w [rad/s]
+    cosine: float = 0.0  # [N]
+    sine: float = 0.0  # [N]
+    kick: float = 0.0  # [N s]
+
+    def value(self, time: Real, order: int) -> Real:
+        """Return the force at times [s], `order` times differentiated."""
+        angle = self.frequency * (time - self.start) + order * math.pi / 2
+        wave = self.cosine * np.cos(angle) + self.sine * np.sin(angle)
+        return np.asarray(np.float64(self.frequency) ** order * wave)
+
+
+def _pieces(force: Force, begin: float) -> list[SinePiece]:
+    """Return what acts from a time on, in turn."""
+    if isinstance(force, Sine):
+        w = 2 * math.pi * force.frequency
+        return [_sine(begin, w, force.amplitude, w * begin + force.phase)]
+    if isinstance(force, Step):
+        return [SinePiece(max(force.time, begin), cosine=force.amplitude)]
+    assert isinstance(force, Impulse)
+    start, end = max(force.time, begin), force.time + force.duration
+    if force.duration == 0:
+        return [SinePiece(start, kick=force.impulse)] if force.time >= begin else []
+    if end <= begin:
+        return []
+    w = math.pi / force.duration
+    return [_sine(start, w, force.amplitude, w * (start - force.time)), SinePiece(end)]
+
+
+def _sine(start: float, w: float, amplitude: float, phase: float) -> SinePiece:
+    """Return amplitude sin(w (t - start) + phase)."""
+    return SinePiece(start, w, amplitude * math.sin(phase), amplitude * math.cos(phase))

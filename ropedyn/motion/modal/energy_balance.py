@@ -38,21 +38,20 @@ from .expansion import Expansion, Share, expand
 NAMES = ("kinetic", "strain", "input", "dissipated")
 
 NODES, RADIANS = 8, 2.0
-"""Of Gauss's rule, and of mode and force in each piece: right to 1e-13."""
-
+"""Gauss's rule of so many nodes is right to 1e-13 where mode and force turn by so much."""
 BLOCK, ALIKE = 64, 4.0
-"""Modes that are looked at together, at most, and how far their rates may be apart in integrals."""
-
+"""So many modes at most are integrated together, whose rates differ by this factor at most."""
 MOST = 1 << 21
-"""Numbers at a time."""
+"""So many numbers are computed at a time."""
 
 
 def balance(run: Run, resolved: float) -> Balance:
     """Return the energies over time."""
     _refuse(run)
-    drives = [*run.drives, *run.loads]
     energy = {name: np.zeros(len(run.time)) for name in NAMES}
-    shares = expand(run.model, drives, drives, modes=run.modes, resolved=resolved, bound=False)
+    shares = expand(
+        run.model, run.places, run.places, modes=run.modes, resolved=resolved, bound=False
+    )
     for share in shares:
         for name, part in zip(NAMES, Driven.of(run, share).energies()):
             energy[name] += part
@@ -91,11 +90,10 @@ class Driven:
     @classmethod
     def of(cls, run: Run, share: Share) -> Driven:
         """Take what drives a component."""
-        every: list[Force | float] = [*run.forces, *run.loads.values()]
         own = share.expansion
         lag = -1 / float(own.p[0]) if len(own.p) else 0.0
         rest = own.r[..., 0] * lag if lag else own.rest
-        return cls(run.time, [every[d] for d in share.drive], own, lag, rest)
+        return cls(run.time, [run.pushes[d] for d in share.drive], own, lag, rest)
 
     def energies(self) -> tuple[Real, Real, Real, Real]:
         """Return kinetic, strain, input and dissipated, each (t,)."""

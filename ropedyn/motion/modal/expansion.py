@@ -26,23 +26,27 @@ from ...eigen.damped.damped_roots import Damped, damped_roots, most_roots
 from ...eigen.damped.proportional import Proportional, proportional
 from ...eigen.eigen import HIGHEST, count_component, spectrum
 from ...response.harmonic import SOLVERS, Question
-from ...response.modal_sum import LEAST, REACH, ratios_of, refuse_other_damping
+from ...response.modal_sum import (
+    LEAST,
+    REACH,
+    known_ratios,
+    refuse_other_damping,
+    shift_of,
+    undamped_factors,
+)
 from ...response.moved_end import is_end, moves_ends
 from ...scene import damping
-from ...scene.damping import DASHPOT, INERTIA
+from ...scene.damping import INERTIA
 from ...signal import contour
 
 LARGEST, MANY = 1000, 400
-"""Unknowns of a chain all of whose modes are summed where no number is given; modes of others."""
-
+"""All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
 SEARCHED = 200
-"""The same where damping is not proportional: each of those is searched for."""
-
+"""So many modes at most are summed where damping is not proportional and each is searched for."""
 EDGE = 0.8
-"""Of the rate before which overdamped modes accumulate: so far they are few."""
-
+"""Overdamped modes are few up to this part of the rate where they accumulate."""
 WIDER, ATTEMPTS = 2, 4
-"""Times the radius is doubled in which all damped modes are looked for; tries with less."""
+"""The radius to search in is doubled so often, and so many searches are made, at most."""
 
 
 class Expansion(NamedTuple):
@@ -66,6 +70,11 @@ class Expansion(NamedTuple):
     bound: Real
     # Angular frequency of the lowest that is left out [rad/s], infinite where none is
     beyond: float
+
+    @property
+    def modes(self) -> int:
+        """How many modes are summed."""
+        return len(self.sigma) + len(self.p)
 
 
 class Share(NamedTuple):
@@ -149,9 +158,7 @@ class _Asked:
 
     def undamped(self, z: Complex) -> Complex:
         """Return those without damping at z = -s^2."""
-        factor = np.ones((len(damping.PARTS), len(z)), dtype=np.complex128)
-        factor[INERTIA], factor[DASHPOT] = -z, 0.0
-        return self.at(factor)
+        return self.at(undamped_factors(z))
 
     def damped(self, rates: Rates, s: Complex) -> Complex:
         """Return those at rates s."""
@@ -167,30 +174,23 @@ def _expansion(asked: _Asked) -> Expansion:
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     rates = Rates.of(model.scene.dampings)
     closed = proportional(model.chain.only(component), rates)
-    eigenvalue, beyond = _eigenvalues(asked, LARGEST if is_modal or closed else SEARCHED)
+    most = LARGEST if is_modal or closed else SEARCHED
+    eigenvalue, error, beyond = _eigenvalues(asked, most)
     if is_modal:
-        ratio = ratios_of(model, component, eigenvalue.value)
-        known = int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])
-        if known < len(ratio):
-            beyond = float(eigenvalue.value[known])
-            eigenvalue = _Known(eigenvalue.value[:known], eigenvalue.error[:known])
-        sigma = ratio[:known] * np.sqrt(np.maximum(eigenvalue.value, 0.0))
-        return _closed(asked, eigenvalue, beyond, Proportional(1, 0, 0), sigma)
+        ratio = known_ratios(model, component, eigenvalue)
+        if len(ratio) < len(eigenvalue):
+            beyond = float(eigenvalue[len(ratio)])
+        eigenvalue, error = eigenvalue[: len(ratio)], error[: len(ratio)]
+        sigma = ratio * np.sqrt(np.maximum(eigenvalue, 0.0))
+        return _closed(asked, (eigenvalue, error), beyond, Proportional(1, 0, 0), sigma)
     if closed is not None:
-        sigma = (closed.drag.real + closed.soften.real * eigenvalue.value) / 2
-        return _closed(asked, eigenvalue, beyond, closed, sigma)
-    return _searched(asked, rates, eigenvalue.value, beyond)
+        sigma = (closed.drag.real + closed.soften.real * eigenvalue) / 2
+        return _closed(asked, (eigenvalue, error), beyond, closed, sigma)
+    return _searched(asked, rates, eigenvalue, beyond)
 
 
-class _Known(NamedTuple):
-    """Eigenvalues and their errors [rad^2/s^2]."""
-
-    value: Real
-    error: Real
-
-
-def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
-    """Return those of the undamped modes that are summed, and the next one."""
+def _eigenvalues(asked: _Asked, most: int) -> tuple[Real, Real, float]:
+    """Return those of the undamped modes that are summed, their errors, and the next one."""
     chain = asked.chain
     finite = chain.finite
     if asked.modes is not None:
@@ -201,7 +201,7 @@ def _eigenvalues(asked: _Asked, most: int) -> tuple[_Known, float]:
         wanted = min(max(_below(asked), LEAST), MANY, most)
     value, error = spectrum(asked.model, asked.component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
-    return _Known(value[:wanted], error[:wanted]), beyond
+    return value[:wanted], error[:wanted], beyond
 
 
 def _below(asked: _Asked) -> int:
@@ -217,14 +217,14 @@ def _below(asked: _Asked) -> int:
 
 
 def _closed(
-    asked: _Asked, known: _Known, beyond: float, closed: Proportional, sigma: Real
+    asked: _Asked, known: tuple[Real, Real], beyond: float, closed: Proportional, sigma: Real
 ) -> Expansion:
     """Sum undamped modes. With stiffness g K, g = stiff + soften s, each is r/(g lambda + ..).
 
     Internal forces are g times those of K, and so are forces that motion of an end takes.
     """
-    eigenvalue = known.value
-    circles = contour.on_a_line(eigenvalue, known.error, beyond)
+    eigenvalue, error = known
+    circles = contour.on_a_line(eigenvalue, error, beyond)
     stiff, soften = closed.stiff.real, closed.soften.real
     force = np.array([is_force(point) for point in asked.responses])
     power = np.array([is_end(drive) for drive in asked.drives])[:, None] + force.astype(int)
@@ -256,20 +256,9 @@ def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[R
     a = np.zeros((*shape, len(eigenvalue)))
     if len(eigenvalue):
         a = -contour.residues(asked.undamped, eigenvalue, circles).real
-    shift = _shift(eigenvalue)
+    shift = shift_of(eigenvalue)
     whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
     return a, whole - a @ (1 / (eigenvalue + shift))
-
-
-def _shift(eigenvalue: Real) -> float:
-    """Return -lambda where the response is compared: 0, where nothing is rigid."""
-    if not (eigenvalue == 0).any():
-        return 0.0
-    elastic = eigenvalue[eigenvalue > 0]
-    shift = float(elastic[0]) if len(elastic) else 1.0
-    while (np.abs(eigenvalue + shift) < 0.1 * shift).any():
-        shift *= 1.5
-    return shift
 
 
 def _bound(asked: _Asked, left: Any) -> Real:
@@ -291,7 +280,7 @@ def _bound(asked: _Asked, left: Any) -> Real:
 # --- damping that couples -----------------------------------------------------------------------
 
 
-class _Poles(NamedTuple):
+class _DampedRates(NamedTuple):
     """Rates of a component with their conjugates [rad/s]."""
 
     value: Complex
@@ -328,7 +317,7 @@ def _relaxing(asked: _Asked, terms: Terms, rest: Real, far: float) -> tuple[Term
     return (sigma, square, a, b, *more), np.where(follows, rest, 0.0)
 
 
-def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Poles:
+def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _DampedRates:
     """Find the rates below a radius between undamped modes; of a whole chain all there are.
 
     Those before the place where overdamped ones accumulate, and fewer where rounding hides some.
@@ -362,7 +351,7 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Pol
         is_motion = value.real <= 1.01 * fastest + error
         value, error = value[is_motion], error[is_motion]
     twin = value.imag > 0
-    return _Poles(
+    return _DampedRates(
         np.concatenate([value, value[twin].conj()]),
         np.concatenate([error, error[twin]]),
         np.inf if all(whole) else min(one.radius for one in found),
@@ -404,7 +393,7 @@ Terms = tuple[Real, Real, Real, Real, Real, Real]
 
 
 def _taken(
-    asked: _Asked, rates: Rates, poles: _Poles, circles: contour.Circles
+    asked: _Asked, rates: Rates, poles: _DampedRates, circles: contour.Circles
 ) -> tuple[Terms, Real]:
     """Return sigma, square, a, b, p, r and what is left."""
     shape = (len(asked.drives), len(asked.responses))

@@ -14,21 +14,33 @@ from ...base.array import Complex, Flags, Index, Real
 Numerator = Callable[[Complex, Index], Complex]
 
 BLOCK = 128
-"""Times whose powers are tabled: a grid of n needs BLOCK + n/BLOCK exponentials of each rate."""
+"""Powers of so many times are tabled: n of a grid need BLOCK + n/BLOCK exponentials of a rate."""
 SHARES = tuple(2**k for k in range(2, 40))
-"""Blocks from which on terms that have decayed are left out."""
-
+"""From these blocks on terms that have decayed are left out."""
 NOTHING = 1e-20
-"""Of the largest term at first."""
-
+"""A term has decayed when it is less than this part of the largest one at first."""
 SLICE = 1 << 16
-"""Exponentials at once where times are not a grid."""
+"""So many exponentials are computed at once where times are not a grid."""
 DIGITS = 38.0
-"""Of circles, as a natural logarithm."""
+"""A circle around poles is right to so many digits, as a natural logarithm."""
 MOST = 4096
-"""Nodes of a circle, that numbers near the end of their range end somewhere."""
+"""A circle has so many nodes at most, also of numbers near the end of their range."""
 CLOSE = 0.5
 """Poles nearer than this part of what time and decay can tell apart go into one circle."""
+
+
+class Oscillators(NamedTuple):
+    """Modes q'' + 2 sigma q' + square q = f that move responses by a q + b q'."""
+
+    sigma: Real  # (k,) [1/s]
+    square: Real  # (k,) [rad^2/s^2]
+    a: Real  # (responses, k)
+    b: Real  # (responses, k)
+
+    def derivative(self) -> tuple[Oscillators, Real]:
+        """Return those of the responses' derivative, and what f itself adds, (responses,)."""
+        a, b = -self.b * self.square, self.a - 2 * self.sigma * self.b
+        return self._replace(a=a, b=b), self.b.sum(axis=1)
 
 
 class Exponentials(NamedTuple):
@@ -37,6 +49,12 @@ class Exponentials(NamedTuple):
     rate: Complex  # (j,) [1/s]
     weight: Complex  # (j,)
     mode: Index  # (j,)
+
+    def state(self, part: Complex, modes: int) -> tuple[Real, Real]:
+        """Return q and q' of each mode, of terms that have these values."""
+        each = [part.real, (part * self.rate).real]
+        q, v = (np.bincount(self.mode, one, modes).astype(np.float64) for one in each)
+        return q, v
 
 
 def rates(sigma: Real, square: Real) -> Complex:
@@ -65,6 +83,11 @@ def invert(poles: Complex, numerator: Numerator, span: float) -> Exponentials:
         parts.extend(_circled(poles[k], numerator, k, span))
     rate, weight, mode = (np.concatenate(each) for each in zip(*parts))
     return Exponentials(rate, weight, mode)
+
+
+def unity(s: Complex, k: Index) -> Complex:
+    """Return the numerator of a blow of 1."""
+    return np.ones(len(k), dtype=complex)
 
 
 def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:

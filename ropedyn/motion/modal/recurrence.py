@@ -7,8 +7,7 @@ import numpy as np
 from ... import _core
 from ...base.array import Complex, Index, Real
 from ...scene.force import Samples
-from .exponentials import invert, is_uniform, rates
-from .pair import Pairs
+from .exponentials import Oscillators, invert, is_uniform, rates, unity
 
 STEPS = 2048
 """In one call of the core: a look for Ctrl-C every millisecond."""
@@ -20,7 +19,7 @@ TERMS = 30
 """Of the series."""
 
 
-def straight_lines(modes: Pairs, rest: Real, force: Samples, time: Real, order: int) -> Real:
+def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, order: int) -> Real:
     """Return the responses to a force by its samples, from rest at the first time."""
     inside = (force.time > time[0]) & (force.time < time[-1])
     grid = np.union1d(time, force.time[inside])
@@ -32,14 +31,14 @@ def straight_lines(modes: Pairs, rest: Real, force: Samples, time: Real, order: 
     for k in range(order):
         modes, direct = modes.derivative()
         value = value + direct[:, None] * followed[order - 1 - k]
-    value[:, 1:] += _walk(modes, grid, sample)
+    value[:, 1:] += _followed(modes, grid, sample)
     return value if len(grid) == len(time) else value[:, np.searchsorted(grid, time)]
 
 
-def _walk(modes: Pairs, grid: Real, sample: Real) -> Real:
+def _followed(modes: Oscillators, grid: Real, sample: Real) -> Real:
     """Return a q + b q' at all times but the first."""
     spare = -len(modes.sigma) % LANES
-    wide = Pairs(*(np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, spare)]) for each in modes))
+    wide = Oscillators(*(np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, spare)]) for each in modes))
     seen = np.ascontiguousarray(np.stack([wide.a, wide.b], axis=1))
     state = np.zeros((2, len(wide.sigma)))
     h = np.diff(grid)
@@ -123,11 +122,7 @@ def _inverted_over(own: Complex, power: int, h: Real) -> Real:
     result = np.zeros((len(h), len(own)))
     if len(own):
         poles = np.concatenate([own, np.zeros((len(own), power))], axis=1)
-        terms = invert(poles, _one, float(h.max()))
+        terms = invert(poles, unity, float(h.max()))
         parts = (np.exp(np.multiply.outer(h, terms.rate)) * terms.weight).real
         np.add.at(result.T, terms.mode, parts.T)
     return result
-
-
-def _one(s: Complex, k: Index) -> Complex:
-    return np.ones(len(k), dtype=complex)

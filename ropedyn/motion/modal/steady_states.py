@@ -14,19 +14,16 @@ from ...signal.spectrum import amplitudes
 from ..request import SteadyStates, SteppedSine
 from .convolution import convolve
 from .expansion import Share, expand
-from .superposition import ratio_beyond
+from .truncation import ratio_beyond
 
 SAMPLES = 16
-"""Of a period that the modal method looks at."""
-
+"""The motion is looked at so many times a period."""
 REST = 100.0
-"""Of the tolerance, what may be left of free motion where it is estimated from the slowest rate."""
-
+"""Free motion is waited for until less than the tolerance over this is left of it."""
 UNSEEN = 1e-11
-"""Of the largest residue: a mode at whose node is driven or watched has the rounding of one."""
-
-LATER = 30
-"""Times the wait for the steady state is doubled."""
+"""A mode with a residue below this part of the largest is driven or watched at a node."""
+DOUBLINGS = 30
+"""The wait for the steady state is doubled so often at most."""
 
 
 def superpose_steadily(asked: SteppedSine) -> SteadyStates:
@@ -43,8 +40,7 @@ def superpose_steadily(asked: SteppedSine) -> SteadyStates:
         size = np.abs(value[:, k])
         error[:, k] += np.divide(left_out, size, out=np.zeros_like(size), where=size > 0)
         asked.progress((k + 1) / len(f))
-    modes = sum(len(s.expansion.sigma) + len(s.expansion.p) for s in shares)
-    return SteadyStates(value, error, "modal", modes)
+    return SteadyStates(value, error, "modal", sum(share.expansion.modes for share in shares))
 
 
 def _slowest(share: Share) -> float:
@@ -94,7 +90,7 @@ def _steady(
     force = Sine(1.0, frequency, phase=math.pi / 2)
     period = 1 / frequency
     wait = math.log(REST / asked.tolerance) / slowest if math.isfinite(slowest) else 0.0
-    for _ in range(LATER):
+    for _ in range(DOUBLINGS):
         first = math.ceil(wait / period) * period
         looks = first + period * np.arange(2 * SAMPLES) / SAMPLES
         time = np.append(0.0, looks) if first > 0 else looks

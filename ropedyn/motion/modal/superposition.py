@@ -5,9 +5,8 @@ from __future__ import annotations
 import dataclasses
 import math
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -16,29 +15,26 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.progress import silent
 from ...chain.compile import compile_scene
-from ...chain.compiled import Compiled
 from ...eigen.eigen import within
 from ...response.deflection import POINTS
-from ...scene.damping import having
-from ...scene.force import Force
 from ..history import Deviation, History
 from ..request import Run
-from .convolution import left_out, move
+from .convolution import move
 from .energy_balance import balance
-from .expansion import Expansion, Share, expand
+from .expansion import Share, expand
+from .truncation import left_out, ratio_beyond
 
 WAVE = 8
-"""Samples of a period that times resolve."""
+"""Times resolve a period of so many samples."""
 
 
 def superpose(run: Run) -> History:
     """Sum up the modes of a linear model; see `Model.transient`."""
     start = clock.perf_counter()
-    drives = [*run.drives, *run.loads]
-    resolved = fastest(run.forces, run.time)
-    shares = expand(run.model, drives, run.responses, modes=run.modes, resolved=resolved)
+    resolved = _fastest(run)
+    shares = expand(run.model, run.places, run.responses, modes=run.modes, resolved=resolved)
     value = _responses(run, shares, len(run.responses))
-    x, snapshot = _snapshots(run, drives, resolved)
+    x, snapshot = _snapshots(run, resolved)
     seconds = clock.perf_counter() - start
     truncation = _truncation(run, shares)
     run = run.kept
@@ -55,26 +51,25 @@ def superpose(run: Run) -> History:
             seconds,
             "modal",
             len(run.model.x) - 1,
-            sum(len(s.expansion.sigma) + len(s.expansion.p) for s in shares),
+            sum(share.expansion.modes for share in shares),
         ),
         balance_source=partial(balance, run, resolved),
         deviation_source=deviation,
     )
 
 
-def fastest(forces: Sequence[Force], time: Real) -> float:
+def _fastest(run: Run) -> float:
     """Return the highest angular frequency that forces have or times resolve [rad/s]."""
-    resolved = 2 * math.pi / WAVE * (len(time) - 1) / float(time[-1] - time[0])
-    return max([resolved, *(2 * math.pi * force.bandwidth for force in forces)])
+    resolved = 2 * math.pi / WAVE * (len(run.time) - 1) / float(run.time[-1] - run.time[0])
+    return max([resolved, *(2 * math.pi * force.bandwidth for force in run.forces)])
 
 
 def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
     """Return what all forces and loads move together, shape (count, t)."""
     value = np.zeros((count, len(run.time)))
-    given = [*run.forces, *run.loads.values()]
     for done, share in enumerate(shares):
         for k, d in enumerate(share.drive):
-            value[share.response] += move(share.expansion, k, given[d], run.time, run.order)
+            value[share.response] += move(share.expansion, k, run.pushes[d], run.time, run.order)
             run.progress((done + (k + 1) / len(share.drive)) / len(shares))
     return value
 
@@ -82,12 +77,11 @@ def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
 def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
     """Bound what the modes cause that are left out, shape (responses,)."""
     error = np.zeros(len(run.responses))
-    given = [*run.forces, *run.loads.values()]
     for share in shares:
         expansion = share.expansion
         ratio = ratio_beyond(run.model, expansion)
         for k, d in enumerate(share.drive):
-            own, one = expansion.bound[k], given[d]
+            own, one = expansion.bound[k], run.pushes[d]
             if not own.any() or one == 0.0:
                 continue
             if isinstance(one, float):  # let go, they swing about 0
@@ -99,22 +93,7 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
     return error
 
 
-def ratio_beyond(model: Compiled, expansion: Expansion) -> float:
-    """Return the largest damping ratio of the modes that are left out.
-
-    (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.
-    """
-    omega = np.sqrt(np.maximum(expansion.square, 0.0))
-    ratio = np.divide(expansion.sigma, omega, out=np.zeros_like(omega), where=omega > 0)
-    if having(model.scene.dampings, "ratio"):
-        return float(ratio.max(initial=0.0))
-    if not omega.any() or np.isinf(expansion.beyond):
-        return 0.0
-    k = int(omega.argmax())
-    return float(ratio[k] * expansion.beyond / omega[k])
-
-
-def _snapshots(run: Run, drives: list[Any], resolved: float) -> tuple[Real, Real]:
+def _snapshots(run: Run, resolved: float) -> tuple[Real, Real]:
     """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
     model = run.model
     x = within(model.x, POINTS) if model.element == "continuous" else model.x
@@ -122,14 +101,11 @@ def _snapshots(run: Run, drives: list[Any], resolved: float) -> tuple[Real, Real
     if len(run.snapshots) == 0:
         return x, np.zeros((0, len(x), width))
     points = [(c, float(at)) for at in x for c in model.coordinates]
-    shares = expand(model, drives, points, modes=run.modes, resolved=resolved, bound=False)
+    shares = expand(model, run.places, points, modes=run.modes, resolved=resolved, bound=False)
     time = np.unique(np.append(run.time[0], run.snapshots))
     looks = dataclasses.replace(run, time=time, order=0, progress=silent)
     kept = _responses(looks, shares, len(points))[:, len(time) - len(run.snapshots) :]
     return x, np.ascontiguousarray(kept.T).reshape(-1, len(x), width)
-
-
-# --- against continuous spans -------------------------------------------------------------------
 
 
 def _deviation(run: Run, value: Real) -> Deviation:

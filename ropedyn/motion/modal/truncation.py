@@ -8,18 +8,21 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Real
+from ...chain.compiled import Compiled
+from ...scene.damping import having
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
+from .expansion import Expansion
 
 
-class Change(NamedTuple):
+class Variation(NamedTuple):
     """How a derivative of a force changes while it acts, from nothing before it."""
 
     jump: float  # Sum of the magnitudes of its jumps, that from nothing included
     total: float  # Total variation: of the jumps and in between
 
 
-STILL = Change(0.0, 0.0)
-BLOW = Change(math.inf, math.inf)
+STILL = Variation(0.0, 0.0)
+BLOW = Variation(math.inf, math.inf)
 
 
 def left_out(
@@ -53,10 +56,10 @@ def _reach(
         return sum(_reach(one, span, beyond, order, ratio) for one in force.forces)
     begin, end = span
     lag = (2 * ratio + math.sqrt(1 + 4 * ratio**2)) / beyond
-    changes = [_change(force, begin, end, k) for k in range(order + 2)]
-    if any(change.jump > 0 for change in changes[:order]):
+    variations = [_variation(force, begin, end, k) for k in range(order + 2)]
+    if any(one.jump > 0 for one in variations[:order]):
         return math.inf
-    now, after = changes[order:]
+    now, after = variations[order:]
     by_parts = min(now.total, now.jump + lag * after.total)
     if isinstance(force, Sine):
         return min(by_parts, _steady(force, begin, beyond, order, ratio))
@@ -81,30 +84,32 @@ def _steady(force: Sine, begin: float, beyond: float, order: int, ratio: float) 
     return most * (distance + math.hypot(q, v))
 
 
-def _change(force: Force, begin: float, end: float, order: int) -> Change:
+def _variation(force: Force, begin: float, end: float, order: int) -> Variation:
     """Return how a force changes that is differentiated `order` times."""
     if isinstance(force, Sine):
-        return _change_of_sine(force, begin, end, order)
+        return _variation_of_sine(force, begin, end, order)
     if isinstance(force, Chirp):
-        return _change_of_chirp(force, begin, end, order)
+        return _variation_of_chirp(force, begin, end, order)
     if isinstance(force, Step):
         if force.time > end or force.amplitude == 0:
             return STILL
-        return Change(*2 * (abs(force.amplitude),)) if order == 0 else BLOW
+        return Variation(*2 * (abs(force.amplitude),)) if order == 0 else BLOW
     if isinstance(force, Samples):
-        return _change_of_samples(force, begin, end, order)
+        return _variation_of_samples(force, begin, end, order)
     assert isinstance(force, Impulse)
-    return _change_of_blow(force, begin, end, order)
+    return _variation_of_blow(force, begin, end, order)
 
 
-def _change_of_sine(force: Sine, begin: float, end: float, order: int) -> Change:
+def _variation_of_sine(force: Sine, begin: float, end: float, order: int) -> Variation:
     w = 2 * math.pi * force.frequency
     most = abs(force.amplitude) * w**order
     jump = most * abs(math.sin(w * begin + force.phase + order * math.pi / 2))
-    return Change(jump, jump + min(w * (end - begin), 2 + w * (end - begin) * 2 / math.pi) * most)
+    return Variation(
+        jump, jump + min(w * (end - begin), 2 + w * (end - begin) * 2 / math.pi) * most
+    )
 
 
-def _change_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Change:
+def _variation_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Variation:
     """Bound the derivatives by the largest frequency and its growth."""
     if begin >= force.duration or force.amplitude == 0:
         return STILL
@@ -115,10 +120,10 @@ def _change_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Chan
     size = [1, most, most**2 + c, most**3 + 3 * most * c, most**4 + 6 * most**2 * c + 3 * c**2]
     ends = abs(force.amplitude) * size[order]
     jump = ends * (2 if last < end else 1)
-    return Change(jump, jump + abs(force.amplitude) * size[order + 1] * (last - begin))
+    return Variation(jump, jump + abs(force.amplitude) * size[order + 1] * (last - begin))
 
 
-def _change_of_samples(force: Samples, begin: float, end: float, order: int) -> Change:
+def _variation_of_samples(force: Samples, begin: float, end: float, order: int) -> Variation:
     if not force.sample.any():
         return STILL
     if order > 1:
@@ -127,13 +132,13 @@ def _change_of_samples(force: Samples, begin: float, end: float, order: int) -> 
     value = force.value(corner)
     if order == 0:
         jump = abs(float(value[0]))
-        return Change(jump, jump + float(np.abs(np.diff(value)).sum()))
+        return Variation(jump, jump + float(np.abs(np.diff(value)).sum()))
     slope = np.diff(value, prepend=value[0]) / np.diff(corner, prepend=corner[0] - 1)
     jump = float(np.abs(np.diff(slope)).sum())
-    return Change(jump, jump)
+    return Variation(jump, jump)
 
 
-def _change_of_blow(force: Impulse, begin: float, end: float, order: int) -> Change:
+def _variation_of_blow(force: Impulse, begin: float, end: float, order: int) -> Variation:
     if force.time > end or force.time + force.duration < begin or force.impulse == 0:
         return STILL
     if force.duration == 0:
@@ -141,5 +146,20 @@ def _change_of_blow(force: Impulse, begin: float, end: float, order: int) -> Cha
     w = math.pi / force.duration
     most = abs(force.amplitude) * w**order
     if force.time < begin:
-        return Change(2 * most, 4 * most)
-    return Change(2 * most, 4 * most) if order % 2 else Change(0.0, 2 * most)
+        return Variation(2 * most, 4 * most)
+    return Variation(2 * most, 4 * most) if order % 2 else Variation(0.0, 2 * most)
+
+
+def ratio_beyond(model: Compiled, expansion: Expansion) -> float:
+    """Return the largest damping ratio of the modes that are left out.
+
+    (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.
+    """
+    omega = np.sqrt(np.maximum(expansion.square, 0.0))
+    ratio = np.divide(expansion.sigma, omega, out=np.zeros_like(omega), where=omega > 0)
+    if having(model.scene.dampings, "ratio"):
+        return float(ratio.max(initial=0.0))
+    if not omega.any() or np.isinf(expansion.beyond):
+        return 0.0
+    k = int(omega.argmax())
+    return float(ratio[k] * expansion.beyond / omega[k])
