@@ -19,16 +19,9 @@ from .modal_system import ModalSystem, modal_system
 from .monodromy import finite, monodromy, steps_for
 
 EPS = float(np.finfo(float).eps)
-
-FINE = 0.6
-"""Of the highest mode in a step at first [rad]."""
-
-CONVERGED = 1e-13
-"""Of the largest number that motion over a period has, by half as long steps."""
-
-PART = 0.1
-"""Of the energy of a motion: a mode with more takes part in it."""
-
+FINE = 0.6  # The highest mode turns so far in a step at first [rad].
+CONVERGED = 1e-13  # Half as long steps change motion over a period by less than this part of it.
+PART = 0.1  # A mode with more of the energy of a motion takes part in it.
 MOST_MODES = 200
 
 

@@ -20,15 +20,12 @@ from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
 from ..signal.cluster import clusters
 
 SLOPE_OF_TENSION = 6
-"""Among the slopes of an element, see `_core.sensitivity`."""
-
+"""The slope by the tension is this one of an element, see `_core.sensitivity`."""
 GAUSS = 12
-"""Points in each piece of a continuous span shorter than its waves: products of two shapes are
-integrated to rounding."""
-
+"""So many points in each piece of a span shorter than its waves integrate products of two shapes to
+rounding."""
 ROUNDING = 1e-12
-"""Of what modes at most couple by: less is rounding, as between even and odd shapes."""
-
+"""Couplings below this part of the largest that two modes can have are rounding."""
 RESONATOR = ATTACHED.index("resonator")
 
 
@@ -120,21 +117,11 @@ class _Basis:
 
     tension: float  # mean [N]
     eigenvalue: Real  # (k,)
-    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
-    # structures that nodes carry
-    mass: Real
-    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
-    # structures that nodes carry
-    geometric: Real
-    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
-    # structures that nodes carry
-    dragged: Real
-    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
-    # structures that nodes carry
-    carried: Real
-    # (k, k) of inertia; of slopes; of drag and dashpots; of the stiffness and of the damping of the
-    # structures that nodes carry
-    resisted: Real
+    mass: Real  # (k, k) of inertia
+    geometric: Real  # (k, k) of slopes
+    dragged: Real  # (k, k) of drag and dashpots
+    carried: Real  # (k, k) of the stiffness of the structures that nodes carry
+    resisted: Real  # (k, k) of their damping
 
     @classmethod
     def of(cls, model: Compiled, component: tuple[str, ...], number: int | None) -> _Basis:
@@ -143,7 +130,8 @@ class _Basis:
         if model.element == "continuous":
             model, weight = _at_gauss_points(model, component, number)
         chain = model.chain.only(component)
-        found = SOLVERS["sweep"](model, component, _wanted(chain, number), math.inf, shaped=True)
+        wanted = chain.finite if number is None else number
+        found = SOLVERS["sweep"](model, component, wanted, math.inf, shaped=True)
         if number is not None and len(found.eigenvalue) < number:
             raise SolveError(
                 f"modes must be at most {len(found.eigenvalue)}, the transverse ones this model "
@@ -152,7 +140,7 @@ class _Basis:
         shape, motion = found.shape, found.motion
         assert shape is not None
         assert motion is not None
-        carried = _Carried.of(chain, shape, motion, found.eigenvalue)
+        carried = _StructureForms.of(chain, shape, motion, found.eigenvalue)
         own = _form(shape, chain.mass[chain.term_of])
         dragged = np.zeros_like(own)
         if chain.damping is not None:
@@ -172,26 +160,14 @@ class _Basis:
             geometric = _of_string(chain, found, mass, carried)
         return cls(
             model.scene.mean_tension,
-            _settled(found),
+            # what rounding cannot tell from 0 is 0
+            np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue),
             mass,
             geometric,
             dragged,
             carried.stiffness,
             carried.damping,
         )
-
-
-def _wanted(chain: Chain, number: int | None) -> int:
-    """Return how many modes to look for."""
-    if number is not None:
-        return number
-    assert chain.finite is not None
-    return chain.finite
-
-
-def _settled(found: Found) -> Real:
-    """Return eigenvalues, exactly 0 where rounding cannot tell them from it."""
-    return np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
 
 
 def _at_gauss_points(
@@ -260,7 +236,7 @@ def _slope(chain: Chain, shape: Real) -> Real:
     return np.asarray(element[:, :, SLOPE_OF_TENSION].sum(axis=1))
 
 
-def _of_string(chain: Chain, found: Found, mass: Real, carried: _Carried) -> Real:
+def _of_string(chain: Chain, found: Found, mass: Real, carried: _StructureForms) -> Real:
     """Return what is stored in tension, all that springs and structures do not store, over T."""
     assert found.shape is not None
     root = np.sqrt(np.diag(mass))
@@ -270,7 +246,7 @@ def _of_string(chain: Chain, found: Found, mass: Real, carried: _Carried) -> Rea
 
 
 @dataclass(frozen=True, eq=False)
-class _Carried:
+class _StructureForms:
     """Forms of the structures that nodes carry, shape (k, k)."""
 
     mass: Real
@@ -278,7 +254,7 @@ class _Carried:
     damping: Real
 
     @classmethod
-    def of(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> _Carried:
+    def of(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> _StructureForms:
         """Of resonators all; of wires the mass that each mode has of them."""
         count = len(shape)
         form = cls(*(np.zeros((count, count)) for _ in range(3)))

@@ -43,29 +43,16 @@ HALF = (
     0.04967437063972987905456880,
     0.04931773575959453791768001,
 )
-"""Of the composition, up to the one in the middle."""
-
+"""Each kick of the composition stands for such a part of a step, up to the one in the middle."""
 SHARE = np.array(HALF + HALF[-2::-1])
-"""Of a step that each of the kicks stands for."""
-
-AT = np.cumsum(SHARE) - SHARE / 2
-"""When in the step it comes."""
-
-DRIFT = (np.append(SHARE, 0.0) + np.append(0.0, SHARE)) / 2
-"""Between kicks."""
-
-TERMS = 15
-"""Of the series of a matrix of norm 1/2: the next is 1e-18."""
-
-TOGETHER = 1 << 16
-"""Numbers of states that are carried on together: they stay in the cache."""
-
-MOST_STEPS = 200_000
-"""Over one period."""
-
+AT = np.cumsum(SHARE) - SHARE / 2  # Each kick comes at this part of the step.
+DRIFT = (np.append(SHARE, 0.0) + np.append(0.0, SHARE)) / 2  # So long are motions between kicks.
+TERMS = 15  # After so many terms of the series of a matrix of norm 1/2 the next is 1e-18.
+TOGETHER = 1 << 16  # So many numbers of states are carried on together: they stay in the cache.
+MOST_STEPS = 200_000  # A period takes so many steps at most.
 ANGLE = 1.0
-"""Of the highest mode in a step [rad]: the error of ln|multiplier| is 1e-10 where the tension
-pulsates by half of it."""
+"""The highest mode turns so far in a step [rad]: the error of ln|multiplier| is 1e-10 where the
+tension pulsates by half of it."""
 
 
 def steps_for(system: ModalSystem, frequency: float, amplitude: float, angle: float) -> int:

@@ -12,33 +12,17 @@ from ..base.array import Flags, Index, Real
 from .modal_system import ModalSystem
 from .monodromy import ANGLE, exponent, periods, rates, scales
 
-HIGHEST_ORDER = 4
-"""Of resonances that are looked for."""
-
+HIGHEST_ORDER = 4  # Resonances up to this order are looked for.
 NEUTRAL = 1e-6
-"""Growth ln|multiplier| over a period that is seen where undamped motion keeps its size: two
+"""Growth ln|multiplier| over a period is seen above this where undamped motion keeps its size: two
 multipliers that meet on the unit circle are the root of 1e-16 off it by rounding."""
-
-PARTS = 8
-"""Of an interval near a resonance that are looked at together."""
-
-SECTIONS = 4
-"""Of an interval around a boundary."""
-
-CLOSE = 1e-10
-"""Relative width of the last interval around a boundary."""
-
-ROUGH = 1e-6
-"""The same of boundaries that are looked at again, with damping."""
-
-LEAST = 1e-8
-"""Power of the relative pulsation of the stiffness that makes a tongue worth looking for."""
-
-PART = 0.05
-"""Of the energy of a motion: less is of another one."""
-
-ZOOMS = 3
-"""Closer looks at where growth is largest."""
+PARTS = 8  # So many parts of an interval near a resonance are looked at together.
+SECTIONS = 4  # An interval around a boundary is cut into so many.
+CLOSE = 1e-10  # The last interval around a boundary has this relative width,
+ROUGH = 1e-6  # and this one around a boundary that is looked at again, with damping.
+LEAST = 1e-8  # A tongue is looked for where a power of the relative pulsation is above this.
+PART = 0.05  # A mode with less of the energy of a motion belongs to another one.
+ZOOMS = 3  # Where growth is largest is looked at so often, ever closer.
 
 
 class Tongue(NamedTuple):
