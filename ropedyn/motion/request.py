@@ -22,9 +22,7 @@ from ..scene.parts.part import standing
 from ..scene.tension import Tension
 
 METHODS = ("auto", "modal", "direct")
-
-MODAL, DIRECT = 1e-9, 1e-3
-"""Tolerance of a steady state that each method keeps where none is given."""
+MODAL, DIRECT = 1e-9, 1e-3  # Tolerances of a steady state that methods keep where none is given.
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,12 +37,10 @@ Solver = Callable[["Question"], tuple[Complex, Real]]
 REACH, LEAST, MOST = 8.0, 64, 5_000
 """Modes below so many times the highest frequency are summed up, at least and at most so many."""
 ROUND, NEAR = 16, 1 / 8
-"""A circle has so many points, and this radius over the distance to the next mode: 8^-16 is seen.
-"""
-ALIKE = 2.0**-26
-"""Eigenvalues that differ by this share, the root of eps, are one: apart they would lose more."""
-TOGETHER = 8
-"""The own responses of so many points are computed at once."""
+"""A circle has so many points, and this part of the distance to the next mode as its radius: 8^-16
+of that mode is seen."""
+ALIKE = 2.0**-26  # Eigenvalues that differ by the root of eps are one: apart they would lose more.
+TOGETHER = 8  # The own responses of so many points are computed at once.
 
 
 class UndampedPoles(NamedTuple):

@@ -14,9 +14,7 @@ from .spectrum import time_step, window_weights
 OVERLAPPING = 0.53
 """Segments of Hann's window that half overlap count so many times as independent ones: Bendat and
 Piersol (2010), section 11.5.2.2."""
-
-FLOOR = 1e-3
-"""Lines where the force is less than this part of its largest line are left out."""
+FLOOR = 1e-3  # Lines where the force is less than this part of its largest line are left out.
 
 
 class Estimate(NamedTuple):

@@ -16,16 +16,11 @@ from ..base.table import Table
 from .pencil import decaying
 from .spectrum import time_step
 
-LEAST = 16
-"""Times that a record of free motion must have."""
-CREEP = 1e-6
-"""Motion whose phase turns less than by this part of its rate does not oscillate."""
-VAGUE = 0.02
-"""A mode whose rate is not known to this part of it is none."""
-STOP_BAND = 100.0
-"""Of the low-pass [dB]."""
-WIDEST = 250
-"""Half the pass band, at most, times the length of the record."""
+LEAST = 16  # A record of free motion must have so many times.
+CREEP = 1e-6  # Motion whose phase turns less than by this part of its rate does not oscillate.
+VAGUE = 0.02  # A mode whose rate is not known to this part of it is none.
+STOP_BAND = 100.0  # The low-pass stops by so much [dB].
+WIDEST = 250  # Half the pass band times the length of the record is at most this.
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,7 @@ from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import label
 
-UNIFORM = 1e-6
-"""Times this part of a step away from equal steps are at equal steps."""
+UNIFORM = 1e-6  # Times this part of a step away from equal steps are at equal steps.
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,11 +21,8 @@ from .march import stage_of
 from .run import Passage, Walk
 from .steps import Pace, halved, steps_of, within
 
-ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")
-"""Of a passage, in its order."""
-
-STOPS = (Exception, KeyboardInterrupt)
-"""What may end a march early and leave an answer."""
+ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")  # In the order of a passage.
+STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an answer.
 
 
 def march(run: Run) -> History:

@@ -13,19 +13,14 @@ from .march import FORGETS, KEEPS, Motion, Push, Stride
 from .timeline import Timeline
 
 SHORT = 1e-4
-"""Of a step: how long blows last, ends jump and what has no inertia follows; less is rounding."""
-
-PROBE = 1e-6
-"""Of a step: how far is looked ahead for what holds at one time."""
-
-STEPS = 3
-"""In which it follows: one for the jump, two for its rate."""
-
-LEAST = 1e-12
-"""Jumps smaller than this part of what jumps are rounding."""
+"""Blows last, ends jump and what has no inertia follows for this part of a step: less is rounding.
+"""
+PROBE = 1e-6  # So far of a step is looked ahead for what holds at one time.
+STEPS = 3  # What has no inertia follows in so many: one for the jump, two for its rate.
+LEAST = 1e-12  # Jumps smaller than this part of what jumps are rounding.
 
 
-class Change(NamedTuple):
+class Jump(NamedTuple):
     """How functions of time change at one time, each shape (functions,)."""
 
     value: Real  # After it
@@ -41,8 +36,8 @@ class Onset:
     motion: Motion  # of the chain
     time: float  # just after which [s]
     h: float  # of the steps that follow [s]
-    force: Change  # of the forces and of ends that are moved
-    ends: Change  # of the forces and of ends that are moved
+    force: Jump  # of the forces and of ends that are moved
+    ends: Jump  # of the forces and of ends that are moved
     blow: Real  # (drives,) impulses [N s, N m s]
     jumps: bool  # whether something must follow at once
 
@@ -121,7 +116,7 @@ def _blow(force: Force, line: Timeline, mark: int) -> float:
     return sum(impulse for when, impulse in force.blows if line.at(when) == mark)
 
 
-def _change(functions: tuple[Force, ...], before: float | None, after: float) -> Change:
+def _change(functions: tuple[Force, ...], before: float | None, after: float) -> Jump:
     """Return how functions change; before the motion begins they are 0."""
 
     def at(time: float | None, verb: str) -> Real:
@@ -135,4 +130,4 @@ def _change(functions: tuple[Force, ...], before: float | None, after: float) ->
     size = np.abs(value) + np.abs(value - jump)
     drift = 0.0 if before is None else (after - before) * (np.abs(rate) + np.abs(rate - bend))
     jump[np.abs(jump) <= LEAST * size + drift] = 0.0
-    return Change(value, jump, rate, np.abs(bend) > 1e-6 * (np.abs(rate) + np.abs(rate - bend)))
+    return Jump(value, jump, rate, np.abs(bend) > 1e-6 * (np.abs(rate) + np.abs(rate - bend)))

@@ -17,15 +17,9 @@ from ...chain.port import Ports
 from .lumped import Lumps
 from .newton import Stage, solve_stage
 
-KEEPS = 0.25
-"""The stage of the scheme that keeps energy."""
-
-FORGETS = 1 - math.sqrt(0.5)
-"""The stage of the scheme that lets what has no inertia follow at once."""
-
-PLANS = 8
-"""Factorisations that are kept: of so many lengths of steps."""
-
+KEEPS = 0.25  # The scheme with this stage keeps energy,
+FORGETS = 1 - math.sqrt(0.5)  # and this one lets what has no inertia follow at once.
+PLANS = 8  # So many factorisations are kept, each of a length of steps.
 KINETIC, STRAIN, INPUT, DISSIPATED, LAWS = ENERGIES = range(5)
 
 

@@ -17,20 +17,11 @@ if TYPE_CHECKING:
     from .point_law import Call
 
 
-MOST = 50
-"""Newton steps of a stage."""
-
-ENOUGH = 1e-12
-"""Residual of a stage, of the terms of its forces."""
-
-LEAST = 1e-9
-"""The residual must be smaller where rounding lets it fall no more."""
-
-LEAST_SHARE = 1e-3
-"""Of a Newton step that is halved."""
-
-STEP = 1e-7
-"""Of numerical derivatives, of what moves."""
+MOST = 50  # A stage takes so many Newton steps at most.
+ENOUGH = 1e-12  # A stage holds where the residual is this part of the terms of its forces,
+LEAST = 1e-9  # or this one where rounding lets it fall no more.
+LEAST_SHARE = 1e-3  # A Newton step is halved down to this part of it.
+STEP = 1e-7  # Numerical derivatives take this part of what moves as their step.
 
 
 class Stage(NamedTuple):

@@ -13,11 +13,8 @@ from .lumped import Lumps
 from .march import DISSIPATED, ENERGIES, INPUT, Motion, Stride
 from .timeline import Block, Timeline
 
-BLOCK = 4096
-"""Steps of one call of the core: a look for Ctrl-C."""
-
-FINE = 1e-8
-"""Tolerance below which rounding counts."""
+BLOCK = 4096  # The core takes so many steps in one call: a look for Ctrl-C.
+FINE = 1e-8  # Below this tolerance rounding counts.
 
 
 @dataclass(eq=False)

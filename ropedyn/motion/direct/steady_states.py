@@ -18,24 +18,12 @@ from .direct import refuse_responses
 from .lumped import Lumps, lumped_chains, refuse
 from .march import Motion, stage_of
 
-FEWEST, MOST = 32, 1 << 14
-"""Steps of a period."""
-
-WINDOW = 8
-"""Periods between two looks at the amplitude, at least."""
-
-TOGETHER = 1000
-"""Periods after which drive and tension must both begin anew, at most."""
-
-BLOCK = 4096
-"""Steps of one call of the core, where a period has no more: a look for Ctrl-C."""
-
-LOOKS = 4
-"""In a row that must agree."""
-
-LONGEST = 100_000
-"""Periods after which a motion is said not to settle."""
-
+FEWEST, MOST = 32, 1 << 14  # A period takes from so many steps to so many.
+WINDOW = 8  # The amplitude is looked at after so many periods at least.
+TOGETHER = 1000  # Drive and tension must both begin anew within so many periods.
+BLOCK = 4096  # The core takes so many steps in one call, or a period: a look for Ctrl-C.
+LOOKS = 4  # So many looks in a row must agree.
+LONGEST = 100_000  # A motion that changes after so many periods is said not to settle.
 KEEPS = stage_of(1.0)
 
 

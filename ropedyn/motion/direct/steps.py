@@ -28,41 +28,20 @@ from .lumped import Lumps
 from .run import Passage, Walk
 from .timeline import Timeline, timeline
 
-TOLERANCE = 1e-4
-"""Where neither tolerance nor step is given."""
-
-LEAST = 64
-"""Steps of a whole run."""
-
-PER_PERIOD = 16
-"""Steps in a period of what pushes."""
-
-PER_BREAK = 8
-"""Steps between two times where forces break."""
-
-MOST_STEPS = 100_000_000
-"""Of a run that is within a tolerance."""
-
-AGREE = 1 / 3
-"""Of the distance of two runs, at least, is the error of the finer one."""
-
-AIM = 2.5
-"""Error of the last but one run, of the tolerance: twice its steps are enough."""
-
-ORDERS = (0.5, 2.0)
-"""Powers of the step that errors fall with: friction and contact have less than smooth motion."""
-
-FAR = 0.05
-"""Where the error is larger than this, it says little about how fine steps must be."""
-
-RESOLVED = 0.1
-"""The shape of the whole rope must be known to this part of itself."""
-
-NOTHING = 1e-6
-"""Responses smaller than this part of the motion of any node count as so much."""
-
+TOLERANCE = 1e-4  # Errors are within this where neither tolerance nor step is given.
+LEAST = 64  # A whole run takes so many steps at least,
+PER_PERIOD = 16  # a period of what pushes so many,
+PER_BREAK = 8  # and so many lie between two times where forces break.
+MOST_STEPS = 100_000_000  # A run within a tolerance takes so many steps at most.
+AGREE = 1 / 3  # The finer run has this part of the distance of two runs as its error at least.
+AIM = 2.5  # The next run is to have the tolerance over this as its error: twice its steps suffice.
+ORDERS = (0.5, 2.0)  # Errors fall with such powers of the step: friction and contact slower.
+FAR = 0.05  # Where the error is larger than this, it says little about how fine steps must be.
+RESOLVED = 0.1  # The shape of the whole rope must be known to this part of itself.
+NOTHING = 1e-6  # Responses smaller than this part of the motion of any node count as so much.
 ROUNDING = 1e-9
-"""The same of the motion of other coordinates, which what is 0 by symmetry is the rounding of."""
+"""They count as this part at least of the motion of other coordinates, of which what is 0 by
+symmetry is the rounding."""
 
 
 @dataclass(frozen=True, eq=False)

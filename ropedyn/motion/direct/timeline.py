@@ -30,10 +30,8 @@ class Timeline:
     """Marks that steps end at, and how many steps lie between two of them."""
 
     mark: Real  # (marks,) [s], increasing
-    # (marks,) number of the time or of the snapshot that is there, -1 where there is none
-    asked: Index
-    # (marks,) number of the time or of the snapshot that is there, -1 where there is none
-    seen: Index
+    asked: Index  # (marks,) number of the time that is there, -1 where there is none
+    seen: Index  # (marks,) number of the snapshot, likewise
     breaks: Flags  # (marks,) where forces jump or bend; the first mark is one
     count: Index  # (marks - 1,) steps in each interval
     h: Real  # (marks - 1,) their length [s], the same number where it differs by rounding

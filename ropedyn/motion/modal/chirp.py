@@ -11,10 +11,8 @@ from ...base.array import Complex, Real
 from ...scene.force import Chirp
 from .exponentials import SLICE, Oscillators, invert, rates, unity
 
-STEADY = 1e-17
-"""Up to this growth of the frequency [rad/s^2] times time^2 a chirp is a sine."""
-SMOOTH = 4.0
-"""Up to this change of the exponent a rule of Gauss has all digits."""
+STEADY = 1e-17  # Up to this growth of the frequency [rad/s^2] times time^2 a chirp is a sine.
+SMOOTH = 4.0  # Up to this change of the exponent a rule of Gauss has all digits.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 

@@ -15,8 +15,7 @@ from .expansion import Expansion
 from .exponentials import Exponentials, Oscillators, evaluate, invert, rates
 from .recurrence import straight_lines
 
-LARGEST = 1e300
-"""A growing mode may reach this."""
+LARGEST = 1e300  # A growing mode may reach this.
 
 
 def move(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:

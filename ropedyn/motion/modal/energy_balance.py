@@ -41,8 +41,7 @@ NODES, RADIANS = 8, 2.0
 """Gauss's rule of so many nodes is right to 1e-13 where mode and force turn by so much."""
 BLOCK, ALIKE = 64, 4.0
 """So many modes at most are integrated together, whose rates differ by this factor at most."""
-MOST = 1 << 21
-"""So many numbers are computed at a time."""
+MOST = 1 << 21  # So many numbers are computed at a time.
 
 
 def balance(run: Run, resolved: float) -> Balance:

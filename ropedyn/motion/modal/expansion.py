@@ -41,10 +41,8 @@ from ...signal import contour
 
 LARGEST, MANY = 1000, 400
 """All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
-SEARCHED = 200
-"""So many modes at most are summed where damping is not proportional and each is searched for."""
-EDGE = 0.8
-"""Overdamped modes are few up to this part of the rate where they accumulate."""
+SEARCHED = 200  # At most so many modes are searched for where damping is not proportional.
+EDGE = 0.8  # Overdamped modes are few up to this part of the rate where they accumulate.
 WIDER, ATTEMPTS = 2, 4
 """The radius to search in is doubled so often, and so many searches are made, at most."""
 

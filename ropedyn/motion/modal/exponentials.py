@@ -17,16 +17,11 @@ BLOCK = 128
 """Powers of so many times are tabled: n of a grid need BLOCK + n/BLOCK exponentials of a rate."""
 SHARES = tuple(2**k for k in range(2, 40))
 """From these blocks on terms that have decayed are left out."""
-NOTHING = 1e-20
-"""A term has decayed when it is less than this part of the largest one at first."""
-SLICE = 1 << 16
-"""So many exponentials are computed at once where times are not a grid."""
-DIGITS = 38.0
-"""A circle around poles is right to so many digits, as a natural logarithm."""
-MOST = 4096
-"""A circle has so many nodes at most, also of numbers near the end of their range."""
-CLOSE = 0.5
-"""Poles nearer than this part of what time and decay can tell apart go into one circle."""
+NOTHING = 1e-20  # A term has decayed when it is less than this part of the largest one at first.
+SLICE = 1 << 16  # So many exponentials are computed at once where times are not a grid.
+DIGITS = 38.0  # A circle around poles is right to so many digits, as a natural logarithm.
+MOST = 4096  # A circle has so many nodes at most, also of numbers near the end of their range.
+CLOSE = 0.5  # Poles nearer than this part of what time and decay tell apart share a circle.
 
 
 class Oscillators(NamedTuple):

@@ -9,14 +9,10 @@ from ...base.array import Complex, Index, Real
 from ...scene.force import Samples
 from .exponentials import Oscillators, invert, is_uniform, rates, unity
 
-STEPS = 2048
-"""In one call of the core: a look for Ctrl-C every millisecond."""
-LANES = 8
-"""Modes of the core come in as many."""
-SHORT = 1.5
-"""Rates times steps up to which Taylor's series gives the change."""
-TERMS = 30
-"""Of the series."""
+STEPS = 2048  # The core takes so many steps in one call: a look for Ctrl-C every millisecond.
+LANES = 8  # Modes of the core come in multiples of this.
+SHORT = 1.5  # Taylor's series gives the change up to this rate times step,
+TERMS = 30  # by so many terms.
 
 
 def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, order: int) -> Real:

@@ -16,14 +16,10 @@ from .convolution import convolve
 from .expansion import Share, expand
 from .truncation import ratio_beyond
 
-SAMPLES = 16
-"""The motion is looked at so many times a period."""
-REST = 100.0
-"""Free motion is waited for until less than the tolerance over this is left of it."""
-UNSEEN = 1e-11
-"""A mode with a residue below this part of the largest is driven or watched at a node."""
-DOUBLINGS = 30
-"""The wait for the steady state is doubled so often at most."""
+SAMPLES = 16  # The motion is looked at so many times a period.
+REST = 100.0  # Free motion is waited for until less than the tolerance over this is left of it.
+UNSEEN = 1e-11  # A mode with a residue below this part of the largest has a node there.
+DOUBLINGS = 30  # The wait for the steady state is doubled so often at most.
 
 
 def superpose_steadily(asked: SteppedSine) -> SteadyStates:

@@ -24,8 +24,7 @@ from .energy_balance import balance
 from .expansion import Share, expand
 from .truncation import left_out, ratio_beyond
 
-WAVE = 8
-"""Times resolve a period of so many samples."""
+WAVE = 8  # Times resolve a period of so many samples.
 
 
 def superpose(run: Run) -> History:
