@@ -232,6 +232,16 @@ def lines_of(measured: Measured, which: NDArray[Any]) -> Measured:
     return replace(measured, frequency=frequency, value=value, coherence=coherence)
 
 
+def above_zero(measured: Measured) -> Measured:
+    """Leave out a line at 0 Hz: velocities are 0 there and free bodies have no displacement."""
+    lines = measured.frequency > 0
+    if lines.all():
+        return measured
+    if not lines.any():
+        raise SceneError("measured must have lines above 0 Hz, got none")
+    return lines_of(measured, lines)
+
+
 def _points(given: Any, name: str) -> tuple[Any, ...]:
     """Return points on any rope; a point alone is a tuple of it."""
     found = check.points(given, name, forces=name == "response")

@@ -13,7 +13,7 @@ from ...base.array import Integer, Real
 from ...base.errors import SceneError
 from ...base.quantity import is_quantity
 from ...curves.curves import Curves
-from ...curves.measured import Measured, lines_of
+from ...curves.measured import Measured, above_zero
 from ...curves.merge_peaks import Merged, merge_peaks
 from ...curves.peaks import Peaks
 from ...curves.resonance import Resonances
@@ -77,13 +77,3 @@ def peaks_in(source: Curves | Sequence[Resonances]) -> Merged:
     except SceneError:
         none = np.zeros(0)
         return Merged(none, none, none)
-
-
-def above_zero(measured: Measured) -> Measured:
-    """Leave out a line at 0 Hz: velocities are 0 there and free bodies have no displacement."""
-    lines = measured.frequency > 0
-    if lines.all():
-        return measured
-    if not lines.any():
-        raise SceneError("measured must have lines above 0 Hz, got none")
-    return lines_of(measured, lines)

@@ -56,13 +56,13 @@ class Memory:
         return self._answer
 
 
-def told(slope: Real) -> Real:
+def told_directions(slope: Real) -> Real:
     """Return an orthonormal basis of the directions that change the residuals, shape (p, r)."""
     _, size, rows = np.linalg.svd(slope, full_matrices=False)
-    seen = size > BLIND * max(size.max(initial=0.0), np.finfo(float).tiny)
-    if seen.sum() == slope.shape[1]:
+    felt = size > BLIND * max(size.max(initial=0.0), np.finfo(float).tiny)
+    if felt.sum() == slope.shape[1]:
         return np.eye(slope.shape[1])
-    return np.asarray(rows[seen].T)
+    return np.asarray(rows[felt].T)
 
 
 def minimise(
@@ -77,28 +77,28 @@ def minimise(
     Directions that do not change the residuals at the start are not gone: of all points with the
     least sum the one next to the start is found.
     """
-    seen = Memory(misfit, start)
-    residual, slope = seen(start)
+    remembered = Memory(misfit, start)
+    residual, slope = remembered(start)
     free = np.eye(len(start)) if directions is None else directions
-    basis = free @ told(slope @ free)
+    basis = free @ told_directions(slope @ free)
     if not basis.shape[1]:
-        return Minimum(start, residual, slope, seen.evaluations)
+        return Minimum(start, residual, slope, remembered.evaluations)
     size = float(np.linalg.norm(slope @ basis, axis=0).max())
-    y = _Walk(seen, start, basis, size, digits).end()
+    y = _Descent(remembered, start, basis, size, digits).end()
     u = np.clip(start + basis @ y, start - FARTHEST, start + FARTHEST)
-    residual, slope = seen(start + basis @ y)
-    return Minimum(u, residual, slope, seen.evaluations)
+    residual, slope = remembered(start + basis @ y)
+    return Minimum(u, residual, slope, remembered.evaluations)
 
 
-class _Arrived(Exception):
+class _Settled(Exception):
     """Of all that a solver of SciPy calls, what can end it."""
 
 
 @dataclass(eq=False)
-class _Walk:
+class _Descent:
     """Steps along a basis from a start, y = 0; residuals in units of the largest slope there."""
 
-    seen: Memory
+    remembered: Memory
     start: Real
     basis: Real
     size: float
@@ -120,7 +120,7 @@ class _Walk:
                     max_nfev=EVALUATIONS,
                     **self.digits,
                 )
-            except _Arrived:
+            except _Settled:
                 return self.at
             self.at = found.x
             if found.success:
@@ -134,9 +134,9 @@ class _Walk:
     def residual(self, y: Real) -> Real:
         """Return the residuals; infinite where there is no scene, so that a step is taken back."""
         try:
-            return self.seen(self.start + self.basis @ y)[0] / self.size
+            return self.remembered(self.start + self.basis @ y)[0] / self.size
         except (SceneError, SolveError):
-            return np.full(len(self.seen(self.start)[0]), np.inf)
+            return np.full(len(self.remembered(self.start)[0]), np.inf)
 
     def slope(self, y: Real) -> Real:
         """Return the slopes at the end of a step, unless it is the last.
@@ -144,11 +144,11 @@ class _Walk:
         It is where a linear step would gain too little: SciPy would take it, and more where
         rounding hides what it gains.
         """
-        residual, slope = self.seen(self.start + self.basis @ y)
+        residual, slope = self.remembered(self.start + self.basis @ y)
         residual, slope = residual / self.size, slope @ self.basis / self.size
         gain = slope @ np.linalg.lstsq(slope, residual, rcond=BLIND)[0]
         enough = self.digits["ftol"] * (residual @ residual) + self.digits["gtol"] ** 2
         if gain @ gain <= enough:
             self.at = y
-            raise _Arrived
+            raise _Settled
         return slope

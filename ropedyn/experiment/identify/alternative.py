@@ -2,55 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
 from ...base.errors import RopedynError
 from ...scene.scene import Scene
+from .fit import Alternative, Fit
 from .solution import LEAST_NOISE
-
-if TYPE_CHECKING:
-    from .fit import Fit
 
 WORDS = ("pinned", "clamped")  # Ends that are tried in place of each other.
 LEVEL = 0.95  # Level of the test whether something fits worse.
 
 
-@dataclass(frozen=True, eq=False)
-class Alternative:
-    """The same peaks with other ends."""
-
-    ends: str  # the word for both
-    fit: Fit  # what they tell then
-    # {"better", "as well", "worse"} How it fits. Where peaks have a standard deviation, "worse" is
-    # a chi-square larger by more than 3.84, as that of one number off its interval of 95 %; where
-    # they have none, a sum of squares more than the quantile of F as often as large
-    verdict: str
-    # of each number that is told, relative to the fit with the scene's own ends
-    change: dict[str, float]
-
-    def __str__(self) -> str:
-        numbers = [f"{path} {100 * part:+.2g} %" for path, part in self.change.items()]
-        but = "but give" if self.verdict == "as well" else "and give"
-        found = f" {but} {', '.join(numbers)}" if numbers else ""
-        off = f"rms residual {100 * self.fit.rms:.2g} %"
-        return f"{self.ends} ends fit {self.verdict} ({off}){found}"
-
-
-def alternatives_of(fit: Fit) -> tuple[Alternative, ...]:
+def alternatives_of(
+    fit: Fit, scene: Scene, instead: Callable[[Scene], Fit]
+) -> tuple[Alternative, ...]:
     """Fit with both ends pinned and with both clamped, where the scene's are such words."""
-    identification = fit.identification
-    assert identification is not None
-    scene = identification.unknowns.scene
     if "beta" not in scene.coordinates or not all(end in WORDS for end in scene.ends):
         return ()
     found = []
     for word in WORDS:
         if scene.ends != (word, word):
             try:
-                other = identification.instead(_guess(fit, scene, word)).fit()
+                other = instead(_guess(fit, scene, word))
             except RopedynError:
                 continue
             found.append(Alternative(word, other, _verdict(fit, other), _change(fit, other)))
@@ -73,6 +48,7 @@ def _guess(fit: Fit, scene: Scene, word: str) -> Scene:
 
 
 def _verdict(fit: Fit, other: Fit) -> str:
+    """Say how another fit compares, by chi-square or, where the noise is not known, by F."""
     from scipy.special import chdtri, fdtri
 
     if fit.freedom is None:

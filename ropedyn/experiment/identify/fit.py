@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,24 @@ from ...base.named import Named
 from ...base.table import Table, numbers
 from ..orders.orders import RunnerUp
 from .identified import Identified
+from .solution import Solution
 
-if TYPE_CHECKING:
-    from .alternative import Alternative
-    from .fit_peaks import Identification
-    from .solution import Solution
+
+@dataclass(frozen=True, eq=False)
+class Alternative:
+    """The same peaks with other ends."""
+
+    ends: str  # the word for both
+    fit: Fit  # what they tell then
+    verdict: str  # how it fits: "better", "as well" or "worse"
+    change: dict[str, float]  # of each number that both tell, relative to the scene's own ends
+
+    def __str__(self) -> str:
+        numbers = [f"{path} {100 * part:+.2g} %" for path, part in self.change.items()]
+        but = "but give" if self.verdict == "as well" else "and give"
+        found = f" {but} {', '.join(numbers)}" if numbers else ""
+        off = f"rms residual {100 * self.fit.rms:.2g} %"
+        return f"{self.ends} ends fit {self.verdict} ({off}){found}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +98,9 @@ class Fit(Identified):
     notes: tuple[str, ...]
     cost: Cost
     solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
-    identification: Identification | None = field(default=None, repr=False, metadata=TRANSIENT)
+    alternatives_source: Callable[[], tuple[Alternative, ...]] | None = field(
+        default=None, repr=False, metadata=TRANSIENT
+    )
 
     def __post_init__(self) -> None:
         if self.runner_up is not None:
@@ -131,11 +147,9 @@ class Fit(Identified):
         >>> other.ends, other.verdict, round(other.change["tension"], 3)
         ('clamped', 'as well', -0.069)
         """
-        if self.identification is None:
+        if self.alternatives_source is None:
             raise SceneError("a fit from a file has no scene: identify again")
-        from .alternative import alternatives_of
-
-        return alternatives_of(self)
+        return self.alternatives_source()
 
     @property
     def peaks(self) -> Table:
@@ -163,7 +177,7 @@ class Fit(Identified):
         lines.append(f"rms residual {100 * self.rms:.3g} %; {self._said_of_noise}")
         if self.runner_up is not None:
             lines.append(f"second best orders {list(self.runner_up.orders)}: {self._worse}")
-        if self.identification is not None:
+        if self.alternatives_source is not None:
             lines += map(str, self.alternatives)
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
 

@@ -10,7 +10,7 @@ from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ..fitting.minimum import minimise
-from ..fitting.misfit import Known
+from ..fitting.misfit import PriorMisfit
 from ..fitting.response_misfit import LineMisfit, LogMisfit, Response
 from ..fitting.unknown import Unknowns
 from .notes import RESPONSE, notes_of
@@ -26,7 +26,7 @@ EXACT = 1e-8  # Differences below this share of the root mean square show in no 
 ALIKE = 0.5  # Residuals of neighbouring lines that are correlated by more are no noise.
 
 
-def fit_response(response: Response, known: Known | None) -> ResponseFit:
+def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
     """Fit the response of a scene to a measured one.
 
     First the logarithms, in which a peak at a wrong place is off by its height in decades; then the
@@ -60,7 +60,7 @@ def fit_response(response: Response, known: Known | None) -> ResponseFit:
     return _answer(response, solution, std, evaluations, time.perf_counter() - started)
 
 
-def _refuse_few(unknowns: Unknowns, lines: int, known: Known | None) -> None:
+def _refuse_few(unknowns: Unknowns, lines: int, known: PriorMisfit | None) -> None:
     others = 0 if known is None else len(known.at)
     if 2 * lines + others <= len(unknowns):
         raise SceneError(
@@ -69,7 +69,7 @@ def _refuse_few(unknowns: Unknowns, lines: int, known: Known | None) -> None:
         )
 
 
-def _refuse_unseen(misfit: LogMisfit, u: Real, known: Known | None) -> None:
+def _refuse_unseen(misfit: LogMisfit, u: Real, known: PriorMisfit | None) -> None:
     """Refuse numbers that the response does not depend on, unless they are known beforehand."""
     unseen = np.asarray(~misfit(u)[1].any(axis=0))
     if known is not None:

@@ -6,7 +6,7 @@ import dataclasses
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from ...base.answer import Cost
 from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ...scene.scene import Scene
-from ..fitting.misfit import Known
+from ..fitting.misfit import PeakMisfit, PriorMisfit
 from ..fitting.natural_frequencies import NaturalFrequencies
-from ..fitting.peak_misfit import PeakMisfit
 from ..fitting.unknown import Unknowns
 from ..orders.orders import RunnerUp
+from .alternative import alternatives_of
 from .fit import Fit
 from .notes import notes_of
 from .peak_start import start_of_peaks
@@ -33,8 +33,7 @@ class Identification:
     frequency: Real  # (k,) of the peaks [Hz]
     std: Real | None  # (k,) their standard deviations [Hz]
     orders: Index  # (k,) which mode each is, from 1; 0 where it is none
-    # value and standard deviation of what is known beforehand
-    prior: Mapping[str, tuple[float, float]]
+    prior: Mapping[str, tuple[float, float]]  # value and standard deviation of what is known
     runner_up: RunnerUp | None = None  # of the orders, where they were searched
 
     @property
@@ -49,15 +48,15 @@ class Identification:
         return PeakMisfit(self.calculated, self.frequency, weight, self.orders)
 
     @property
-    def known(self) -> Known | None:
+    def known(self) -> PriorMisfit | None:
         """What is known of the unknown beforehand."""
-        return Known.of(self.unknowns, self.prior)
+        return PriorMisfit.of(self.unknowns, self.prior)
 
-    def instead(self, scene: Scene) -> Identification:
-        """Return the same questions to another scene."""
+    def instead(self, scene: Scene) -> Fit:
+        """Fit another scene to the same."""
         unknowns = Unknowns.of(scene, self.unknowns.paths)
         calculated = dataclasses.replace(self.calculated, unknowns=unknowns)
-        return dataclasses.replace(self, calculated=calculated, runner_up=None)
+        return dataclasses.replace(self, calculated=calculated, runner_up=None).fit()
 
     def fit(self) -> Fit:
         """Solve."""
@@ -78,8 +77,8 @@ class Identification:
     def _answer(self, solution: Solution, seconds: float) -> Fit:
         minimum = solution.minimum
         off = minimum.residual[: solution.rows]
-        found = self.frequency + off * self.misfit.weight
-        return Fit(
+        frequency = self.frequency + off * self.misfit.weight
+        found = Fit(
             unknown=self.unknowns.paths,
             value=solution.value,  # type: ignore[arg-type]
             std=solution.std,  # type: ignore[arg-type]
@@ -87,7 +86,7 @@ class Identification:
             orders=self.orders.astype(np.int64),
             measured=self.frequency,
             measured_std=solution.noise * self.misfit.weight,
-            calculated=np.where(self.orders > 0, found, np.nan),
+            calculated=np.where(self.orders > 0, frequency, np.nan),
             freedom=solution.freedom,
             chi_square=float(np.sum((off / solution.noise) ** 2)),
             runner_up=self.runner_up,
@@ -100,8 +99,9 @@ class Identification:
                 factorisations=minimum.evaluations,
             ),
             solution=solution,
-            identification=self,
         )
+        source = partial(alternatives_of, found, self.unknowns.scene, self.instead)
+        return dataclasses.replace(found, alternatives_source=source)
 
     def _refuse_few(self) -> None:
         peaks, prior = int((self.orders > 0).sum()), 0 if self.known is None else len(self.known.at)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...base import check
 from ...base.answer import Answer
@@ -10,9 +10,7 @@ from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table
 from ...scene.scene import Scene
-
-if TYPE_CHECKING:
-    from .solution import Solution
+from .solution import Solution
 
 
 class Identified(Answer):

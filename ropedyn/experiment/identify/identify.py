@@ -13,18 +13,19 @@ from numpy.typing import ArrayLike
 from ...base import check
 from ...base.array import Real
 from ...base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
-from ...curves.measured import Measured
+from ...curves.measured import Measured, above_zero
 from ...curves.peaks import Peaks
 from ...curves.resonance import Resonances
 from ...scene.path import with_values
 from ...scene.prior import Prior
 from ...scene.scene import Scene
-from ..compare.measured import above_zero
-from ..fitting.misfit import Known
+from ..fitting.misfit import PriorMisfit
 from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.response_misfit import Response
 from ..fitting.unknown import Unknowns
 from ..orders.orders import found_orders, given_orders, lowest_orders, lowest_suffice
 from .fit import Fit
+from .fit_frf import fit_response
 from .fit_peaks import Identification
 from .fits import Fits
 from .response_fit import ResponseFit
@@ -261,9 +262,6 @@ def _fits(scene: Scene, measured: Sequence[Any], how: Options) -> Fits:
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
     """Identify one rope by a whole response."""
-    from ..fitting.response_misfit import Response
-    from .fit_frf import fit_response
-
     if not isinstance(how.orders, str) or how.orders != "auto":
         raise SceneError(
             'orders must be "auto" of a whole response, got '
@@ -273,7 +271,7 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
     if scale:
         unknowns = unknowns.with_calibration(1.0)
     response = Response(unknowns, above_zero(measured), how.elements, how.element)
-    return fit_response(response, Known.of(unknowns, how.prior))
+    return fit_response(response, PriorMisfit.of(unknowns, how.prior))
 
 
 def _warn(notes: Sequence[str]) -> None:

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Index, Real
-from .solution import Solution
-from .uncertainty import freedom_of
+from .solution import Solution, freedom_of
 
 INVOLVED = 1e-6  # A number takes part in a direction from this share on.
 UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability are no noise.

@@ -6,13 +6,12 @@ import numpy as np
 
 from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
-from ..fitting.minimum import BLIND, told
-from ..fitting.peak_misfit import PeakMisfit
+from ..fitting.minimum import BLIND, told_directions
+from ..fitting.misfit import PeakMisfit
 
 LEAST = 0.1  # A number falls to no less than this part of itself in a step.
 NEAR = 0.1  # Smaller relative changes need no further step.
-STEPS = 8
-
+STEPS = 8  # At most so many steps are taken.
 SETTLED = 0.9  # Of the sum of squares before: what falls on without changing it much goes too far.
 # What fell until frequencies hardly feel it goes back to where they do, at most to its guess.
 UNFELT, BACK = 1e-4, 1e-2
@@ -29,7 +28,7 @@ def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
     best, least, felt = u, np.inf, np.zeros((1, len(u)))
     for _ in range(STEPS):
         try:
-            frequency, slope = misfit.partners(u)
+            frequency, slope = misfit.of_peaks(u)
         except (SceneError, SolveError):
             if np.isinf(least):
                 raise
@@ -51,7 +50,7 @@ def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
         if np.abs(change).max() < NEAR:
             break
         u = u + np.log1p(change)
-    directions = told(felt)
+    directions = told_directions(felt)
     if 0 < directions.shape[1] < len(u):
         return directions @ (directions.T @ best)
     share = np.maximum(np.linalg.norm(felt, axis=0), np.finfo(float).tiny)

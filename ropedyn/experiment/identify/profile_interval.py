@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
-from ..fitting.minimum import Minimum, minimise, told
+from ..fitting.minimum import Minimum, minimise, told_directions
 from ..fitting.misfit import Misfit
 
 # A bound is known to this share of its distance, which changes what is covered by 1e-4.
@@ -72,7 +72,7 @@ class Profile:
         try:
             residual, slope = self.misfit(start)
             free = slope @ others
-            along, _ = np.linalg.qr(free @ told(free))
+            along, _ = np.linalg.qr(free @ told_directions(free))
             left, less = float(residual @ residual), float(np.sum((along.T @ residual) ** 2))
             if less > accepted:
                 left, less = minimise(self.misfit, start, others).cost, 0.0

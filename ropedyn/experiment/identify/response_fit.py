@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +14,7 @@ from ...base.table import Table
 from ...base.unit import label
 from ...chain.port import Point
 from .identified import Identified
-
-if TYPE_CHECKING:
-    from .solution import Solution
+from .solution import Solution
 
 
 @dataclass(frozen=True, eq=False)

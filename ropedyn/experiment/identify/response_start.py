@@ -15,8 +15,8 @@ from ...chain.rate import Places, rates_of
 from ...curves.measured import Measured, lines_of
 from ...curves.peaks import Peaks
 from ..fitting.minimum import Minimum, minimise
+from ..fitting.misfit import PeakMisfit
 from ..fitting.natural_frequencies import NaturalFrequencies
-from ..fitting.peak_misfit import PeakMisfit
 from ..fitting.response_misfit import LogMisfit, Response
 from ..fitting.unknown import CALIBRATION
 from .peak_start import start_of_peaks

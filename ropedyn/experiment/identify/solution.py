@@ -8,14 +8,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.array import Real
+from ...base.array import Flags, Real
 from ...base.errors import SceneError, SolveError
 from ...scene.scene import Scene
-from ..fitting.minimum import FARTHEST, Minimum, minimise
-from ..fitting.misfit import Known, Misfit, Together
+from ..fitting.minimum import FARTHEST, Minimum, minimise, told_directions
+from ..fitting.misfit import JointMisfit, Misfit, PriorMisfit
 from ..fitting.unknown import Unknowns
 from .profile_interval import Profile
-from .uncertainty import Uncertainty, freedom_of, quantile
 
 NOMINAL = 1e-3  # Where nothing tells the noise this relative one is thought of.
 # Relative residuals below this are the rounding of frequencies.
@@ -25,6 +24,72 @@ NARROW = 1e-8  # Below this standard deviation a variable's profile is a parabol
 UNFELT = 100.0  # A number whose logarithm has a larger standard deviation is gone to 0 or infinity.
 BACK = 0.1  # Such a number is tried again where it has this share of what the residuals feel most.
 FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
+# A number that has more than this share in directions that nothing tells is not told itself.
+APART = 1e-6
+
+
+def freedom_of(minimum: Minimum, peaks: int) -> float:
+    """Return the degrees of freedom that residuals of peaks, the first rows, have.
+
+    Each peak has one less its leverage: with nothing known beforehand peaks less unknowns.
+    """
+    basis = told_directions(minimum.slope)
+    directions, _ = np.linalg.qr(minimum.slope @ basis)
+    used = np.abs(minimum.slope[:peaks]).any(axis=1)
+    return float(used.sum() - np.sum(directions[:peaks][used] ** 2))
+
+
+def quantile(level: float, freedom: float | None) -> float:
+    """Return how many standard deviations an interval reaches to either side.
+
+    Of Student's t where the noise was estimated with so many degrees of freedom.
+    """
+    from scipy.special import ndtri, stdtrit
+
+    upper = (1 + level) / 2
+    return float(ndtri(upper) if freedom is None else stdtrit(freedom, upper))
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Linear statistics of the variables u."""
+
+    slope: Real  # (m, p) of residuals; 0 of numbers that are at a bound
+    noise: float  # standard deviation of residuals; infinite where nothing tells it
+
+    @cached_property
+    def basis(self) -> Real:
+        """Directions that are told, shape (p, r)."""
+        return told_directions(self.slope)
+
+    @property
+    def blind(self) -> Flags:
+        """Numbers that are not told, shape (p,)."""
+        return 1 - np.sum(self.basis**2, axis=1) > APART
+
+    @cached_property
+    def unit(self) -> Real:
+        """Covariance of u for a noise of 1, of least norm where some are not told, (p, p)."""
+        half = self.basis @ np.linalg.pinv(self.slope @ self.basis)
+        return half @ half.T
+
+    @property
+    def std(self) -> Real:
+        """Standard deviation of u, shape (p,)."""
+        told_ones = ~self.blind
+        std = np.full(len(self.unit), np.inf)
+        if np.isfinite(self.noise):
+            std[told_ones] = self.noise * np.sqrt(np.diag(self.unit)[told_ones])
+        return std
+
+    @property
+    def correlation(self) -> Real:
+        """Between numbers, NaN where one of them is not told, shape (p, p)."""
+        size = np.sqrt(np.diag(self.unit))
+        size[self.blind] = np.nan
+        correlation = self.unit / np.outer(size, size)
+        np.fill_diagonal(correlation, 1.0)
+        return correlation
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +186,7 @@ def solve(
     start: Real,
     *,
     rows: int,
-    known: Known | None,
+    known: PriorMisfit | None,
     noise: float | None,
     guess: Real | None = None,
 ) -> Solution:
@@ -132,7 +197,7 @@ def solve(
         if known is not None and noise is None:
             misfit, minimum = _weighed(measured, known, start, rows)
         else:
-            misfit = misfit if known is None else Together(measured, known, noise or NOMINAL)
+            misfit = misfit if known is None else JointMisfit(measured, known, noise or NOMINAL)
             minimum = minimise(misfit, start)
         found, freedom = _noise_of(minimum, rows) if noise is None else (noise, None)
         origin = start if guess is None else guess
@@ -165,11 +230,13 @@ def _noise_of(minimum: Minimum, rows: int) -> tuple[float, float]:
     return max(noise, LEAST_NOISE), freedom
 
 
-def _weighed(measured: Misfit, known: Known, start: Real, rows: int) -> tuple[Together, Minimum]:
+def _weighed(
+    measured: Misfit, known: PriorMisfit, start: Real, rows: int
+) -> tuple[JointMisfit, Minimum]:
     """Estimate the noise and weigh what is known beforehand by it, in turn."""
     noise, evaluations = NOMINAL, 0
     for _ in range(50):
-        misfit = Together(measured, known, noise)
+        misfit = JointMisfit(measured, known, noise)
         minimum = minimise(misfit, start)
         evaluations += minimum.evaluations
         start, before = minimum.u, noise

@@ -14,6 +14,7 @@ from ...base.errors import SceneError, SolveError
 from ...curves.peaks import Peaks
 from ..fitting.minimum import BLIND
 from ..fitting.natural_frequencies import NaturalFrequencies
+from .order_search import OVERLOOKED, search
 
 # Peaks without a standard deviation have this relative one, to judge the lowest modes alone.
 NOISE = 0.005
@@ -95,8 +96,6 @@ def lowest_suffice(residual: Real, frequency: Real, std: Real | None, freedom: i
     """
     from scipy.special import chdtri
 
-    from .order_search import OVERLOOKED
-
     off = residual / (NOISE * frequency if std is None else std)
     limit = -2 * float(np.log(OVERLOOKED))
     if std is not None and freedom > 0:
@@ -114,8 +113,6 @@ def found_orders(
     spurious: int,
 ) -> tuple[Index, RunnerUp | None]:
     """Search the modes of the peaks."""
-    from .order_search import search
-
     ranked: dict[tuple[int, ...], float] = {}
     failure: SolveError | None = None
     about = [Factors.of(calculated, centre, len(frequency)) for centre in centres]

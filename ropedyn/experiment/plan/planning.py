@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,15 +14,13 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...chain.place import points
 from ...chain.port import Point
+from ...model import Model
 from ...scene.parts.part import Hinge, PointMass
 from ...scene.parts.stretch import AddedMass, LocalChange
 from ...scene.scene import Scene
 from .placement import Candidates, place
 from .plan import Plan
 from .target_modes import Wanted, wanted_modes
-
-if TYPE_CHECKING:
-    from ...model import Model
 
 DamageKind = LocalChange | AddedMass | PointMass | Hinge
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...base import check
 from ...base.array import Index, Integer, Real
 from ...base.errors import SceneError, SolveError
-
-if TYPE_CHECKING:
-    from ...eigen.modes import Modes
-    from ...model import Model
-
+from ...eigen.modes import Modes
+from ...model import Model
 
 GRID = 512  # At least so many places along the rope are looked at.
 # A mode that moves another coordinate by less than this share of its own does not move it.
