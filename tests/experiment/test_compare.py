@@ -9,7 +9,7 @@ import pytest
 from conftest import EPS
 
 import ropedyn as rd
-from ropedyn.experiment.compare.pairing import partners, reach
+from ropedyn.experiment.compare.pairing import paired, reach
 
 TENSION, DENSITY, LENGTH = 100.0, 0.1, 1.0
 STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION).compile(elements=8, element="rigid")
@@ -101,7 +101,7 @@ def test_pairs_are_the_cheapest_of_all_sets(seed):
     random = np.random.default_rng(seed)
     calculated = np.sort(random.uniform(10, 100, random.integers(1, 5)))
     measured = random.uniform(8, 110, random.integers(1, 5))
-    order = partners(measured, calculated)
+    order = paired(measured, calculated)
     found = cost(measured, calculated, order)
     # the terms are logarithms of the order of 1, squared
     assert found == pytest.approx(least_cost(measured, calculated), abs=50 * EPS)
@@ -112,7 +112,7 @@ def test_pairs_never_cross(seed):
     random = np.random.default_rng(seed)
     calculated = np.sort(random.uniform(10, 1000, 12))
     measured = np.sort(random.uniform(8, 1100, 10))
-    order = partners(measured, calculated)
+    order = paired(measured, calculated)
     assert (np.diff(order[order > 0]) > 0).all()
     found = cost(measured, calculated, order)
     assert found == pytest.approx(least_cost_in_order(measured, calculated), abs=200 * EPS)
@@ -123,20 +123,20 @@ def test_a_partner_is_nearer_than_half_the_way_to_the_next_mode():
     series = 20.0 * np.arange(1, 11)
     for k in (4, 9):
         farthest = series[k - 1] * math.sqrt(k / (k - 1))
-        assert partners(np.array([farthest * (1 - 1e-9)]), series[:k]).tolist() == [k]
-        assert partners(np.array([farthest * (1 + 1e-9)]), series[:k]).tolist() == [0]
+        assert paired(np.array([farthest * (1 - 1e-9)]), series[:k]).tolist() == [k]
+        assert paired(np.array([farthest * (1 + 1e-9)]), series[:k]).tolist() == [0]
 
 
 def test_two_modes_at_the_same_frequency_take_a_peak_each():
     calculated = np.array([20.0, 20.0, 40.0])
-    assert sorted(partners(np.array([19.0, 19.5]), calculated).tolist()) == [1, 2]
-    assert partners(np.array([19.0, 41.0]), calculated)[1] == 3
-    assert sorted(partners(np.array([21.0, 19.0]), calculated[:2]).tolist()) == [1, 2]
+    assert sorted(paired(np.array([19.0, 19.5]), calculated).tolist()) == [1, 2]
+    assert paired(np.array([19.0, 41.0]), calculated)[1] == 3
+    assert sorted(paired(np.array([21.0, 19.0]), calculated[:2]).tolist()) == [1, 2]
 
 
 def test_modes_close_to_each_other_take_peaks_farther_away_than_they_are():
     calculated = np.array([20.0, 20.01, 40.0, 60.0, 60.01])
-    assert partners(np.array([19.0, 19.1, 38.0, 61.0, 62.0]), calculated).tolist() == [
+    assert paired(np.array([19.0, 19.1, 38.0, 61.0, 62.0]), calculated).tolist() == [
         1,
         2,
         3,
@@ -153,7 +153,7 @@ def test_a_mode_without_neighbours_reaches_as_far_as_the_first_of_a_string():
 @pytest.mark.parametrize("unit", [1e-100, 1e-3, 1e3, 1e100])
 def test_pairs_do_not_depend_on_the_unit(unit):
     measured, calculated = np.array([15.5, 22.0, 31.0]), BEADS
-    assert partners(measured * unit, calculated * unit).tolist() == [1, 0, 2]
+    assert paired(measured * unit, calculated * unit).tolist() == [1, 0, 2]
 
 
 def test_a_known_error_of_the_model_keeps_pairs_near():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
-from ropedyn.experiment.plan.placement import Candidates, place
+from ropedyn.experiment.plan.placement import CandidatePlaces, best_placement
 from ropedyn.experiment.plan.target_modes import GRID
 
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0, damping=rd.ModalDamping(0.01))
@@ -92,8 +92,8 @@ def test_no_other_places_see_the_worst_mode_better(modes, sensors):
     x = np.linspace(0.04, 0.96, 14) ** 1.1
     k = np.arange(1, modes + 1)[:, None] * math.pi
     seen = np.abs(np.sin(k * x))
-    candidates = Candidates(x, seen)
-    found = place(candidates, [candidates] * sensors, 0.05)
+    candidates = CandidatePlaces(x, seen)
+    found = best_placement(candidates, [candidates] * sensors, 0.05)
     best = max(
         (seen[:, d] * seen[:, s].max(axis=1)).min()
         for d in range(len(x))

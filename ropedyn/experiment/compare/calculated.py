@@ -25,7 +25,7 @@ UNSEEN = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Predicted:
+class CalculatedPeaks:
     """Calculated frequencies."""
 
     frequency: Real  # (m,) [Hz], increasing, each > 0
@@ -72,7 +72,7 @@ class Predicted:
             self.damping_ratio,
         )
 
-    def seen(self, drive: Point, response: tuple[Point, ...]) -> Flags:
+    def visible(self, drive: Point, response: tuple[Point, ...]) -> Flags:
         """Return which frequencies a drive can show in at least one response."""
         if self.modes is None or not self.has_shapes or not all(map(is_motion, response)):
             return np.ones(len(self.frequency), dtype=np.bool_)
@@ -100,9 +100,9 @@ def index(points: tuple[Point, ...], wanted: Point) -> int | None:
     return None
 
 
-def predicted_of(
+def calculated_peaks(
     given: Model | Modes | FRF, highest: float, more: int, least: int, drive: int
-) -> Predicted:
+) -> CalculatedPeaks:
     """Return the calculated frequencies that measured ones may be."""
     if isinstance(given, FRF):
         found = _of_frf(given, drive)
@@ -121,10 +121,10 @@ def _enough_modes(model: Model, highest: float, more: int, least: int) -> Modes:
     return solve_modes(model, number + rigid, below=None, solver="sweep", strict=False)
 
 
-def _of_modes(modes: Modes) -> Predicted:
+def _of_modes(modes: Modes) -> CalculatedPeaks:
     number = np.flatnonzero(modes.frequency > 0)
     ratio = modes.damping_ratio[number]
-    return Predicted(
+    return CalculatedPeaks(
         frequency=modes.frequency[number],
         error=(modes.mesh_error + modes.rounding_error)[number],
         damping_ratio=ratio if ratio.any() else np.full(len(ratio), np.nan),
@@ -133,9 +133,9 @@ def _of_modes(modes: Modes) -> Predicted:
     )
 
 
-def _of_frf(frf: FRF, drive: int) -> Predicted:
+def _of_frf(frf: FRF, drive: int) -> CalculatedPeaks:
     peaks = peaks_in(frf if len(frf.drive) == 1 else frf.peaks(drive))
-    return Predicted(
+    return CalculatedPeaks(
         frequency=peaks.frequency,
         error=peaks.std,
         damping_ratio=peaks.damping_ratio,

@@ -19,7 +19,7 @@ from ...chain.rate import rates_of
 from ...eigen.eigen import spectrum
 from ...eigen.modes import Modes
 from ...scene.path import value_at, with_values
-from .calculated import Predicted
+from .calculated import CalculatedPeaks
 
 # What explains differences leaves some that rounding and noise exceed at least so often.
 LIKELY = 0.05
@@ -47,7 +47,7 @@ class Cause(NamedTuple):
     """What is left, in squares of standard uncertainties."""
 
 
-def likely_cause(found: Predicted, order: Integer, measured: Real, std: Real) -> str:
+def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Real) -> str:
     """Say which one number of the scene explains all differences, where they prove it.
 
     Every number of the scene that shifts modes is tried by itself: the one value of it that fits

@@ -24,11 +24,11 @@ from ...eigen.modes import Modes
 from ...model import Model
 from ...response.frf import FRF
 from ...signal.response_shape import residues
-from .calculated import Predicted, is_motion, predicted_of
+from .calculated import CalculatedPeaks, calculated_peaks, is_motion
 from .cause import likely_cause
-from .measured import Seen, seen_in
+from .measured import MeasuredPeaks, measured_peaks
 from .overlay import calculated_at, drive_of
-from .pairing import partners
+from .pairing import paired
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -275,15 +275,17 @@ def compare(
         within = check.number(within, "within", sign="positive")
     if band is not None:
         band = check.number(band, "band", "Hz", sign="positive")
-    seen = seen_in(measured)
+    peaks = measured_peaks(measured)
     drive = 0
-    if isinstance(calculated, FRF) and seen.curves is not None:
-        drive = drive_of(calculated, seen.curves)
-    found = predicted_of(calculated, seen.highest, max(len(seen.frequency), 2), seen.last, drive)
+    if isinstance(calculated, FRF) and peaks.curves is not None:
+        drive = drive_of(calculated, peaks.curves)
+    found = calculated_peaks(
+        calculated, peaks.highest, max(len(peaks.frequency), 2), peaks.last, drive
+    )
     visible = np.ones(len(found.frequency), dtype=np.bool_)
-    if seen.curves is not None:
-        visible = found.seen(seen.curves.drive[0], seen.curves.response)
-    order = _order(found.frequency, visible, seen, within)
+    if peaks.curves is not None:
+        visible = found.visible(peaks.curves.drive[0], peaks.curves.response)
+    order = _order(found.frequency, visible, peaks, within)
     mine = np.where(order > 0, order - 1, len(found.frequency))
     partner, error, damping = (
         np.append(column, np.nan)[mine]
@@ -291,31 +293,31 @@ def compare(
     )
     return Comparison(
         order=order,
-        measured=seen.frequency,
+        measured=peaks.frequency,
         calculated=partner,
-        difference=100 * (partner - seen.frequency) / seen.frequency,
-        std=seen.std,
+        difference=100 * (partner - peaks.frequency) / peaks.frequency,
+        std=peaks.std,
         error=error,
-        damping_ratio=seen.damping_ratio,
+        damping_ratio=peaks.damping_ratio,
         calculated_damping_ratio=damping,
         all_calculated=found.frequency,
         visible=visible,
-        hint=likely_cause(found, order, seen.frequency, seen.std),
-        mac=_mac(found, seen, shapes, points, drive),
-        **_responses(calculated, seen.curves, band),
+        hint=likely_cause(found, order, peaks.frequency, peaks.std),
+        mac=_mac(found, peaks, shapes, points, drive),
+        **_responses(calculated, peaks.curves, band),
     )
 
 
-def _order(calculated: Real, visible: Flags, seen: Seen, within: float | None) -> Integer:
+def _order(calculated: Real, visible: Flags, peaks: MeasuredPeaks, within: float | None) -> Integer:
     """Return which calculated peak each measured one is."""
-    if seen.order is not None:
-        if seen.last > len(calculated):
+    if peaks.order is not None:
+        if peaks.last > len(calculated):
             raise SceneError(
                 f"measured.order must be at most {len(calculated)}, the calculated peaks there "
-                f"are, got {seen.last}"
+                f"are, got {peaks.last}"
             )
-        return seen.order
-    order = partners(seen.frequency, calculated[visible], std=seen.std, within=within)
+        return peaks.order
+    order = paired(peaks.frequency, calculated[visible], std=peaks.std, within=within)
     return np.append(0, np.flatnonzero(visible) + 1)[order]
 
 
@@ -341,8 +343,8 @@ def _responses(
 
 
 def _mac(
-    found: Predicted,
-    seen: Seen,
+    found: CalculatedPeaks,
+    peaks: MeasuredPeaks,
     shapes: ArrayLike | None,
     points: Sequence[Point] | None,
     drive: int,
@@ -355,11 +357,11 @@ def _mac(
         )
     if shapes is not None:
         where = found.checked(points, "points")
-        size = (len(seen.frequency), len(where))
+        size = (len(peaks.frequency), len(where))
         measured = check.matrix(shapes, "shapes", size, "peak and point", np.complex128)
     else:
-        curves = seen.curves
-        if curves is None or len(seen.frequency) == 0 or not found.has_shapes:
+        curves = peaks.curves
+        if curves is None or len(peaks.frequency) == 0 or not found.has_shapes:
             return None
         rows = [k for k, point in enumerate(curves.response) if is_motion(point)]
         if len(rows) < 2:
@@ -369,8 +371,8 @@ def _mac(
             curves.frequency,
             curves.value[rows],
             curves.quantity,
-            seen.frequency,
-            seen.damping_ratio,
+            peaks.frequency,
+            peaks.damping_ratio,
         )
     calculated = found.shapes(where, drive)
     return None if calculated is None else mac(measured, calculated)

@@ -19,7 +19,7 @@ from ...curves.peaks import Peaks
 from ...curves.resonance import Resonances
 
 
-class Seen(NamedTuple):
+class MeasuredPeaks(NamedTuple):
     """What was measured."""
 
     frequency: Real
@@ -46,7 +46,7 @@ class Seen(NamedTuple):
         return 0 if self.order is None else int(self.order.max())
 
 
-def seen_in(measured: Any) -> Seen:
+def measured_peaks(measured: Any) -> MeasuredPeaks:
     """Return what was measured, of whatever form."""
     what = "Peaks, a Measured, Resonances or frequencies [Hz]"
     given = (Peaks, Measured, Resonances, list, tuple, np.ndarray, RealNumber)
@@ -54,20 +54,20 @@ def seen_in(measured: Any) -> Seen:
         check.instance(measured, "measured", given, what)
     if isinstance(measured, Measured):
         curves = above_zero(measured)
-        return Seen(*peaks_in(curves), None, curves)
+        return MeasuredPeaks(*peaks_in(curves), None, curves)
     if isinstance(measured, Resonances):
-        return Seen(*peaks_in([measured]), None, None)
+        return MeasuredPeaks(*peaks_in([measured]), None, None)
     if not isinstance(measured, Peaks):
         frequency = check.numbers(measured, "measured", "Hz", sign="positive")
         unknown = np.full(len(frequency), np.nan)
-        return Seen(frequency, unknown, unknown, None, None)
+        return MeasuredPeaks(frequency, unknown, unknown, None, None)
     frequency = np.asarray(measured.frequency, dtype=np.float64)
     std, ratio = (
         np.full(len(frequency), np.nan if given is None else given, dtype=np.float64)
         for given in (measured.std, measured.damping_ratio)
     )
     order = None if measured.order is None else np.array(measured.order, dtype=np.int64)
-    return Seen(frequency, std, ratio, order, None)
+    return MeasuredPeaks(frequency, std, ratio, order, None)
 
 
 def peaks_in(source: Curves | Sequence[Resonances]) -> Merged:

@@ -31,7 +31,7 @@ def reach(calculated: Real) -> Real:
     return np.asarray(wider[place] / 2)
 
 
-def partners(
+def paired(
     measured: Real, calculated: Real, *, std: Real | None = None, within: float | None = None
 ) -> Integer:
     """Find the calculated partner of each measured frequency, or none.
@@ -53,6 +53,6 @@ def partners(
         price = np.minimum(price, (math.log1p(within) + spread[:, None]) ** 2)
     saved = np.maximum(price - distance**2, 0.0)
     row, column = linear_sum_assignment(saved, maximize=True)
-    paired = saved[row, column] > 0
-    order[row[paired]] = column[paired] + 1
+    close = saved[row, column] > 0
+    order[row[close]] = column[close] + 1
     return order

@@ -14,16 +14,14 @@ TIE = 1e-6
 STARTS = 24  # The exchange of several sensors begins with so many places of the drive.
 
 
-class Candidates(NamedTuple):
+class CandidatePlaces(NamedTuple):
     """Places for a drive or for a sensor."""
 
-    x: Real
-    """(p,) [m]."""
-    seen: Real
-    """(k, p): motion of each mode there over its largest."""
+    x: Real  # (p,) [m]
+    share: Real  # (k, p) motion of each mode there over its largest
 
 
-class Found(NamedTuple):
+class Placement(NamedTuple):
     """What was chosen."""
 
     drive: int
@@ -31,7 +29,9 @@ class Found(NamedTuple):
     score: float
 
 
-def place(drive: Candidates, sensors: Sequence[Candidates], apart: float) -> Found | None:
+def best_placement(
+    drive: CandidatePlaces, sensors: Sequence[CandidatePlaces], apart: float
+) -> Placement | None:
     """Maximise the least of a_n(x_d) max_s b_n(x_s) over modes n.
 
     One sensor: every pair is tried. More: each place in turn is moved to where it is best, given
@@ -52,23 +52,23 @@ def _score(seen: Real) -> Real:
     return np.asarray(seen.min(axis=0) + TIE * seen.mean(axis=0))
 
 
-def _pair(drive: Candidates, sensor: Candidates, apart: float) -> Found | None:
+def _pair(drive: CandidatePlaces, sensor: CandidatePlaces, apart: float) -> Placement | None:
     least = np.full((len(drive.x), len(sensor.x)), np.inf)
     mean = np.zeros_like(least)
-    for a, b in zip(drive.seen, sensor.seen):
+    for a, b in zip(drive.share, sensor.share):
         seen = np.multiply.outer(a, b)
         np.minimum(least, seen, out=least)
-        mean += seen / len(drive.seen)
+        mean += seen / len(drive.share)
     score = least + TIE * mean
     score[np.abs(drive.x[:, None] - sensor.x) < apart] = -np.inf
     best = int(score.argmax())
     d, s = divmod(best, len(sensor.x))
-    return Found(d, (s,), float(score[d, s])) if np.isfinite(score[d, s]) else None
+    return Placement(d, (s,), float(score[d, s])) if np.isfinite(score[d, s]) else None
 
 
 def _exchange(
-    drive: Candidates, sensors: Sequence[Candidates], apart: float, start: int
-) -> Found | None:
+    drive: CandidatePlaces, sensors: Sequence[CandidatePlaces], apart: float, start: int
+) -> Placement | None:
     """Add sensors one by one to a drive, then move each place until none gets better."""
     slots = [drive, *sensors]
     at: list[int] = [start]
@@ -87,23 +87,23 @@ def _exchange(
             if moved is not None and moved[1] > score + 1e-3 * TIE:
                 at[slot], score = moved
                 moves = True
-    return Found(at[0], tuple(at[1:]), score)
+    return Placement(at[0], tuple(at[1:]), score)
 
 
 def _best(
-    slots: Sequence[Candidates], at: Sequence[int], slot: int, apart: float
+    slots: Sequence[CandidatePlaces], at: Sequence[int], slot: int, apart: float
 ) -> tuple[int, float] | None:
     """Return where one place is best, given the others, and how good that is."""
     others = [k for k in range(len(at)) if k != slot]
-    heard = np.zeros(len(slots[0].seen))
+    heard = np.zeros(len(slots[0].share))
     for k in others:
         if k > 0:
-            heard = np.maximum(heard, slots[k].seen[:, at[k]])
+            heard = np.maximum(heard, slots[k].share[:, at[k]])
     if slot == 0:
-        seen = slots[0].seen * heard[:, None]
+        seen = slots[0].share * heard[:, None]
     else:
-        driven = slots[0].seen[:, at[0]]
-        seen = driven[:, None] * np.maximum(slots[slot].seen, heard[:, None])
+        driven = slots[0].share[:, at[0]]
+        seen = driven[:, None] * np.maximum(slots[slot].share, heard[:, None])
     score = _score(seen)
     for k in others:
         score[np.abs(slots[slot].x - slots[k].x[at[k]]) < apart] = -np.inf

@@ -18,9 +18,9 @@ from ...model import Model
 from ...scene.parts.part import Hinge, PointMass
 from ...scene.parts.stretch import AddedMass, LocalChange
 from ...scene.scene import Scene
-from .placement import Candidates, place
+from .placement import CandidatePlaces, best_placement
 from .plan import Plan
-from .target_modes import Wanted, wanted_modes
+from .target_modes import TargetModes, target_modes
 
 DamageKind = LocalChange | AddedMass | PointMass | Hinge
 
@@ -126,39 +126,39 @@ def plan_measurement(
     check.instance(scene, "scene", Scene, "a Scene")
     model = scene.compile()
     where = _where(model, drive, response, sensors)
-    wanted = wanted_modes(model, modes, where.coordinates)
-    allowed = _allowed(scene.rope.length, wanted.x, between, places)
-    driver = _candidates(wanted.x, wanted.driven, where.drive, allowed)
-    listeners = [_candidates(wanted.x, wanted.heard, one, allowed) for one in where.sensors]
+    target = target_modes(model, modes, where.coordinates)
+    allowed = _allowed(scene.rope.length, target.x, between, places)
+    driver = _candidates(target.x, target.driven, where.drive, allowed)
+    listeners = [_candidates(target.x, target.heard, one, allowed) for one in where.sensors]
     least = check.number(apart, "apart", "m", sign="nonnegative")
-    found = place(driver, listeners, least)
+    found = best_placement(driver, listeners, least)
     if found is None:
         raise SceneError(
             f"apart must leave room for a drive and {len(listeners)} sensors, got {apart!r} m"
         )
     pairs = [(one, at) for one, at in zip(listeners, found.sensors)]
-    visibility = driver.seen[:, found.drive] * np.array([one.seen[:, at] for one, at in pairs])
-    _refuse_unseen(wanted, visibility)
-    need = _needs(wanted, check.optional(std, "std", "Hz", sign="positive"))
+    visibility = driver.share[:, found.drive] * np.array([one.share[:, at] for one, at in pairs])
+    _refuse_unseen(target, visibility)
+    need = _needs(target, check.optional(std, "std", "Hz", sign="positive"))
     reason = min(need, key=need.__getitem__)
     part = _damage(scene, damage, check.number(loss, "loss", sign="positive"))
     return Plan(
         drive=(where.coordinates[0], float(driver.x[found.drive])),
         response=tuple((where.coordinates[1], float(one.x[at])) for one, at in pairs),
-        mode=wanted.mode,
-        frequency=wanted.frequency,
-        damping_ratio=wanted.damping_ratio,
+        mode=target.mode,
+        frequency=target.frequency,
+        damping_ratio=target.damping_ratio,
         visibility=visibility,
-        amplitude=_amplitude(visibility, wanted.highest_peak),
-        separation=wanted.separation,
+        amplitude=_amplitude(visibility, target.highest_peak),
+        separation=target.separation,
         line_spacing=need[reason],
         reason=reason,
-        highest=ROOM * float(wanted.frequency.max()),
-        x=wanted.x,
-        driven=wanted.driven,
-        heard=wanted.heard,
+        highest=ROOM * float(target.frequency.max()),
+        x=target.x,
+        driven=target.driven,
+        heard=target.heard,
         damage="" if part is None else _described(part),
-        shift=None if part is None else _shift(scene, part, wanted, where.coordinates),
+        shift=None if part is None else _shift(scene, part, target, where.coordinates),
     )
 
 
@@ -222,18 +222,18 @@ def _allowed(length: float, x: Real, between: Any, places: Any) -> Real:
     return at
 
 
-def _candidates(x: Real, motion: Real, fixed: float | None, allowed: Real) -> Candidates:
+def _candidates(x: Real, motion: Real, fixed: float | None, allowed: Real) -> CandidatePlaces:
     """Return where one of them may be, and what is seen there: a line between places tried.
 
     Of n places a half wave, of which there are 32 at least, a straight line misses (pi/n)^2/8 of
     the largest.
     """
     at = allowed if fixed is None else np.array([fixed])
-    return Candidates(at, np.abs([np.interp(at, x, row) for row in motion]))
+    return CandidatePlaces(at, np.abs([np.interp(at, x, row) for row in motion]))
 
 
-def _refuse_unseen(wanted: Wanted, visibility: Real) -> None:
-    unseen = wanted.mode[visibility.max(axis=0) <= UNSEEN].tolist()
+def _refuse_unseen(target: TargetModes, visibility: Real) -> None:
+    unseen = target.mode[visibility.max(axis=0) <= UNSEEN].tolist()
     if unseen:
         raise SceneError(
             f"drive and response must be able to see mode {unseen[0]}: no place that is allowed or "
@@ -247,18 +247,18 @@ def _amplitude(visibility: Real, highest: Real) -> Real:
     return np.multiply(visibility, highest, out=np.zeros_like(visibility), where=seen)
 
 
-def _needs(wanted: Wanted, std: float | None) -> dict[str, float]:
+def _needs(target: TargetModes, std: float | None) -> dict[str, float]:
     """Return the widest line spacing [Hz] that serves each need, by its name."""
     need = {}
-    bandwidth = 2 * wanted.damping_ratio * wanted.frequency
+    bandwidth = 2 * target.damping_ratio * target.frequency
     if (bandwidth > 0).any():
         k = int(np.where(bandwidth > 0, bandwidth, np.inf).argmin())
-        reason = f"{LINES} lines in the half-power bandwidth of mode {wanted.mode[k]}"
+        reason = f"{LINES} lines in the half-power bandwidth of mode {target.mode[k]}"
         need[f"{reason}, {bandwidth[k]:.4g} Hz"] = float(bandwidth[k]) / LINES
-    apart = np.where(wanted.separation > bandwidth, wanted.separation, np.inf)
+    apart = np.where(target.separation > bandwidth, target.separation, np.inf)
     k = int(apart.argmin())
     if np.isfinite(apart[k]):
-        reason = f"{LINES} lines between mode {wanted.mode[k]} and the next"
+        reason = f"{LINES} lines between mode {target.mode[k]} and the next"
         need[f"{reason}, {apart[k]:.4g} Hz apart"] = float(apart[k]) / LINES
     if std is not None:
         need[f"a line read to {std:.4g} Hz"] = std * math.sqrt(12)
@@ -302,8 +302,10 @@ def _described(part: DamageKind) -> str:
     return f"{type(part).__name__}({', '.join(said)})"
 
 
-def _shift(scene: Scene, part: DamageKind, wanted: Wanted, coordinates: tuple[str, str]) -> Real:
+def _shift(
+    scene: Scene, part: DamageKind, target: TargetModes, coordinates: tuple[str, str]
+) -> Real:
     """Return what a part changes of the frequencies: modes that are seen keep their order."""
     model = scene.replace(parts=(*scene.parts, part)).compile()
-    damaged = wanted_modes(model, int(wanted.rank.max()) + 1, coordinates)
-    return np.asarray(damaged.frequency[wanted.rank] - wanted.frequency)
+    damaged = target_modes(model, int(target.rank.max()) + 1, coordinates)
+    return np.asarray(damaged.frequency[target.rank] - target.frequency)

@@ -18,7 +18,7 @@ UNMOVED = 1e-9
 MOST_MODES = 4096  # At most so many modes are solved for, to find enough of them that move.
 
 
-class Wanted(NamedTuple):
+class TargetModes(NamedTuple):
     """Modes that a measurement should show."""
 
     mode: Integer  # (k,) their numbers, from 1
@@ -32,7 +32,7 @@ class Wanted(NamedTuple):
     heard: Real  # (k, places) as in `Plan`
 
 
-def wanted_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> Wanted:
+def target_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> TargetModes:
     """Find modes and the next ones, among those that move both coordinates."""
     numbers, count = _checked(asked)
     found, shapes, seen = _enough(model, numbers, count, coordinates)
@@ -51,7 +51,7 @@ def wanted_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> Want
     largest = np.array([np.abs(shape).max(axis=1) for shape in (driven, heard)])
     with np.errstate(divide="ignore"):
         peak = largest.prod(axis=0) / (2 * ratio * found.modal_mass[chosen])
-    return Wanted(
+    return TargetModes(
         mode=chosen + 1,
         rank=rank,
         frequency=f,
