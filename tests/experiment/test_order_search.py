@@ -398,3 +398,14 @@ def test_three_peaks_of_a_measured_cord_hardly_tell_their_modes():
     assert fit.orders.tolist() == [2, 4, 5]
     assert fit.runner_up.orders == (1, 2, 0)
     assert fit.runner_up.worse < 5
+
+
+def test_the_third_mode_of_a_string_is_missing():
+    def string(p, count):
+        n = np.arange(1, count + 1)
+        return n * np.sqrt(p[0]), (n / (2 * np.sqrt(p[0])))[:, None]
+
+    peaks = np.array([10.01, 19.99, 40.0, 50.02])
+    best, *_ = search(peaks, 0.002 * peaks, string, np.array([30.0]))
+    assert best.orders.tolist() == [1, 2, 4, 5]
+    assert best.parameters.round(1).tolist() == [100.0]

@@ -29,8 +29,7 @@ class CalculatedPeaks:
     """Calculated frequencies."""
 
     frequency: Real  # (m,) [Hz], increasing, each > 0
-    # (m,) of modes by mesh and rounding, of peaks of a response that of the fit to them [Hz]
-    error: Real
+    error: Real  # (m,) of modes by mesh and rounding, of peaks that of the fit to them [Hz]
     damping_ratio: Real  # (m,) NaN where nothing damps
     number: Index  # (m,) which of `modes` each is, from 0
     modes: Modes | None = None  # rigid motion and growth among them

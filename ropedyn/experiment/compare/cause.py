@@ -39,29 +39,20 @@ class Cause(NamedTuple):
     """One number that makes calculated frequencies the measured ones."""
 
     path: str
-    factor: float
-    """Of the number, as the measurement has it over the scene's."""
-    std: float
-    """Relative, of the factor."""
-    chi2: float
-    """What is left, in squares of standard uncertainties."""
+    factor: float  # of the number, as the measurement has it over the scene's
+    std: float  # relative, of the factor
+    chi2: float  # what is left, in squares of standard uncertainties
 
 
 def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Real) -> str:
     """Say which one number of the scene explains all differences, where they prove it.
 
-    Every number of the scene that shifts modes is tried by itself: the one value of it that fits
-    best, of least squares weighted with std and the errors of mesh and rounding. It is named
+    It is named, and with it all that leave no more than chance exceeds in one of 1000 cases,
 
-    - if the differences are none by chance: sum (r/s)^2 of the relative differences r beyond what
-      chance exceeds once in 1000 cases,
+    - if the differences are none by chance, which exceeds them in less than one of 1000 cases,
     - if what it leaves is: chance exceeds that in 5 % of cases,
     - if it is no chance that it fits: differences at random of any size are explained as well, by
-      one of the numbers tried, in one of 1000 cases (F test),
-
-    and with it every other number that leaves no more than chance exceeds in one of 1000 cases.
-    What the scene does not have, as the give of a clamped end, is not tried, nor are several
-    numbers together.
+      one of the numbers tried, in one of 1000 cases (F test).
     """
     from scipy.special import fdtrc
 
@@ -116,10 +107,7 @@ def _words(causes: list[Cause], wanted: Real, weight: Real) -> str:
 
 
 def _fitted(tracked: Tracked, path: str, wanted: Real, weight: Real) -> Cause | None:
-    """Find the value of one number that fits best; None where it has none or shifts nothing.
-
-    By Gauss and Newton in its logarithm, with chords in place of slopes after the first step.
-    """
+    """Fit one number, by Gauss and Newton, then chords, if it has a value and shifts anything."""
     slope = tracked.slope(path)
     if slope is None or not np.abs(slope).max() > NOTHING:
         return None
@@ -141,10 +129,7 @@ def _fitted(tracked: Tracked, path: str, wanted: Real, weight: Real) -> Cause | 
 
 @dataclass(frozen=True, eq=False)
 class Tracked:
-    """Some modes while a number of the scene changes.
-
-    A mode is the same as long as it has the same number among those of its component.
-    """
+    """Some modes while a number of the scene changes, known by their numbers in their component."""
 
     modes: Modes  # of a model
     number: Index  # (k,) which of them, from 0

@@ -22,16 +22,11 @@ from ...curves.resonance import Resonances
 class MeasuredPeaks(NamedTuple):
     """What was measured."""
 
-    frequency: Real
-    """(k,) of the peaks [Hz]."""
-    std: Real
-    """(k,) [Hz], NaN where it is not known."""
-    damping_ratio: Real
-    """(k,) NaN where it is not known."""
-    order: Integer | None
-    """(k,) where it is given."""
-    curves: Measured | None
-    """Without a line at 0 Hz."""
+    frequency: Real  # (k,) of the peaks [Hz]
+    std: Real  # (k,) [Hz], NaN where it is not known
+    damping_ratio: Real  # (k,) NaN where it is not known
+    order: Integer | None  # (k,) where it is given
+    curves: Measured | None  # without a line at 0 Hz
 
     @property
     def highest(self) -> float:

@@ -15,11 +15,9 @@ SPREAD = 3.0  # A measured frequency may be off by so many standard uncertaintie
 
 
 def reach(calculated: Real) -> Real:
-    """Return how far away a partner may be, in logarithms of frequencies.
+    """Return how far away a partner may be: half the distance to a neighbour, in logarithms.
 
-    Half the distance to a neighbour: a peak in the middle between two modes says nothing about
-    which of them it is. Of two neighbours the farther one counts. Modes close to each other, as
-    where twist meets bending, are one neighbour.
+    Of two neighbours the farther one counts; modes close to each other are one.
     """
     log = np.log(calculated)
     mean = (log[-1] - log[0] + ALONE) / len(log)
@@ -34,12 +32,10 @@ def reach(calculated: Real) -> Real:
 def paired(
     measured: Real, calculated: Real, *, std: Real | None = None, within: float | None = None
 ) -> Integer:
-    """Find the calculated partner of each measured frequency, or none.
+    """Return which calculated frequency each measured one is, from 1; 0 of what is none.
 
-    Over all sets of pairs the sum of d^2 + (reach^2 of each calculated frequency without partner)
-    is smallest, d = log(measured/calculated): to leave a pair out costs as much as a peak in the
-    middle between two modes, so that peaks that are no modes and modes that are no peaks stay
-    alone. As d^2 is convex, no two pairs cross: the order of frequencies is kept.
+    The sum of d^2, d = log(measured/calculated), and of the squared reach of what is left out is
+    smallest. As d^2 is convex, no two pairs cross.
     """
     from scipy.optimize import linear_sum_assignment
 

@@ -74,8 +74,7 @@ def minimise(
 ) -> Minimum:
     """Find the least sum of squares by a trust region method.
 
-    Directions that do not change the residuals at the start are not gone: of all points with the
-    least sum the one next to the start is found.
+    Directions that do not change the residuals at the start are not gone.
     """
     remembered = Memory(misfit, start)
     residual, slope = remembered(start)
@@ -139,10 +138,9 @@ class _Descent:
             return np.full(len(self.remembered(self.start)[0]), np.inf)
 
     def slope(self, y: Real) -> Real:
-        """Return the slopes at the end of a step, unless it is the last.
+        """Return the slopes at the end of a step, unless a linear step would gain too little there.
 
-        It is where a linear step would gain too little: SciPy would take it, and more where
-        rounding hides what it gains.
+        SciPy would take it, and more where rounding hides what it gains.
         """
         residual, slope = self.remembered(self.start + self.basis @ y)
         residual, slope = residual / self.size, slope @ self.basis / self.size

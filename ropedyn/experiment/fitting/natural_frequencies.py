@@ -67,10 +67,7 @@ class NaturalFrequencies:
             asked += count - len(kept)
 
     def _lowest(self, model: Model, number: int) -> Shapes:
-        """Return the lowest modes, by one solution where the highest is not above what is thought.
-
-        That was a little more than the highest of the last ones.
-        """
+        """Return the lowest modes, by one solution where the highest is where it is thought."""
         thought = self.highest.get(number)
         if thought is not None:
             shapes = solve_shapes(model, "sweep", np.full(number, thought))

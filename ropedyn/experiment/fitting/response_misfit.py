@@ -62,9 +62,8 @@ def _derivative(frf: FRF, path: str, i: int) -> Complex:
 class LogMisfit:
     """Logarithms of amplitude ratios, and how far phases are apart.
 
-    Every line counts alike, on a peak or between two, and a peak at a wrong place is off by its
-    height in decades: far from the solution that is a wide valley, where differences of the
-    responses themselves have none. Phases are compared by exp(i phi), which knows no jump of 2 pi.
+    A peak at a wrong place is off by its height in decades: a wide valley. Phases are compared by
+    exp(i phi), which knows no jump of 2 pi.
     """
 
     response: Response

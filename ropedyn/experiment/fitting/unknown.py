@@ -25,9 +25,8 @@ _ANGLE = "gravity.inclination"
 class Unknowns:
     """What is sought.
 
-    A number keeps its sign: u = ln(p/p_0), p_0 its start, so that what is positive stays so and a
-    step of 1 is a factor e, whatever the unit. Only positions, by the length of the rope, and the
-    inclination may pass 0: u = (p - p_0)/scale.
+    A number keeps its sign: u = ln(p/p_0), p_0 its start. Only positions, by the length of the
+    rope, and the inclination may pass 0: u = (p - p_0)/scale.
     """
 
     scene: Scene  # with the starts

@@ -27,11 +27,7 @@ ALIKE = 0.5  # Residuals of neighbouring lines that are correlated by more are n
 
 
 def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
-    """Fit the response of a scene to a measured one.
-
-    First the logarithms, in which a peak at a wrong place is off by its height in decades; then the
-    differences themselves over the noise of each line, which the residuals tell.
-    """
+    """Fit logarithms, in which peaks at wrong places are decades off, then lines over noise."""
     started = time.perf_counter()
     measured = response.measured
     lines = int((measured.value != 0).sum())

@@ -20,10 +20,9 @@ UNFELT, BACK = 1e-4, 1e-2
 def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
     """Return variables at which frequencies are near the measured ones.
 
-    With the shapes frozen, u^T K u = lambda u^T M u is linear in what stiffness and inertia are
-    made of: with lambda* measured, sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* -
-    lambda. Where the shapes do not depend on p, as those of pinned ropes, one step is exact
-    however far off the start is; otherwise a few come near.
+    With frozen shapes u^T K u = lambda u^T M u is linear in what stiffness and inertia are made of:
+    sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* - lambda, lambda* measured. Where shapes
+    do not depend on p, as those of pinned ropes, one step is exact however far off the start is.
     """
     best, least, felt = u, np.inf, np.zeros((1, len(u)))
     for _ in range(STEPS):

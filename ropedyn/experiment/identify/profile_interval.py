@@ -23,18 +23,15 @@ OTHERS = (-0.9, 9.0)  # Relative changes that others are guessed to have are bet
 class Profile:
     """How the least sum of squares grows when one number is held off its best value.
 
-    Where the model is linear the root of that growth is the distance in standard deviations; where
-    it is not, the interval on which the root is below a quantile still covers the truth as often
-    (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, section 6.1).
+    The interval on which the root of the growth is below a quantile covers the truth as often as it
+    says (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, section 6.1).
     """
 
     misfit: Misfit
     minimum: Minimum
     i: int  # the number
     path: Real  # (p,) change of the best others, linearly, for a change of 1 of it
-    # (p,) numbers whose variables are logarithms: these are followed by their relative changes, in
-    # which frequencies squared are linear
-    by_factor: Flags
+    by_factor: Flags  # (p,) numbers sought by logarithms, followed by their relative changes
     limit: float  # largest distance, of a logarithm or another variable
 
     def bound(self, side: int, root: float, step: float) -> float:
@@ -62,11 +59,7 @@ class Profile:
         return self.minimum.u + moved
 
     def _root(self, distance: float, accepted: float) -> float:
-        """Return the root of the growth at a distance, infinite where there is no scene.
-
-        Next to the least sum of squares of the others what one linear step takes off it is all
-        there is to take, to second order in that.
-        """
+        """Return the root of the growth at a distance, infinite where there is no scene."""
         others = np.delete(np.eye(len(self.path)), self.i, axis=1)
         start = self._at(distance)
         try:

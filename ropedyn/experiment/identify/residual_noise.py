@@ -13,12 +13,7 @@ FAINT = 1e-12  # A kind of noise that has less than this part is none.
 
 
 def line_std(measured: Measured, off: Complex) -> Real:
-    """Estimate the standard deviation of real and imaginary part of each line.
-
-    Each response has noise of its own, the sum of two kinds whose sizes a and b the differences
-    tell: equal on all lines, and in proportion to the amplitude,
-
-        var = a^2 + b^2 |H|^2.
+    """Estimate the standard deviation of real and imaginary part of each line, a^2 + b^2 |H|^2.
 
     Where coherence C was measured the first kind is what that tells, a^2 |H|^2 (1 - C)/C, as of n
     averages with a^2 = 1/2n (J. S. Bendat, A. G. Piersol, Random Data, 2010, section 9.2).
@@ -41,8 +36,7 @@ def line_std(measured: Measured, off: Complex) -> Real:
 def _most_likely(kinds: Real, square: Real) -> Real:
     """Return the sizes of kinds of variance, (2,), that make squares of differences most likely.
 
-    One kind alone if both are not much likelier: a second one that is not there would be found
-    where few high lines happen to be off by more, and take their weight away.
+    A second kind that is not there would be found where a few high lines happen to be off by more.
     """
     each = np.array([_alone(kind, square) for kind in kinds])
     alone = [np.array([each[0], 0.0]), np.array([0.0, each[1]])]

@@ -32,21 +32,13 @@ ROUGH = {"ftol": 1e-2, "xtol": 1e-3, "gtol": 1e-6}  # Tolerances of the fit of a
 class Start(NamedTuple):
     """Where to start."""
 
-    cost: float
-    """Sum of squares of logarithms, on a few hundred lines."""
-    response: Response
-    """That was compared."""
-    u: Real
-    """The variables, shape (p,)."""
+    cost: float  # sum of squares of logarithms, on a few hundred lines
+    response: Response  # that was compared
+    u: Real  # (p,) the variables
 
 
 def start_of_response(response: Response) -> tuple[Response, Real]:
-    """Find variables from which the fit finds its way.
-
-    The logarithm of the response, compared on a few hundred lines, is fitted from the guess of the
-    scene itself, and from what makes natural frequencies those of the peaks, under several readings
-    of which modes they are. What fits best is taken.
-    """
+    """Return variables from which the fit finds its way: what fits logarithms of few lines best."""
     starts, failure = _starts(response)
     best: tuple[Minimum, Response] | None = None
     for start in sorted(starts, key=lambda one: one.cost):

@@ -29,10 +29,7 @@ APART = 1e-6
 
 
 def freedom_of(minimum: Minimum, peaks: int) -> float:
-    """Return the degrees of freedom that residuals of peaks, the first rows, have.
-
-    Each peak has one less its leverage: with nothing known beforehand peaks less unknowns.
-    """
+    """Return the degrees of freedom of the first rows, the peaks: 1 less its leverage for each."""
     basis = told_directions(minimum.slope)
     directions, _ = np.linalg.qr(minimum.slope @ basis)
     used = np.abs(minimum.slope[:peaks]).any(axis=1)
@@ -40,10 +37,7 @@ def freedom_of(minimum: Minimum, peaks: int) -> float:
 
 
 def quantile(level: float, freedom: float | None) -> float:
-    """Return how many standard deviations an interval reaches to either side.
-
-    Of Student's t where the noise was estimated with so many degrees of freedom.
-    """
+    """Return how many standard deviations an interval reaches, normal or of Student's t."""
     from scipy.special import ndtri, stdtrit
 
     upper = (1 + level) / 2

@@ -83,10 +83,7 @@ class OrderFits:
         return found
 
     def _fitted(self, orders: Integer, tangent: Tangent) -> OrderFit | None:
-        """Follow tangents until one is exact enough.
-
-        Its error is of second order in the changes of the frequencies, taken without their signs.
-        """
+        """Follow tangents until one is exact enough: their errors are of second order."""
         likelihood, real = self.likelihood, orders > 0
         second = self.ranked()[1].cost if len(self.ranked()) > 1 else np.inf
         for left in range(ROUNDS, 0, -1):

@@ -26,15 +26,13 @@ COMMON = 1e-6  # Shares below this part of the largest are none.
 class Grid:
     """Points around a start with Rayleigh's quotients of their shapes.
 
-    Directions in which all frequencies change by a common factor, or none does, need no points:
-    tension and all stiffnesses together, or tension and all masses. A mode's shares s tell them, by
-    Euler: steps v of the logarithms change all ln(f^2) alike where s v is the same for all modes.
+    Directions that change all frequencies alike need no points: steps v of the logarithms do so
+    where the shares s of a mode have the same s v for all modes (Euler).
     """
 
     parameters: Real  # (points, p)
     quotients: Quotients  # of each point
-    # (p,) shortest step of the logarithms that adds 1 to all ln(f^2); 0 where there is none
-    lift: Real
+    lift: Real  # (p,) shortest step of the logarithms that adds 1 to all ln(f^2), or 0
 
     @classmethod
     def of(cls, calculated: Calculated, start: Real, reach: Real, count: int) -> Grid:

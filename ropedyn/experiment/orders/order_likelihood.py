@@ -13,17 +13,11 @@ from ...base.array import Integer, Real
 class Likelihood:
     """How likely measured peaks are, in increasing order, if they are certain modes.
 
-    Each mode within the band is overlooked with the probability q, each seen one is measured with
-    a Gaussian error of standard uncertainty sigma, and peaks that are no mode fall anywhere
-    between 0 and the band's upper edge W, r of them on average. So that, with z = (calculated -
-    measured)/sigma, -2 ln of the likelihood is up to a constant the sum of
+    -2 ln of the likelihood is, up to a constant, with z = (calculated - measured)/sigma the sum of
 
         z^2 - 2 ln(1 - q)                 for a peak that is a mode,
         -2 ln q                           for a mode of the band that no peak is,
-        2 ln(W/(r sqrt(2 pi) sigma))      for a peak that is no mode.
-
-    These are the prices of one chi-square: modes are missed where that costs less than what the
-    other peaks gain by it.
+        2 ln(W/(r sqrt(2 pi) sigma))      for a peak that is no mode: r of them from 0 to W.
     """
 
     frequency: Real  # (k,) [Hz]
@@ -31,10 +25,8 @@ class Likelihood:
     band: tuple[float, float]  # where modes would have been seen [Hz]
     overlooked: float  # q, between 0 and 1
     stray: float  # r, positive
-    # at most so many modes below the highest one seen are missing, and peaks are no modes
-    missing: int
-    # at most so many modes below the highest one seen are missing, and peaks are no modes
-    spurious: int
+    missing: int  # at most so many modes below the highest one seen are
+    spurious: int  # at most so many peaks are no modes
 
     def coarser(self, error: float | Real) -> Real:
         """Return sigma with a relative error of the calculation, shape (k,)."""
@@ -51,9 +43,9 @@ class Likelihood:
         return np.where(within, -2 * np.log(self.overlooked), 0.0)
 
     def prices(self, calculated: Real, sigma: Real) -> tuple[Real, Real]:
-        """Return prices of each peak as each mode, and as none, beyond all modes unseen.
+        """Return prices of each peak as each mode, (..., k, m), and as none, (..., k).
 
-        Shape (..., k, m) and (..., k); a peak that is a mode saves the price of that one missing.
+        A peak that is a mode saves the price of that one missing.
         """
         z = (calculated[..., None, :] - self.frequency[:, None]) / sigma[:, None]
         seen = z * z - 2 * np.log1p(-self.overlooked)
@@ -82,8 +74,7 @@ class Likelihood:
     def others(self, calculated: Real, orders: Integer) -> Integer:
         """Return the likeliest orders that differ from these in each peak, shape (h, k).
 
-        Whatever differs at all differs somewhere, so that the next best is among them (the first
-        step of Murty's ranking, Operations Research 16 (1968) 682).
+        The next best is among them (Murty's ranking, Operations Research 16 (1968) 682).
         """
         seen, none = (
             np.repeat(one[None], len(orders), 0) for one in self.prices(calculated, self.sigma)

@@ -36,14 +36,9 @@ class Assignment:
 
     orders: Integer  # (k,) of each peak from 1; 0 where it is no mode
     parameters: Real  # (p,) the likeliest with these orders
-    # -2 ln of the likelihood, up to a constant all assignments share: differences of two are
-    # differences of chi-square, `ropedyn.order_likelihood.Likelihood` has the terms
-    cost: float
-    # the part that peaks alone say, sum of ((calculated - measured)/std)^2: where two assignments
-    # do not differ in it, only how likely modes are missed decides
-    misfit: float
-    # relative standard uncertainty that makes the peaks likeliest, where none was given
-    noise: float | None
+    cost: float  # -2 ln of the likelihood, up to a constant all share, see `Likelihood`
+    misfit: float  # the part of it that peaks alone say
+    noise: float | None  # relative one that makes the peaks likeliest, where none was given
 
 
 def search(
@@ -55,52 +50,12 @@ def search(
     missing: int | None = None,
     spurious: int = 1,
 ) -> list[Assignment]:
-    """Find which mode each peak is, and the parameters with it.
+    """Find which mode each peak is, and the parameters with it; the likeliest first.
 
     On a grid of parameters around `start` the frequencies are calculated once; Rayleigh's quotients
-    of the shapes there give them everywhere between. Every two peaks, taken as every two modes they
-    may be, determine parameters, with which all peaks are numbered and the parameters fitted to all
-    of them. What comes out likeliest is fitted to the calculation itself.
-
-    Parameters
-    ----------
-    measured : ndarray, shape (k,)
-        Frequencies of the peaks in any order [Hz], positive.
-    std : ndarray, shape (k,), or None
-        Their standard uncertainties [Hz]. None: unknown, but of one relative size for all peaks,
-        for which `NOISES` are tried.
-    calculated : callable
-        ``calculated(parameters, count)`` returns the lowest `count` frequencies, shape (count,) or
-        fewer where there are no more, positive [Hz], and their derivatives, shape (count, p).
-    start : ndarray, shape (p,)
-        Parameters to start from, positive.
-    missing, spurious : int
-        At most so many modes below the highest one seen are missing, as many as there are peaks
-            but no more than 32 where left out, and at most so many peaks are no modes.
-
-    Returns
-    -------
-    list of Assignment
-        The likeliest first; at least one.
-
-    Raises
-    ------
-    SolveError
-        If nothing could be calculated, or no assignment is within the limits.
-
-    Examples
-    --------
-    Peaks of a string of unknown tension, f = n sqrt(T); the third mode is missing:
-
-    >>> import numpy as np
-    >>> from ropedyn.experiment.orders.order_search import search
-    >>> def string(p, count):
-    ...     n = np.arange(1, count + 1)
-    ...     return n * np.sqrt(p[0]), (n / (2 * np.sqrt(p[0])))[:, None]
-    >>> peaks = np.array([10.01, 19.99, 40.0, 50.02])
-    >>> best, *others = search(peaks, 0.002 * peaks, string, np.array([30.0]))
-    >>> best.orders, best.parameters.round(1)
-    (array([1, 2, 4, 5]), array([100.]))
+    give them between. Every two peaks, taken as every two modes they may be, determine parameters,
+    with which all peaks are numbered and fitted. What is likeliest is fitted to the calculation.
+    Without `std` peaks have one relative uncertainty, for which `NOISES` are tried.
     """
     order = np.argsort(measured, kind="stable")
     frequency = measured[order]

@@ -91,8 +91,7 @@ class Factors:
 def lowest_suffice(residual: Real, frequency: Real, std: Real | None, freedom: int) -> bool:
     """Say whether the lowest modes explain the peaks, so that no others need be looked for.
 
-    Any others have a mode missing: where the noise is not known they must gain more than that
-    costs, where it is known the lowest must be off by more than noise would be.
+    Others have a mode missing: what they gain must be more than that costs, and than noise is.
     """
     from scipy.special import chdtri
 

@@ -21,13 +21,11 @@ FIRM = 1e4  # The pull that holds a ratio at its bound is so many times narrower
 class Quotients:
     """Quotients u^T K u/(u^T M u) with shapes u that stay, over ratios r of the parameters.
 
-    A shape's share s_j = dln(f^2)/dln(p_j) of a stiffness is positive, of an inertia negative:
+    Shares s_j = dln(f^2)/dln(p_j) of stiffnesses are positive, of inertias negative:
 
-        f(r)^2/f(1)^2 = (1 + sum_stiff s_j (r_j - 1))/(1 + sum_inert |s_j| (r_j - 1)).
+        f(r)^2/f(1)^2 = (1 + sum_stiff s_j (r_j - 1))/(1 + sum_inert |s_j| (r_j - 1)),
 
-    First order for every parameter, and more: exact where shapes do not change, as along a common
-    factor of all stiffnesses, or for the pinned rope. For r given f it is linear. Of parameters
-    with a share beyond 1, such as a length, r is a power.
+    exact where shapes do not change. Of a share beyond 1, as that of a length, r is a power.
     """
 
     frequency: Real  # (..., m) f(1) [Hz], positive
@@ -69,10 +67,7 @@ class Quotients:
         pull: tuple[Real, float],
         bounds: tuple[Real, Real],
     ) -> Real:
-        """Return ratios whose frequencies are the measured ones, by weighted least squares.
-
-        By Gauss-Newton for f(r)^2/measured^2 - 1, which of stiffnesses alone is linear.
-        """
+        """Return ratios that fit measured frequencies, by Gauss-Newton for f(r)^2/measured^2."""
         mode = np.maximum(orders - 1, 0)
         calculated = np.take_along_axis(self.frequency, mode, axis=-1)
         share = np.take_along_axis(self.share, mode[..., None], axis=-2)

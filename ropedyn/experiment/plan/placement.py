@@ -34,8 +34,7 @@ def best_placement(
 ) -> Placement | None:
     """Maximise the least of a_n(x_d) max_s b_n(x_s) over modes n.
 
-    One sensor: every pair is tried. More: each place in turn is moved to where it is best, given
-    the others, until none moves, from several starts; the best that was found, not proved to be.
+    Of one sensor every pair is tried; of more each place is moved to where it is best in turn.
     """
     if len(sensors) == 1:
         return _pair(drive, sensors[0], apart)

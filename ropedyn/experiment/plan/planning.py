@@ -225,8 +225,7 @@ def _allowed(length: float, x: Real, between: Any, places: Any) -> Real:
 def _candidates(x: Real, motion: Real, fixed: float | None, allowed: Real) -> CandidatePlaces:
     """Return where one of them may be, and what is seen there: a line between places tried.
 
-    Of n places a half wave, of which there are 32 at least, a straight line misses (pi/n)^2/8 of
-    the largest.
+    Of 32 places a half wave at least it misses (pi/32)^2/8 of the largest.
     """
     at = allowed if fixed is None else np.array([fixed])
     return CandidatePlaces(at, np.abs([np.interp(at, x, row) for row in motion]))
