@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
@@ -13,21 +13,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
-from .quantity import is_quantity, magnitude
-from .unit import END, OF_FORCE, WIRE
+from .unit import END, OF_FORCE, WIRE, is_quantity, magnitude
 
 COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
-
 
 NEAR = 1e-9
 """Positions closer than this part of the length are one node."""
 
 MOST_WIRES = 1_000_000
-"""Where a scene is not known yet."""
+"""A scene that is not known yet may have so many broken wires."""
 
 HIGHEST = 1e150
-"""Of frequencies [Hz], so that squares do not overflow."""
+"""Frequencies [Hz] are at most this, so that their squares do not overflow."""
+
+SIGNS: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    "any": ("", lambda value: True),
+    "nonzero": (" other than 0", lambda value: value != 0),
+    "positive": (" > 0", lambda value: value > 0),
+    "nonnegative": (" >= 0", lambda value: value >= 0),
+}
+"""What a message says of each sign, and whether a number, or each of an array, has it."""
 
 
 def shown(value: object) -> str:
@@ -53,28 +59,21 @@ def _plain(quantity: Any, name: str, what: str, unit: str) -> Any:
 
 def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float:
     """Return a finite real number."""
-    words = {
-        "any": "a finite number",
-        "nonzero": "a finite number other than 0",
-        "positive": "a finite number > 0",
-        "nonnegative": "a finite number >= 0",
-    }
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Real):
+    words, has_sign = SIGNS[sign]
+    what = "a finite number" + words
+    # floats are nearly all, and the ABC of numbers is slow
+    if type(value) is not float and (
+        isinstance(value, (bool, np.bool_)) or not isinstance(value, Real)
+    ):
         if is_quantity(value):
-            return number(_plain(value, name, words[sign], unit), name, unit, sign=sign)
-        raise TypeError(_expected(name, words[sign], unit, value))
+            return number(_plain(value, name, what, unit), name, unit, sign=sign)
+        raise TypeError(_expected(name, what, unit, value))
     try:
         result = float(value)
     except OverflowError:
         result = math.inf
-    bad = {
-        "any": False,
-        "nonzero": result == 0,
-        "positive": result <= 0,
-        "nonnegative": result < 0,
-    }
-    if not math.isfinite(result) or bad[sign]:
-        raise SceneError(_expected(name, words[sign], unit, value))
+    if not math.isfinite(result) or not has_sign(result):
+        raise SceneError(_expected(name, what, unit, value))
     return result
 
 
@@ -97,12 +96,11 @@ def count(value: Any, name: str, *, least: int = 1, most: int) -> int:
 def one_of(value: Any, name: str, words: Iterable[str]) -> str:
     """Return one of the words."""
     words = tuple(words)
+    if isinstance(value, str) and value in words:
+        return value
     what = "one of " + ", ".join(f'"{word}"' for word in words)
-    if not isinstance(value, str):
-        raise TypeError(_expected(name, what, "", value))
-    if value not in words:
-        raise SceneError(_expected(name, what, "", value))
-    return value
+    error = SceneError if isinstance(value, str) else TypeError
+    raise error(_expected(name, what, "", value))
 
 
 def instance(value: Any, name: str, types: type | tuple[type, ...], what: str) -> Any:
@@ -117,7 +115,7 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
 
     Quantities of pint, an array or a list of them, are converted to the unit.
     """
-    words = {"any": "", "nonnegative": " >= 0", "positive": " > 0"}[sign]
+    words, has_sign = SIGNS[sign]
     what = f"a one-dimensional array of finite numbers{words}"
     if is_quantity(value):
         value = _plain(value, name, what, unit)
@@ -136,13 +134,9 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
     if array.ndim != 1 or array.size == 0:
         raise SceneError(_expected(name, what, unit, value) + f" of shape {array.shape}")
     array = array.astype(np.float64)
-    bad = ~np.isfinite(array)
-    if sign == "positive":
-        bad |= array <= 0
-    if sign == "nonnegative":
-        bad |= array < 0
-    if bad.any():
-        where = int(np.flatnonzero(bad)[0])
+    good = np.isfinite(array) & has_sign(array)
+    if not good.all():
+        where = int(good.argmin())
         raise SceneError(
             _expected(f"{name}[{where}]", f"a finite number{words}", unit, float(array[where]))
         )

@@ -1,13 +1,14 @@
-"""Units and names of coordinates and of their forces."""
+"""Units of coordinates and their forces, and of quantities of pint, which nothing imports."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 UNIT = {"x": "m", "z": "m", "alpha": "rad", "beta": "rad"}
 FORCE = {"x": "F_x", "z": "F_z", "alpha": "M_alpha", "beta": "M_beta"}
 OF_FORCE = {force: coordinate for coordinate, force in FORCE.items()}
-"""Coordinate of each internal force."""
+"""The coordinate of each internal force."""
 FORCE_UNIT = {"x": "N", "z": "N", "alpha": "N m", "beta": "N m"}
 NAME = {
     "x": "axial displacement",
@@ -17,13 +18,13 @@ NAME = {
 }
 FAMILY = {"x": "axial", "z": "transverse", "alpha": "torsional", "beta": "bending rotation"}
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
-"""How often the displacement is differentiated."""
+"""How often each kind of response differentiates the displacement."""
 MOTIONS = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""How often the displacement is differentiated."""
+"""How often each kind of motion differentiates the displacement."""
 WIRE = "wire"
-"""In a response: the tip of a broken wire, by its number among them."""
+"""A response of this name is the tip of a broken wire, by its number among them."""
 END = "end"
-"""In a drive: the motion of an end, by its number."""
+"""A drive of this name is the motion of an end, by its number."""
 
 
 def place(point: tuple[Any, ...]) -> str:
@@ -62,3 +63,48 @@ def curve_unit(response: tuple[str, float], drive: tuple[Any, ...] | None, quant
 def power(value: float) -> str:
     """Write a power of ten shortly, such as ``1e-3``."""
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def is_quantity(value: object) -> bool:
+    """Whether a value is a number, or an array, with a unit of a registry."""
+    return hasattr(value, "_REGISTRY") and hasattr(value, "magnitude")
+
+
+def magnitude(quantity: Any, unit: str) -> Any:
+    """Return the number of a quantity in a unit.
+
+    Registries take the radian for 1, so that 1 rad/s, and 1 Hz, is 1/s to them. A frequency in Hz
+    is cycles per second: what holds an angle, as rad/s or revolutions per minute, is divided by the
+    2 pi of a cycle. A number without unit holds no angle.
+    """
+    for one in unit.split(" or "):
+        try:
+            return _IN.get(one, _in)(quantity, one)
+        # pint derives its errors from these: other dimension, offset, name that it does not know
+        except (TypeError, ValueError, AttributeError):
+            continue
+    raise ValueError(f"{quantity} is not in {unit}")
+
+
+def _in(quantity: Any, unit: str) -> Any:
+    return quantity.to(unit).magnitude
+
+
+def _in_hertz(quantity: Any, unit: str) -> Any:
+    root = quantity.to_root_units()
+    if root.units == quantity._REGISTRY.Unit("radian/second"):
+        return root.magnitude / (2 * math.pi)
+    if root.units == quantity._REGISTRY.Unit("1/second"):
+        return root.magnitude
+    raise ValueError(f"{quantity} is no frequency")
+
+
+def _alone(quantity: Any, unit: str) -> Any:
+    root = quantity.to_root_units()
+    if root.units == quantity._REGISTRY.Unit("dimensionless"):
+        return root.magnitude
+    raise ValueError(f"{quantity} has a unit")
+
+
+_IN = {"Hz": _in_hertz, "": _alone}
+"""How a quantity becomes a number in a unit that is no plain conversion."""

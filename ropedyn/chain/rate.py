@@ -18,7 +18,7 @@ from ..scene.parts.part import places as places_of
 from ..scene.parts.part import standing, stretches
 from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.parts.stretch import (
-    Change,
+    RopeChange,
     Stretch,
     changed_by,
     changes,
@@ -124,7 +124,7 @@ class Places:
     station: Index = field(init=False)
     # (stretches,) whether its nodes lie between stations
     inside: Flags = field(init=False)
-    change: Real = field(init=False)  # (spans, 5) of the rope, see `stretch.Change`
+    change: Real = field(init=False)  # (spans, 5) of the rope, see `stretch.RopeChange`
     ropes: tuple[Rope, ...] = field(init=False)  # of each span
 
     def __post_init__(self) -> None:
@@ -307,7 +307,7 @@ def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[
     if isinstance(part, STRETCHES):
         return {
             name: partial(_of_stretch, places, part, name)
-            for name in Change._fields
+            for name in RopeChange._fields
             if hasattr(part, name) and acting & changed_by(name)
         }
     return {

@@ -14,8 +14,7 @@ from ..base import check
 from ..base.answer import axes
 from ..base.array import Complex, Real
 from ..base.errors import SceneError
-from ..base.quantity import is_quantity
-from ..base.unit import QUANTITIES, curve_unit
+from ..base.unit import QUANTITIES, curve_unit, is_quantity
 from ..chain.port import Point
 from .curves import Curves
 from .line_noise import by_coherence, by_differences

@@ -12,7 +12,6 @@ of modes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple, Protocol
 
@@ -22,7 +21,8 @@ from numpy.typing import NDArray
 from ..base import check
 from ..base.array import Complex, Real
 from ..base.errors import SceneError
-from ..base.quantity import is_quantity
+from ..base.parameter import Description, given, number
+from ..base.unit import is_quantity
 
 SECTION, TENSION, SPRING, INERTIA, DASHPOT = PARTS = range(5)
 
@@ -59,8 +59,7 @@ class Damping(Protocol):
         """
 
 
-@dataclass(frozen=True)
-class StiffnessDamping:
+class StiffnessDamping(Description):
     """Elastic stiffness times (1 + i omega gamma): sections and springs, not tension.
 
     Parameters
@@ -84,19 +83,14 @@ class StiffnessDamping:
 
     kind: ClassVar[str] = "stiffness damping"
 
-    gamma: float
-
-    def __post_init__(self) -> None:
-        gamma = check.number(self.gamma, "gamma", "s", sign="nonnegative")
-        object.__setattr__(self, "gamma", gamma)
+    gamma: float = number("s", sign="nonnegative")
 
     def term(self) -> DampingTerm:
         """On sections and springs."""
         return DampingTerm(rate={SECTION: self.gamma, SPRING: self.gamma})
 
 
-@dataclass(frozen=True)
-class RayleighDamping:
+class RayleighDamping(Description):
     """Damping matrix mass M + stiffness K, with the tension in K.
 
     Parameters
@@ -122,13 +116,8 @@ class RayleighDamping:
 
     kind: ClassVar[str] = "rayleigh damping"
 
-    mass: float
-    stiffness: float
-
-    def __post_init__(self) -> None:
-        for name, unit in (("mass", "1/s"), ("stiffness", "s")):
-            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
-            object.__setattr__(self, name, value)
+    mass: float = number("1/s", sign="nonnegative")
+    stiffness: float = number("s", sign="nonnegative")
 
     def term(self) -> DampingTerm:
         """On all stiffness, and on inertia."""
@@ -136,8 +125,7 @@ class RayleighDamping:
         return DampingTerm(rate={**stiffness, INERTIA: self.mass})
 
 
-@dataclass(frozen=True)
-class LossFactor:
+class LossFactor(Description):
     """Elastic stiffness times (1 + i eta): sections and springs, not tension.
 
     It has a meaning at each frequency, not in time. At 0 Hz the response is
@@ -165,18 +153,14 @@ class LossFactor:
 
     kind: ClassVar[str] = "loss factor"
 
-    eta: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "eta", check.number(self.eta, "eta", sign="nonnegative"))
+    eta: float = number(sign="nonnegative")
 
     def term(self) -> DampingTerm:
         """On sections and springs."""
         return DampingTerm(loss={SECTION: self.eta, SPRING: self.eta})
 
 
-@dataclass(frozen=True)
-class ViscousDamping:
+class ViscousDamping(Description):
     """A force per length against the velocity of the rope, transverse and axial.
 
     Continuous spans have it along the rope; chains have it lumped at the nodes, as their mass is.
@@ -202,19 +186,27 @@ class ViscousDamping:
 
     kind: ClassVar[str] = "viscous damping"
 
-    coefficient: float
-
-    def __post_init__(self) -> None:
-        value = check.number(self.coefficient, "coefficient", "N s/m^2", sign="nonnegative")
-        object.__setattr__(self, "coefficient", value)
+    coefficient: float = number("N s/m^2", sign="nonnegative")
 
     def term(self) -> DampingTerm:
         """Along the rope."""
         return DampingTerm(drag=self.coefficient)
 
 
-@dataclass(frozen=True)
-class ModalDamping:
+def _checked_ratio(ratio: Any) -> float | tuple[float, ...]:
+    if is_quantity(ratio) and np.ndim(ratio.magnitude):
+        return tuple(check.numbers(ratio, "ratio", sign="nonnegative").tolist())
+    several = ratio.ndim == 1 if isinstance(ratio, np.ndarray) else isinstance(ratio, (list, tuple))
+    if not several:
+        return check.number(ratio, "ratio", sign="nonnegative")
+    if len(ratio) == 0:
+        raise SceneError("ratio must be a number or one for each mode, got []")
+    return tuple(
+        check.number(one, f"ratio[{k}]", sign="nonnegative") for k, one in enumerate(ratio)
+    )
+
+
+class ModalDamping(Description):
     """A damping ratio for each mode of the undamped model, in the order of `Model.modes`.
 
     A frequency response is the sum over modes with the static one of all others, see `Model.frf`.
@@ -241,27 +233,11 @@ class ModalDamping:
 
     kind: ClassVar[str] = "modal damping"
 
-    ratio: float | tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "ratio", _checked_ratio(self.ratio))
+    ratio: float | tuple[float, ...] = given(_checked_ratio)
 
     def term(self) -> DampingTerm:
         """On modes."""
         return DampingTerm(ratio=self.ratio)
-
-
-def _checked_ratio(ratio: Any) -> float | tuple[float, ...]:
-    if is_quantity(ratio) and np.ndim(ratio.magnitude):
-        return tuple(check.numbers(ratio, "ratio", sign="nonnegative").tolist())
-    several = ratio.ndim == 1 if isinstance(ratio, np.ndarray) else isinstance(ratio, (list, tuple))
-    if not several:
-        return check.number(ratio, "ratio", sign="nonnegative")
-    if len(ratio) == 0:
-        raise SceneError("ratio must be a number or one for each mode, got []")
-    return tuple(
-        check.number(one, f"ratio[{k}]", sign="nonnegative") for k, one in enumerate(ratio)
-    )
 
 
 KINDS = (StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping)

@@ -2,59 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, dataclass, field
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import KW_ONLY
 
 from ..base import check
 from ..base.errors import SceneError
-from ..base.unit import UNIT
+from ..base.parameter import Description, one_of, per_coordinate
 from .parts.node import NodeTerm
 from .parts.part import Dashpot, PointMass, Spring
 
 STANDING = {"spring": Spring.kind, "dashpot": Dashpot.kind, "mass": PointMass.kind}
 """What can stand at an end, and the effect it is."""
 
-_NUMBER = {
-    "spring": ("N/m", "N m", "nonzero"),
-    "dashpot": ("N s/m", "N m s", "positive"),
-    "mass": ("kg", "kg m^2", "nonnegative"),
-}
+HELD_OR_FREE = ("held", "free")
+"""What an end can do to a coordinate."""
 
 
-class PerCoordinate(Mapping[str, float]):
-    """Values per coordinate, such as spring stiffnesses; a mapping that cannot change."""
-
-    def __init__(
-        self, values: Mapping[str, Any], name: str, units: tuple[str, str], sign: str
-    ) -> None:
-        check.instance(values, name, Mapping, "a mapping from coordinates to numbers")
-        for key in values:
-            check.one_of(key, f"key of {name}", check.COORDINATES)
-        self._values = {
-            c: check.number(values[c], f"{name}[{c!r}]", units[UNIT[c] == "rad"], sign=sign)
-            for c in check.COORDINATES
-            if c in values
-        }
-
-    def __getitem__(self, coordinate: str) -> float:
-        return self._values[coordinate]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._values)
-
-    def __len__(self) -> int:
-        return len(self._values)
-
-    def __hash__(self) -> int:
-        return hash(tuple(self._values.items()))
-
-    def __repr__(self) -> str:
-        return repr(self._values)
-
-
-@dataclass(frozen=True)
-class End:
+class End(Description):
     """What holds an end of the rope. Coordinates the scene does not have are ignored.
 
     Parameters
@@ -84,27 +48,27 @@ class End:
     12.0
     """
 
-    x: str = "held"
-    z: str = "held"
-    alpha: str = "held"
-    beta: str = "held"
+    x: str = one_of(HELD_OR_FREE, default="held")
+    z: str = one_of(HELD_OR_FREE, default="held")
+    alpha: str = one_of(HELD_OR_FREE, default="held")
+    beta: str = one_of(HELD_OR_FREE, default="held")
     _: KW_ONLY
-    spring: Mapping[str, float] = field(default_factory=dict)
-    dashpot: Mapping[str, float] = field(default_factory=dict)
-    mass: Mapping[str, float] = field(default_factory=dict)
+    spring: Mapping[str, float] = per_coordinate("N/m", turning="N m", sign="nonzero", default={})
+    dashpot: Mapping[str, float] = per_coordinate(
+        "N s/m", turning="N m s", sign="positive", default={}
+    )
+    mass: Mapping[str, float] = per_coordinate(
+        "kg", turning="kg m^2", sign="nonnegative", default={}
+    )
 
-    def __post_init__(self) -> None:
-        for coordinate in check.COORDINATES:
-            check.one_of(getattr(self, coordinate), coordinate, ("held", "free"))
-        for name, (along, turning, sign) in _NUMBER.items():
-            values = PerCoordinate(getattr(self, name), name, (along, turning), sign)
-            for coordinate in values:
+    def _agree(self) -> None:
+        for name in STANDING:
+            for coordinate in getattr(self, name):
                 if self.holds(coordinate):
                     raise SceneError(
                         f"{name} must stand at free coordinates, got one at {coordinate!r}, "
                         "which is held"
                     )
-            object.__setattr__(self, name, values)
 
     def holds(self, coordinate: str) -> bool:
         """Whether the coordinate cannot move.

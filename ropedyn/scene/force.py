@@ -11,9 +11,10 @@ import numpy as np
 from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
+from ..base.parameter import Description, number
 
 ANY = "N or N m or m or rad"
-"""Units of what drives: a force, a moment, or the motion of an end."""
+"""What drives is a force, a moment, or the motion of an end, and has one of these units."""
 
 
 class Force(Protocol):
@@ -90,8 +91,7 @@ class Force(Protocol):
         return self.highest
 
 
-@dataclass(frozen=True)
-class Sine(Force):
+class Sine(Description, Force):
     """amplitude sin(2 pi frequency t + phase), from t = 0 on.
 
     Parameters
@@ -117,16 +117,10 @@ class Sine(Force):
     70.0
     """
 
-    amplitude: float
-    frequency: float
+    amplitude: float = number(ANY)
+    frequency: float = number("Hz", sign="nonnegative")
     _: KW_ONLY
-    phase: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", ANY))
-        frequency = check.number(self.frequency, "frequency", "Hz", sign="nonnegative")
-        object.__setattr__(self, "frequency", frequency)
-        object.__setattr__(self, "phase", check.number(self.phase, "phase", "rad"))
+    phase: float = number("rad", default=0.0)
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
@@ -143,8 +137,7 @@ class Sine(Force):
         return self.frequency
 
 
-@dataclass(frozen=True)
-class Chirp(Force):
+class Chirp(Description, Force):
     """amplitude sin(phase(t)), whose frequency grows or falls steadily; nothing after it.
 
     phase(t) = phase + 2 pi (start t + (stop - start) t^2/(2 duration)) for t from 0 to `duration`.
@@ -174,21 +167,12 @@ class Chirp(Force):
     400.0
     """
 
-    amplitude: float
-    start: float
-    stop: float
-    duration: float
+    amplitude: float = number(ANY)
+    start: float = number("Hz", sign="nonnegative")
+    stop: float = number("Hz", sign="nonnegative")
+    duration: float = number("s", sign="positive")
     _: KW_ONLY
-    phase: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", ANY))
-        for name in ("start", "stop"):
-            value = check.number(getattr(self, name), name, "Hz", sign="nonnegative")
-            object.__setattr__(self, name, value)
-        duration = check.number(self.duration, "duration", "s", sign="positive")
-        object.__setattr__(self, "duration", duration)
-        object.__setattr__(self, "phase", check.number(self.phase, "phase", "rad"))
+    phase: float = number("rad", default=0.0)
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
@@ -216,8 +200,7 @@ class Chirp(Force):
         return max(self.start, self.stop)
 
 
-@dataclass(frozen=True)
-class Step(Force):
+class Step(Description, Force):
     """A force that is there from a time on.
 
     Parameters
@@ -241,14 +224,9 @@ class Step(Force):
     0.0
     """
 
-    amplitude: float
+    amplitude: float = number(ANY)
     _: KW_ONLY
-    time: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", check.number(self.amplitude, "amplitude", ANY))
-        time = check.number(self.time, "time", "s", sign="nonnegative")
-        object.__setattr__(self, "time", time)
+    time: float = number("s", sign="nonnegative", default=0.0)
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""
@@ -264,8 +242,7 @@ class Step(Force):
         return (self.time,)
 
 
-@dataclass(frozen=True)
-class Impulse(Force):
+class Impulse(Description, Force):
     """A blow: an impulse at one instant, or a half sine of the same impulse.
 
     A blow at an instant makes a string jump and a beam's velocity infinite where it hits; that of a
@@ -294,16 +271,10 @@ class Impulse(Force):
     15.708
     """
 
-    impulse: float
+    impulse: float = number("N s or N m s")
     _: KW_ONLY
-    time: float = 0.0
-    duration: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "impulse", check.number(self.impulse, "impulse", "N s or N m s"))
-        for name in ("time", "duration"):
-            value = check.number(getattr(self, name), name, "s", sign="nonnegative")
-            object.__setattr__(self, name, value)
+    time: float = number("s", sign="nonnegative", default=0.0)
+    duration: float = number("s", sign="nonnegative", default=0.0)
 
     @property
     def amplitude(self) -> float:
@@ -348,8 +319,8 @@ class Impulse(Force):
 class Samples(Force):
     """A force by its samples, a straight line between two of them."""
 
-    time: Real  # (t,) when [s], and what [N, N m; m or rad as motion of an end]
-    sample: Real  # (t,) when [s], and what [N, N m; m or rad as motion of an end]
+    time: Real  # (t,) when [s]
+    sample: Real  # (t,) what [N, N m; m or rad as motion of an end]
 
     def value(self, time: Real) -> Real:
         """Return it at times [s]."""

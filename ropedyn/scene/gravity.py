@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import ClassVar
 
-from ..base import check
 from ..base.errors import SceneError
+from ..base.parameter import Description, number
 from .rope import Rope
 
 
-@dataclass(frozen=True)
-class Gravity:
+class Gravity(Description):
     """Weight of the rope in the plane of z, and with it the sag between its ends.
 
     With the chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord
@@ -72,18 +71,15 @@ class Gravity:
 
     kind: ClassVar[str] = "sag"
 
-    g: float = 9.81
+    g: float = number("m/s^2", default=9.81)
     _: KW_ONLY
-    inclination: float = 0.0
+    inclination: float = number("rad", default=0.0)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "g", check.number(self.g, "g", "m/s^2"))
-        inclination = check.number(self.inclination, "inclination", "rad")
-        if not abs(inclination) < math.pi / 2:
+    def _agree(self) -> None:
+        if not abs(self.inclination) < math.pi / 2:
             raise SceneError(
-                f"inclination must lie between -pi/2 and pi/2 [rad], got {inclination!r}"
+                f"inclination must lie between -pi/2 and pi/2 [rad], got {self.inclination!r}"
             )
-        object.__setattr__(self, "inclination", inclination)
 
     def curvature(self, rope: Rope, tension: float) -> float:
         """Return w/H [1/m] of a rope under a chordwise tension [N].

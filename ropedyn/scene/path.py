@@ -10,7 +10,12 @@ from typing import Any
 
 from ..base import check
 from ..base.errors import SceneError
-from .end import STANDING, end_of
+from ..base.parameter import Description, parameters
+from . import damping
+from .end import STANDING, End, end_of
+from .gravity import Gravity
+from .parts import part
+from .rope import Rope
 from .scene import Scene
 from .tension import Tension
 
@@ -22,68 +27,39 @@ _END = re.compile(rf"ends\[(?P<at>[01])\]\.(?P<kind>{'|'.join(STANDING)})\.(?P<c
 
 
 def value_at(scene: Scene, path: str) -> float:
-    """Return a number of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Whose number it is.
-    path : str
-        ``"tension"``, a property of the rope as ``"bending_stiffness"``, of a part as
-        ``"parts[0].mass"``, of an end as ``"ends[0].spring.beta"``, of a damping as
-        ``"damping.gamma"`` or ``"damping[1].eta"``, or ``"gravity.g"``.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    TypeError
-        If `path` is not a string.
-    SceneError
-        If the scene has no number there.
-
-    Examples
-    --------
-    >>> import ropedyn as rd
-    >>> from ropedyn.scene.path import value_at
-    >>> value_at(rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0), "linear_density")
-    0.1
-    """
+    """Return a number of a scene: of the rope without a prefix, such as "bending_stiffness"."""
     return _number(_owner(scene, path), path)
 
 
 def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
-    """Return a scene with other numbers.
-
-    Parameters
-    ----------
-    scene : Scene
-        What all the rest is taken from.
-    values : mapping from str to float
-        Numbers by their paths, as `value_at` takes them.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    TypeError, SceneError
-        If there is no number at a path, or it must not be what it is given.
-
-    Examples
-    --------
-    >>> import ropedyn as rd
-    >>> from ropedyn.scene.path import with_values
-    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, parts=[rd.PointMass(0.5, 0.02)])
-    >>> with_values(scene, {"parts[0].mass": 0.03}).parts[0].mass
-    0.03
-    """
+    """Return a scene with other numbers, by their paths."""
     for path, value in values.items():
         scene = _put(scene, path, value)
     return scene
+
+
+def unit_of(path: str) -> str:
+    """Return the unit of the number at a path, all that it can have where the path does not tell.
+
+    >>> unit_of("bending_stiffness"), unit_of("ends[0].spring.beta"), unit_of("damping.eta")
+    ('N m^2', 'N m', '')
+    """
+    if found := _END.fullmatch(path):
+        return parameters(End)[found["kind"]].unit_on(found["coordinate"])
+    declared = [parameters(kind).get(_name(path)) for kind in _owners(path)]
+    units = dict.fromkeys(unit for one in declared if one for unit in one.units())
+    return " or ".join(unit or "1" for unit in units) if len(units) > 1 else "".join(units)
+
+
+def _owners(path: str) -> tuple[type[Description], ...]:
+    """Return the kinds of what can have the number at a path, ends apart."""
+    if found := _LISTED.fullmatch(path):
+        return damping.KINDS if found["list"] == "damping" else part.KINDS
+    if _DAMPING.fullmatch(path):
+        return damping.KINDS
+    if _TENSION.fullmatch(path):
+        return (Tension,)
+    return (Gravity,) if _GRAVITY.fullmatch(path) else (Rope,)
 
 
 def _owner(scene: Scene, path: str) -> Any:

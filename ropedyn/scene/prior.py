@@ -3,20 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from ..base import check
 from ..base.errors import SceneError
+from ..base.parameter import Description, given
 from ..base.table import Table
 from .bench.bending_test import BendingTest
 from .bench.static_test import StaticTest
 from .bench.torsion_test import TorsionTest
-from .path_unit import unit_of
+from .path import unit_of
+from .rope import given_tests
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Prior(Mapping[str, tuple[float, float]]):
+def _checked(known: Any) -> dict[str, tuple[float, float]]:
+    what = 'a mapping such as {"tension": (300.0, 15.0)}'
+    check.instance(known, "known", Mapping, what)
+    if not known:
+        raise SceneError(f"known must be {what} with at least one entry, got {{}}")
+    return {_path(path): _pair(path, pair) for path, pair in known.items()}
+
+
+def _path(path: Any) -> str:
+    return str(check.instance(path, "path", str, 'a string such as "tension"'))
+
+
+def _pair(path: str, pair: Any) -> tuple[float, float]:
+    what = "a value and its standard uncertainty such as (300.0, 15.0)"
+    name = f"prior[{path!r}]"
+    check.instance(pair, name, (tuple, list), what)
+    if len(pair) != 2:
+        raise SceneError(f"{name} must be {what}, got {check.shown(pair)}")
+    unit = unit_of(path)
+    value = check.number(pair[0], f"{name}[0]", unit)
+    return value, check.number(pair[1], f"{name}[1]", unit, sign="positive")
+
+
+class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False):
     """Values of numbers of a scene with their standard uncertainties: independent and normal.
 
     A mapping from path to (value, std), which `identify` takes.
@@ -49,15 +72,7 @@ class Prior(Mapping[str, tuple[float, float]]):
     bending_stiffness  53.7634  1.0013
     """
 
-    known: Mapping[str, tuple[float, float]]
-
-    def __post_init__(self) -> None:
-        what = 'a mapping such as {"tension": (300.0, 15.0)}'
-        check.instance(self.known, "known", Mapping, what)
-        if not self.known:
-            raise SceneError(f"known must be {what} with at least one entry, got {{}}")
-        checked = {_path(path): _pair(path, pair) for path, pair in self.known.items()}
-        object.__setattr__(self, "known", checked)
+    known: Mapping[str, tuple[float, float]] = given(_checked)
 
     @staticmethod
     def of(*, bending: BendingTest | None = None, torsion: TorsionTest | None = None) -> Prior:
@@ -120,20 +135,6 @@ class Prior(Mapping[str, tuple[float, float]]):
         return Table.of("known before", {"path": tuple(self.known), "value": value, "std": std})
 
 
-def given_tests(bending: BendingTest | None, torsion: TorsionTest | None) -> tuple[StaticTest, ...]:
-    """Return the tests that there are, at least one."""
-    tests: list[StaticTest] = []
-    for test, name, kind in (
-        (bending, "bending", BendingTest),
-        (torsion, "torsion", TorsionTest),
-    ):
-        if test is not None:
-            tests.append(check.instance(test, name, kind, f"a {kind.__name__}"))
-    if not tests:
-        raise SceneError("bending or torsion must be a test, got None")
-    return tuple(tests)
-
-
 def _told(test: StaticTest) -> tuple[float, float]:
     if not 0 < test.std < float("inf"):
         raise SceneError(
@@ -141,18 +142,3 @@ def _told(test: StaticTest) -> tuple[float, float]:
             f"readings tell no standard error, got {test.std:g} N m^2"
         )
     return test.stiffness, test.std
-
-
-def _path(path: Any) -> str:
-    return str(check.instance(path, "path", str, 'a string such as "tension"'))
-
-
-def _pair(path: str, pair: Any) -> tuple[float, float]:
-    what = "a value and its standard uncertainty such as (300.0, 15.0)"
-    name = f"prior[{path!r}]"
-    check.instance(pair, name, (tuple, list), what)
-    if len(pair) != 2:
-        raise SceneError(f"{name} must be {what}, got {check.shown(pair)}")
-    unit = unit_of(path)
-    value = check.number(pair[0], f"{name}[0]", unit)
-    return value, check.number(pair[1], f"{name}[1]", unit, sign="positive")

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import KW_ONLY
+from typing import Any
 
 import numpy as np
 
 from ..base import check
 from ..base.errors import SceneError
+from ..base.parameter import Description, number
+from .bench.bending_test import BendingTest
+from .bench.static_test import StaticTest
+from .bench.torsion_test import TorsionTest
 
-if TYPE_CHECKING:
-    from .bench.bending_test import BendingTest
-    from .bench.torsion_test import TorsionTest
 
-
-@dataclass(frozen=True)
-class Rope:
+class Rope(Description):
     """A rope of uniform section. A property left out is an effect that does not exist.
 
     Parameters
@@ -73,37 +72,18 @@ class Rope:
     [0.01 0.  ] [1000.    2.]
     """
 
-    length: float
-    linear_density: float
+    length: float = number("m", sign="positive")
+    linear_density: float = number("kg/m", sign="positive")
     _: KW_ONLY
-    bending_stiffness: float | None = None
-    torsional_stiffness: float | None = None
-    axial_stiffness: float | None = None
-    lay_coupling: float | None = None
-    lay_slope: float | None = None
-    rotary_inertia: float | None = None
-    polar_inertia: float | None = None
+    bending_stiffness: float | None = number("N m^2", sign="positive", default=None)
+    torsional_stiffness: float | None = number("N m^2", sign="positive", default=None)
+    axial_stiffness: float | None = number("N", sign="positive", default=None)
+    lay_coupling: float | None = number("N m", default=None)
+    lay_slope: float | None = number(default=None)
+    rotary_inertia: float | None = number("kg m", sign="nonnegative", default=None)
+    polar_inertia: float | None = number("kg m", sign="nonnegative", default=None)
 
-    def __post_init__(self) -> None:
-        number, optional = check.number, check.optional
-        checked = {
-            "length": number(self.length, "length", "m", sign="positive"),
-            "linear_density": number(
-                self.linear_density, "linear_density", "kg/m", sign="positive"
-            ),
-            "lay_coupling": optional(self.lay_coupling, "lay_coupling", "N m"),
-            "lay_slope": optional(self.lay_slope, "lay_slope"),
-        }
-        for name in ("bending_stiffness", "torsional_stiffness", "axial_stiffness"):
-            unit = "N" if name == "axial_stiffness" else "N m^2"
-            checked[name] = optional(getattr(self, name), name, unit, sign="positive")
-        for name in ("rotary_inertia", "polar_inertia"):
-            checked[name] = optional(getattr(self, name), name, "kg m", sign="nonnegative")
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)
-        self._check_lay()
-
-    def _check_lay(self) -> None:
+    def _agree(self) -> None:
         needs = {
             "lay_coupling": ("axial_stiffness", "torsional_stiffness"),
             "lay_slope": ("bending_stiffness", "torsional_stiffness"),
@@ -166,8 +146,6 @@ class Rope:
         >>> round(rope.bending_stiffness, 2), round(rope.torsional_stiffness, 4)
         (53.76, 0.1488)
         """
-        from .prior import given_tests
-
         for test in given_tests(bending, torsion):
             name = test.stiffness_name
             if name in others:
@@ -194,3 +172,17 @@ class Rope:
             As `Rope` does.
         """
         return dataclasses.replace(self, **changes)
+
+
+def given_tests(bending: BendingTest | None, torsion: TorsionTest | None) -> tuple[StaticTest, ...]:
+    """Return the tests that there are, at least one."""
+    tests: list[StaticTest] = []
+    for test, name, kind in (
+        (bending, "bending", BendingTest),
+        (torsion, "torsion", TorsionTest),
+    ):
+        if test is not None:
+            tests.append(check.instance(test, name, kind, f"a {kind.__name__}"))
+    if not tests:
+        raise SceneError("bending or torsion must be a test, got None")
+    return tuple(tests)

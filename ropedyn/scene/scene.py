@@ -6,20 +6,21 @@ import dataclasses
 import math
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import TYPE_CHECKING, Any
 
 from ..base import check
 from ..base.errors import SceneError
+from ..base.parameter import Description, given, instance
 from . import damping as _damping
 from . import end as _end
+from . import toml
 from .damping import Damping
 from .end import End
 from .gravity import Gravity
 from .parts import part as _part
-from .parts import stretch as _stretch
-from .parts.part import Part
-from .parts.stretch import Stretch
+from .parts.node import Part
+from .parts.stretch import Stretch, ropes
 from .rope import Rope
 from .stations import stations_at
 from .tension import Tension
@@ -41,7 +42,7 @@ EFFECTS = (
     *(kind.kind for kind in _damping.KINDS),
     Gravity.kind,
 )
-"""Every effect a scene can have."""
+"""The effects that a scene can have, in their fixed order."""
 
 _PROPERTIES = {
     "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
@@ -51,13 +52,57 @@ _PROPERTIES = {
     "rotary inertia": ("rotary_inertia",),
     "polar inertia": ("polar_inertia",),
 }
+"""What a rope never had that never had one of these effects."""
 
 _WEIGHTLESS = {"tension", "stretch", Gravity.kind}
-"""Without one of them there is no sag."""
+"""Without one of these effects there is no sag."""
 
 
-@dataclass(frozen=True)
-class Scene:
+def _checked_tension(tension: Any) -> float | Tension:
+    if not isinstance(tension, Tension):
+        return check.number(tension, "tension", "N")
+    return tension.mean if tension.is_constant else tension
+
+
+def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
+    what = 'a pair of "clamped", "pinned", "free" or End'
+    check.instance(ends, "ends", (tuple, list), what)
+    if len(ends) != 2:
+        raise SceneError(f"ends must be {what}, got {check.shown(ends)}")
+    for i, end in enumerate(ends):
+        check.instance(end, f"ends[{i}]", (str, End), "a word or an End")
+        if isinstance(end, str):
+            check.one_of(end, f"ends[{i}]", _end.NAMED)
+    return (ends[0], ends[1])
+
+
+def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
+    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
+    if damping is None or isinstance(damping, _damping.KINDS):
+        return damping
+    if isinstance(damping, (tuple, list)):
+        for i, one in enumerate(damping):
+            check.instance(one, f"damping[{i}]", _damping.KINDS, names)
+        return _sum_of(tuple(damping))
+    raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
+
+
+def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
+    """Return a sum as a scene holds it: one term is itself, none is None."""
+    return dampings if len(dampings) > 1 else (*dampings, None)[0]
+
+
+def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
+    names = ", ".join(kind.__name__ for kind in _part.KINDS)
+    if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
+        raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
+    parts = tuple(parts)
+    for i, part in enumerate(parts):
+        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {names}")
+    return parts
+
+
+class Scene(Description):
     """A rope with its tension, ends, damping, parts and weight.
 
     Parameters
@@ -96,28 +141,21 @@ NodeForce, Stop, AddedMass, LocalChange
     0.0
     """
 
-    rope: Rope
+    rope: Rope = instance(Rope, "a Rope")
     _: KW_ONLY
-    tension: float | Tension = 0.0
-    ends: tuple[str | End, str | End] = ("clamped", "clamped")
-    damping: Damping | tuple[Damping, ...] | None = None
-    parts: tuple[Part | Stretch, ...] = ()
-    gravity: Gravity | None = None
+    tension: float | Tension = given(_checked_tension, default=0.0)
+    ends: tuple[str | End, str | End] = given(_checked_ends, default=("clamped", "clamped"))
+    damping: Damping | tuple[Damping, ...] | None = given(_checked_damping, default=None)
+    parts: tuple[Part | Stretch, ...] = given(_checked_parts, default=())
+    gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
 
-    def __post_init__(self) -> None:
-        check.instance(self.rope, "rope", Rope, "a Rope")
-        object.__setattr__(self, "tension", _checked_tension(self.tension))
-        object.__setattr__(self, "ends", _checked_ends(self.ends))
-        object.__setattr__(self, "damping", _checked_damping(self.damping))
-        object.__setattr__(self, "parts", _checked_parts(self.parts))
-        if self.gravity is not None:
-            check.instance(self.gravity, "gravity", Gravity, "a Gravity or None")
+    def _agree(self) -> None:
         self._check_coordinates()
         self._check_places()
         # a rope that is changed must be one
         changing = _part.stretches(self.parts)
         ends = stations_at(self.rope.length, _part.places(changing))
-        _stretch.ropes(self.rope, changing, ends)
+        ropes(self.rope, changing, ends)
         self._check_gravity()
         self._check_stretching()
 
@@ -139,10 +177,11 @@ NodeForce, Stop, AddedMass, LocalChange
     def _check_places(self) -> None:
         present = ", ".join(self.coordinates)
         for i, part in enumerate(self.parts):
-            if isinstance(part, _stretch.KINDS):
+            for name in _part.position_names(part):
+                check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
+            if isinstance(part, Stretch):
                 self._check_stretch(i, part)
                 continue
-            check.position(part.x, f"parts[{i}].x", self.rope.length)
             for coordinate in part.stands_on:
                 if coordinate not in self.coordinates:
                     chosen = hasattr(part, "coordinate")
@@ -162,8 +201,6 @@ NodeForce, Stop, AddedMass, LocalChange
                         )
 
     def _check_stretch(self, i: int, part: Stretch) -> None:
-        for name in ("start", "stop"):
-            check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
         least = check.NEAR * self.rope.length
         if not part.stop - part.start > least:
             raise SceneError(
@@ -454,9 +491,7 @@ NodeForce, Stop, AddedMass, LocalChange
         ...     Path(folder, "rope.toml").read_text().splitlines()[0]
         'tension = 100.0'
         """
-        from .toml import save
-
-        save(self, path)
+        toml.save(self, path)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Scene:
@@ -485,15 +520,7 @@ NodeForce, Stop, AddedMass, LocalChange
         ...     rd.Scene.load(Path(folder, "rope.toml")) == scene
         True
         """
-        from .toml import load
-
-        return load(path)
-
-
-def _checked_tension(tension: Any) -> float | Tension:
-    if not isinstance(tension, Tension):
-        return check.number(tension, "tension", "N")
-    return tension.mean if tension.is_constant else tension
+        return toml.load(Scene, path)
 
 
 def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
@@ -509,47 +536,9 @@ def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> floa
     return _checked_tension(tension)
 
 
-def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
-    what = 'a pair of "clamped", "pinned", "free" or End'
-    check.instance(ends, "ends", (tuple, list), what)
-    if len(ends) != 2:
-        raise SceneError(f"ends must be {what}, got {check.shown(ends)}")
-    for i, end in enumerate(ends):
-        check.instance(end, f"ends[{i}]", (str, End), "a word or an End")
-        if isinstance(end, str):
-            check.one_of(end, f"ends[{i}]", _end.NAMED)
-    return (ends[0], ends[1])
-
-
-def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
-    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
-    if damping is None or isinstance(damping, _damping.KINDS):
-        return damping
-    if isinstance(damping, (tuple, list)):
-        for i, one in enumerate(damping):
-            check.instance(one, f"damping[{i}]", _damping.KINDS, names)
-        return _sum_of(tuple(damping))
-    raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
-
-
-def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
-    """Return a sum as a scene holds it: one term is itself, none is None."""
-    return dampings if len(dampings) > 1 else (*dampings, None)[0]
-
-
-def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
-    names = ", ".join(kind.__name__ for kind in _part.KINDS)
-    if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
-        raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
-    parts = tuple(parts)
-    for i, part in enumerate(parts):
-        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {names}")
-    return parts
-
-
 def _left_of(part: Part | Stretch, present: tuple[str, ...]) -> Part | Stretch | None:
     """Return what is left of a part on these coordinates, None where nothing is."""
-    if isinstance(part, _stretch.KINDS):
+    if isinstance(part, Stretch):
         return part.on(present)
     return part if set(part.stands_on) <= set(present) else None
 

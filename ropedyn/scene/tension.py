@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import ClassVar
 
 import numpy as np
 
-from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
+from ..base.parameter import Description, flag, number
 
 
-@dataclass(frozen=True)
-class Tension:
+class Tension(Description):
     """A tension that is more than a number.
 
         T(t) = mean + amplitude cos(2 pi frequency t + phase) + stretching,
@@ -63,21 +62,14 @@ class Tension:
     growing: ClassVar[str] = "mean stretching"
     """Name of the effect."""
 
-    mean: float
+    mean: float = number("N")
     _: KW_ONLY
-    amplitude: float = 0.0
-    frequency: float = 0.0
-    phase: float = 0.0
-    stretching: bool = False
+    amplitude: float = number("N", sign="nonnegative", default=0.0)
+    frequency: float = number("Hz", sign="nonnegative", default=0.0)
+    phase: float = number("rad", default=0.0)
+    stretching: bool = flag(default=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", check.number(self.mean, "mean", "N"))
-        amplitude = check.number(self.amplitude, "amplitude", "N", sign="nonnegative")
-        object.__setattr__(self, "amplitude", amplitude)
-        frequency = check.number(self.frequency, "frequency", "Hz", sign="nonnegative")
-        object.__setattr__(self, "frequency", frequency)
-        object.__setattr__(self, "phase", check.number(self.phase, "phase", "rad"))
-        check.instance(self.stretching, "stretching", bool, "True or False")
+    def _agree(self) -> None:
         if self.amplitude > 0 and self.frequency == 0:
             raise SceneError("frequency must be > 0 where the tension pulsates [Hz], got 0")
 

@@ -5,23 +5,25 @@ from __future__ import annotations
 import dataclasses
 import os
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar
 
 from ..base import check
 from ..base.atomic import write_bytes
 from ..base.errors import SceneError
+from ..base.parameter import Description
 from . import damping
-from .end import End, PerCoordinate
+from .end import End
 from .gravity import Gravity
 from .parts import part
 from .parts.node_force import NodeForce
 from .rope import Rope
-from .scene import Scene
 from .tension import Tension
 
+_Scene = TypeVar("_Scene", bound=Description)
 
-def load(path: str | os.PathLike[str]) -> Scene:
+
+def load(scene: type[_Scene], path: str | os.PathLike[str]) -> _Scene:
     """Read a scene; see `Scene.load`."""
     file = check.path(path)
     try:
@@ -30,12 +32,12 @@ def load(path: str | os.PathLike[str]) -> Scene:
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{file} is not a TOML file: {error}") from error
     try:
-        return _scene(document)
+        return scene(**_arguments(document, {field.name for field in dataclasses.fields(scene)}))
     except (SceneError, TypeError) as error:
         raise SceneError(f"{file}: {error}") from error
 
 
-def save(scene: Scene, path: str | os.PathLike[str]) -> None:
+def save(scene: Any, path: str | os.PathLike[str]) -> None:
     """Write a scene; see `Scene.save`."""
     import tomli_w
 
@@ -62,7 +64,7 @@ def _plain(thing: Any) -> dict[str, Any]:
     values = {}
     for field in dataclasses.fields(thing):
         value = getattr(thing, field.name)
-        if isinstance(value, PerCoordinate):
+        if isinstance(value, Mapping):
             value = dict(value)
         if value is not None and value != {}:
             values[field.name] = value
@@ -73,8 +75,7 @@ def _named(thing: Any) -> dict[str, Any]:
     return {"kind": type(thing).__name__, **_plain(thing)}
 
 
-def _scene(document: Mapping[str, Any]) -> Scene:
-    known = {field.name for field in dataclasses.fields(Scene)}
+def _arguments(document: Mapping[str, Any], known: set[str]) -> dict[str, Any]:
     _known_keys(document, known, "the file")
     if "rope" not in document:
         raise SceneError("key rope is missing: a scene needs a table [rope]")
@@ -92,7 +93,7 @@ def _scene(document: Mapping[str, Any]) -> Scene:
         arguments["damping"] = _each(many, "damping", damping.KINDS)
     if "parts" in document:
         arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
-    return Scene(**arguments)
+    return arguments
 
 
 def _ends(given: Any) -> Any:
@@ -119,10 +120,10 @@ def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:
     return tuple(built)
 
 
-def _built(kind: Callable[..., Any], table: Any, where: str) -> Any:
+def _built(kind: type[Description], table: Any, where: str) -> Any:
     """Call a description with the keys of a table, and say where an error comes from."""
     check.instance(table, where, dict, "a table")
-    fields = dataclasses.fields(kind)  # type: ignore[arg-type]
+    fields = dataclasses.fields(kind)
     _known_keys(table, {field.name for field in fields}, where)
     required = [
         field.name

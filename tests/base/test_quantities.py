@@ -12,8 +12,7 @@ import ropedyn as rd
 from ropedyn.base import check
 from ropedyn.scene import damping, force
 from ropedyn.scene.parts import part
-from ropedyn.scene.path import value_at, with_values
-from ropedyn.scene.path_unit import unit_of
+from ropedyn.scene.path import unit_of, value_at, with_values
 
 Q = pint.UnitRegistry().Quantity
 

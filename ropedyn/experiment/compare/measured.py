@@ -11,7 +11,7 @@ import numpy as np
 from ...base import check
 from ...base.array import Integer, Real
 from ...base.errors import SceneError
-from ...base.quantity import is_quantity
+from ...base.unit import is_quantity
 from ...curves.curves import Curves
 from ...curves.measured import Measured, above_zero
 from ...curves.merge_peaks import Merged, merge_peaks

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +12,8 @@ from ...base import check
 from ...base.answer import axes
 from ...base.array import Real
 from ...base.errors import SceneError
-from .static_test import StaticTest, set_readings
+from ...base.parameter import Description, depending, number, numbers, one_of
+from .static_test import StaticTest
 
 
 def _cantilever(L: float, s: float, t: float) -> float:
@@ -33,11 +35,28 @@ DEFLECTION = {
     "simply-supported": _simply_supported,
     "clamped": _clamped,
 }
-"""Deflection times B per force, one acting at s and the other read at t >= s, or the reverse."""
+"""Of each kind of ends B times the deflection at t per force at s <= t, or the reverse."""
 
 
-@dataclass(frozen=True, eq=False)
-class BendingTest(StaticTest):
+def _load_place(x: Any, name: str, test: BendingTest) -> float:
+    return _place(x, name, test, test.span if test.ends == "cantilever" else test.span / 2)
+
+
+def _reading_place(x: Any, name: str, test: BendingTest) -> float:
+    assert test.x is not None
+    return _place(x, name, test, test.x)
+
+
+def _place(value: Any, name: str, test: BendingTest, default: float) -> float:
+    if value is None:
+        return default
+    x = check.position(value, name, test.span)
+    if x == 0 or (x == test.span and test.ends != "cantilever"):
+        raise SceneError(f"{name} must not lie at a support, got {check.shown(value)}")
+    return x
+
+
+class BendingTest(Description, StaticTest, eq=False):
     """Deflections of a piece of rope by a force across it, and the bending stiffness they imply.
 
     Slender, without tension, small deflections w = F g/B, linear in the force. With the force at
@@ -103,44 +122,23 @@ class BendingTest(StaticTest):
     (53.8, 1.0, 0.000983)
     """
 
-    span: float
-    force: ArrayLike = field(metadata=axes("reading", unit="N"))
-    deflection: ArrayLike = field(metadata=axes("reading", unit="m"))
+    span: float = number("m", sign="positive")
+    force: ArrayLike = numbers(axes("reading", unit="N"))
+    deflection: ArrayLike = numbers(axes("reading", unit="m"))
     _: KW_ONLY
-    ends: str = "cantilever"
-    x: float | None = None
-    read_at: float | None = None
-    zero: float | None = None
-    reading_std: float | None = None
+    ends: str = one_of(DEFLECTION, default="cantilever")
+    x: float | None = depending(_load_place, "m", default=None)
+    read_at: float | None = depending(_reading_place, "m", default=None)
+    zero: float | None = number("m", default=None)
+    reading_std: float | None = number("m", sign="positive", default=None)
 
     stiffness_name = "bending_stiffness"
     symbol = "B"
     load_label = "force [N]"
     reading_label = "deflection [m]"
 
-    def __post_init__(self) -> None:
-        put = object.__setattr__
-        span = check.number(self.span, "span", "m", sign="positive")
-        put(self, "span", span)
-        check.one_of(self.ends, "ends", DEFLECTION)
-        put(self, "x", self._place(self.x, "x", span if self._is_cantilever else span / 2))
-        assert self.x is not None
-        put(self, "read_at", self._place(self.read_at, "read_at", self.x))
-        set_readings(self, "force", "deflection", ("N", "m"))
-        super().__post_init__()
+    def _agree(self) -> None:
         self._check_readings()
-
-    @property
-    def _is_cantilever(self) -> bool:
-        return self.ends == "cantilever"
-
-    def _place(self, value: float | None, name: str, default: float) -> float:
-        if value is None:
-            return default
-        x = check.position(value, name, self.span)
-        if x == 0 or (x == self.span and not self._is_cantilever):
-            raise SceneError(f"{name} must not lie at a support, got {check.shown(value)}")
-        return x
 
     @property
     def load(self) -> Real:

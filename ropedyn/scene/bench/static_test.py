@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from ...base.answer import Answer
 from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
-from .straight_line import Line
 
 
 class StaticTest(Answer):
@@ -54,9 +53,9 @@ class StaticTest(Answer):
         raise NotImplementedError
 
     @cached_property
-    def line(self) -> Line:
+    def line(self) -> StraightLine:
         """The straight line through the readings."""
-        return Line.through(self.load, self.reading, offset=self.zero, std=self.reading_std)
+        return StraightLine.through(self.load, self.reading, offset=self.zero, std=self.reading_std)
 
     @property
     def stiffness(self) -> float:
@@ -150,11 +149,53 @@ class StaticTest(Answer):
         return f"{name} {self.symbol} = {self.stiffness:.6g}{error} N m^2"
 
 
-def set_readings(test: Any, load: str, reading: str, units: tuple[str, str]) -> None:
-    """Check the arrays and the numbers that both tests have, and keep them."""
-    put = object.__setattr__
-    for name, unit in zip((load, reading), units):
-        put(test, name, check.numbers(getattr(test, name), name, unit))
-    put(test, "zero", check.optional(test.zero, "zero", units[1]))
-    std = check.optional(test.reading_std, "reading_std", units[1], sign="positive")
-    put(test, "reading_std", std)
+class StraightLine(NamedTuple):
+    """y = offset + slope x."""
+
+    slope: float  # of least squares; an offset that was given is itself
+    offset: float  # of least squares; an offset that was given is itself
+    std: float  # standard error of the slope, infinite where no y is left over to tell it
+    residual: Real  # (k,) y less the line
+    # degrees of freedom of the standard error, infinite where that of each y was given
+    freedom: float
+
+    @staticmethod
+    def through(x: Real, y: Real, *, offset: float | None, std: float | None) -> StraightLine:
+        """Return the line of k points; x must not be constant, nor 0 where the offset is given.
+
+        With A = [x, 1], or x alone where the offset is given, the covariance is s^2 (A^T A)^-1; s
+        is the standard uncertainty of each y, where that is left out the root of the sum of squared
+        residuals per degree of freedom (Draper and Smith, Applied Regression Analysis, 3rd ed.,
+        section 1.4).
+        """
+        width = float(np.abs(x).max())
+        A = (x / width)[:, None]
+        if offset is None:
+            A = np.stack([A[:, 0], np.ones_like(x)], axis=1)
+        known = 0.0 if offset is None else offset
+        found = np.linalg.lstsq(A, y - known)[0]
+        residual = y - known - A @ found
+        freedom = len(x) - A.shape[1]
+        if std is not None:
+            s, freedom = std, math.inf
+        else:
+            s = math.sqrt(residual @ residual / freedom) if freedom > 0 else math.inf
+        share = np.linalg.inv(A.T @ A)[0, 0]
+        return StraightLine(
+            slope=float(found[0]) / width,
+            offset=known if offset is not None else float(found[1]),
+            std=s * math.sqrt(share) / width,
+            residual=residual,
+            freedom=freedom,
+        )
+
+    def interval(self, confidence: float) -> tuple[float, float]:
+        """Return the two-sided confidence interval of the slope, by Student's t."""
+        from scipy.special import ndtri, stdtrit
+
+        if not math.isfinite(self.std):
+            return -math.inf, math.inf
+        p = (1 + confidence) / 2
+        t = ndtri(p) if math.isinf(self.freedom) else stdtrit(self.freedom, p)
+        half = float(t) * self.std
+        return self.slope - half, self.slope + half

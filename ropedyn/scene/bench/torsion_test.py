@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...base import check
 from ...base.answer import axes
 from ...base.array import Real
-from .static_test import StaticTest, set_readings
+from ...base.parameter import Description, number, numbers
+from .static_test import StaticTest
 
 
-@dataclass(frozen=True, eq=False)
-class TorsionTest(StaticTest):
+class TorsionTest(Description, StaticTest, eq=False):
     """Angles that a torque turns a piece of rope by, and the torsional stiffness they imply.
 
     Of uniform twist: angle = torque length/C. In a laid rope that is C where the ends cannot come
@@ -60,23 +59,19 @@ class TorsionTest(StaticTest):
     (0.1488, 0.001)
     """
 
-    length: float
-    torque: ArrayLike = field(metadata=axes("reading", unit="N m"))
-    angle: ArrayLike = field(metadata=axes("reading", unit="rad"))
+    length: float = number("m", sign="positive")
+    torque: ArrayLike = numbers(axes("reading", unit="N m"))
+    angle: ArrayLike = numbers(axes("reading", unit="rad"))
     _: KW_ONLY
-    zero: float | None = None
-    reading_std: float | None = None
+    zero: float | None = number("rad", default=None)
+    reading_std: float | None = number("rad", sign="positive", default=None)
 
     stiffness_name = "torsional_stiffness"
     symbol = "C"
     load_label = "torque [N m]"
     reading_label = "angle [rad]"
 
-    def __post_init__(self) -> None:
-        length = check.number(self.length, "length", "m", sign="positive")
-        object.__setattr__(self, "length", length)
-        set_readings(self, "torque", "angle", ("N m", "rad"))
-        super().__post_init__()
+    def _agree(self) -> None:
         self._check_readings()
 
     @property

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import ClassVar
 
 import numpy as np
 
-from ...base import check
 from ...base.errors import SceneError
-from .node import Attached, AttachedRate, NodeRate, NodeTerm
+from ...base.parameter import number
+from .node import Attached, AttachedRate, NodeRate, NodeTerm, Part
 
 FIRST_ROOT = 1.8751040687119611
-"""Of 1 + cos x cosh x."""
+"""The first root of 1 + cos x cosh x = 0: of a cantilever."""
 
 
-@dataclass(frozen=True)
-class BrokenWire:
+class BrokenWire(Part):
     """The free end of a broken wire: a small cantilever that the rope carries.
 
     A solid round Euler-Bernoulli beam parallel to the axis, towards larger x. Its root moves
@@ -60,28 +59,15 @@ class BrokenWire:
 
     kind: ClassVar[str] = "broken wire"
 
-    x: float
-    length: float
-    diameter: float
+    length: float = number("m", sign="positive")
+    diameter: float = number("m", sign="positive")
     _: KW_ONLY
-    radius: float
-    youngs_modulus: float = 2.06e11
-    density: float = 7850.0
-    damping_ratio: float = 0.0
+    radius: float = number("m")
+    youngs_modulus: float = number("N/m^2", sign="positive", default=2.06e11)
+    density: float = number("kg/m^3", sign="positive", default=7850.0)
+    damping_ratio: float = number(sign="nonnegative", default=0.0)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        object.__setattr__(self, "radius", check.number(self.radius, "radius", "m"))
-        for name, unit in (
-            ("length", "m"),
-            ("diameter", "m"),
-            ("youngs_modulus", "N/m^2"),
-            ("density", "kg/m^3"),
-        ):
-            value = check.number(getattr(self, name), name, unit, sign="positive")
-            object.__setattr__(self, name, value)
-        ratio = check.number(self.damping_ratio, "damping_ratio", sign="nonnegative")
-        object.__setattr__(self, "damping_ratio", ratio)
+    def _agree(self) -> None:
         with np.errstate(all="ignore"):
             numbers = np.array([*self._values[:3], self.frequency])
         if not np.isfinite(numbers).all() or (numbers == 0.0).any():

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
+
+from ...base.parameter import Description, position
 
 
 class Attached(NamedTuple):
@@ -88,3 +90,47 @@ class NodeRate(NamedTuple):
                 return True
             moved += [self.attached.displacement, self.attached.rotation]
         return any(c in coordinates for values in moved for c in values)
+
+
+class Part(Description):
+    """Base of what stands at one place of the rope: what the compiler asks of it."""
+
+    kind: ClassVar[str]
+    """Name of the effect."""
+
+    x: float = position()
+    """Where it stands [m]."""
+
+    @property
+    def stands_on(self) -> tuple[str, ...]:
+        """Coordinates without which it has no meaning: the one it acts on, if it has one.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).stands_on, rd.PointMass(0.5, 0.1).stands_on
+        (('z',), ())
+        """
+        return (self.coordinate,) if hasattr(self, "coordinate") else ()
+
+    def term(self) -> NodeTerm:
+        """Return what it adds to its node.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).term().stiffness
+        {'z': 10000.0}
+        """
+        raise NotImplementedError
+
+    def rates(self) -> Mapping[str, NodeRate]:
+        """Return how fast that changes with each number of it, positions apart.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Spring(0.5, 1e4).rates()["stiffness"].stiffness
+        {'z': 1.0}
+        """
+        return {}

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar
+from dataclasses import KW_ONLY
+from typing import Any, ClassVar
 
 from ...base import check
-from .node import Law, NodeRate, NodeTerm
+from ...base.parameter import given, one_of
+from .node import Law, NodeTerm, Part
 
 
-@dataclass(frozen=True)
-class NodeForce:
+def _checked_law(law: Any) -> Any:
+    if not callable(law):
+        raise TypeError(f"law must be callable as law(t, u, v), got {check.shown(law)}")
+    return law
+
+
+class NodeForce(Part):
     """A force that depends on time and on the motion of the place it acts at.
 
     Only `Model.transient` and `Model.stepped_sine` take it, by the direct method, and call the law
@@ -46,27 +52,11 @@ class NodeForce:
 
     kind: ClassVar[str] = "node force"
 
-    x: float
-    law: Callable[[float, float, float], float]
+    law: Callable[[float, float, float], float] = given(_checked_law)
     _: KW_ONLY
-    coordinate: str = "z"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        if not callable(self.law):
-            raise TypeError(f"law must be callable as law(t, u, v), got {check.shown(self.law)}")
-        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Its coordinate."""
-        return (self.coordinate,)
+    coordinate: str = one_of(check.COORDINATES, default="z")
 
     def term(self) -> NodeTerm:
         """Return the law."""
         law = Law(self.coordinate, "call", call=self.law)
         return NodeTerm(nonlinear="law must be absent", laws=(law,))
-
-    def rates(self) -> dict[str, NodeRate]:
-        """Nothing: it has no number but its place."""
-        return {}

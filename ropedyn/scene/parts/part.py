@@ -2,66 +2,23 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Protocol
+from collections.abc import Iterable
+from dataclasses import KW_ONLY
+from typing import Any, ClassVar
 
 from ...base import check
+from ...base.parameter import depending, number, one_of, parameters
 from . import stretch as _stretch
 from .broken_wire import BrokenWire
-from .node import Law, NodeRate, NodeTerm
+from .node import Law, NodeRate, NodeTerm, Part
 from .node_force import NodeForce
 from .resonator import Resonator
 from .stop import Stop
 from .stretch import Stretch
 
 
-class Part(Protocol):
-    """What the compiler asks of a part that stands at one place."""
-
-    kind: ClassVar[str]
-    """Name of the effect."""
-
-    @property
-    def x(self) -> float:
-        """Where it stands [m]."""
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Coordinates without which it has no meaning.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Spring(0.5, 1e4).stands_on, rd.PointMass(0.5, 0.1).stands_on
-        (('z',), ())
-        """
-
-    def term(self) -> NodeTerm:
-        """Return what it adds to its node.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Spring(0.5, 1e4).term().stiffness
-        {'z': 10000.0}
-        """
-
-    def rates(self) -> Mapping[str, NodeRate]:
-        """Return how fast that changes with each number of it, positions apart.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Spring(0.5, 1e4).rates()["stiffness"].stiffness
-        {'z': 1.0}
-        """
-
-
-@dataclass(frozen=True)
-class PointMass:
+class PointMass(Part):
     """A rigid body clamped to the rope at one point.
 
     Parameters
@@ -89,26 +46,10 @@ class PointMass:
 
     kind: ClassVar[str] = "point mass"
 
-    x: float
-    mass: float
+    mass: float = number("kg", sign="nonnegative")
     _: KW_ONLY
-    rotary_inertia: float = 0.0
-    polar_inertia: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        for name, unit in (
-            ("mass", "kg"),
-            ("rotary_inertia", "kg m^2"),
-            ("polar_inertia", "kg m^2"),
-        ):
-            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
-            object.__setattr__(self, name, value)
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Nothing: inertia on an absent coordinate is ignored."""
-        return ()
+    rotary_inertia: float = number("kg m^2", sign="nonnegative", default=0.0)
+    polar_inertia: float = number("kg m^2", sign="nonnegative", default=0.0)
 
     def term(self) -> NodeTerm:
         """Inertia on the diagonal."""
@@ -129,8 +70,7 @@ class PointMass:
         }
 
 
-@dataclass(frozen=True)
-class Spring:
+class Spring(Part):
     """A spring from the rope to the ground.
 
     Parameters
@@ -158,22 +98,9 @@ class Spring:
 
     kind: ClassVar[str] = "spring"
 
-    x: float
-    stiffness: float
+    stiffness: float = number("N/m", turning="N m", sign="nonzero")
     _: KW_ONLY
-    coordinate: str = "z"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
-        unit = "N/m" if self.coordinate in ("x", "z") else "N m"
-        stiffness = check.number(self.stiffness, "stiffness", unit, sign="nonzero")
-        object.__setattr__(self, "stiffness", stiffness)
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Its coordinate."""
-        return (self.coordinate,)
+    coordinate: str = one_of(check.COORDINATES, default="z")
 
     def term(self) -> NodeTerm:
         """Stiffness on the diagonal."""
@@ -184,8 +111,15 @@ class Spring:
         return {"stiffness": NodeRate(stiffness={self.coordinate: 1.0})}
 
 
-@dataclass(frozen=True)
-class Dashpot:
+def _checked_damping(value: Any, name: str, dashpot: Dashpot) -> float:
+    along, exponent = dashpot.coordinate in ("x", "z"), dashpot.exponent
+    unit = "N s/m" if along else "N m s"
+    if exponent != 1:
+        unit = f"{'N (s/m)^' if along else 'N m s^'}{exponent!r}"
+    return check.number(value, name, unit, sign="positive")
+
+
+class Dashpot(Part):
     """A dashpot from the rope to the ground, of force c |v|^exponent sign(v).
 
     Parameters
@@ -218,28 +152,10 @@ class Dashpot:
 
     kind: ClassVar[str] = "dashpot"
 
-    x: float
-    damping: float
+    damping: float = depending(_checked_damping, "N s/m", turning="N m s")
     _: KW_ONLY
-    coordinate: str = "z"
-    exponent: float = 1.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
-        exponent = check.number(self.exponent, "exponent", sign="nonnegative")
-        object.__setattr__(self, "exponent", exponent)
-        unit = "N s/m" if self.coordinate in ("x", "z") else "N m s"
-        if exponent != 1:
-            speed = "N (s/m)^" if self.coordinate in ("x", "z") else "N m s^"
-            unit = f"{speed}{exponent!r}"
-        damping = check.number(self.damping, "damping", unit, sign="positive")
-        object.__setattr__(self, "damping", damping)
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Its coordinate."""
-        return (self.coordinate,)
+    coordinate: str = one_of(check.COORDINATES, default="z")
+    exponent: float = number(sign="nonnegative", default=1.0)
 
     def term(self) -> NodeTerm:
         """Damping on the diagonal, if it is linear."""
@@ -253,8 +169,7 @@ class Dashpot:
         return {"damping": NodeRate(damping={self.coordinate: 1.0})}
 
 
-@dataclass(frozen=True)
-class Support:
+class Support(Part):
     """A rigid support of one coordinate.
 
     Parameters
@@ -280,30 +195,15 @@ class Support:
 
     kind: ClassVar[str] = "support"
 
-    x: float
     _: KW_ONLY
-    coordinate: str = "z"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Its coordinate."""
-        return (self.coordinate,)
+    coordinate: str = one_of(check.COORDINATES, default="z")
 
     def term(self) -> NodeTerm:
         """Return the held coordinate."""
         return NodeTerm(held=(self.coordinate,))
 
-    def rates(self) -> dict[str, NodeRate]:
-        """Nothing: it has no number but its place."""
-        return {}
 
-
-@dataclass(frozen=True)
-class Hinge:
+class Hinge(Part):
     """A place where the bending rotation may jump.
 
     The node and whatever else stands at the same place (inertia, springs and supports of the
@@ -341,14 +241,8 @@ class Hinge:
 
     kind: ClassVar[str] = "hinge"
 
-    x: float
     _: KW_ONLY
-    stiffness: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        stiffness = check.number(self.stiffness, "stiffness", "N m", sign="nonnegative")
-        object.__setattr__(self, "stiffness", stiffness)
+    stiffness: float = number("N m", sign="nonnegative", default=0.0)
 
     @property
     def stands_on(self) -> tuple[str, ...]:
@@ -382,15 +276,19 @@ KINDS = (
 
 def standing(parts: Iterable[Part | Stretch]) -> list[Part]:
     """Return the parts that stand at one place."""
-    return [part for part in parts if not isinstance(part, _stretch.KINDS)]
+    return [part for part in parts if not isinstance(part, Stretch)]
 
 
 def stretches(parts: Iterable[Part | Stretch]) -> list[Stretch]:
     """Return the parts that change the rope over a stretch."""
-    return [part for part in parts if isinstance(part, _stretch.KINDS)]
+    return [part for part in parts if isinstance(part, Stretch)]
 
 
 def places(parts: Iterable[Part | Stretch]) -> list[float]:
     """Return where parts stand, begin and end [m]."""
-    at = ((p.start, p.stop) if isinstance(p, _stretch.KINDS) else (p.x,) for p in parts)
-    return list(itertools.chain.from_iterable(at))
+    return [getattr(part, name) for part in parts for name in position_names(part)]
+
+
+def position_names(part: Part | Stretch) -> list[str]:
+    """Return the names of its positions along the rope."""
+    return [name for name, parameter in parameters(part).items() if parameter.is_position]

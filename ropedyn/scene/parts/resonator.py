@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import ClassVar
 
 import numpy as np
 
-from ...base import check
 from ...base.errors import SceneError
-from .node import Attached, AttachedRate, NodeRate, NodeTerm
+from ...base.parameter import number
+from .node import Attached, AttachedRate, NodeRate, NodeTerm, Part
 
 
-@dataclass(frozen=True)
-class Resonator:
+class Resonator(Part):
     """A mass on a spring: a tuned absorber, an attached instrument.
 
     It moves transversely, with the rope's z as the motion of its foot. In undamped modes it is free
@@ -54,19 +53,12 @@ class Resonator:
 
     kind: ClassVar[str] = "resonator"
 
-    x: float
-    mass: float
-    frequency: float
+    mass: float = number("kg", sign="positive")
+    frequency: float = number("Hz", sign="positive")
     _: KW_ONLY
-    damping_ratio: float = 0.0
+    damping_ratio: float = number(sign="nonnegative", default=0.0)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        for name, unit in (("mass", "kg"), ("frequency", "Hz")):
-            value = check.number(getattr(self, name), name, unit, sign="positive")
-            object.__setattr__(self, name, value)
-        ratio = check.number(self.damping_ratio, "damping_ratio", sign="nonnegative")
-        object.__setattr__(self, "damping_ratio", ratio)
+    def _agree(self) -> None:
         numbers = [*self._values, self._values[1] / self._values[0]]
         if not np.isfinite(numbers).all() or 0.0 in (self._values[1], numbers[-1]):
             raise SceneError(

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar
+from dataclasses import KW_ONLY
+from typing import Any, ClassVar
 
 from ...base import check
 from ...base.errors import SceneError
-from ...base.unit import UNIT
-from .node import Law, NodeRate, NodeTerm
+from ...base.parameter import given, number, one_of
+from .node import Law, NodeTerm, Part
 
 
-@dataclass(frozen=True)
-class Stop:
+def _checked_side(side: Any) -> int:
+    number = int(check.number(side, "side", sign="nonzero"))
+    if number not in (1, -1) or number != side:
+        raise SceneError(f"side must be 1 or -1, got {side!r}")
+    return number
+
+
+class Stop(Part):
     """A spring that the rope meets after a gap, on one side.
 
     Only `Model.transient` and `Model.stepped_sine` take it, by the direct method.
@@ -47,36 +53,13 @@ class Stop:
 
     kind: ClassVar[str] = "stop"
 
-    x: float
-    stiffness: float
+    stiffness: float = number("N/m", turning="N m", sign="positive")
     _: KW_ONLY
-    gap: float = 0.0
-    side: int = 1
-    coordinate: str = "z"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "x", check.number(self.x, "x", "m"))
-        check.one_of(self.coordinate, "coordinate", check.COORDINATES)
-        unit = "N/m" if self.coordinate in ("x", "z") else "N m"
-        stiffness = check.number(self.stiffness, "stiffness", unit, sign="positive")
-        object.__setattr__(self, "stiffness", stiffness)
-        gap = check.number(self.gap, "gap", UNIT[self.coordinate], sign="nonnegative")
-        object.__setattr__(self, "gap", gap)
-        side = int(check.number(self.side, "side", sign="nonzero"))
-        if side not in (1, -1) or side != self.side:
-            raise SceneError(f"side must be 1 or -1, got {self.side!r}")
-        object.__setattr__(self, "side", side)
-
-    @property
-    def stands_on(self) -> tuple[str, ...]:
-        """Its coordinate."""
-        return (self.coordinate,)
+    gap: float = number("m", turning="rad", sign="nonnegative", default=0.0)
+    side: int = given(_checked_side, default=1)
+    coordinate: str = one_of(check.COORDINATES, default="z")
 
     def term(self) -> NodeTerm:
         """Return the law."""
         law = Law(self.coordinate, "stop", (self.stiffness, self.gap, float(self.side)))
         return NodeTerm(nonlinear="stiffness must be that of a Spring, got a Stop", laws=(law,))
-
-    def rates(self) -> dict[str, NodeRate]:
-        """Nothing: undamped modes do not know it."""
-        return {}

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection, Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ...base import check
 from ...base.array import Index, Real
 from ...base.errors import SceneError
+from ...base.parameter import Description, number, position
 from ..rope import Rope
 from ..stations import nearest
 
 
-class Change(NamedTuple):
+class RopeChange(NamedTuple):
     """What a part does to the rope: it is multiplied by factors, then something is added."""
 
     bending: float = 1.0
@@ -29,7 +29,7 @@ class Change(NamedTuple):
 
 
 FACTORS = slice(0, 3)
-"""The factors of a change; the rest of it is added."""
+"""A change begins with its factors; the rest of it is added."""
 
 FACTOR = {
     "bending_stiffness": "bending",
@@ -38,11 +38,24 @@ FACTOR = {
     "rotary_inertia": "density",
     "polar_inertia": "density",
 }
-"""On each property of a rope that changes; what is added to one has its name."""
+"""The factor on each property of a rope that changes; what is added to one has its name."""
 
 
-@dataclass(frozen=True)
-class AddedMass:
+class _Between(Description):
+    """Base of what changes the rope between two places."""
+
+    acts_on: ClassVar[dict[str, str]] = {}
+    """Arguments that have no meaning without a coordinate, unless they are 1."""
+
+    start: float = position()
+    stop: float = position()
+
+    def _agree(self) -> None:
+        if not self.start < self.stop:
+            raise SceneError(f"stop must lie beyond start, {self.start!r} m, got {self.stop!r}")
+
+
+class AddedMass(_Between):
     """Mass that moves with the rope over a stretch: grease, ice, marks.
 
     Masses that overlap add up. The density of a `LocalChange` at the same place is a factor on the
@@ -79,22 +92,12 @@ class AddedMass:
     """
 
     kind: ClassVar[str] = "added mass"
-    acts_on: ClassVar[dict[str, str]] = {}
-    """Arguments that have no meaning without a coordinate: inertia is ignored there."""
 
-    start: float
-    stop: float
-    linear_density: float
+    linear_density: float = number("kg/m", sign="nonnegative")
     _: KW_ONLY
-    polar_inertia: float = 0.0
+    polar_inertia: float = number("kg m", sign="nonnegative", default=0.0)
 
-    def __post_init__(self) -> None:
-        _set_stretch(self)
-        for name, unit in (("linear_density", "kg/m"), ("polar_inertia", "kg m")):
-            value = check.number(getattr(self, name), name, unit, sign="nonnegative")
-            object.__setattr__(self, name, value)
-
-    def change(self) -> Change:
+    def change(self) -> RopeChange:
         """Return what is added.
 
         Examples
@@ -103,7 +106,7 @@ class AddedMass:
         >>> rd.AddedMass(0.0, 0.5, 0.02).change().linear_density
         0.02
         """
-        return Change(linear_density=self.linear_density, polar_inertia=self.polar_inertia)
+        return RopeChange(linear_density=self.linear_density, polar_inertia=self.polar_inertia)
 
     def on(self, coordinates: Collection[str]) -> AddedMass:
         """Return itself, on whatever coordinates.
@@ -117,8 +120,7 @@ class AddedMass:
         return self
 
 
-@dataclass(frozen=True)
-class LocalChange:
+class LocalChange(_Between):
     """Factors on the rope over a stretch: damage, wear, a splice.
 
     Factors that overlap multiply. Axial stiffness and lay are those of the rope. Where a stretch
@@ -160,22 +162,13 @@ class LocalChange:
 
     kind: ClassVar[str] = "local change"
     acts_on: ClassVar[dict[str, str]] = {"bending": "beta", "torsion": "alpha"}
-    """Arguments that have no meaning without a coordinate, unless they are 1."""
 
-    start: float
-    stop: float
     _: KW_ONLY
-    bending: float = 1.0
-    torsion: float = 1.0
-    density: float = 1.0
+    bending: float = number(sign="positive", default=1.0)
+    torsion: float = number(sign="positive", default=1.0)
+    density: float = number(sign="positive", default=1.0)
 
-    def __post_init__(self) -> None:
-        _set_stretch(self)
-        for name in ("bending", "torsion", "density"):
-            value = check.number(getattr(self, name), name, sign="positive")
-            object.__setattr__(self, name, value)
-
-    def change(self) -> Change:
+    def change(self) -> RopeChange:
         """Return the factors.
 
         Examples
@@ -184,7 +177,7 @@ class LocalChange:
         >>> rd.LocalChange(0.0, 0.5, bending=0.9).change().bending
         0.9
         """
-        return Change(bending=self.bending, torsion=self.torsion, density=self.density)
+        return RopeChange(bending=self.bending, torsion=self.torsion, density=self.density)
 
     def on(self, coordinates: Collection[str]) -> LocalChange | None:
         """Return what is left of it on these coordinates, None where that changes nothing.
@@ -202,14 +195,7 @@ class LocalChange:
             bending=self.bending if "beta" in coordinates else 1.0,
             torsion=self.torsion if "alpha" in coordinates else 1.0,
         )
-        return None if left != self and left.change() == Change() else left
-
-
-def _set_stretch(part: AddedMass | LocalChange) -> None:
-    for name in ("start", "stop"):
-        object.__setattr__(part, name, check.number(getattr(part, name), name, "m"))
-    if not part.start < part.stop:
-        raise SceneError(f"stop must lie beyond start, {part.start!r} m, got {part.stop!r}")
+        return None if left != self and left.change() == RopeChange() else left
 
 
 Stretch = AddedMass | LocalChange
@@ -218,8 +204,8 @@ KINDS = (AddedMass, LocalChange)
 
 
 def changes(stretches: Sequence[Stretch], stations: Real) -> Real:
-    """Return what all stretches do together, a `Change` for each span between stations."""
-    change = np.tile(np.array(Change()), (len(stations) - 1, 1))
+    """Return what all stretches do together, a `RopeChange` for each span between stations."""
+    change = np.tile(np.array(RopeChange()), (len(stations) - 1, 1))
     starts = nearest(stations, (stretch.start for stretch in stretches))
     stops = nearest(stations, (stretch.stop for stretch in stretches))
     with np.errstate(over="ignore", under="ignore"):
@@ -237,7 +223,7 @@ def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[lis
     found = []
     for row, span in zip(distinct.tolist(), first):
         try:
-            found.append(_changed(rope, Change(*row)))
+            found.append(_changed(rope, RopeChange(*row)))
         except SceneError as error:
             raise SceneError(
                 f"parts must leave a rope between {stations[span]:g} m and "
@@ -246,7 +232,7 @@ def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[lis
     return found, which.reshape(-1)
 
 
-def _changed(rope: Rope, change: Change) -> Rope:
+def _changed(rope: Rope, change: RopeChange) -> Rope:
     """Return the rope with the change."""
     values = {}
     for name, factor in FACTOR.items():
@@ -257,7 +243,7 @@ def _changed(rope: Rope, change: Change) -> Rope:
 
 
 def changed_by(name: str) -> set[str]:
-    """Return the properties of a rope that a number of a `Change` acts on."""
+    """Return the properties of a rope that a number of a `RopeChange` acts on."""
     return {of for of, factor in FACTOR.items() if name in (of, factor)}
 
 
@@ -265,12 +251,12 @@ def rope_rate(change: Real, name: str) -> Real:
     """Return how fast a property of changed ropes grows with that of the rope: by its factor."""
     if name not in FACTOR:
         return np.ones(len(change))
-    return change[:, Change._fields.index(FACTOR[name])]
+    return change[:, RopeChange._fields.index(FACTOR[name])]
 
 
 def stretch_rate(rope: Rope, change: Real, part: Stretch, name: str) -> dict[str, Real]:
     """Return how fast properties of changed ropes grow with a number of one of the stretches."""
-    if Change._fields.index(name) >= FACTORS.stop:
+    if RopeChange._fields.index(name) >= FACTORS.stop:
         return {name: np.ones(len(change))}
-    others = change[:, Change._fields.index(name)] / getattr(part, name)
+    others = change[:, RopeChange._fields.index(name)] / getattr(part, name)
     return {of: others * (getattr(rope, of) or 0.0) for of in changed_by(name)}

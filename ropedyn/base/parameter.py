@@ -1,0 +1,204 @@
+"""Parameters of a description: what each is, its unit and sign, declared once, at its field.
+
+A field that is declared here is checked and kept as what it must be when its description is made;
+paths to numbers, files and the command line read the same declaration.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import MISSING, Field, dataclass
+from typing import Any, ClassVar, NamedTuple, dataclass_transform
+
+from . import check
+
+
+class Parameter(NamedTuple):
+    """What is declared of a field."""
+
+    check: Callable[[Any, str, Any], Any]
+    """Of a value, its name and what it describes: return what is kept, or raise."""
+    unit: str = ""
+    turning: str = ""
+    """Unit on a coordinate that is an angle, where that is another."""
+    is_position: bool = False
+    is_late: bool = False
+    """Whether its check asks for other parameters, which are checked before it."""
+
+    def units(self) -> tuple[str, ...]:
+        """Return the units it can have."""
+        return (self.unit, self.turning) if self.turning else (self.unit,)
+
+    def unit_on(self, coordinate: object) -> str:
+        """Return the unit on a coordinate."""
+        return self.turning if self.turning and coordinate in ("alpha", "beta") else self.unit
+
+
+def _declared(parameter: Parameter, default: Any, **metadata: Any) -> Any:
+    metadata["parameter"] = parameter
+    if isinstance(default, dict):
+        return dataclasses.field(default_factory=default.copy, metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+def number(
+    unit: str = "",
+    *,
+    turning: str = "",
+    sign: str = "any",
+    default: Any = MISSING,
+    is_position: bool = False,
+) -> Any:
+    """Declare a number; where its default is None it may be left out."""
+
+    def checked(value: Any, name: str, thing: Any) -> float | None:
+        if value is None and default is None:
+            return None
+        own = parameter.unit_on(thing.coordinate) if turning else unit
+        return check.number(value, name, own, sign=sign)
+
+    parameter = Parameter(checked, unit, turning, is_position, is_late=bool(turning))
+    return _declared(parameter, default)
+
+
+def position() -> Any:
+    """Declare a position along the rope."""
+    return number("m", is_position=True)
+
+
+def numbers(metadata: Mapping[str, Any]) -> Any:
+    """Declare a one-dimensional array of numbers that cannot change, by its `answer.axes`."""
+    unit = metadata["unit"]
+
+    def checked(value: Any, name: str, thing: Any) -> Any:
+        array = check.numbers(value, name, unit)
+        array.flags.writeable = False
+        return array
+
+    return _declared(Parameter(checked, unit), MISSING, **metadata)
+
+
+def per_coordinate(unit: str, *, turning: str, sign: str, default: Mapping[str, float]) -> Any:
+    """Declare a mapping from coordinates to numbers."""
+
+    def checked(values: Any, name: str, thing: Any) -> PerCoordinate:
+        check.instance(values, name, Mapping, "a mapping from coordinates to numbers")
+        for key in values:
+            check.one_of(key, f"key of {name}", check.COORDINATES)
+        return PerCoordinate(
+            {
+                c: check.number(values[c], f"{name}[{c!r}]", parameter.unit_on(c), sign=sign)
+                for c in check.COORDINATES
+                if c in values
+            }
+        )
+
+    parameter = Parameter(checked, unit, turning)
+    return _declared(parameter, default)
+
+
+def one_of(words: Iterable[str], *, default: Any = MISSING) -> Any:
+    """Declare one of some words."""
+    return _declared(Parameter(lambda value, name, _: check.one_of(value, name, words)), default)
+
+
+def instance(kind: type, what: str, *, default: Any = MISSING) -> Any:
+    """Declare an object of a type; where its default is None it may be left out."""
+
+    def checked(value: Any, name: str, thing: Any) -> Any:
+        if value is None and default is None:
+            return None
+        return check.instance(value, name, kind, what)
+
+    return _declared(Parameter(checked), default)
+
+
+def flag(*, default: bool) -> Any:
+    """Declare a truth."""
+    return instance(bool, "True or False", default=default)
+
+
+def given(checked: Callable[[Any], Any], *, default: Any = MISSING) -> Any:
+    """Declare what a function of its own checks, and returns as it is kept."""
+    return _declared(Parameter(lambda value, *_: checked(value)), default)
+
+
+def depending(
+    checked: Callable[[Any, str, Any], Any],
+    unit: str = "",
+    *,
+    turning: str = "",
+    default: Any = MISSING,
+) -> Any:
+    """Declare what depends on other parameters: a function of value, name and thing checks it."""
+    return _declared(Parameter(checked, unit, turning, is_late=True), default)
+
+
+@dataclass_transform(
+    frozen_default=True,
+    field_specifiers=(
+        number,
+        position,
+        numbers,
+        per_coordinate,
+        one_of,
+        instance,
+        flag,
+        given,
+        depending,
+    ),
+)
+class Description:
+    """Base of what users describe: a frozen dataclass of declared parameters, checked when made."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    _parameters: ClassVar[dict[str, Parameter]]
+
+    def __init_subclass__(cls, **options: bool) -> None:
+        super().__init_subclass__()
+        dataclass(frozen=True, **options)(cls)
+        declared = {
+            field.name: field.metadata["parameter"]
+            for field in dataclasses.fields(cls)
+            if "parameter" in field.metadata
+        }
+        cls._parameters = dict(sorted(declared.items(), key=lambda item: item[1].is_late))
+
+    def __post_init__(self) -> None:
+        for name, parameter in self._parameters.items():
+            value = getattr(self, name)
+            kept = parameter.check(value, name, self)
+            if kept is not value:
+                object.__setattr__(self, name, kept)
+        self._agree()
+
+    def _agree(self) -> None:
+        """Refuse parameters that do not go together."""
+
+
+def parameters(kind: type[Description] | Description) -> dict[str, Parameter]:
+    """Return what is declared of each field."""
+    return kind._parameters
+
+
+class PerCoordinate(Mapping[str, float]):
+    """Numbers per coordinate, such as spring stiffnesses; a mapping that cannot change."""
+
+    def __init__(self, values: dict[str, float]) -> None:
+        self._values = values
+
+    def __getitem__(self, coordinate: str) -> float:
+        return self._values[coordinate]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._values.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._values)
