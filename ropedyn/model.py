@@ -105,13 +105,11 @@ class Model(Compiled):
             of a minute for so many, does not stop for Ctrl-C.
         points : int, optional
             Of continuous spans: shapes are given at the ends of so many equal parts of each span
-            or element, exactly; so many that the highest mode has 16 to a half wave where left
-            out.
+            or element, exactly; 16 to a half wave of the highest mode where left out.
         damped : bool
             False: damping is ignored. True: rates s and complex shapes of free motion
-            Re(shape e^(s t)), by the sweep; modes are then those of the least |s|, below a
-            frequency those of |s|/2 pi, and all are found and certified, overdamped ones among them
-            (see `DampedModes`).
+            Re(shape e^(s t)), by the sweep: those of the least |s|, or |s|/2 pi below a frequency,
+            all found and certified, overdamped ones among them (see `DampedModes`).
 
         Returns
         -------
@@ -137,8 +135,7 @@ class Model(Compiled):
         >>> print(model.modes(2).frequency.round(2))
         [15.81 31.61]
 
-        A dashpot near an end that damps the first mode best, by half the share of the length that
-        it cuts off:
+        A dashpot near an end that damps the first mode best:
 
         >>> dashpot = rd.Dashpot(0.02, 15.93 * (100.0 * 0.1) ** 0.5)
         >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[dashpot]).compile()
@@ -204,20 +201,17 @@ class Model(Compiled):
             values have a leading axis of drives.
         response : point or list of points, optional
             What is watched; the drive points where left out. Also internal forces such as
-            ``("F_z", 0.3)`` or ``("M_beta", 0.0)``: what the rope right of the position puts on
-            the rope left of it, just left of a load or mass that stands there; these need the
-            sweep or the band. And ``("wire", 0)``: the transverse motion of the tip of the first
-            `BrokenWire` among the parts.
+            ``("F_z", 0.3)`` or ``("M_beta", 0.0)``, by sweep or band: what the rope right of the
+            position puts on the rope left of it, just left of a load or mass there. And
+            ``("wire", 0)``: the transverse motion of the tip of the first `BrokenWire`.
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration per force.
         solver : {"sweep", "lapack", "band"}
-            ``"sweep"``: along the chain in scattering form (see csrc/sweep.h), nothing assembled,
-            right to nearly the last digits whatever n; uniform stretches are joined by doubling
-            and cost little more for more elements. ``"lapack"``: complex band LU of the assembled
-            dynamic stiffness at each frequency; loses digits with n as `modes` does.
-            ``"band"``: complex band LU of the mixed form, forces of elements beside motion of
-            nodes (see csrc/mixed.h); its error grows as n at most, it shares no step with the
-            sweep, and it takes hundreds of times as long.
+            ``"sweep"``: along the chain in scattering form (see csrc/sweep.h), right to nearly the
+            last digits whatever n. ``"lapack"``: complex band LU of the assembled dynamic
+            stiffness; loses digits with n as `modes` does. ``"band"``: complex band LU of the mixed
+            form (see csrc/mixed.h); its error grows as n at most, it shares no step with the sweep,
+            and it takes hundreds of times as long.
         threads : int, optional
             Of sweep and band: frequencies are shared out over so many threads; the environment
             variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
@@ -243,13 +237,10 @@ class Model(Compiled):
         the same shape, and points in the driven element also move by its local flexibility.
 
         With `ModalDamping` the response is the exact static one and a sum over the modes below
-        eight times the highest frequency, 64 at least:
-
-            h = h_static + sum r_k (1/(w_k^2 - w^2 + 2 i zeta_k w_k w) - 1/w_k^2),
-
-        where the rope can move as a rigid body about an imaginary frequency instead of 0. A bound
-        of what the modes give that are left out is part of `FRF.mesh_error`; no other damping may
-        act beside it, and internal forces are refused.
+        eight times the highest frequency, 64 at least: h = h_static + sum r_k (1/(w_k^2 - w^2 +
+        2 i zeta_k w_k w) - 1/w_k^2), about an imaginary frequency instead of 0 where the rope can
+        move as a rigid body. A bound of what is left out is part of `FRF.mesh_error`; no other
+        damping may act beside it, and internal forces are refused.
 
         Examples
         --------
@@ -300,11 +291,9 @@ class Model(Compiled):
 
         Notes
         -----
-        Motion is about the tensed state of the scene. How far a laid rope stretches and turns when
-        the tension is put on is the answer to that force on an end that can move, without tension
-        and with ``ends=("clamped", End(x="free", alpha="free"))``:
-        ``static({("x", length): tension})``. An end held from turning has the torque that holds it
-        in `Deflection.force`.
+        Motion is about the tensed state. How far tension stretches and turns a laid rope is
+        ``static({("x", length): tension})`` of the scene without tension whose right end is
+        ``End(x="free", alpha="free")``; an end's torque is in `Deflection.force`.
 
         Examples
         --------
@@ -351,37 +340,33 @@ class Model(Compiled):
         quantity : {"displacement", "velocity", "acceleration"}
             Of the responses.
         start : mapping from points to float, or Deflection, optional
-            Static loads [N, N m] under which the rope rests before it is let go at the first time:
-            pluck and release. The rest is that at the mean tension and does not feel what is not
-            linear, a `Stop` or friction. At rest without load where left out.
+            Static loads [N, N m] under which the rope rests, at the mean tension and without what
+            is not linear (a `Stop`, friction), before it is let go at the first time.
         method : {"auto", "modal", "direct"}
-            ``"modal"``: linear scenes, the sum over modes, each integrated exactly however far
-            apart the times are, with the static motion of the modes that are left out; complex
-            modes where damping is not proportional. ``"direct"``: chains, linear or not, an
-            implicit scheme of second order, unconditionally stable, whose steps are solved along
-            the chain in scattering form (see csrc/march.h). ``"auto"``: modal where it can be.
+            ``"modal"``: linear scenes, the sum over modes, complex ones where damping is not
+            proportional, each integrated exactly, with the static motion of those left out.
+            ``"direct"``: chains, linear or not, an implicit scheme of second order, unconditionally
+            stable, along the chain (see csrc/march.h). ``"auto"``: modal where it can be.
         modes : int, optional
-            Of each component, that the modal method sums; where left out all of a chain's with at
-            most 1000 unknowns, and else those below eight times what force and times resolve, 64 at
-            least and 400 at most. Where damping is not proportional, 200 is the most of both.
+            Of each component, that the modal method sums; where left out all of a chain of at most
+            1000 unknowns, else those below eight times what force and times resolve, from 64 to
+            400. Where damping is not proportional 200 is the most.
         step : float, optional
             Of the direct method [s], at most; a whole number of them lies between two times.
         tolerance : float, optional
-            Of the direct method, instead of `step`: the whole run is made again with finer steps
-            until two runs say that the error of the last one is within this part of the largest
-            value of each response; 1e-4 where both are left out.
+            Of the direct method, instead of `step`: steps are made finer until two runs say that
+            the error is within this part of each response's largest value; 1e-4 where left out.
         spectral_radius : float
             Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
-            motion (with a given `step` to the last digits, for which each stage is solved twice),
-            less takes it from the frequencies that the steps do not resolve. Less than 1 is also
-            for velocities at a `Stop` or where friction holds: with 1 they alternate.
+            motion (with a given `step` to the last digits), less takes it from frequencies that the
+            steps do not resolve; so do velocities at a `Stop` or where friction holds alternate.
         snapshots : array_like, optional
             When the displacement of the whole rope is kept [s].
         progress : None, True or callable
             True: a line on stderr; a callable takes the fraction that is done.
         partial : bool
-            True: where the numbers fail, or at Ctrl-C, what was computed up to there is the answer,
-            and `History.stopped` says why it ends.
+            True: where the numbers fail, or at Ctrl-C, what was computed before is the answer, and
+            `History.stopped` says why it ends.
 
         Returns
         -------
@@ -402,16 +387,12 @@ class Model(Compiled):
         -----
         A law of a `NodeForce` that raises ends the run; its exception says for which part and when.
 
-        The direct method lumps all inertia of a chain at its nodes, without the correction that
-        makes the frequencies of tensed elements fourth order. What has no inertia follows forces at
-        once: rotations of a rope without rotary inertia, and points between nodes that are driven.
-        Their accelerations under a force are refused. Between nodes of rigid and difference
-        elements forces act as in `frf`.
+        The direct method lumps all inertia of a chain at its nodes: tensed elements are of second
+        order in it. What has no inertia follows forces at once (rotations of a rope without rotary
+        inertia, driven points between nodes); accelerations there under a force are refused.
 
         Examples
         --------
-        A string plucked in the middle moves there between its deflection and its mirror image:
-
         >>> import ropedyn as rd
         >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0).compile(elements=64)
         >>> start = {("z", 0.5): 0.4}
@@ -441,9 +422,8 @@ class Model(Compiled):
     def floquet(self, modes: int | None = 4) -> Floquet:
         """Find how free motion grows or decays under the tension that pulsates.
 
-        The lowest modes at the mean tension are coupled by the tension: exactly so for what they
-        span. Motion over one period is computed to rounding, and is exactly symplectic without
-        damping.
+        The lowest modes at the mean tension are coupled by the tension, and motion over one period
+        is computed to rounding; without damping it is exactly symplectic.
 
         Parameters
         ----------
@@ -471,8 +451,6 @@ class Model(Compiled):
 
         Examples
         --------
-        At twice its frequency a string's motion grows by about omega (amplitude/mean)/4:
-
         >>> import ropedyn as rd
         >>> tension = rd.Tension(1000.0, amplitude=20.0, frequency=100.0)
         >>> floquet = rd.Scene(rd.Rope(1.0, 0.1), tension=tension).compile().floquet(modes=1)
@@ -492,14 +470,12 @@ class Model(Compiled):
     ) -> StabilityMap:
         """Find at which frequencies and amplitudes of the tension motion grows.
 
-        The mean tension is that of the scene; how that pulsates itself does not matter.
-
         Parameters
         ----------
         frequency : array_like, shape (f,)
             Of the tension [Hz], increasing.
         amplitude : array_like, shape (a,)
-            Of the tension [N], increasing.
+            Of the tension [N], increasing, about the scene's mean.
         modes : int, optional
             As in `floquet`.
         progress : None, True or callable
@@ -517,10 +493,6 @@ class Model(Compiled):
             As `floquet` does, and if frequencies or amplitudes do not increase.
         SolveError
             As `floquet` does, and if a frequency is so low that a period takes too many steps.
-
-        References
-        ----------
-        As of `floquet`.
 
         Examples
         --------
@@ -551,11 +523,10 @@ class Model(Compiled):
         """Find the frequency response by motion over time to the steady state.
 
         At each frequency the drive is amplitude cos(omega t), and the motion is followed until it
-        repeats itself from period to period: as the 2015 study found its amplitude-frequency
-        characteristic. For linear scenes it is what `frf` computes directly; of others it is the
-        part of the motion that has the frequency of the drive, and depends on the amplitude and,
-        where a curve bends over, on where the frequency came from: frequencies are stepped through
-        in the order they are given, each from the motion at the one before.
+        repeats itself, as in the 2015 study. For linear scenes it is what `frf` computes directly;
+        of others it is the part of the motion that has the frequency of the drive. Where a curve
+        bends over it depends on where the frequency came from: frequencies are stepped through in
+        the order they are given, each from the motion at the one before.
 
         Parameters
         ----------
