@@ -99,11 +99,6 @@ def freeze(thing: Any) -> None:
                 array.flags.writeable = False
 
 
-def nested(kind: type[Any], through: str) -> dict[str, Any]:
-    """Return the metadata of a field that holds a part of this kind, read as another attribute."""
-    return {"nested": kind, "through": through}
-
-
 TRANSIENT = {"transient": True}
 """Metadata of a field that no file keeps: it has a default."""
 
@@ -113,16 +108,6 @@ class Frozen:
 
     def __post_init__(self) -> None:
         freeze(self)
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Return what is kept: of parts that have been asked for no more what they come from."""
-        state = dict(vars(self))
-        declared: Any = type(self)
-        for item in fields(declared):
-            through = item.metadata.get("through")
-            if through in state:
-                state[item.name] = state[through]
-        return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -352,7 +337,7 @@ def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
         if "transient" in item.metadata:
             continue
         if "nested" in item.metadata:
-            yield from leaves(getattr(thing, item.metadata["through"]))
+            yield from leaves(getattr(thing, item.name))
         else:
             yield item, getattr(thing, item.name)
 

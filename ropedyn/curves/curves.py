@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from ..base import check
 from ..base.answer import Answer
 from ..base.array import Complex, Real
+from ..base.computed import changed
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import QUANTITIES, label, place
@@ -81,8 +81,7 @@ class Curves(Answer):
                 f"quantity must be {self.quantity!r} where a frequency is 0, got {quantity!r}"
             )
         value = self.value * (2j * np.pi * self.frequency) ** times
-        # every kind of curves is a dataclass with these fields
-        return replace(self, quantity=quantity, value=value)  # type: ignore[type-var]
+        return changed(self, quantity=quantity, value=value)
 
     def peaks(self, drive: int = 0) -> tuple[Resonances, ...]:
         """Find the resonances that show as peaks, for each response.

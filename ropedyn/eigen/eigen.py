@@ -104,8 +104,8 @@ def solve_modes(
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
         rounding_error=error_in_hertz(eigenvalue, error),
         cost=_cost(model, solver, seconds, found),
-        source=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
-        mesh_source=mesh,
+        vectors=later if found[0].shape is None else _vectors(model, found, eigenvalue, order),
+        mesh=mesh,
         solve_shapes=partial(solve_shapes, model, solver, eigenvalue),
     )
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
@@ -14,6 +12,7 @@ from numpy.typing import NDArray
 from ..base import check
 from ..base.answer import Answer, Frozen, axes
 from ..base.array import Real
+from ..base.computed import Part, Read
 from ..base.errors import SceneError
 from ..base.unit import FAMILY
 from ..chain.chain import CARRIED
@@ -48,59 +47,14 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
 
     coordinates: tuple[str, ...]
     x: Real
-    source: OfShapes | Callable[[], OfShapes]
-    mesh_source: OfMesh | Callable[[], OfMesh]
+    vectors: Part[OfShapes]
+    mesh: Part[OfMesh]
 
-    @cached_property
-    def vectors(self) -> OfShapes:
-        """What follows from the shapes.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
-        >>> modes.vectors.shape.shape == modes.shape.shape
-        True
-        """
-        return self.source if isinstance(self.source, Vectors) else self.source()
-
-    @cached_property
-    def mesh(self) -> OfMesh:
-        """What the continuous spans of the same scene say.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
-        >>> modes.mesh.mesh_error.round(3)
-        array([0.638])
-        """
-        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
-
-    @property
-    def mesh_error(self) -> Real:
-        """Error that the elements cause [Hz], shape (k,)."""
-        return self.mesh.mesh_error
-
-    @property
-    def family(self) -> NDArray[np.str_]:
-        """Family of each mode, shape (k,)."""
-        return self.vectors.family
-
-    @property
-    def modal_mass(self) -> NDArray[Number]:
-        """Modal mass, shape (k,)."""
-        return self.vectors.modal_mass
-
-    @property
-    def shape(self) -> NDArray[Number]:
-        """Shapes, shape (k, nodes, coordinates)."""
-        return self.vectors.shape
-
-    @property
-    def energy(self) -> dict[str, Real]:
-        """Fractions of strain and of kinetic energy, each shape (k,)."""
-        return self.vectors.energy
+    mesh_error = Read[Real]("mesh", "Error that the elements cause [Hz], shape (k,).")
+    family = Read[NDArray[np.str_]]("vectors", "Family of each mode, shape (k,).")
+    modal_mass = Read[NDArray[Number]]("vectors", "Modal mass, shape (k,).")
+    shape = Read[NDArray[Number]]("vectors", "Shapes, shape (k, nodes, coordinates).")
+    energy = Read[dict[str, Real]]("vectors", "Fractions of strain and kinetic energy, (k,) each.")
 
     def animate(
         self,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base import check
-from ..base.answer import TRANSIENT, Cost, axes, nested
+from ..base.answer import TRANSIENT, Cost, axes
 from ..base.array import Real
+from ..base.computed import Part, Read, computed, part
 from ..base.drawing import draw
 from ..base.errors import SceneError
 from ..base.table import Table
@@ -115,25 +115,14 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     growth: Real = field(metadata=axes("mode", unit="1/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
-    source: UndampedVectors | Callable[[], UndampedVectors] = field(
-        repr=False, metadata=nested(UndampedVectors, "vectors")
-    )
-    mesh_source: UndampedMesh | Callable[[], UndampedMesh] = field(
-        repr=False, metadata=nested(UndampedMesh, "mesh")
-    )
+    vectors: Part[UndampedVectors] = part(UndampedVectors)
+    mesh: Part[UndampedMesh] = part(UndampedMesh)
     solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
-    @property
-    def limit(self) -> Real:
-        """Frequencies without mesh error [Hz], shape (k,)."""
-        return self.mesh.limit
+    limit = Read[Real]("mesh", "Frequencies without mesh error [Hz], shape (k,).")
+    damping_ratio = Read[Real]("vectors", "Damping ratio of each mode, shape (k,).")
 
-    @property
-    def damping_ratio(self) -> Real:
-        """Damping ratio of each mode, shape (k,)."""
-        return self.vectors.damping_ratio
-
-    @cached_property
+    @computed
     def sensitivity(self) -> Sensitivity:
         """What derivatives are computed from.
 

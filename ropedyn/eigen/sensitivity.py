@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import combinations
 from typing import TypeVar
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..base.array import Index, Real
+from ..base.computed import computed
 from ..base.errors import SolveError
 from ..chain.chain import Chain
 from ..chain.compiled import Compiled
@@ -151,27 +151,27 @@ class Sensitivity:
 
     shapes: Shapes  # the modes
 
-    @cached_property
+    @computed
     def places(self) -> Places:
         """Where spans and stations are."""
         return Places(self.shapes.model)
 
-    @cached_property
+    @computed
     def pairs(self) -> Pairs:
         """What the clusters need."""
         return Pairs.of(self.shapes)
 
-    @cached_property
+    @computed
     def slopes(self) -> Slopes:
         """Of the modes and the pairs."""
         return self.pairs.slopes(self.shapes.model.chain)
 
-    @cached_property
+    @computed
     def mass(self) -> Real:
         """u^T M u between the modes of each cluster, shape (k, k)."""
         return self.pairs.matrix(self.slopes.mass(self.shapes.model.chain))
 
-    @cached_property
+    @computed
     def largest(self) -> Slopes:
         """Sizes of those of shapes as large as the modes that turn from node to node."""
         shapes = self.shapes

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from ..base.answer import Answer, Cost, Frozen, axes, nested
+from ..base.answer import Answer, Cost, Frozen, axes
 from ..base.array import Complex, Real
+from ..base.computed import Part, Read, part
 from ..base.drawing import draw
 from ..base.table import Table
 from ..base.unit import MOTIONS, QUANTITIES, label
@@ -121,58 +120,13 @@ class History(Answer):
     x: Real = field(metadata=axes("node", unit="m"))
     snapshot: Real = field(metadata=axes("snapshot", "node", "coordinate", unit="m or rad"))
     cost: Cost
-    balance_source: Balance | Callable[[], Balance] = field(
-        repr=False, metadata=nested(Balance, "balance")
-    )
-    deviation_source: Deviation | Callable[[], Deviation] = field(
-        repr=False, metadata=nested(Deviation, "deviation")
-    )
+    balance: Part[Balance] = part(Balance)
+    deviation: Part[Deviation] = part(Deviation)
     stopped: str = ""
 
-    @cached_property
-    def balance(self) -> Balance:
-        """Where the energy is.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
-        >>> history = model.transient([0.0, 0.01], start={("z", 1.0): 20.0}, response=("z", 1.0))
-        >>> sorted(history.balance.energy)
-        ['dissipated', 'input', 'kinetic', 'strain']
-        """
-        source = self.balance_source
-        return source if isinstance(source, Balance) else source()
-
-    @cached_property
-    def deviation(self) -> Deviation:
-        """What other runs say.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=8)
-        >>> history = model.transient([0.0, 0.01], start={("z", 1.0): 20.0}, response=("z", 1.0))
-        >>> history.deviation.step_error
-        array([[0., 0.]])
-        """
-        source = self.deviation_source
-        return source if isinstance(source, Deviation) else source()
-
-    @property
-    def energy(self) -> dict[str, Real]:
-        """Energies over time [J], each shape (t,)."""
-        return self.balance.energy
-
-    @property
-    def step_error(self) -> Real:
-        """Error that steps cause, as value."""
-        return self.deviation.step_error
-
-    @property
-    def mesh_error(self) -> Real:
-        """Error that elements cause, as value."""
-        return self.deviation.mesh_error
+    energy = Read[dict[str, Real]]("balance", "Energies over time [J], each shape (t,).")
+    step_error = Read[Real]("deviation", "Error that steps cause, as value.")
+    mesh_error = Read[Real]("deviation", "Error that elements cause, as value.")
 
     @property
     def labels(self) -> tuple[str, ...]:

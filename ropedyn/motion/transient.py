@@ -52,5 +52,5 @@ def solve_stepped_sine(asked: SteppedSine) -> FRF:
             sweeps=found.sweeps,
             factorisations=found.factorisations,
         ),
-        mesh_source=mesh,
+        mesh=mesh,
     )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from .. import _core
 from ..base.array import Index, Real
+from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
@@ -42,12 +42,12 @@ class ModalSystem:
     geometric: Real  # (k, k) Gamma, the integral of the products of slopes [rad^2/(N s^2)]
     damping: Real  # (k, k) c [1/s]
 
-    @cached_property
+    @computed
     def omega(self) -> Real:
         """Angular frequencies [rad/s], 0 where motion grows, shape (k,)."""
         return np.sqrt(np.maximum(self.eigenvalue, 0.0))
 
-    @cached_property
+    @computed
     def blocks(self) -> tuple[Index, ...]:
         """Modes that tension or damping couple, those of each block in order."""
         return tuple(clusters((self.geometric != 0) | (self.damping != 0)))

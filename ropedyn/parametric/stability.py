@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Flags, Real
+from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table
@@ -68,7 +68,7 @@ class StabilityMap(Answer):
     damping: Real = field(metadata=axes("mode", "other_mode", unit="1/s"))
     cost: Cost
 
-    @cached_property
+    @computed
     def system(self) -> ModalSystem:
         """The equations of the modes.
 

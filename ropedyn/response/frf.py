@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING
 
-from ..base.answer import TRANSIENT, Cost, Frozen, axes, nested
+from ..base.answer import TRANSIENT, Cost, Frozen, axes
 from ..base.array import Complex, Real
+from ..base.computed import Part, Read, computed, part
 from ..base.errors import SceneError
 from ..chain.port import Point
 from ..curves.curves import Curves
@@ -63,30 +63,22 @@ class FRF(Curves):
     value: Complex = field(metadata=axes("drive", "response", "frequency"))
     rounding_error: Real = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
-    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
-    rates_source: Callable[[], FrequencyRates] | None = field(
+    mesh: Part[Mesh] = part(Mesh)
+    solve_rates: Callable[[], FrequencyRates] | None = field(
         default=None, repr=False, metadata=TRANSIENT
     )
 
-    @cached_property
-    def mesh(self) -> Mesh:
-        """What the continuous spans of the same scene say."""
-        return self.mesh_source if isinstance(self.mesh_source, Mesh) else self.mesh_source()
+    mesh_error = Read[Real]("mesh", "Relative error that the elements cause, as value.")
 
-    @property
-    def mesh_error(self) -> Real:
-        """Relative error that the elements cause, as value."""
-        return self.mesh.mesh_error
-
-    @cached_property
+    @computed
     def rates(self) -> FrequencyRates:
         """What derivatives are computed from."""
-        if self.rates_source is None:
+        if self.solve_rates is None:
             raise SceneError(
                 "a response from a file or from motion over time has no model to ask for "
                 "derivatives: compile the scene again and ask it for its frf"
             )
-        return self.rates_source()
+        return self.solve_rates()
 
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.

@@ -19,13 +19,14 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..base.array import Complex, Real
 from ..base.check import NEAR
+from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.unit import END, QUANTITIES, WIRE
 from ..chain.compile import dragged
@@ -52,17 +53,17 @@ class FrequencyRates:
     drives: tuple[Point, ...]  # that were asked for
     responses: tuple[Point, ...]  # that were asked for
 
-    @cached_property
+    @computed
     def places(self) -> Places:
         """Where spans and stations are."""
         return Places(self.model)
 
-    @cached_property
+    @computed
     def loaded(self) -> Loaded:
         """The spans and the unit loads."""
         return Loaded(self.model, driven(self.model, self.drives), self.drives, self.responses)
 
-    @cached_property
+    @computed
     def products(self) -> Products:
         """Of the fields."""
         watched = [r for r in self.responses if moving(r) in self.loaded.coordinates]
@@ -83,13 +84,13 @@ class FrequencyRates:
             value[:, moved] = of() if path in self._dampings else self._of_rate(of())
         return value
 
-    @cached_property
+    @computed
     def paths(self) -> dict[str, Callable[[], Any]]:
         """What each number that there are derivatives by does: a rate, of dampings the answer."""
         by_damping = {name: partial(self._of_damping, *at) for name, at in self._dampings.items()}
         return rates_of(self.places) | by_damping
 
-    @cached_property
+    @computed
     def _dampings(self) -> dict[str, tuple[int, str]]:
         """Return number and argument of what dampings are made of, by path."""
         dampings = self.model.scene.dampings
@@ -143,7 +144,7 @@ class FrequencyRates:
     def _width(self) -> int:
         return len(self.model.coordinates)
 
-    @cached_property
+    @computed
     def _factor(self) -> Complex:
         return damping.factors(self.model.scene.dampings, 2 * np.pi * self.frequency).T
 
@@ -155,7 +156,7 @@ class FrequencyRates:
             - self._at_hinges(weights, by_factor)
         )
 
-    @cached_property
+    @computed
     def _kept(self) -> list[int]:
         return [self.model.coordinates.index(c) for c in self.loaded.coordinates]
 

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from .. import _core
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Flags, Real
+from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -69,7 +70,7 @@ class Question:
         }
         return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
 
-    @cached_property
+    @computed
     def cut(self) -> tuple[Chain, Real]:
         """The component's chain with nodes where points need them, and where they stand."""
         model, points = self.model, [*self.drives, *self.responses]
@@ -166,8 +167,8 @@ def solve_frf(
             sweeps=2 * got.lines if solver == "sweep" else 0,
             factorisations=0 if solver == "sweep" else got.lines,
         ),
-        mesh_source=mesh,
-        rates_source=partial(_rates, model, f, drives, responses),
+        mesh=mesh,
+        solve_rates=partial(_rates, model, f, drives, responses),
     )
 
 

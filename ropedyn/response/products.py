@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ..base.array import Complex, Index, Real
+from ..base.computed import computed
 from ..base.unit import FORCE
 from ..chain.chain import Chain
 from ..chain.compile import station_nodes, stations_of
@@ -53,27 +53,27 @@ class Loaded:
     drives: tuple[Point, ...]  # on motion, where the loads act
     responses: tuple[Point, ...]  # on motion, where the loads act
 
-    @cached_property
+    @computed
     def chain(self) -> Chain:
         """Of the coordinates."""
         return self.model.chain.only(self.coordinates)
 
-    @cached_property
+    @computed
     def stations(self) -> Real:
         """Where spans begin and end [m]."""
         return stations_of(self.model.scene)
 
-    @cached_property
+    @computed
     def _elements(self) -> list[int]:
         begins = station_nodes(self.model)[:-1]
         return [int(e) for e in self.chain.element_of[begins]]
 
-    @cached_property
+    @computed
     def spans(self) -> list[Span]:
         """What each span is made of."""
         return [Span.of(self.chain, e) for e in self._elements]
 
-    @cached_property
+    @computed
     def loads(self) -> list[Point]:
         """Drives and responses, each once."""
         return list(dict.fromkeys([*self.drives, *self.responses]))

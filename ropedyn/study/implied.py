@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ..base import check
+from ..base.computed import computed
 from ..base.errors import IdentifyWarning
 from ..base.named import Named
 from ..base.table import Table
@@ -38,7 +38,7 @@ class Implied:
     bending_stiffness: float  # of the study's rope, as printed [N m^2]
     rod_stiffness: float  # of a solid rod as thick [N m^2]
 
-    @cached_property
+    @computed
     def intervals(self) -> dict[str, Named]:
         """Intervals of 95 %, as the fits."""
         return {ends: fit.interval(0.95) for ends, fit in self.fits.items()}

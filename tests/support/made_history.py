@@ -23,8 +23,8 @@ def made(time, value, *, force=None, response=None, quantity="displacement", **c
         "x": nodes,
         "snapshot": np.stack([np.outer(nodes, [1.0, 0.1]), np.outer(nodes**2, [1.0, 0.1])]),
         "cost": rd.Cost(0.5, "modal", 2, 3),
-        "balance_source": Balance({"kinetic": np.ones(len(time))}),
-        "deviation_source": Deviation(np.zeros(value.shape), np.zeros(value.shape)),
+        "balance": Balance({"kinetic": np.ones(len(time))}),
+        "deviation": Deviation(np.zeros(value.shape), np.zeros(value.shape)),
     }
     return rd.History(**fields | changes)
 

@@ -101,8 +101,8 @@ def solve_damped(
         eigenvalue=value,
         rounding_error=answer.error / (2 * math.pi),
         cost=Cost(seconds, solver, len(model.x) - 1, model.size, answer.sweeps),
-        source=partial(_vectors, model, answer, finest),
-        mesh_source=mesh,
+        vectors=partial(_vectors, model, answer, finest),
+        mesh=mesh,
     )
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.answer import Cost, axes, nested
+from ...base.answer import Cost, axes
 from ...base.array import Complex, Real
+from ...base.computed import Part, part
 from ...base.drawing import draw
 from ...base.table import Table
 from ..free_motion import FreeMotion, Mesh, Vectors
@@ -93,10 +93,8 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
     eigenvalue: Complex = field(metadata=axes("mode", unit="rad/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
-    source: Vectors[np.complex128] | Callable[[], Vectors[np.complex128]] = field(
-        repr=False, metadata=nested(Vectors, "vectors")
-    )
-    mesh_source: Mesh | Callable[[], Mesh] = field(repr=False, metadata=nested(Mesh, "mesh"))
+    vectors: Part[Vectors[np.complex128]] = part(Vectors)
+    mesh: Part[Mesh] = part(Mesh)
 
     @property
     def frequency(self) -> Real:

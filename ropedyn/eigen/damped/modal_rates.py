@@ -87,8 +87,8 @@ def _answer(
         eigenvalue=value,
         rounding_error=undamped.rounding_error[mode] * scale,
         cost=replace(undamped.cost),
-        source=partial(_vectors, undamped, mode, value, (ratio * omega)[mode]),
-        mesh_source=partial(_mesh, undamped, mode, scale),
+        vectors=partial(_vectors, undamped, mode, value, (ratio * omega)[mode]),
+        mesh=partial(_mesh, undamped, mode, scale),
     )
 
 

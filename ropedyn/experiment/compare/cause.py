@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ...base.array import Index, Integer, Real
+from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...base.unit import FAMILY
 from ...chain.compile import remeshed
@@ -134,12 +134,12 @@ class Tracked:
     modes: Modes  # of a model
     number: Index  # (k,) which of them, from 0
 
-    @cached_property
+    @computed
     def model(self) -> Compiled:
         """That the modes are of, of continuous spans a finer one."""
         return self.modes.sensitivity.shapes.model
 
-    @cached_property
+    @computed
     def parts(self) -> list[tuple[tuple[str, ...], Index, Index]]:
         """Components, which of the tracked modes are theirs, and their numbers in them."""
         coordinate = {name: c for c, name in FAMILY.items()}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ...base.answer import TRANSIENT, Cost, axes
 from ...base.array import Integer, Real
+from ...base.computed import computed
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table, numbers
@@ -123,7 +123,7 @@ class Fit(Identified):
         """Whether a number went to 0 or infinity."""
         return bool(((self.value == 0) | np.isinf(self.value)).any())
 
-    @cached_property
+    @computed
     def alternatives(self) -> tuple[Alternative, ...]:
         """What other ends would tell, pinned or clamped both, where the scene's are such words.
 

@@ -6,12 +6,13 @@ import dataclasses
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 
 import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Index, Real
+from ...base.computed import computed
 from ...base.errors import SceneError
 from ...scene.scene import Scene
 from ..fitting.misfit import PeakMisfit, PriorMisfit
@@ -41,7 +42,7 @@ class Identification:
         """What is sought."""
         return self.calculated.unknowns
 
-    @cached_property
+    @computed
     def misfit(self) -> PeakMisfit:
         """Differences in units of their standard deviations; relative ones where there are none."""
         weight = self.frequency if self.std is None else self.std

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.array import Flags, Real
+from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...scene.scene import Scene
 from ..fitting.minimum import FARTHEST, Minimum, minimise, told_directions
@@ -51,7 +51,7 @@ class Uncertainty:
     slope: Real  # (m, p) of residuals; 0 of numbers that are at a bound
     noise: float  # standard deviation of residuals; infinite where nothing tells it
 
-    @cached_property
+    @computed
     def basis(self) -> Real:
         """Directions that are told, shape (p, r)."""
         return told_directions(self.slope)
@@ -61,7 +61,7 @@ class Uncertainty:
         """Numbers that are not told, shape (p,)."""
         return 1 - np.sum(self.basis**2, axis=1) > APART
 
-    @cached_property
+    @computed
     def unit(self) -> Real:
         """Covariance of u for a noise of 1, of least norm where some are not told, (p, p)."""
         half = self.basis @ np.linalg.pinv(self.slope @ self.basis)
@@ -114,7 +114,7 @@ class Solution:
         value = self.unknowns.value(self.minimum.u)
         return np.where(self.side < 0, 0.0, np.where(self.side > 0, np.inf, value))
 
-    @cached_property
+    @computed
     def uncertainty(self) -> Uncertainty:
         """Of the variables."""
         return Uncertainty(np.where(self.side == 0, self.minimum.slope, 0.0), self.noise)

@@ -86,8 +86,8 @@ def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> Histo
             sweeps=pace.stages,
             factorisations=pace.factorisations,
         ),
-        balance_source=_balance(chains, passage),
-        deviation_source=deviation,
+        balance=_balance(chains, passage),
+        deviation=deviation,
         stopped=_reason(passage),
     )
 

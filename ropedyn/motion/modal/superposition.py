@@ -52,8 +52,8 @@ def superpose(run: Run) -> History:
             len(run.model.x) - 1,
             sum(share.expansion.modes for share in shares),
         ),
-        balance_source=partial(balance, run, resolved),
-        deviation_source=deviation,
+        balance=partial(balance, run, resolved),
+        deviation=deviation,
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from ...base import check
 from ...base.answer import Answer
 from ...base.array import Real
+from ...base.computed import computed
 from ...base.errors import SceneError
 from ...base.table import Table
 
@@ -52,7 +52,7 @@ class StaticTest(Answer):
         """Reading per load times the stiffness."""
         raise NotImplementedError
 
-    @cached_property
+    @computed
     def line(self) -> StraightLine:
         """The straight line through the readings."""
         return StraightLine.through(self.load, self.reading, offset=self.zero, std=self.reading_std)

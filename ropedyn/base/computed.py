@@ -1,0 +1,84 @@
+"""What is computed when it is first read, and kept: without a lock, which a fork could freeze."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import field, fields
+from functools import cached_property
+from typing import Any, Generic, Self, TypeVar, cast, overload
+
+Value = TypeVar("Value")
+
+
+class computed(cached_property[Value]):
+    """A property that is computed once; of two threads that both compute it one value is kept."""
+
+    @overload
+    def __get__(self, thing: None, owner: type[Any] | None = None) -> Self: ...
+    @overload
+    def __get__(self, thing: object, owner: type[Any] | None = None) -> Value: ...
+    def __get__(self, thing: object | None, owner: type[Any] | None = None) -> Self | Value:
+        if thing is None:
+            return self
+        assert self.attrname is not None
+        return vars(thing).setdefault(self.attrname, self.func(thing))
+
+
+class Part(Generic[Value]):
+    """A field of a dataclass that is given as it is, or as what computes it when it is read."""
+
+    def __init__(self, kind: type[Any]) -> None:
+        self.kind = kind
+
+    def __set_name__(self, owner: type[Any], name: str) -> None:
+        self.name, self.unread = name, f"_{name}"
+
+    def __set__(self, thing: object, value: Value | Callable[[], Value]) -> None:
+        if isinstance(value, Part):
+            raise TypeError(f"{type(thing).__name__} needs {self.name}")
+        vars(thing)[self.name if isinstance(value, self.kind) else self.unread] = value
+
+    @overload
+    def __get__(self, thing: None, owner: type[Any] | None = None) -> Self: ...
+    @overload
+    def __get__(self, thing: object, owner: type[Any] | None = None) -> Value: ...
+    def __get__(self, thing: object | None, owner: type[Any] | None = None) -> Self | Value:
+        if thing is None:
+            return self
+        kept = vars(thing)
+        # taken before the look at the part: a thread that has computed it takes this away after
+        compute = kept.get(self.unread)
+        if self.name not in kept:
+            assert compute is not None
+            kept.setdefault(self.name, compute())
+            kept.pop(self.unread, None)
+        return kept[self.name]
+
+
+def part(kind: type[Any]) -> Any:
+    """Declare a field that holds a dataclass of this kind: ``mesh: Part[Mesh] = part(Mesh)``."""
+    return field(default=Part(kind), repr=False, kw_only=True, metadata={"nested": kind})
+
+
+class Read(Generic[Value]):
+    """A property that is read from a part: ``limit = Read[Real]("mesh", "What it is.")``."""
+
+    def __init__(self, where: str, text: str) -> None:
+        self.where, self.__doc__ = where, text
+
+    def __set_name__(self, owner: type[Any], name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, thing: None, owner: type[Any] | None = None) -> Self: ...
+    @overload
+    def __get__(self, thing: object, owner: type[Any] | None = None) -> Value: ...
+    def __get__(self, thing: object | None, owner: type[Any] | None = None) -> Self | Value:
+        return self if thing is None else getattr(getattr(thing, self.where), self.name)
+
+
+def changed(thing: Value, **changes: Any) -> Value:
+    """Return a dataclass with other fields; parts that nobody has read stay unread."""
+    kept, kind = vars(thing), cast("Any", type(thing))
+    given = {item.name: kept.get(item.name, kept.get(f"_{item.name}")) for item in fields(kind)}
+    return kind(**given | changes)
