@@ -25,7 +25,7 @@ import scene
 import ropedyn as rd
 from ropedyn import _core
 from ropedyn.chain.port import ports
-from ropedyn.response.harmonic import Question
+from ropedyn.response.question import Question
 
 FREQUENCY = frf.FREQUENCY
 EXACT, FEW = slice(None, None, 10), slice(None, None, 50)

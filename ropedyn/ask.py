@@ -26,7 +26,7 @@ from .base.array import Complex, Real
 from .base.errors import SceneError
 from .base.unit import QUANTITIES, place
 from .chain.port import Point
-from .eigen import eigen
+from .eigen import spectrum
 from .eigen.modes import Modes
 from .experiment.compare.difference import (
     OF_FRF,
@@ -36,7 +36,7 @@ from .experiment.compare.difference import (
     change_of_modes,
 )
 from .model import Model
-from .response import harmonic
+from .response import solvers
 from .response.frf import FRF
 
 
@@ -93,7 +93,7 @@ class ModesQuestion:
     @property
     def solvers(self) -> tuple[str, ...]:
         """What can answer it."""
-        return tuple(eigen.SOLVERS)
+        return tuple(spectrum.SOLVERS)
 
     def of(self, model: Model, *, solver: str = "sweep", threads: int | None = None) -> Modes:
         """Ask a model; see `Model.modes`. Modes are found by one thread whatever `threads`."""
@@ -186,7 +186,7 @@ class FRFQuestion(Frozen):
     @property
     def solvers(self) -> tuple[str, ...]:
         """What can answer it."""
-        return tuple(harmonic.SOLVERS)
+        return tuple(solvers.SOLVERS)
 
     def of(self, model: Model, *, solver: str = "sweep", threads: int | None = None) -> FRF:
         """Ask a model; see `Model.frf`."""

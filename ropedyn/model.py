@@ -15,8 +15,9 @@ from .chain.compiled import Compiled, refuse_nonlinear
 from .chain.port import Point
 from .eigen.damped.damped import solve_damped
 from .eigen.damped.damped_modes import DampedModes
-from .eigen.eigen import count_modes, solve_modes
+from .eigen.eigen import solve_modes
 from .eigen.modes import Modes
+from .eigen.spectrum import count_modes
 from .eigen.tolerance import compile_within
 from .motion.history import History
 from .motion.request import Run, SteppedSine
@@ -25,7 +26,7 @@ from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
 from .response.frf import FRF
-from .response.harmonic import solve_frf
+from .response.frf_rate import solve_frf
 from .scene.scene import Scene
 
 

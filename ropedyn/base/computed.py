@@ -24,7 +24,7 @@ class computed(cached_property[Value]):
         return vars(thing).setdefault(self.attrname, self.func(thing))
 
 
-class Part(Generic[Value]):
+class Lazy(Generic[Value]):
     """A field of a dataclass that is given as it is, or as what computes it when it is read."""
 
     def __init__(self, kind: type[Any]) -> None:
@@ -34,7 +34,7 @@ class Part(Generic[Value]):
         self.name, self.unread = name, f"_{name}"
 
     def __set__(self, thing: object, value: Value | Callable[[], Value]) -> None:
-        if isinstance(value, Part):
+        if isinstance(value, Lazy):
             raise TypeError(f"{type(thing).__name__} needs {self.name}")
         vars(thing)[self.name if isinstance(value, self.kind) else self.unread] = value
 
@@ -55,9 +55,9 @@ class Part(Generic[Value]):
         return kept[self.name]
 
 
-def part(kind: type[Any]) -> Any:
-    """Declare a field that holds a dataclass of this kind: ``mesh: Part[Mesh] = part(Mesh)``."""
-    return field(default=Part(kind), repr=False, kw_only=True, metadata={"nested": kind})
+def lazy(kind: type[Any]) -> Any:
+    """Declare a field that holds a dataclass of this kind: ``mesh: Lazy[Mesh] = lazy(Mesh)``."""
+    return field(default=Lazy(kind), repr=False, kw_only=True, metadata={"nested": kind})
 
 
 class Read(Generic[Value]):

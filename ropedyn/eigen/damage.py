@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..chain.compiled import Compiled
-    from .modes import Modes
 
 
 STIFFNESSES = ("bending_stiffness", "torsional_stiffness", "axial_stiffness")
@@ -123,12 +122,12 @@ class Damage(Answer):
         return draw(self, "plot", ax, of=of)
 
 
-def damage_of(modes: Modes, shapes: Shapes) -> Damage:
+def damage_of(frequency: Real, shapes: Shapes) -> Damage:
     """Return the damage map of modes; see `Modes.damage`."""
     pairs = Pairs.of(shapes)
     forms = _forms(shapes.model, pairs)
     edge = shapes.model.x[shapes.edges]
-    number = len(modes.frequency)
+    number = len(frequency)
     mass = _mass(pairs)
     # relative change of sqrt(lambda) per relative loss
     factor = np.divide(
@@ -143,7 +142,7 @@ def damage_of(modes: Modes, shapes: Shapes) -> Damage:
         _refuse_coupled(pairs, name, own, cross)
         whole = np.add.reduceat(own * factor[:, None], shapes.edges[:-1], axis=1)
         change[name] = whole[:number] / np.diff(edge)
-    return Damage(edge=edge, frequency=modes.frequency, change=change)
+    return Damage(edge=edge, frequency=frequency, change=change)
 
 
 def _mass(pairs: Pairs) -> Real:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..base import check
 from ..base.answer import Answer, Frozen, axes
 from ..base.array import Real
-from ..base.computed import Part, Read
+from ..base.computed import Lazy, Read
 from ..base.errors import SceneError
 from ..base.unit import FAMILY
 from ..chain.chain import CARRIED
@@ -32,14 +32,14 @@ class Vectors(Frozen, Generic[Number]):
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh(Frozen):
+class MeshOfModes(Frozen):
     """What continuous spans say about the modes of a chain; see `Modes` and `DampedModes`."""
 
     mesh_error: Real = field(metadata=axes("mode", unit="Hz"))
 
 
 OfShapes = TypeVar("OfShapes", bound=Vectors[Any])
-OfMesh = TypeVar("OfMesh", bound=Mesh)
+OfMesh = TypeVar("OfMesh", bound=MeshOfModes)
 
 
 class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
@@ -47,8 +47,8 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
 
     coordinates: tuple[str, ...]
     x: Real
-    vectors: Part[OfShapes]
-    mesh: Part[OfMesh]
+    vectors: Lazy[OfShapes]
+    mesh: Lazy[OfMesh]
 
     mesh_error = Read[Real]("mesh", "Error that the elements cause [Hz], shape (k,).")
     family = Read[NDArray[np.str_]]("vectors", "Family of each mode, shape (k,).")

@@ -11,17 +11,16 @@ import numpy as np
 from ..base import check
 from ..base.answer import TRANSIENT, Cost, axes
 from ..base.array import Real
-from ..base.computed import Part, Read, computed, part
+from ..base.computed import Lazy, Read, computed, lazy
 from ..base.drawing import draw
 from ..base.errors import SceneError
 from ..base.table import Table
-from .free_motion import FreeMotion, Mesh, Vectors
+from .damage import Damage, damage_of
+from .free_motion import FreeMotion, MeshOfModes, Vectors
+from .sensitivity import Sensitivity, Shapes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from .damage import Damage
-    from .sensitivity import Sensitivity, Shapes
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,7 @@ class UndampedVectors(Vectors[np.float64]):
 
 
 @dataclass(frozen=True, eq=False)
-class UndampedMesh(Mesh):
+class UndampedMesh(MeshOfModes):
     """What continuous spans say about the undamped modes of a chain; see `Modes`."""
 
     limit: Real = field(metadata=axes("mode", unit="Hz"))
@@ -115,8 +114,8 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     growth: Real = field(metadata=axes("mode", unit="1/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
-    vectors: Part[UndampedVectors] = part(UndampedVectors)
-    mesh: Part[UndampedMesh] = part(UndampedMesh)
+    vectors: Lazy[UndampedVectors] = lazy(UndampedVectors)
+    mesh: Lazy[UndampedMesh] = lazy(UndampedMesh)
     solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     limit = Read[Real]("mesh", "Frequencies without mesh error [Hz], shape (k,).")
@@ -133,8 +132,6 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         >>> modes.sensitivity.frequency("tension")[:1].round(6)
         array([0.0125])
         """
-        from .sensitivity import Sensitivity
-
         return Sensitivity(self._solved_again())
 
     def _solved_again(self, points: int | None = None) -> Shapes:
@@ -234,9 +231,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         >>> damage.frequency_change(0.2, 0.3, bending_stiffness=0.1).round(4)
         array([-0.005 , -0.0097])
         """
-        from .damage import damage_of
-
-        return damage_of(self, self._solved_again(points))
+        return damage_of(self.frequency, self._solved_again(points))
 
     def table(self) -> Table:
         """Return one row for each mode."""

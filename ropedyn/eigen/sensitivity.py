@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from ..base.array import Index, Real
 from ..base.computed import computed
 from ..base.errors import SolveError
 from ..chain.chain import Chain
-from ..chain.compiled import Compiled
 from ..chain.rate import Places, Rate, Weights, asked, rates_of
+
+if TYPE_CHECKING:
+    from ..chain.compiled import Compiled
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 

@@ -17,8 +17,7 @@ from ..chain.compile import MOST_ELEMENTS, compile_scene, stations_of
 from ..chain.compiled import Compiled
 from ..chain.mesh_choice import Choice
 from ..scene.scene import Scene
-from .eigen import count_component, eigenvalue_of, spectrum
-from .mesh_error import distance, in_hertz
+from .spectrum import count_component, distance, eigenvalue_of, in_hertz, spectrum
 
 NEAR = 0.05
 """The chain that is chosen has so much more elements than one that fails, or one more."""
@@ -57,12 +56,12 @@ def compile_within(
     highest = check.number(below, "below", "Hz", sign="positive")
     least = len(stations_of(scene)) - 1
     compile_scene(scene, elements=least, element=element)  # refuses what no chain can be
-    question = Question(scene, element, eigenvalue_of(highest))
+    chains = ChainErrors(scene, element, eigenvalue_of(highest))
     tried = Search(
-        question.error,
-        start=question.start(least),
+        chains.error,
+        start=chains.start(least),
         least=least,
-        order=question.order,
+        order=chains.order,
         tolerance=within,
     ).run()
     chosen = min((n for n, error in tried.items() if error <= within), default=0)
@@ -79,13 +78,13 @@ def compile_within(
         element=element,
         elements=chosen,
         mesh_error=tried[chosen],
-        frequencies=question.frequencies,
+        frequencies=chains.frequencies,
         tried=tuple(tried.items()),
     )
     return replace(compile_scene(scene, elements=chosen, element=element), choice=choice)
 
 
-class Question:
+class ChainErrors:
     """How wrong chains of a scene are below a limit."""
 
     def __init__(self, scene: Scene, element: str, limit: float):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..base.answer import Answer, Cost, Frozen, axes
 from ..base.array import Complex, Real
-from ..base.computed import Part, Read, part
+from ..base.computed import Lazy, Read, lazy
 from ..base.drawing import draw
 from ..base.table import Table
 from ..base.unit import MOTIONS, QUANTITIES, label
@@ -120,8 +120,8 @@ class History(Answer):
     x: Real = field(metadata=axes("node", unit="m"))
     snapshot: Real = field(metadata=axes("snapshot", "node", "coordinate", unit="m or rad"))
     cost: Cost
-    balance: Part[Balance] = part(Balance)
-    deviation: Part[Deviation] = part(Deviation)
+    balance: Lazy[Balance] = lazy(Balance)
+    deviation: Lazy[Deviation] = lazy(Deviation)
     stopped: str = ""
 
     energy = Read[dict[str, Real]]("balance", "Energies over time [J], each shape (t,).")

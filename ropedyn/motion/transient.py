@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.answer import Cost
 from ..base.unit import QUANTITIES
-from ..eigen.mesh_error import mesh_of_frf
-from ..response.frf import FRF, Mesh
+from ..response.frf import FRF, MeshOfResponse
+from ..response.harmonic import mesh_of_frf
 from .direct.direct import march
 from .direct.steady_states import march_steadily
 from .history import History
@@ -33,10 +33,10 @@ def solve_stepped_sine(asked: SteppedSine) -> FRF:
     model, f, drives = asked.model, asked.frequency, (asked.drive,)
     quantity, responses = asked.quantity, asked.responses
     value = found.value * (2j * np.pi * f) ** QUANTITIES[quantity]
-    mesh: Mesh | Callable[[], Mesh]
+    mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
     if why_direct(model):
-        mesh = Mesh(np.full(value.shape, np.inf))
+        mesh = MeshOfResponse(np.full(value.shape, np.inf))
     return FRF(
         drive=drives,
         response=responses,

@@ -14,7 +14,7 @@ from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
 from ..chain.compiled import Compiled
-from ..eigen.eigen import SOLVERS, Found, pieces_of, spectrum
+from ..eigen.spectrum import SOLVERS, ComponentModes, pieces_of, spectrum
 from ..response.modal_sum import mode_numbers
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
 from ..signal.cluster import clusters
@@ -236,7 +236,7 @@ def _slope(chain: Chain, shape: Real) -> Real:
     return np.asarray(element[:, :, SLOPE_OF_TENSION].sum(axis=1))
 
 
-def _of_string(chain: Chain, found: Found, mass: Real, carried: _StructureForms) -> Real:
+def _of_string(chain: Chain, found: ComponentModes, mass: Real, carried: _StructureForms) -> Real:
     """Return what is stored in tension, all that springs and structures do not store, over T."""
     assert found.shape is not None
     root = np.sqrt(np.diag(mass))

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from ..base.answer import TRANSIENT, Cost, Frozen, axes
 from ..base.array import Complex, Real
-from ..base.computed import Part, Read, computed, part
+from ..base.computed import Lazy, Read, computed, lazy
 from ..base.errors import SceneError
 from ..chain.port import Point
 from ..curves.curves import Curves
 
-if TYPE_CHECKING:
-    from .frf_rate import FrequencyRates
+
+class ResponseRates(Protocol):
+    """What derivatives of a response are computed from."""
+
+    model: Any
+
+    def of(self, path: str, quantity: str) -> Complex:
+        """Return the derivative of a quantity, shape (drives, responses, f)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Mesh(Frozen):
+class MeshOfResponse(Frozen):
     """What continuous spans say about the response of a chain; see `FRF`."""
 
     mesh_error: Real = field(metadata=axes("drive", "response", "frequency"))
@@ -63,15 +69,15 @@ class FRF(Curves):
     value: Complex = field(metadata=axes("drive", "response", "frequency"))
     rounding_error: Real = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
-    mesh: Part[Mesh] = part(Mesh)
-    solve_rates: Callable[[], FrequencyRates] | None = field(
+    mesh: Lazy[MeshOfResponse] = lazy(MeshOfResponse)
+    solve_rates: Callable[[], ResponseRates] | None = field(
         default=None, repr=False, metadata=TRANSIENT
     )
 
     mesh_error = Read[Real]("mesh", "Relative error that the elements cause, as value.")
 
     @computed
-    def rates(self) -> FrequencyRates:
+    def rates(self) -> ResponseRates:
         """What derivatives are computed from."""
         if self.solve_rates is None:
             raise SceneError(

@@ -23,10 +23,11 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..base.array import Complex, Real
 from ..base.check import NEAR
-from ..base.computed import computed
+from ..base.computed import changed, computed
 from ..base.errors import SceneError
 from ..base.unit import END, QUANTITIES, WIRE
 from ..chain.compile import dragged
@@ -36,7 +37,9 @@ from ..chain.rate import ENTRIES, Places, Rate, Weights, asked, rates_of
 from ..scene import damping
 from ..scene.damping import Damping, ModalDamping
 from ..scene.parts.stretch import KINDS as STRETCHES
+from .frf import FRF
 from .hamiltonian import Span, hamiltonian_rate
+from .harmonic import solve_harmonic
 from .products import Loaded, Products, driven
 from .ridders import frf_difference
 
@@ -226,3 +229,11 @@ class FrequencyRates:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
         times = QUANTITIES[quantity]
         return self.receptance(path) * (2j * np.pi * self.frequency) ** times
+
+
+def solve_frf(model: Compiled, frequency: ArrayLike, **asked: Any) -> FRF:
+    """Compute the frequency response, and keep what its derivatives take; see `Model.frf`."""
+    frf = solve_harmonic(model, frequency, **asked)
+    return changed(
+        frf, solve_rates=partial(FrequencyRates, model, frf.frequency, frf.drive, frf.response)
+    )

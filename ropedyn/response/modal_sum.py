@@ -14,8 +14,8 @@ lambda_k, which a few points give to all digits.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,14 +25,10 @@ from ..base.errors import SceneError, SolveError
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force
 from ..chain.tip import is_tip
-from ..eigen.eigen import HIGHEST, count_component, spectrum
+from ..eigen.spectrum import HIGHEST, count_component, spectrum
 from ..scene import damping
 from .moved_end import refuse_moved_ends
-
-if TYPE_CHECKING:
-    from .harmonic import Question
-
-Solver = Callable[["Question"], tuple[Complex, Real]]
+from .question import Question, Solver
 
 REACH, LEAST, MOST = 8.0, 64, 5_000
 """Modes below so many times the highest frequency are summed up, at least and at most so many."""

@@ -11,8 +11,8 @@ whatever the spring and the dashpot are: they only keep both away from resonance
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -23,11 +23,7 @@ from ..base.unit import END
 from ..chain.chain import Chain
 from ..chain.compiled import Compiled
 from ..chain.port import Point
-
-if TYPE_CHECKING:
-    from .harmonic import Question
-
-Solver = Callable[["Question"], tuple[Complex, Real]]
+from .question import Question, Solver
 
 
 def is_end(drive: tuple[Any, ...]) -> bool:

@@ -18,7 +18,7 @@ from ..chain.port import Point, locate, moving
 from ..scene import damping
 from ..scene.stations import stations_at
 from .hamiltonian import Span, generator, hamiltonian
-from .harmonic import solve_frf
+from .harmonic import solve_harmonic
 from .quadrature import rule
 from .span_waves import SpanWaves
 
@@ -167,7 +167,7 @@ class Loaded:
         names = [*self.coordinates, *(FORCE[c] for c in self.coordinates)]
         asked = [(c, float(x)) for x in self.stations for c in self.coordinates]
         asked += [(name, float(x)) for piece in pieces for x in piece.x for name in names]
-        value = solve_frf(self.model, frequency, drive=self.loads, response=asked).value
+        value = solve_harmonic(self.model, frequency, drive=self.loads, response=asked).value
         nodes, inside = np.split(value, [w * len(self.stations)], axis=1)
         cuts = np.cumsum([2 * w * len(piece.x) for piece in pieces])[:-1]
         loads, count = len(self.loads), len(frequency)

@@ -13,7 +13,7 @@ from ..chain.compile import remeshed, stations_of
 from ..chain.port import Point
 from ..scene.path import value_at, with_values
 from ..scene.stations import nearest
-from .harmonic import solve_frf
+from .harmonic import solve_harmonic
 
 if TYPE_CHECKING:
     from ..chain.compiled import Compiled
@@ -56,7 +56,7 @@ def frf_difference(
                 f"{path} must be free to change to both sides for a derivative by differences"
             )
         there = remeshed(model, other)
-        return solve_frf(there, frequency, drive=list(drives), response=list(responses)).value
+        return solve_harmonic(there, frequency, drive=list(drives), response=list(responses)).value
 
     def quotient(h: float) -> Complex:
         above, below = here + h, here - h

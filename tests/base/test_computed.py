@@ -13,7 +13,7 @@ import pytest
 
 import ropedyn as rd
 from ropedyn.base.answer import Answer, Frozen, axes
-from ropedyn.base.computed import Part, Read, changed, computed, part
+from ropedyn.base.computed import Lazy, Read, changed, computed, lazy
 
 TIMEOUT = 60.0
 """What takes longer hangs [s]; it takes milliseconds."""
@@ -31,7 +31,7 @@ class Outer(Answer):
     """What has one, and what follows from it."""
 
     number: float
-    inner: Part[Inner] = part(Inner)
+    inner: Lazy[Inner] = lazy(Inner)
     text: str = ""
 
     value = Read[np.ndarray]("inner", "Of the part.")

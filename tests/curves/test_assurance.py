@@ -8,7 +8,7 @@ from conftest import EPS
 
 import ropedyn as rd
 from ropedyn.curves.assurance import frac, frac_over, mac
-from ropedyn.eigen.shape_at import shapes_at
+from ropedyn.eigen.vectors import shapes_at
 from ropedyn.signal.response_shape import residues
 
 RANDOM = np.random.default_rng(7)

@@ -14,7 +14,7 @@ import ropedyn as rd
 from ropedyn import _core
 from ropedyn.base import check
 from ropedyn.chain.chain import KINDS as ELEMENTS
-from ropedyn.eigen.mesh_error import mesh_of_frf
+from ropedyn.response.harmonic import mesh_of_frf
 
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
 ROPE = rd.Rope(1.2, 0.1, bending_stiffness=1.5, torsional_stiffness=0.4, polar_inertia=1e-6)

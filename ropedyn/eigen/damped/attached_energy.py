@@ -21,7 +21,7 @@ MOST = 120
 WIRE = ATTACHED.index("broken wire")
 
 
-class Carried(NamedTuple):
+class AttachedEnergy(NamedTuple):
     """What structures have in some motions of a chain."""
 
     # (kinds, k, 3) of each kind in `ATTACHED`: twice the strain energy, what they add to the modal
@@ -30,12 +30,12 @@ class Carried(NamedTuple):
     motion: Real  # (k,) the largest of any
 
     @classmethod
-    def none(cls, count: int) -> Carried:
+    def none(cls, count: int) -> AttachedEnergy:
         """Return those of nothing."""
         return cls(np.zeros((len(ATTACHED), count, 3)), np.zeros(count))
 
     @classmethod
-    def real(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> Carried:
+    def real(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> AttachedEnergy:
         """Return those of undamped modes, whose own motion is known."""
         every = cls.none(len(shape))
         for kind in chain.carried:
@@ -51,7 +51,7 @@ class Carried(NamedTuple):
         return self.energy[[ATTACHED.index(kind) for kind in chain.carried]]
 
     @classmethod
-    def at(cls, chain: Chain, factor: Complex, shape: Complex) -> Carried:
+    def at(cls, chain: Chain, factor: Complex, shape: Complex) -> AttachedEnergy:
         """Return those of shapes, (k, nodes, width), with the factors (5, k) of their rates."""
         every = cls.none(len(shape))
         if chain.attached_kind is None:

@@ -21,9 +21,11 @@ from ...chain.chain import Chain
 from ...chain.compile import check_points, compile_scene, finer
 from ...chain.compiled import Compiled
 from ...scene.damping import having
-from ..eigen import check_asked, fractions, largest, lowest, points_for, within
-from ..free_motion import Mesh, Vectors
-from .attached_energy import Carried
+from ..eigen import check_asked
+from ..free_motion import MeshOfModes, Vectors
+from ..spectrum import lowest
+from ..vectors import UNSEEN, fractions, largest, points_for, within
+from .attached_energy import AttachedEnergy
 from .characteristic import Rates
 from .damped_modes import DampedModes
 from .damped_roots import Damped, damped_roots
@@ -36,18 +38,15 @@ MORE = 4
 DOUBLINGS = 40
 """Of the radius beyond them: dashpots on light nodes have rates far above all frequencies."""
 
-UNSEEN = 1e-8
-"""Of the largest component of a shape: less at all points is rounding at nodes of the mode."""
-
-Part = tuple[tuple[str, ...], int, int]
+Between = tuple[tuple[str, ...], int, int]
 """A component between two nodes."""
 
 
 @dataclass(frozen=True)
-class _Found:
+class DampedRates:
     """Rates of all parts in order."""
 
-    parts: list[Part]  # Chains
+    parts: list[Between]  # Chains
     found: list[Damped]  # their rates
     value: Complex  # (k,) those asked for [rad/s]
     error: Real  # (k,) those asked for [rad/s]
@@ -55,7 +54,7 @@ class _Found:
     at: Index  # (k,) of which part each is, and which of its rates
     radius: float  # none of a modulus below this is missing [rad/s]
 
-    def first(self, number: int) -> _Found:
+    def first(self, number: int) -> DampedRates:
         """Return the lowest alone."""
         return replace(
             self,
@@ -88,9 +87,9 @@ def solve_damped(
     seconds = time.perf_counter() - start
     value = answer.value
     x, finest = model.x, 1
-    mesh: Mesh | Callable[[], Mesh] = partial(_mesh, model, answer)
+    mesh: MeshOfModes | Callable[[], MeshOfModes] = partial(_mesh, model, answer)
     if model.element == "continuous":
-        mesh = Mesh(np.zeros(len(value)))
+        mesh = MeshOfModes(np.zeros(len(value)))
         finest = points or points_for(model, np.square(np.abs(value)))
         x = within(model.x, finest)
     return DampedModes(
@@ -108,7 +107,7 @@ def solve_damped(
 
 def _find(
     model: Compiled, components: Iterable[tuple[str, ...]], number: int | None, limit: float
-) -> _Found:
+) -> DampedRates:
     """Find the rates of some components, those of the least modulus first."""
     parts = [(c, *span) for c in components for span in model.chain.only(c).spans]
     if number is None:
@@ -129,7 +128,7 @@ def _find(
         at += number - len(answer.value)
 
 
-def _undamped(model: Compiled, parts: list[Part], number: int) -> Real:
+def _undamped(model: Compiled, parts: list[Between], number: int) -> Real:
     """Return the lowest undamped frequencies [rad/s]."""
     found = [
         lowest(model.chain.undamped.only(c).between(first, last), number, math.inf, shaped=False)
@@ -149,7 +148,7 @@ def _where(radius: float) -> str:
     return "there are" if math.isinf(radius) else f"below {radius / (2 * math.pi):.6g} Hz"
 
 
-def _below(model: Compiled, parts: list[Part], limit: float) -> _Found:
+def _below(model: Compiled, parts: list[Between], limit: float) -> DampedRates:
     found = [_solve(model, part, limit) for part in parts]
     radius = min(part.radius for part in found)
     value = np.concatenate([part.value for part in found])
@@ -158,10 +157,10 @@ def _below(model: Compiled, parts: list[Part], limit: float) -> _Found:
     at = np.concatenate([np.arange(len(part.value)) for part in found])
     order = np.argsort(np.abs(value), kind="stable")
     order = order[np.abs(value[order]) < min(radius, limit)]
-    return _Found(parts, found, value[order], error[order], which[order], at[order], radius)
+    return DampedRates(parts, found, value[order], error[order], which[order], at[order], radius)
 
 
-def _solve(model: Compiled, part: Part, limit: float) -> Damped:
+def _solve(model: Compiled, part: Between, limit: float) -> Damped:
     component, first, last = part
     chain = model.chain.only(component).between(first, last)
     try:
@@ -173,7 +172,7 @@ def _solve(model: Compiled, part: Part, limit: float) -> Damped:
 # --- what follows from the shapes ---------------------------------------------------------------
 
 
-def _vectors(model: Compiled, answer: _Found, points: int) -> Vectors[np.complex128]:
+def _vectors(model: Compiled, answer: DampedRates, points: int) -> Vectors[np.complex128]:
     """Shapes at `points` parts of each element, energies with as many as the waves need."""
     value, which, at = answer.value, answer.which, answer.at
     more, fine = 1, model
@@ -183,7 +182,7 @@ def _vectors(model: Compiled, answer: _Found, points: int) -> Vectors[np.complex
     step = points * more
     shape = np.zeros((len(which), len(fine.x), len(model.coordinates)), dtype=np.complex128)
     mass = np.zeros(len(which), dtype=np.complex128)
-    carried = Carried.none(len(which))
+    carried = AttachedEnergy.none(len(which))
     for k, ((component, first, last), part) in enumerate(zip(answer.parts, answer.found)):
         chain = fine.chain.only(component).between(first * step, last * step)
         mine = np.flatnonzero(which == k)
@@ -206,11 +205,11 @@ def _vectors(model: Compiled, answer: _Found, points: int) -> Vectors[np.complex
     )
 
 
-def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex, Carried]:
+def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex, AttachedEnergy]:
     """Return some motions of a chain, their modal masses and what it carries in them."""
     shape = np.zeros((len(wanted), chain.nodes, chain.held.shape[1]), dtype=np.complex128)
     mass = np.zeros(len(wanted), dtype=np.complex128)
-    carried = Carried.none(len(wanted))
+    carried = AttachedEnergy.none(len(wanted))
     value = part.value[wanted]
     # rigid motion is that without damping
     mode = np.cumsum(value == 0) - 1 if part.mode is None else part.mode[wanted]
@@ -222,7 +221,9 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
         shape[real] = own
         assert found.motion is not None
         moved = found.motion[mode[real]]
-        carried.energy[:, real], carried.motion[real] = Carried.real(chain, own, moved, eigenvalue)
+        carried.energy[:, real], carried.motion[real] = AttachedEnergy.real(
+            chain, own, moved, eigenvalue
+        )
         mass[real] = _core.energy(chain.undamped, own, eigenvalue)[1].sum(axis=1)
         mass[real] += carried.energy[:, real, 1].sum(axis=0)
         if part.closed is not None:
@@ -231,7 +232,9 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
         shape[~real] = motions(chain, part, wanted[~real])
         mass[~real] = 1 / (2 * value[~real])
         rates = part.rates.at(value[~real])
-        carried.energy[:, ~real], carried.motion[~real] = Carried.at(chain, rates, shape[~real])
+        carried.energy[:, ~real], carried.motion[~real] = AttachedEnergy.at(
+            chain, rates, shape[~real]
+        )
     return shape, mass, carried
 
 
@@ -246,7 +249,7 @@ def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
 # --- against continuous spans -------------------------------------------------------------------
 
 
-def _mesh(model: Compiled, answer: _Found) -> Mesh:
+def _mesh(model: Compiled, answer: DampedRates) -> MeshOfModes:
     """Return the distance to the modes of continuous spans, matched so that all are near."""
     from scipy.optimize import linear_sum_assignment
 
@@ -261,4 +264,4 @@ def _mesh(model: Compiled, answer: _Found) -> Mesh:
             apart = np.abs(answer.value[mine][:, None] - true.value[None, :])
             row, column = linear_sum_assignment(apart)
             distance[mine[row]] = apart[row, column] + true.error[column]
-    return Mesh(distance / (2 * math.pi))
+    return MeshOfModes(distance / (2 * math.pi))

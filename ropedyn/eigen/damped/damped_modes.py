@@ -9,17 +9,17 @@ import numpy as np
 
 from ...base.answer import Cost, axes
 from ...base.array import Complex, Real
-from ...base.computed import Part, part
+from ...base.computed import Lazy, lazy
 from ...base.drawing import draw
 from ...base.table import Table
-from ..free_motion import FreeMotion, Mesh, Vectors
+from ..free_motion import FreeMotion, MeshOfModes, Vectors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
-class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
+class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]):
     """Rates s of free motion Re(shape e^(s t)) of a damped model, those of the least |s| first.
 
     Of each conjugate pair the one with Im s > 0 is given (with a loss factor, whose stiffness is
@@ -93,8 +93,8 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], Mesh]):
     eigenvalue: Complex = field(metadata=axes("mode", unit="rad/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost
-    vectors: Part[Vectors[np.complex128]] = part(Vectors)
-    mesh: Part[Mesh] = part(Mesh)
+    vectors: Lazy[Vectors[np.complex128]] = lazy(Vectors)
+    mesh: Lazy[MeshOfModes] = lazy(MeshOfModes)
 
     @property
     def frequency(self) -> Real:

@@ -10,7 +10,7 @@ import numpy as np
 from ...base.array import Complex, Index, Real
 from ...base.errors import SolveError
 from ...chain.chain import Chain
-from ..eigen import lowest
+from ..spectrum import lowest
 from .characteristic import Characteristic, Rates, elastic, horizon
 from .proportional import Proportional, proportional
 from .roots import Roots, find_roots

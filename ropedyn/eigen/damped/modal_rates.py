@@ -13,7 +13,7 @@ from ...base.errors import SceneError, SolveError
 from ...chain.compiled import Compiled
 from ...scene.damping import having, ratios
 from ..eigen import solve_modes
-from ..free_motion import Mesh, Vectors
+from ..free_motion import MeshOfModes, Vectors
 from ..modes import Modes
 from .damped_modes import DampedModes
 
@@ -103,5 +103,5 @@ def _vectors(undamped: Modes, mode: Index, value: Complex, decay: Real) -> Vecto
     )
 
 
-def _mesh(undamped: Modes, mode: Index, scale: Real) -> Mesh:
-    return Mesh(undamped.mesh_error[mode] * scale)
+def _mesh(undamped: Modes, mode: Index, scale: Real) -> MeshOfModes:
+    return MeshOfModes(undamped.mesh_error[mode] * scale)

@@ -14,7 +14,7 @@ from ...base.errors import SceneError
 from ...chain.port import Point
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
-from ...eigen.shape_at import shapes_at
+from ...eigen.vectors import shapes_at
 from ...model import Model
 from ...response.frf import FRF
 from ...signal.response_shape import residues

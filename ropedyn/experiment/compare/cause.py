@@ -16,8 +16,8 @@ from ...base.unit import FAMILY
 from ...chain.compile import remeshed
 from ...chain.compiled import Compiled
 from ...chain.rate import rates_of
-from ...eigen.eigen import spectrum
 from ...eigen.modes import Modes
+from ...eigen.spectrum import spectrum
 from ...scene.path import value_at, with_values
 from .calculated import CalculatedPeaks
 

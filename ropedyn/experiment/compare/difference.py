@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ...base.array import Real
 from ...chain.chain import CARRIED
 from ...eigen.eigen import solve_modes
-from ...eigen.mesh_error import in_hertz
 from ...eigen.modes import Modes
+from ...eigen.spectrum import in_hertz
 from ...model import Model
 from ...response.frf import FRF
 

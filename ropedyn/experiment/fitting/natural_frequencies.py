@@ -9,8 +9,9 @@ import numpy as np
 
 from ...base.array import Index, Real
 from ...base.errors import SceneError
-from ...eigen.eigen import solve_modes, solve_shapes
+from ...eigen.eigen import solve_modes
 from ...eigen.sensitivity import Sensitivity, Shapes
+from ...eigen.vectors import solve_shapes
 from ...model import Model
 from .unknown import Unknowns
 

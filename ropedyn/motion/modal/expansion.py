@@ -24,8 +24,7 @@ from ...chain.port import Point, is_force, moving
 from ...eigen.damped.characteristic import Rates, horizon
 from ...eigen.damped.damped_roots import Damped, damped_roots, most_roots
 from ...eigen.damped.proportional import Proportional, proportional
-from ...eigen.eigen import HIGHEST, count_component, spectrum
-from ...response.harmonic import SOLVERS, Question
+from ...eigen.spectrum import HIGHEST, count_component, spectrum
 from ...response.modal_sum import (
     LEAST,
     REACH,
@@ -35,6 +34,8 @@ from ...response.modal_sum import (
     undamped_factors,
 )
 from ...response.moved_end import is_end, moves_ends
+from ...response.question import Question
+from ...response.solvers import SOLVERS
 from ...scene import damping
 from ...scene.damping import INERTIA
 from ...signal import contour

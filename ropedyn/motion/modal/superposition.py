@@ -15,7 +15,7 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.progress import silent
 from ...chain.compile import compile_scene
-from ...eigen.eigen import within
+from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import Deviation, History
 from ..request import Run

@@ -1,0 +1,244 @@
+"""Natural frequencies of the components of a model, by each solver."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from ..base import check
+from ..base.answer import Work
+from ..base.array import Index, Real
+from ..base.errors import SceneError, SolveError
+from ..chain.chain import CHANNELS, Chain
+from ..chain.compiled import MOST_STEPS, Compiled
+
+LARGEST_DENSE = 8_000
+"""Unknowns above which the dense matrix of the assembled solver, 8 n^2 bytes, is refused."""
+
+
+HIGHEST = 1e100
+"""Of eigenvalues that are counted [rad^2/s^2], so that their products do not overflow."""
+
+
+@dataclass(frozen=True)
+class ComponentModes:
+    """Modes of one component, lowest first."""
+
+    eigenvalue: Real  # (k,) [rad^2/s^2]
+    error: Real  # (k,) [rad^2/s^2]
+    # (k, nodes, width) over the component's coordinates, None where it was not asked for
+    shape: Real | None
+    certified: bool  # whether none is missing
+    work: Work  # what it took
+    # (k, attached) of the structures that the component's nodes carry, as y in csrc/attached.h [m]
+    motion: Real | None = None
+
+
+def spectrum(
+    model: Compiled, component: tuple[str, ...], number: int | None, limit: float = math.inf
+) -> tuple[Real, Real]:
+    """Return the lowest eigenvalues of one component and their errors [rad^2/s^2]."""
+    if number is None:
+        refuse_short_waves(model, limit)
+    found = _sweep(model, component, number, limit, shaped=False)
+    eigenvalue, error, _ = merged([found], number)
+    return eigenvalue, error
+
+
+def eigenvalue_of(below: Any) -> float:
+    """Return the squared angular frequency of a limit in Hz, checked."""
+    highest = min(check.number(below, "below", "Hz", sign="positive"), check.HIGHEST)
+    return (2 * math.pi * highest) ** 2
+
+
+def count_modes(model: Compiled, below: float) -> int:
+    """Count the natural frequencies below a limit; see `Model.count`."""
+    limit = eigenvalue_of(below)
+    refuse_short_waves(model, limit)
+    return sum(count_component(model, c, limit) for c in model.components)
+
+
+def count_component(model: Compiled, component: tuple[str, ...], limit: float) -> int:
+    """Count the eigenvalues of one component below a limit [rad^2/s^2]."""
+    return _count(model.chain.undamped.only(component), limit)
+
+
+def _count(chain: Chain, limit: float) -> int:
+    """Count the eigenvalues of a component below a limit."""
+    return int(_core.count(chain, np.array([min(limit, HIGHEST)]))[0])
+
+
+def merged(found: Sequence[ComponentModes], number: int | None) -> tuple[Real, Real, Index]:
+    """Return eigenvalues and errors of all components in order, and that order."""
+    eigenvalue = np.concatenate([part.eigenvalue for part in found])
+    error = np.concatenate([part.error for part in found])
+    # what rounding cannot tell from 0 is rigid-body motion
+    eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
+    order = np.argsort(eigenvalue, kind="stable")[:number]
+    return eigenvalue[order], error[order], order
+
+
+def refuse_short_waves(model: Compiled, eigenvalue: float) -> None:
+    """Refuse to count more half waves than can be walked."""
+    if model.element != "continuous":
+        return
+    for component in model.components:
+        steps = pieces_of(model.chain.undamped.only(component), min(eigenvalue, HIGHEST))
+        if steps > MOST_STEPS:
+            raise SolveError(
+                f"below is too high: ({', '.join(component)}) has {steps} pieces shorter than its "
+                f"waves there, at most {MOST_STEPS} are walked"
+            )
+
+
+def pieces_of(chain: Chain, eigenvalue: float) -> int:
+    """Return how many pieces shorter than its waves a component is walked in."""
+    factor = np.array([[1.0], [1.0], [1.0], [-eigenvalue], [0.0]], dtype=np.complex128)
+    return int(_core.steps(chain, factor))
+
+
+def _in_threads(call: Callable[..., Any], nodes: int, *arguments: Any) -> Any:
+    """Call the core; long calls in a thread of their own, so that Ctrl-C is heard."""
+    if nodes < 10_000:
+        return call(*arguments)
+    executor = ThreadPoolExecutor(1)
+    try:
+        return executor.submit(call, *arguments).result()
+    finally:
+        executor.shutdown(wait=False)
+
+
+def _sweep(
+    model: Compiled, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
+) -> ComponentModes:
+    """Solve each span between nodes that nothing moves for itself."""
+    chain = model.chain.undamped.only(component)
+    found = []
+    for first, last in chain.spans:
+        try:
+            found.append(lowest(chain.between(first, last), number, limit, shaped=shaped))
+        except SolveError as refusal:
+            raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
+    if len(found) == 1:
+        return found[0]
+    eigenvalue, error, order = merged(found, number)
+    shape = motion = None
+    if shaped:
+        motion = np.concatenate([part.motion for part in found if part.motion is not None])[order]
+        parts = []
+        for part, (first, last) in zip(found, chain.spans):
+            assert part.shape is not None
+            parts.append(np.zeros((len(part.shape), chain.nodes, part.shape.shape[2])))
+            parts[-1][:, first : last + 1] = part.shape
+        shape = np.concatenate(parts)[order]
+    certified = all(part.certified for part in found)
+    work = Work.of(part.work for part in found)
+    return ComponentModes(eigenvalue, error, shape, certified, work, motion)
+
+
+def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> ComponentModes:
+    """Find the lowest modes of a chain between ends that nothing moves, or all below a limit."""
+    wanted = _count(chain, limit) if number is None else number
+    wanted = wanted if chain.finite is None else min(wanted, chain.finite)
+    eigenvalue, error, certified, shape, motion, found, sweeps, redone = _in_threads(
+        _core.certify, max(chain.nodes, 100 * wanted), chain, wanted, _upper(limit), shaped
+    )
+    if not np.isfinite(eigenvalue[:found]).all() or not np.isfinite(error[:found]).all():
+        raise SolveError("the numbers of the modes overflow: check the units")
+    return ComponentModes(
+        eigenvalue[:found],
+        error[:found],
+        shape[:found] if shaped else None,
+        bool((certified[:found] == 1).all()),
+        Work(sweeps, redone=redone),
+        motion[:found] if shaped else None,
+    )
+
+
+def _upper(limit: float) -> float:
+    """Return the limit as the core takes it: beyond all that is counted there is none."""
+    return limit if limit < HIGHEST else math.inf
+
+
+def _lapack(
+    model: Compiled, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
+) -> ComponentModes:
+    chain = model.chain.undamped.only(component)
+    if chain.carried:
+        kinds = " or ".join(chain.carried)
+        raise SceneError(
+            f'solver must be "sweep" where parts have a {kinds}, got "lapack": its matrix problem '
+            "is linear"
+        )
+    if chain.free > LARGEST_DENSE:
+        raise SolveError(
+            f"({', '.join(component)}) has {chain.free} unknowns: solver 'lapack' needs a dense "
+            f"matrix of that size and takes at most {LARGEST_DENSE}; use fewer elements"
+        )
+    try:
+        (eigenvalue, error, shape), _ = _core.modes(
+            chain, number or 0, 0.0 if number else limit, _scale(model, component)
+        )
+    except SolveError as refusal:
+        raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
+    lost = ~np.isfinite(error) | ~np.isfinite(eigenvalue)
+    if lost.any():
+        raise SolveError(
+            f"mode {int(lost.argmax()) + 1} of ({', '.join(component)}) has no correct digit: the "
+            "inertias or stiffnesses differ too much for the assembled solver"
+        )
+    return ComponentModes(eigenvalue, error, shape, False, Work(factorisations=1))
+
+
+def _scale(model: Compiled, component: tuple[str, ...]) -> float:
+    """Return the order of the first elastic eigenvalue: half a wave over the rope."""
+    rope, chain = model.scene.rope, model.chain
+    with np.errstate(over="ignore"):
+        wave = float(np.square(np.pi / rope.length))
+    inertia = chain.mass[chain.term_of].sum(axis=0).diagonal() / rope.length
+    share = np.bincount(chain.element, np.diff(chain.first), len(chain.length)) * chain.length
+    soft = np.tensordot(share / share.sum(), chain.flexibility, 1).diagonal()
+    with np.errstate(divide="ignore", over="ignore"):
+        own = np.divide(1.0, soft)
+    stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}
+    stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.mean_tension)
+    orders = [
+        stiffness[c] * wave / inertia[k]
+        for k, c in enumerate(model.coordinates)
+        if c in component and inertia[k] > 0 and stiffness[c] > 0
+    ]
+    return float(np.clip(min(orders, default=1.0), 1e-200, 1e200))
+
+
+SOLVERS = {"sweep": _sweep, "lapack": _lapack}
+"""What finds the lowest modes of one component."""
+
+
+def in_hertz(eigenvalue: Real) -> Real:
+    """Return frequencies, and -growth/2 pi where motion grows [Hz]."""
+    return np.copysign(np.sqrt(np.abs(eigenvalue)), eigenvalue) / (2 * np.pi)
+
+
+def error_in_hertz(eigenvalue: Real, error: Real) -> Real:
+    """Return the largest change of frequency or growth while the eigenvalue changes by its error.
+
+    sqrt(a + e) - sqrt(a) = e/(sqrt(a + e) + sqrt(a)), so that no digit is lost.
+    """
+    size = np.abs(eigenvalue)
+    omega, less = np.sqrt(size), np.sqrt(np.maximum(size - error, 0.0))
+    # below zero frequency 0 is as far as a mode can go; a growth rate begins there
+    wide = np.where(error > size, np.sqrt(size + error), 0.0)
+    sum_ = omega + less
+    change = np.divide(np.minimum(error, size), sum_, out=np.zeros_like(size), where=sum_ > 0)
+    return np.maximum(change, wide) / (2 * math.pi)
+
+
+def distance(eigenvalue: Real, true: Real, uncertain: Real) -> Real:
+    """Return how far frequencies are from true ones, and how uncertain those are [Hz]."""
+    return np.abs(in_hertz(eigenvalue) - in_hertz(true)) + error_in_hertz(true, uncertain)

@@ -1,0 +1,95 @@
+"""What is asked of one component of a model that is driven harmonically."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import _core
+from ..base.array import Complex, Flags, Real
+from ..base.computed import computed
+from ..base.errors import SceneError
+from ..chain.chain import Chain
+from ..chain.compiled import EXACT, Compiled
+from ..chain.port import Point, cut, is_force, locate, stops
+from ..chain.reaction import at_start
+from ..scene import damping
+
+if TYPE_CHECKING:
+    pass
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of one component."""
+
+    model: Compiled  # whose component it is
+    component: tuple[str, ...]  # Coordinates
+    frequency: Real  # (f,) [Hz]
+    factor: Complex  # (5, f) on sections, tension, springs, inertia and dashpots
+    drives: list[Point]  # on these coordinates
+    responses: list[Point]  # on these coordinates
+    workers: int  # Threads
+
+    @property
+    def is_damped(self) -> Flags:
+        """Whether a factor of something that this component has is complex, shape (f,)."""
+        chain = self.cut[0]
+        bends, rods = "beta" in self.component, {"x", "alpha"} & set(self.component)
+        has = {
+            damping.SECTION: bends or bool(rods),
+            damping.TENSION: "z" in self.component and self.model.scene.mean_tension != 0,
+            damping.SPRING: bool(chain.stiffness.any()),
+            damping.INERTIA: True,
+            damping.DASHPOT: chain.damping is not None
+            or chain.drag is not None
+            or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
+        }
+        return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
+
+    @computed
+    def cut(self) -> tuple[Chain, Real]:
+        """The component's chain with nodes where points need them, and where they stand."""
+        model, points = self.model, [*self.drives, *self.responses]
+        chain = model.chain.only(self.component)
+        between = [p for p in points if locate(model.x, p[1])[1] is not None]
+        if model.element not in EXACT:
+            for point in filter(is_force, between):
+                raise SceneError(
+                    "response of an internal force must stand at a node unless elements are "
+                    f'"tensed", got {point} between nodes of {model.element!r} elements'
+                )
+            between = []
+        positions = [p[1] for p in between]
+        if model.element == "tensed":
+            positions += stops(chain, model.x)
+        if model.element == "continuous" and any(at_start(model.x, p) for p in self.responses):
+            positions += self._short(chain)
+        return cut(chain, model.x, positions)
+
+    def _short(self, chain: Chain) -> list[float]:
+        """Return where the first element is cut so that its left end is far from resonances."""
+        first = chain.between(0, 1)
+        pieces = _core.steps(first, self.fastest)
+        return [float(self.model.x[1]) / pieces]
+
+    @property
+    def fastest(self) -> Complex:
+        """The factors of the highest frequency, shape (5, 1), or none where there is none."""
+        factor = self.factor
+        highest = [np.argmax(np.abs(factor[damping.INERTIA]))] if factor.size else []
+        return np.ascontiguousarray(factor[:, highest])
+
+    def resonance(self, k: int) -> str:
+        """Say that frequency k has no answer."""
+        return (
+            f"frequency {float(self.frequency[k])!r} Hz has no correct digit in "
+            f"({', '.join(self.component)}): it lies on an undamped resonance"
+        )
+
+
+Solver = Callable[[Question], tuple[Complex, Real]]
+"""What answers it: motion per force, (drives, responses, f), with estimated errors."""

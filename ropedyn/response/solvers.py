@@ -1,0 +1,187 @@
+"""The response of one component to harmonic forces, by each solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import _core
+from ..base.array import Complex, Real
+from ..base.errors import SceneError, SolveError
+from ..chain.compiled import EXACT, MOST_STEPS
+from ..chain.port import Point, Ports, is_force, local, locate, moving, ports
+from ..chain.reaction import at_start, first_left_end, tellers
+from ..scene import damping
+
+if TYPE_CHECKING:
+    pass
+from .question import Question
+
+LANES = 16
+"""Frequencies that the sweep solves side by side."""
+
+
+SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
+"""Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
+
+
+def _relative(value: Complex, error: Real) -> Real:
+    """Return the relative error: 0 where both are 0, infinite where only the value is.
+
+    Below the smallest normal number digits vanish however small the error is.
+    """
+    size = np.abs(value)
+    ratio = np.full(size.shape, np.inf)
+    np.divide(error + np.finfo(float).tiny, size, out=ratio, where=size > 0)
+    return np.where((size == 0) & (error == 0), 0.0, ratio)
+
+
+def _sweep(question: Question) -> tuple[Complex, Real]:
+    chain, _ = question.cut
+    steps = _core.steps(chain, question.fastest)
+    if steps > max(MOST_STEPS, chain.nodes):
+        raise SolveError(
+            f"frequency {float(question.frequency.max())!r} Hz is too high: the rope has {steps} "
+            f"pieces shorter than its waves, at most {MOST_STEPS} are walked"
+        )
+    return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)
+
+
+def _band(question: Question) -> tuple[Complex, Real]:
+    chain, _ = question.cut
+    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE)
+
+
+Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
+
+
+def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple[Complex, Real]:
+    """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
+    component, factor = question.component, question.factor
+    chain, x = question.cut
+    direct = [p for p in question.responses if not at_start(x, p)]
+    reactions = len(direct) < len(question.responses)
+    pushed = ports(chain, x, component, question.drives)
+    asked = direct + (tellers(component, x) if reactions else [])
+    watched = pushed if asked == question.drives else ports(chain, x, component, asked)
+
+    def solve(part: slice) -> tuple[Complex, Real]:
+        value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)
+        if solved < value.shape[2]:
+            raise SolveError(question.resonance(part.start + solved))
+        return value, error
+
+    count = len(question.frequency)
+    value, error = _in_slices(solve, count, steps, size, question.workers)
+    if reactions:
+        value, error = _with_reactions(question, value, error)
+    value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
+    _hold(question, value, error)
+    _add_local(question, value)
+    return value, _relative(value, error)
+
+
+def _in_slices(
+    solve: Callable[[slice], tuple[Complex, Real]], count: int, steps: int, most: int, workers: int
+) -> tuple[Complex, Real]:
+    """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
+    size = max(LANES, most // max(steps, 1) // LANES * LANES)
+    if count * steps > most // 16:
+        size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
+    parts = [slice(start, min(start + size, count)) for start in range(0, count, size)]
+    if workers == 1 or len(parts) == 1:
+        values, errors = zip(*(solve(part) for part in parts))
+    else:
+        executor = ThreadPoolExecutor(workers)
+        try:
+            values, errors = zip(*executor.map(solve, parts))
+        finally:
+            executor.shutdown(cancel_futures=True)
+    return np.concatenate(values, axis=2), np.concatenate(errors, axis=2)
+
+
+def _hold(question: Question, value: Complex, error: Real) -> None:
+    """Set to 0 what is held, which rounding moves by its last digits."""
+    chain, x = question.cut
+
+    def is_held(point: Point) -> bool:
+        node, between = locate(x, point[1])
+        at = question.component.index(moving(point))
+        held = between is None and not is_force(point)
+        return held and bool(chain.held[chain.term[chain.stretch(node)], at])
+
+    for k, point in enumerate(question.drives):
+        if is_held(point):
+            value[k] = error[k] = 0.0
+    for k, point in enumerate(question.responses):
+        if is_held(point):
+            value[:, k] = error[:, k] = 0.0
+
+
+def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Complex, Real]:
+    """Put f_a = E f_b - Q u_a + P u_b of the first element where it was asked for."""
+    component, responses = question.component, question.responses
+    chain, x = question.cut
+    w = len(component)
+    of = first_left_end(chain, question.factor)
+    given, left, right, force = np.split(np.arange(value.shape[1]), [-3 * w, -2 * w, -w])
+    reaction = np.einsum("kij,djk->dik", of.E, value[:, force])
+    reaction -= np.einsum("kij,djk->dik", of.Q, value[:, left])
+    reaction += np.einsum("kij,djk->dik", of.P, value[:, right])
+    spread = np.einsum("kij,djk->dik", np.abs(of.E), error[:, force])
+    spread += np.einsum("kij,djk->dik", np.abs(of.Q), error[:, left])
+    spread += np.einsum("kij,djk->dik", np.abs(of.P), error[:, right])
+    shape = (value.shape[0], len(responses), value.shape[2])
+    values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+    direct = iter(given)
+    for k, point in enumerate(responses):
+        if at_start(x, point):
+            at = component.index(moving(point))
+            values[:, k], errors[:, k] = reaction[:, at], spread[:, at]
+        else:
+            at = next(direct)
+            values[:, k], errors[:, k] = value[:, at], error[:, at]
+    return values, errors
+
+
+def _lapack(question: Question) -> tuple[Complex, Real]:
+    if any(map(is_force, question.responses)):
+        raise SceneError('solver must be "sweep" or "band" where an internal force is asked for')
+    chain, x = question.cut
+    value, rounding, motion, solved = _core.frf(
+        chain,
+        np.ascontiguousarray(question.factor.T),
+        ports(chain, x, question.component, question.drives),
+        ports(chain, x, question.component, question.responses),
+    )
+    if solved < len(question.frequency) or (motion >= 1).any():
+        first = min([solved, *np.flatnonzero((motion[:solved] >= 1).any(axis=1))])
+        raise SolveError(
+            f"{question.resonance(first)}, or {chain.nodes - 1} elements are too many for the "
+            "assembled stiffness"
+        )
+    value = np.ascontiguousarray(value.transpose(1, 2, 0))
+    _add_local(question, value)
+    return value, np.ascontiguousarray(rounding.transpose(1, 2, 0))
+
+
+def _add_local(question: Question, value: Complex) -> None:
+    """Add the flexibility inside a driven element that is not cut."""
+    if question.model.element in EXACT:
+        return
+    chain, x = question.cut
+    bends = "beta" in question.component
+    for d, pushed in enumerate(question.drives):
+        which = damping.SECTION if bends or pushed[0] != "z" else damping.TENSION
+        for r, watched in enumerate(question.responses):
+            flexibility = local(chain, x, question.component, pushed, watched)
+            if flexibility != 0:
+                value[d, r] += flexibility / question.factor[which]
+
+
+SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
+"""What computes the response of one component: value and relative error, (drives, responses, f)."""
