@@ -198,10 +198,8 @@ def converged(system: ModalSystem, frequency: float, amplitude: float) -> tuple[
 
 
 def _errors(matrix: Real, off: float, right: Complex) -> Real:
-    """Return errors of eigenvalues for one of the matrix: by their condition, at most by a root.
-
-    Two that meet part as the root of a change.
-    """
+    """Return errors of eigenvalues for one of the matrix: by their condition, at most by a root."""
+    # two that meet part as the root of a change
     with np.errstate(all="ignore"):
         try:
             left = np.linalg.inv(right)

@@ -59,11 +59,9 @@ class ModalSystem:
 
 
 def modal_system(model: Compiled, number: int | None) -> ModalSystem:
-    """Reduce a model to its lowest modes with transverse motion.
-
-    Exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
-    which is not quite a straight line of the tension; the rest vanishes with the mesh.
-    """
+    """Reduce a model to its lowest modes with transverse motion."""
+    # exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
+    # which is not quite a straight line of the tension; the rest vanishes with the mesh.
     _refuse(model)
     component = model.component_of("z")
     basis = _Basis.of(model, component, number)

@@ -86,10 +86,8 @@ def rates(system: ModalSystem) -> Real:
 
 
 def exponential(matrix: Real) -> Real:
-    """Return exp(A) of many small matrices, shape (..., n, n): Taylor's series of A/2^s, squared.
-
-    Of one alone `scipy.linalg.expm` is as good; of thousands its threads take longer than its sums.
-    """
+    """Return exp(A) of many small matrices, (..., n, n): Taylor's series of A/2^s, squared."""
+    # of one alone `scipy.linalg.expm` is as good; of thousands its threads take longer
     norm = float(np.abs(matrix).sum(axis=-1).max(initial=0.0))
     squarings = max(math.ceil(math.log2(norm)) + 1, 0) if norm > 0 else 0
     scaled = matrix / 2.0**squarings
@@ -148,10 +146,8 @@ def exponent(
 def periods(
     system: ModalSystem, frequency: Real, amplitude: Real, angle: float
 ) -> Iterator[tuple[Index, Real]]:
-    """Yield some of the frequencies, lowest first, and the motion over their periods.
-
-    As `exponent` takes them; the motion has the shape (some, a, 2k, 2k).
-    """
+    """Yield some of the frequencies, lowest first, and the motion over their periods."""
+    # as `exponent` takes them; the motion has the shape (some, a, 2k, 2k)
     order = np.argsort(frequency, kind="stable")
     highest = float(amplitude.max(initial=0.0))
     each = max(TOGETHER // ((2 * len(system.eigenvalue)) ** 2 * amplitude.shape[1]), 1)

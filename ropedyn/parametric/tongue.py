@@ -55,10 +55,8 @@ class Tongue(NamedTuple):
 
 
 def tongues_of(system: ModalSystem, low: float, high: float) -> tuple[Tongue, ...]:
-    """Return the tongues between two frequencies [Hz], lowest first.
-
-    Those of order 1 need the coupling of their modes, those of others some coupling.
-    """
+    """Return the tongues between two frequencies [Hz], lowest first."""
+    # those of order 1 need the coupling of their modes, those of others some coupling
     found = []
     pairs = (p for block in system.blocks for p in combinations_with_replacement(block.tolist(), 2))
     for i, j in pairs:
@@ -77,10 +75,8 @@ def tongues_of(system: ModalSystem, low: float, high: float) -> tuple[Tongue, ..
 
 
 def threshold(system: ModalSystem, frequency: Real) -> Real:
-    """Return the growth ln|multiplier| over a period that counts as growth, as frequency [Hz].
-
-    Where all motion decays by itself, multipliers do not meet on the circle, and any is growth.
-    """
+    """Return the growth ln|multiplier| over a period that counts as growth, as frequency [Hz]."""
+    # where all motion decays by itself, multipliers do not meet on the circle, and any is growth
     decay = -np.linalg.eigvals(rates(system)).real.max() / frequency
     return np.where(decay > NEUTRAL, 0.0, NEUTRAL)
 
@@ -102,10 +98,8 @@ def boundaries(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
 def _changes(
     system: ModalSystem, looked: Real, amplitude: float, close: float = CLOSE
 ) -> tuple[Real, Flags]:
-    """Return where stability changes between given frequencies; whether motion grows beyond.
-
-    Where what grows is of another kind there may be a gap between two tongues.
-    """
+    """Return where stability changes between given frequencies; whether motion grows beyond."""
+    # where what grows is of another kind there may be a gap between two tongues
     kind = _growing(system, looked, amplitude)
     while True:
         apart = np.diff(looked) > close * looked[1:]
@@ -122,10 +116,8 @@ def _changes(
 
 
 def _growing(system: ModalSystem, frequency: Real, amplitude: float) -> Index:
-    """Return a number for what grows, 0 for nothing.
-
-    Counts multipliers beyond 1, beyond -1, and outside the unit circle elsewhere.
-    """
+    """Return a number for what grows, 0 for nothing."""
+    # counts multipliers beyond 1, beyond -1, and outside the unit circle elsewhere
     kind = np.zeros(len(frequency), dtype=np.intp)
     least = np.exp(threshold(system, frequency))
     base = 2 * len(system.eigenvalue) + 1
@@ -141,11 +133,9 @@ def _growing(system: ModalSystem, frequency: Real, amplitude: float) -> Index:
 
 
 def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Real:
-    """Return frequencies where damped motion grows, as far as it does, and beside them.
-
-    They lie in the tongues without damping, or not far from them where modes are damped unlike; at
-    the tip of a tongue, close to where growth is largest.
-    """
+    """Return frequencies where damped motion grows, as far as it does, and beside them."""
+    # they lie in the tongues without damping, or not far from them where modes are damped unlike;
+    # at the tip of a tongue, close to where growth is largest.
     middle, half = (begin + end) / 2, (end - begin) / 2
     looked = []
     for _ in range(ZOOMS):
@@ -161,11 +151,9 @@ def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Re
 
 
 def _near_resonances(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
-    """Return frequencies in each tongue without damping, as far as it is wide enough, and beside.
-
-    Tongues of order n are some e^n of their frequency wide, with e the relative pulsation of the
-    stiffness, and move by e^2.
-    """
+    """Return frequencies in each undamped tongue, as far as it is wide enough, and beside."""
+    # tongues of order n are some e^n of their frequency wide, with e the relative pulsation of the
+    # stiffness, and move by e^2.
     low, high = float(frequency[0]), float(frequency[-1])
     size = np.sqrt(np.abs(np.diag(system.geometric)))
     points = [np.zeros(0)]
@@ -185,11 +173,9 @@ def _near_resonances(system: ModalSystem, frequency: Real, amplitude: float) -> 
 
 
 def _closing_in(system: ModalSystem, pair: Index, window: Real, amplitude: float) -> Real:
-    """Return the frequencies that a search for growth of pairs of modes in windows looked at.
-
-    The phases by which two modes turn in a period add up to whole turns at a resonance: the sign of
-    what is left is not lost where a tongue is narrow.
-    """
+    """Return the frequencies that a search for growth of pairs of modes in windows looked at."""
+    # the phases by which two modes turn in a period add up to whole turns at a resonance: the sign
+    # of what is left is not lost where a tongue is narrow.
     looked = [np.zeros(0)]
     while len(pair):
         edge = np.linspace(window[:, 0], window[:, 1], PARTS + 1, axis=1)
@@ -206,11 +192,9 @@ def _closing_in(system: ModalSystem, pair: Index, window: Real, amplitude: float
 def _turns(
     system: ModalSystem, pair: Index, frequency: Real, amplitude: float
 ) -> tuple[Real, Flags]:
-    """Return by how much pairs of modes turn in a period beside whole turns [rad]; if they grow.
-
-    Of each conjugate pair of motions one goes round as a mode without pulsation does: its q' is
-    ahead of q.
-    """
+    """Return by how much pairs of modes turn in a period beside whole turns [rad]; if they grow."""
+    # of each conjugate pair of motions one goes round as a mode without pulsation does: its q' is
+    # ahead of q.
     turn, grows = np.empty(len(frequency)), np.empty(len(frequency), dtype=np.bool_)
     k = len(system.eigenvalue)
     given = np.full((len(frequency), 1), amplitude)

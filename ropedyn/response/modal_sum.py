@@ -188,10 +188,8 @@ def undamped_factors(z: Complex) -> Complex:
 
 
 def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> UndampedPoles:
-    """Make one of the modes that cannot be told apart, and draw the circles.
-
-    Where not all of those that are one have a ratio, none is kept.
-    """
+    """Make one of the modes that cannot be told apart, and draw the circles."""
+    # where not all of those that are one have a ratio, none is kept
     apart = np.diff(eigenvalue) > ALIKE * np.abs(eigenvalue[1:]) + 4 * (error[1:] + error[:-1])
     group = np.append(0, np.cumsum(apart))[: len(eigenvalue)]
     beyond = np.inf
@@ -264,10 +262,8 @@ def _left_out(question: Question, solver: Solver, poles: UndampedPoles) -> dict[
 def _missing(
     poles: UndampedPoles, static: Estimated, residue: Estimated, probed: Estimated
 ) -> Real:
-    """Return what the sum lacks at the probe beyond rounding, shape (drives, responses).
-
-    Masses of tensed elements are indefinite: their negative eigenvalues are no modes.
-    """
+    """Return what the sum lacks at the probe beyond rounding, shape (drives, responses)."""
+    # masses of tensed elements are indefinite: their negative eigenvalues are no modes
     s, p = poles.shift, poles.probe
     g = (s - p) / ((poles.eigenvalue + s) * (poles.eigenvalue + p))
     rest = np.abs(probed.value - static.value - residue.value @ g)
@@ -282,11 +278,9 @@ def _slices(count: int, modes: int) -> Iterator[slice]:
 def _weights(
     question: Question, poles: UndampedPoles, omega: Real, part: slice
 ) -> tuple[Complex, Real]:
-    """Return g and what rounding of the eigenvalue makes of it, each (k, f).
-
-    g = (z + s - 2 i zeta omega sqrt(lambda))/((lambda + s) (lambda - z + the same)), without the
-    difference of two like numbers.
-    """
+    """Return g and what rounding of the eigenvalue makes of it, each (k, f)."""
+    # g = (z + s - 2 i zeta omega sqrt(lambda))/((lambda + s) (lambda - z + the same)), without the
+    # difference of two like numbers.
     omega = omega[part]
     z, own = omega**2, poles.eigenvalue[:, None]
     twice = 2 * omega * np.sqrt(np.maximum(own, 0.0))
@@ -306,10 +300,8 @@ def _weights(
 
 
 def _most(poles: UndampedPoles, omega: Real) -> Real:
-    """Return the largest (lambda + s) |g| of the modes that are left out, shape (f,).
-
-    |z + s - 2 i zeta omega sqrt(lambda)|/|lambda - z + the same| falls where lambda > z.
-    """
+    """Return the largest (lambda + s) |g| of the modes that are left out, shape (f,)."""
+    # |z + s - 2 i zeta omega sqrt(lambda)|/|lambda - z + the same| falls where lambda > z
     if not np.isfinite(poles.beyond):
         return np.zeros(len(omega))
     lost = 2 * poles.largest * omega * np.sqrt(poles.beyond)

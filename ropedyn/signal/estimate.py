@@ -37,10 +37,8 @@ def estimate(
     band: Any,
     at_rest: bool,
 ) -> Estimate:
-    """Estimate responses (responses, t) per force of one of the drives (drives, t).
-
-    See `History.frf`; the line at 0 Hz is left out unless it says what holds at rest.
-    """
+    """Estimate responses (responses, t) per force of one of the drives (drives, t)."""
+    # see `History.frf`; the line at 0 Hz is left out unless it says what holds at rest
     from scipy import signal
 
     step, n = time_step(time), len(time)

@@ -29,7 +29,7 @@ EXACT = 1e-26
 """Share of the energy that is left, at most, where more modes would fit rounding."""
 
 
-class Modes(NamedTuple):
+class DecayingModes(NamedTuple):
     """What decays."""
 
     log: Complex
@@ -42,7 +42,7 @@ class Modes(NamedTuple):
     """Rms of what no mode explains, over that of the samples."""
 
 
-class Trial(NamedTuple):
+class PencilTrial(NamedTuple):
     """Modes with how well they explain samples."""
 
     log: Complex
@@ -52,10 +52,10 @@ class Trial(NamedTuple):
     """Of Schwarz, 0 of no modes, the less the better."""
 
 
-NOTHING = Trial(np.zeros(0, np.complex128), 1.0, 0.0)
+NOTHING = PencilTrial(np.zeros(0, np.complex128), 1.0, 0.0)
 
 
-def decaying(y: Complex, noise: Real) -> Modes | None:
+def decaying(y: Complex, noise: Real) -> DecayingModes | None:
     """Return as many modes as explain the samples best, None where noise explains them as well.
 
     What decays soon drowns in the noise of a long record: parts of it are looked at too.
@@ -73,7 +73,7 @@ def decaying(y: Complex, noise: Real) -> Modes | None:
     return _refined(y, best.log, noise) if len(best.log) else None
 
 
-def _chosen(y: Complex, samples: float) -> Trial:
+def _chosen(y: Complex, samples: float) -> PencilTrial:
     """Return as many modes as explain y best."""
     space, best = _column_space(y), NOTHING
     for number in range(1, min(MOST, int(samples / 4)) + 1):
@@ -84,17 +84,17 @@ def _chosen(y: Complex, samples: float) -> Trial:
     return best
 
 
-def _trial(y: Complex, log: Complex, samples: float) -> Trial:
+def _trial(y: Complex, log: Complex, samples: float) -> PencilTrial:
     if not len(log):
         return NOTHING
     left = y - _powers(log, len(y)) @ _size(y, log)
     share = float(np.vdot(left, left).real / np.vdot(y, y).real)
     # rate and amplitude of a mode are four real numbers, a sample is two
     criterion = 2 * samples * np.log(max(share, np.finfo(float).tiny))
-    return Trial(log, share, float(criterion + 4 * len(log) * np.log(2 * samples)))
+    return PencilTrial(log, share, float(criterion + 4 * len(log) * np.log(2 * samples)))
 
 
-def _criterion(trial: Trial) -> float:
+def _criterion(trial: PencilTrial) -> float:
     return trial.criterion
 
 
@@ -126,7 +126,7 @@ def _size(y: Complex, log: Complex) -> Complex:
     return np.asarray(np.linalg.lstsq(_powers(log, len(y)), y, rcond=None)[0])
 
 
-def _refined(y: Complex, log: Complex, noise: Real) -> Modes:
+def _refined(y: Complex, log: Complex, noise: Real) -> DecayingModes:
     """Return the modes of least squares, by Gauss and Newton, with their variance.
 
     With the slopes J and G = J^+ of least squares, noise of covariance s^2 R moves modes by that of
@@ -155,4 +155,4 @@ def _refined(y: Complex, log: Complex, noise: Real) -> Modes:
     spread = matmul_toeplitz(noise, inverse.conj().T)
     free = len(y) - float(np.einsum("jk,jk->", slopes, spread.conj()).real)
     variance = np.einsum("kj,jk->k", inverse, spread).real[modes:] * rest / free
-    return Modes(*found, variance, float(np.sqrt(rest / whole)))
+    return DecayingModes(*found, variance, float(np.sqrt(rest / whole)))

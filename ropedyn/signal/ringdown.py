@@ -77,10 +77,9 @@ class RingDown(Answer):
 
 
 class Band(NamedTuple):
-    """A record near one frequency: y_j = sum of taps_m x_(q j + m) e^(-i shift (q j + m) step).
+    """A record near one frequency: y_j = sum of taps_m x_(q j + m) e^(-i shift (q j + m) step)."""
 
-    A mode e^(s t) stays one: e^((s - i shift) t) times what the taps make of it.
-    """
+    # a mode e^(s t) stays one: e^((s - i shift) t) times what the taps make of it
 
     y: Complex
     step: float  # between the times of y [s]
@@ -99,10 +98,8 @@ def ring_down(
     near: Any,
     since: float | None,
 ) -> RingDown:
-    """Estimate modes of free motion, of one of the responses (responses, t).
-
-    See `History.damping`; motion is free since the forces (drives, t) last changed.
-    """
+    """Estimate modes of free motion, of one of the responses (responses, t)."""
+    # see `History.damping`; motion is free since the forces (drives, t) last changed
     check.count(response, "response", least=0, most=len(value) - 1)
     step = time_step(time)
     first = _first_free(time, force, since)
@@ -173,10 +170,8 @@ def _band(x: Real, step: float, f: float) -> Band:
 
 
 def _low_pass(width: float, edge: float, step: float, most: int) -> tuple[Real, int] | None:
-    """Return the taps that pass `width` and stop at `edge` [Hz], and how they let it be thinned.
-
-    Nothing where they are more than `most`, or nothing can be thinned.
-    """
+    """Return the taps that pass `width` and stop at `edge` [Hz], and how they let it be thinned."""
+    # nothing where they are more than `most`, or nothing can be thinned
     from scipy.signal import firwin, kaiserord
 
     if 4 * edge * step >= 1:

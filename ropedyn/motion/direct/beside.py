@@ -23,7 +23,7 @@ class Beside(NamedTuple):
     spring_rate: float  # Damping of node springs [s]
     string: Real  # (distinct,) tension of a string in parallel to each element [N]
     string_drag: Real  # (distinct,) that times its damping [N s]
-    stretching: float  # EA/L [N/m]
+    stretching: float  # EA/L where motion adds to the tension [N/m]
     mass_rate: float  # Damping of the masses of resonators, of the mass [1/s]
 
 
@@ -41,6 +41,9 @@ def plain(model: Compiled, component: tuple[str, ...], chain: Chain) -> tuple[Ch
         and "beta" in component
         and (share[TENSION] != rate or model.scene.mean_tension < 0)
     )
+    scene, stiffness = model.scene, 0.0
+    if "z" in component and isinstance(scene.tension, Tension) and scene.tension.stretching:
+        stiffness = scene.rope.axial_stiffness or 0.0
     string = chain.tension if apart else np.zeros_like(chain.tension)
     return chain._replace(
         mass=mass,
@@ -51,18 +54,9 @@ def plain(model: Compiled, component: tuple[str, ...], chain: Chain) -> tuple[Ch
         spring_rate=float(share[SPRING]),
         string=string.copy(),
         string_drag=share[TENSION] * string,
-        stretching=_stretching(model, component),
+        stretching=stiffness / scene.rope.length,
         mass_rate=float(share[INERTIA]),
     )
-
-
-def _stretching(model: Compiled, component: tuple[str, ...]) -> float:
-    """Return EA/L where motion of these coordinates adds to the tension [N/m]."""
-    scene = model.scene
-    if "z" not in component or not isinstance(scene.tension, Tension):
-        return 0.0
-    stiffness = scene.rope.axial_stiffness if scene.tension.stretching else None
-    return (stiffness or 0.0) / scene.rope.length
 
 
 def pulsation_of(model: Compiled, component: tuple[str, ...]) -> Callable[[Real], Real] | None:

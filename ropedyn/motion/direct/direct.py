@@ -18,8 +18,8 @@ from ..modal.superposition import mesh_error
 from ..request import Run, why_direct
 from .lumped import Lumps, lumped_chains, refuse
 from .march import stage_of
-from .run import Passage, Walk
-from .steps import Pace, halved, steps_of, within
+from .run import Marching
+from .steps import EnoughSteps, halved, steps_of, within
 
 ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")  # In the order of a passage.
 STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an answer.
@@ -32,12 +32,12 @@ def march(run: Run) -> History:
     chains = lumped_chains(run)
     g = stage_of(run.spectral_radius)
     start = time.perf_counter()
-    pace = _paced(run, chains, g)
-    passage, seconds = pace.passage, time.perf_counter() - start
+    steps = _stepped(run, chains, g)
+    passage, seconds = steps.passage, time.perf_counter() - start
     error = passage.error
     if error is not None and (passage.reached == 0 or not isinstance(error, STOPS)):
         raise error
-    history = _history(run, chains, pace, seconds)
+    history = _history(run, chains, steps, seconds)
     if error is not None and not run.partial:
         if isinstance(error, SolveError):
             error.history = history
@@ -57,21 +57,29 @@ def refuse_responses(run: Run) -> None:
             )
 
 
-def _paced(run: Run, chains: list[Lumps], g: float) -> Pace:
+def _stepped(run: Run, chains: list[Lumps], g: float) -> EnoughSteps:
     """March with the steps that are asked for, or with as many as the tolerance needs."""
     if run.step is None:
         return within(run, chains, g)
-    passage = Walk(run, chains, steps_of(run, chains), g).through()
+    passage = Marching(run, chains, steps_of(run, chains), g).through()
     unknown = np.full(passage.value.shape, np.nan)
-    return Pace(passage, unknown, passage.stages, passage.factorisations)
+    return EnoughSteps(passage, unknown, passage.stages, passage.factorisations)
 
 
-def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> History:
-    passage, model = pace.passage, run.model
+def _history(run: Run, chains: list[Lumps], steps: EnoughSteps, seconds: float) -> History:
+    passage, model = steps.passage, run.model
     kept, seen = slice(passage.reached), slice(passage.seen)
     asked = replace(run.kept, time=run.time[kept], snapshots=run.snapshots[seen])
     value = passage.value[:, kept]
-    deviation = partial(_deviation, asked, value, pace.error[:, kept])
+    total = passage.energy[:, kept].sum(axis=0)
+    energy = {name: total[:, k].copy() for k, name in enumerate(ENERGIES)}
+    if all((lumps.laws.kind == 0).all() for lumps in chains):
+        del energy["laws"]
+    error, stopped = passage.error, ""
+    if error is not None:
+        told = f"{type(error).__name__}: {error}"
+        stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
+    deviation = partial(_deviation, asked, value, steps.error[:, kept])
     return History(
         **asked.told,
         value=value,
@@ -83,31 +91,13 @@ def _history(run: Run, chains: list[Lumps], pace: Pace, seconds: float) -> Histo
             "direct",
             len(model.x) - 1,
             sum(lumps.chain.free for lumps in chains),
-            sweeps=pace.stages,
-            factorisations=pace.factorisations,
+            sweeps=steps.stages,
+            factorisations=steps.factorisations,
         ),
-        balance=_balance(chains, passage),
+        balance=Balance(energy),
         deviation=deviation,
-        stopped=_reason(passage),
+        stopped=stopped,
     )
-
-
-def _balance(chains: list[Lumps], passage: Passage) -> Balance:
-    """Return the energies of all chains, that of laws where there are some."""
-    total = passage.energy[:, : passage.reached].sum(axis=0)
-    energy = {name: total[:, k].copy() for k, name in enumerate(ENERGIES)}
-    if all((lumps.laws.kind == 0).all() for lumps in chains):
-        del energy["laws"]
-    return Balance(energy)
-
-
-def _reason(passage: Passage) -> str:
-    """Say why a march ended."""
-    if passage.error is None:
-        return ""
-    if isinstance(passage.error, KeyboardInterrupt):
-        return "interrupted"
-    return f"{type(passage.error).__name__}: {passage.error}"
 
 
 def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:

@@ -71,7 +71,7 @@ class Onset:
 
     def values(self, order: int) -> Real:
         """Return the responses at this time, motion as the state has it."""
-        rows, state = self.motion.lumps.reading.ports, self.motion.state
+        rows, state = self.motion.lumps.readout.ports, self.motion.state
         told = order < 2 and rows.force is None
         read = np.zeros((1, 3, len(rows.node))) if told else self.probe().read
         moves = rows.row.any(axis=(1, 2))
@@ -101,7 +101,8 @@ def onset(motion: Motion, line: Timeline, mark: int) -> Onset:
     before, after = (None if mark == 0 else time - near), time + near
     force = _change(lumps.forces, before, after)
     ends = _change(lumps.motions, before, after)
-    blow = np.array([_blow(one, line, mark) for one in lumps.forces])
+    blows = ([size for at, size in f.blows if line.at(at) == mark] for f in lumps.forces)
+    blow = np.array([sum(sizes) for sizes in blows], dtype=np.float64)
     bare = lumps.is_bare & ((force.jump != 0) | force.bend)
     jumps = bool(blow.any() or ends.jump.any() or bare.any())
     if lumps.massless.any():
@@ -109,11 +110,6 @@ def onset(motion: Motion, line: Timeline, mark: int) -> Onset:
         jumps = jumps or bool(ends.bend.any()) or turned
     jumps = jumps or (mark == 0 and lumps.released)
     return Onset(motion, after, float(line.h[mark]), force, ends, blow, jumps)
-
-
-def _blow(force: Force, line: Timeline, mark: int) -> float:
-    """Return the impulse at a mark."""
-    return sum(impulse for when, impulse in force.blows if line.at(when) == mark)
 
 
 def _change(functions: tuple[Force, ...], before: float | None, after: float) -> Jump:

@@ -22,7 +22,7 @@ from ...scene.force import Force
 from ..request import Run
 from .beside import Beside, plain, pulsation_of
 from .point_law import Call, Laws, Standing, laws_of, standing_laws
-from .readout import Reading, reading
+from .readout import Readout, readout
 
 
 class State(NamedTuple):
@@ -55,7 +55,7 @@ class Lumps:
     forces: tuple[Force, ...]  # one for each
     moved: NDArray[np.int32]  # (moved, 2) node and coordinate of ends whose motion is given
     motions: tuple[Force, ...]  # one for each
-    reading: Reading  # what is watched
+    readout: Readout  # what is watched
     # (responses, drives) how far forces between nodes move what is watched in the same element at
     # once
     local: Real
@@ -92,11 +92,11 @@ class Lumps:
     @property
     def follows(self) -> bool:
         """Whether something is watched that has no inertia where a force acts on such."""
-        return bool(self.is_bare.any() and self._without_mass(self.reading.ports).any())
+        return bool(self.is_bare.any() and self._without_mass(self.readout.ports).any())
 
     def values(self, read: Real, time: Real, order: int) -> Real:
         """Return the responses, shape (times, responses), of what the core read at these times."""
-        value = self.reading.values(read, time, order)
+        value = self.readout.values(read, time, order)
         if self.local.any():
             verb = ("value", "rate")[order]
             value = value + np.array([getattr(f, verb)(time) for f in self.forces]).T @ self.local.T
@@ -113,37 +113,27 @@ def lumped_chains(run: Run) -> list[Lumps]:
         loads = {p: load for p, load in run.loads.items() if p[0] in component}
         if drives or loads or any(one.law.kind == "call" for one in laws):
             found.append(_lumps(run, component, laws, drives, loads))
-            _refuse_blows(found[-1])
-            _refuse_accelerations(run, found[-1])
-            _refuse_calls(found[-1])
+            _refuse_pushes(run, found[-1])
     return found
 
 
-def _refuse_calls(lumps: Lumps) -> None:
-    """Refuse laws in Python beside a tension that changes."""
+def _refuse_pushes(run: Run, lumps: Lumps) -> None:
+    """Refuse what has no meaning where forces act: each says what and why."""
     if lumps.calls and (lumps.pulsation is not None or lumps.beside.stretching != 0):
         raise SceneError(
             f"parts[{lumps.calls[0].part}] must not be a NodeForce where the tension pulsates or "
             "is stretching: dashpots and stops may stand there"
         )
-
-
-def _refuse_blows(lumps: Lumps) -> None:
-    """Refuse blows at an instant where no inertia takes them."""
-    for force, bare in zip(lumps.forces, lumps.is_bare):
-        if force.blows and bare:
-            raise SceneError(
-                "force must not be an Impulse at an instant where the coordinate has no mass: give "
-                "it a duration"
-            )
+    if any(force.blows and bare for force, bare in zip(lumps.forces, lumps.is_bare)):
+        raise SceneError(
+            "force must not be an Impulse at an instant where the coordinate has no mass: give "
+            "it a duration"
+        )
     if any(motion.blows for motion in lumps.motions):
         raise SceneError(
             "force must not be an Impulse at an instant where the motion of an end is given"
         )
-
-
-def _refuse_accelerations(run: Run, lumps: Lumps) -> None:
-    """Refuse those of what follows a force at once: they are second derivatives of the force."""
+    # accelerations of what follows a force at once are second derivatives of the force
     if run.order == 2 and lumps.follows:
         raise SceneError(
             'quantity must be "displacement" or "velocity" where a force acts, and a response '
@@ -163,6 +153,7 @@ def _lumps(
     ends = [k for k in driving if is_end(run.drives[k])]
     watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
     points = [run.drives[k] for k in pushed]
+    motions: list[Any] = [run.drives[k] for k in ends]
     asked = [run.responses[k] for k in watched]
     whole, x = _cut(model, component, points, asked)
     chain, beside = plain(model, component, whole)
@@ -171,10 +162,17 @@ def _lumps(
     start = _start(whole, component, load, beside)
     pulsation = pulsation_of(model, component)
     drives = ports(chain, x, component, points)._replace(force=None)
+    moved = [((chain.nodes - 1) * end, component.index(c)) for _, end, c in motions]
     inside = np.array([[local(chain, x, component, p, r) for p in points] for r in asked])
     inside = inside.reshape(len(asked), len(points))
     if inside.any():
-        _refuse_local(run, chain, component, beside, pulsation)
+        # the shape inside a driven element is to follow forces at once and steadily
+        changes = "beta" not in component and (pulsation is not None or beside.stretching != 0)
+        if changes or beside.rate.any() or run.order == 2:
+            raise SceneError(
+                f'element must be "tensed", got {model.element!r}, where a response lies between '
+                "nodes beside a force and is an acceleration, or stiffness is damped or changes"
+            )
     return Lumps(
         coordinates=component,
         chain=chain,
@@ -185,9 +183,9 @@ def _lumps(
         calls=calls,
         drives=drives,
         forces=tuple(run.forces[k] for k in pushed),
-        moved=_moved(chain, component, [run.drives[k] for k in ends]),
+        moved=np.array(moved, dtype=np.int32).reshape(-1, 2),
         motions=tuple(run.forces[k] for k in ends),
-        reading=reading(chain, x, component, asked, beside=beside, pulsation=pulsation),
+        readout=readout(chain, x, component, asked, beside=beside, pulsation=pulsation),
         local=inside,
         number=np.array(watched, dtype=np.intp),
         pulsation=pulsation,
@@ -219,30 +217,9 @@ def _cut(
     return cut(chain, x, [p[1] for p in inside])
 
 
-def _refuse_local(
-    run: Run,
-    chain: Chain,
-    component: tuple[str, ...],
-    beside: Beside,
-    pulsation: Callable[[Real], Real] | None,
-) -> None:
-    """Refuse responses in a driven element whose own shape follows forces late or unsteadily."""
-    changes = "beta" not in component and (pulsation is not None or beside.stretching != 0)
-    if changes or beside.rate.any() or run.order == 2:
-        raise SceneError(
-            f'element must be "tensed", got {run.model.element!r}, where a response lies between '
-            "nodes beside a force and is an acceleration, or stiffness is damped or changes"
-        )
-
-
 def _massless(chain: Chain) -> Flags:
     none = (np.einsum("tii->ti", chain.mass) == 0) & (chain.held == 0)
     return np.asarray(none[chain.term_of])
-
-
-def _moved(chain: Chain, component: tuple[str, ...], ends: list[Any]) -> NDArray[np.int32]:
-    places = [((chain.nodes - 1) * number, component.index(c)) for _, number, c in ends]
-    return np.array(places, dtype=np.int32).reshape(-1, 2)
 
 
 def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside) -> State:
@@ -259,15 +236,10 @@ def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside)
         if "z" in component:
             z, each = component.index("z"), chain.element_of
             f[:, z] -= beside.string[each] / chain.length[each] * np.diff(u[:, z])
-    y = _feet(chain, u)
+    y = np.zeros(0)  # how far the feet of resonators are moved
+    if chain.attached_row is not None:
+        y = np.einsum("kc,kc->k", chain.attached_row[:, 0], u[chain.feet])
     return State(u, np.zeros_like(u), f, y, np.zeros_like(y))
-
-
-def _feet(chain: Chain, u: Real) -> Real:
-    """Return how far the feet of resonators are moved."""
-    if chain.attached_row is None:
-        return np.zeros(0)
-    return np.asarray(np.einsum("kc,kc->k", chain.attached_row[:, 0], u[chain.feet]))
 
 
 def refuse(model: Compiled) -> None:

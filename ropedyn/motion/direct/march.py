@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from ... import _core
 from ...base.array import Real
 from ...base.errors import SolveError
+from ...chain.chain import Chain
 from ...chain.port import Ports
-from .lumped import Lumps
+from .beside import Beside
+from .lumped import Lumps, State
 from .newton import Stage, solve_stage
+from .point_law import Laws
 
 KEEPS = 0.25  # The scheme with this stage keeps energy,
 FORGETS = 1 - math.sqrt(0.5)  # and this one lets what has no inertia follow at once.
@@ -23,11 +26,12 @@ PLANS = 8  # So many factorisations are kept, each of a length of steps.
 KINETIC, STRAIN, INPUT, DISSIPATED, LAWS = ENERGIES = range(5)
 
 
-def stage_of(spectral_radius: float) -> float:
-    """Return g of the scheme that multiplies infinitely fast motion by rho in each step.
+System = tuple[Chain, Beside, Laws, NDArray[np.uint8], float, float, State]
 
-    (1 - rho) g^2 - 2 g + 1/2 = 0, see csrc/march.h; 1/4 for rho = 1.
-    """
+
+def stage_of(spectral_radius: float) -> float:
+    """Return g of the scheme that multiplies infinitely fast motion by rho in each step."""
+    # (1 - rho) g^2 - 2 g + 1/2 = 0, see csrc/march.h; 1/4 for rho = 1
     return 1 / (2 * (1 + math.sqrt((1 + spectral_radius) / 2)))
 
 
@@ -67,7 +71,7 @@ class Motion:
         self.late = 0.0
         self.stages = 0
         self.factorisations = 0
-        self._plans: OrderedDict[tuple[float, float], NDArray[np.uint8]] = OrderedDict()
+        self._plans: OrderedDict[float, NDArray[np.uint8]] = OrderedDict()
 
     @property
     def rests(self) -> bool:
@@ -133,28 +137,18 @@ class Motion:
         self, push: Push, time: Real, h: float, g: float, *, drive: Ports, refined: bool
     ) -> Stride:
         lumps = self.lumps
-        plan = self.plan(g * h)
+        system = self._system(g, h, self.state)
+        pushes = (drive, push.force, lumps.moved, push.speed, push.extra)
         read, energy, taken, done, residual = _core.march(
-            lumps.chain,
-            lumps.beside,
-            lumps.laws,
-            plan,
-            g,
-            h,
-            self.state,
-            drive,
-            push.force,
-            lumps.moved,
-            push.speed,
-            push.extra,
-            lumps.reading.ports,
-            True,
-            refined,
+            *system, *pushes, lumps.readout.ports, True, refined
         )
         if push.extra is not None:
             self.factorisations += 2 * done
         energies = np.column_stack([energy, np.zeros(len(energy))])
-        self._add_laws(energies, taken)
+        # of what laws took dashpots dissipate
+        is_dashpot = lumps.laws.kind == 0
+        energies[:, DISSIPATED] += taken[:, is_dashpot].sum(axis=1)
+        energies[:, LAWS] += taken[:, ~is_dashpot].sum(axis=1)
         error = None
         if done < len(push.force):
             error = SolveError(
@@ -163,40 +157,31 @@ class Motion:
             )
         return Stride(read[:done], energies[:done], error)
 
-    def _add_laws(self, energy: Real, taken: Real) -> None:
-        """Add what laws took: dashpots dissipate."""
-        is_dashpot = self.lumps.laws.kind == 0
-        energy[:, DISSIPATED] += taken[:, is_dashpot].sum(axis=1)
-        energy[:, LAWS] += taken[:, ~is_dashpot].sum(axis=1)
-
-    def plan(self, theta: float, extra: float = 0.0) -> NDArray[np.uint8]:
-        """Return the factors of a stage."""
-        key = (theta, extra)
-        if key not in self._plans:
-            lumps = self.lumps
-            self._plans[key] = _core.march_factor(
-                lumps.chain, lumps.beside, lumps.laws, theta, extra
-            )
+    def _system(self, g: float, h: float, state: State) -> System:
+        """Return what the core marches, with the factors of a stage."""
+        lumps, theta = self.lumps, g * h
+        what = (lumps.chain, lumps.beside, lumps.laws)
+        if theta not in self._plans:
+            self._plans[theta] = _core.march_factor(*what, theta, 0.0)
             self.factorisations += 1
             if len(self._plans) > PLANS:
                 self._plans.popitem(last=False)
-        self._plans.move_to_end(key)
-        return self._plans[key]
+        self._plans.move_to_end(theta)
+        return (*what, self._plans[theta], g, h, state)
 
     # --- laws that Python knows -----------------------------------------------------------------
 
     def _call(self, push: Push, time: Real, h: float, g: float) -> Stride:
         """Take steps one by one, with forces of laws that make each stage hold."""
-        lumps = self.lumps
-        calls = [one.law for one in lumps.calls]
         steps = len(push.force)
-        read = np.zeros((steps, 3, len(lumps.reading.ports.node)))
+        read = np.zeros((steps, 3, len(self.lumps.readout.ports.node)))
         energy = np.zeros((steps, len(ENERGIES)))
-        guess = np.zeros((2, len(calls)))
+        guess = np.zeros((2, len(self.lumps.calls)))
         for k in range(steps):
+            now = Push(push.force[k : k + 1], push.speed[k : k + 1], None)
             try:
-                given, taken = self._stages(_one(push, k), float(time[k]), h, g, guess)
-                stride = self._with_given(_one(push, k), given, h, g)
+                given, taken = self._stages(now, float(time[k]), h, g, guess)
+                stride = self._with_given(now, given, h, g)
             except BaseException as error:
                 return Stride(read[:k], energy[:k], error)
             guess = given
@@ -209,15 +194,13 @@ class Motion:
         self, push: Push, time: float, h: float, g: float, guess: Real
     ) -> tuple[Real, float]:
         """Return the forces of Python's laws at both stages of a step, and what they took [J]."""
-        lumps = self.lumps
-        state, theta, plan = self.state.copy(), g * h, self.plan(g * h)
-        drive = lumps.drives
-        system = (lumps.chain, lumps.beside, lumps.laws, plan, g, h, state)
+        lumps, theta = self.lumps, g * h
+        system = self._system(g, h, self.state.copy())
         calls = [one.law for one in lumps.calls]
         given, taken = np.zeros_like(guess), 0.0
         for stage, at in enumerate((time + theta, time + h - theta)):
             force, speed = push.force[0, stage], push.speed[0, stage]
-            x, C, q = _core.march_stage(*system, stage, drive, force, lumps.moved, speed)
+            x, C, q = _core.march_stage(*system, stage, lumps.drives, force, lumps.moved, speed)
             full, velocity = solve_stage(Stage(lumps, theta, at, x, C, q), guess[stage])
             given[stage] = full[calls]
             taken -= h / 2 * float(full[calls] @ velocity[calls])
@@ -236,8 +219,3 @@ class Motion:
         if stride.error is not None:
             raise stride.error
         return stride
-
-
-def _one(push: Push, k: int) -> Push:
-    """Return what pushes during one of the steps."""
-    return Push(push.force[k : k + 1], push.speed[k : k + 1], None)

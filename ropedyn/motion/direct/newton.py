@@ -25,10 +25,9 @@ STEP = 1e-7  # Numerical derivatives take this part of what moves as their step.
 
 
 class Stage(NamedTuple):
-    """A stage without the forces of laws, and what unit forces of them change.
+    """A stage without the forces of laws, and what unit forces of them change."""
 
-    Increments of the points are x + C force, their velocity is that over theta.
-    """
+    # increments of the points are x + C force, their velocity is that over theta
 
     lumps: Lumps
     theta: float  # [s]

@@ -17,7 +17,7 @@ from .beside import Beside
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
+class Readout:
     """Responses as numbers that the core reads."""
 
     # that the core reads: responses, and what an internal force at the left end follows from
@@ -39,10 +39,9 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class LeftForce:
-    """Internal forces at the left end: f_a = F^T (f_b - s) + s - Q (u_a + rate v_a).
+    """Internal forces at the left end: f_a = F^T (f_b - s) + s - Q (u_a + rate v_a)."""
 
-    s is the force of the string beside the first element.
-    """
+    # s is the force of the string beside the first element
 
     channel: list[int]  # Which of them are asked for
     F: Real  # (width, width)
@@ -67,7 +66,7 @@ class LeftForce:
         return np.asarray(force[:, self.channel])
 
 
-def reading(
+def readout(
     chain: Chain,
     x: Real,
     coordinates: Sequence[str],
@@ -75,13 +74,13 @@ def reading(
     *,
     beside: Beside,
     pulsation: Callable[[Real], Real] | None,
-) -> Reading:
+) -> Readout:
     """Return what the core reads for responses on these coordinates."""
     hidden = [at_start(x, p) for p in points]
     direct = [p for p, left in zip(points, hidden) if not left]
     number = np.flatnonzero(~np.array(hidden, dtype=np.bool_))
     if len(direct) == len(points):
-        return Reading(ports(chain, x, coordinates, points), number, None)
+        return Readout(ports(chain, x, coordinates, points), number, None)
     channel = [coordinates.index(moving(p)) for p, left in zip(points, hidden) if left]
     if beside.stretching and "beta" in coordinates and coordinates.index("beta") in channel:
         raise SceneError(
@@ -101,4 +100,4 @@ def reading(
         z=coordinates.index("z") if "z" in coordinates else None,
     )
     read = ports(chain, x, coordinates, direct + tellers(coordinates, x))
-    return Reading(read, number, left)
+    return Readout(read, number, left)

@@ -35,7 +35,7 @@ class Passage:
     factorisations: int = 0  # what it took
 
 
-class Walk:
+class Marching:
     """All chains of a run, led through a timeline together."""
 
     def __init__(
@@ -48,7 +48,8 @@ class Walk:
     ) -> None:
         width, nodes = len(run.model.coordinates), len(run.model.x)
         self.run, self.line, self.g, self.share = run, line, g, share
-        exact = run.spectral_radius == 1 and (run.step is not None or _is_fine(run.tolerance))
+        fine = run.tolerance is not None and run.tolerance < FINE
+        exact = run.spectral_radius == 1 and (run.step is not None or fine)
         # what is damped forgets the rounding of its steps
         self.motions = [Motion(one, refined=exact and not one.is_damped) for one in chains]
         self.now = np.zeros((len(chains), len(ENERGIES)))
@@ -165,7 +166,3 @@ class Walk:
         # what has no inertia loses the rest
         lost = before + energy[:, INPUT:].sum(axis=0) @ [1, -1, -1] - now[:INPUT].sum()
         now[DISSIPATED] += lost
-
-
-def _is_fine(tolerance: float | None) -> bool:
-    return tolerance is not None and tolerance < FINE

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +24,7 @@ from ...scene.force import is_sampled
 from ...scene.tension import Tension
 from ..request import Run
 from .lumped import Lumps
-from .run import Passage, Walk
+from .run import Marching, Passage
 from .timeline import Timeline, timeline
 
 TOLERANCE = 1e-4  # Errors are within this where neither tolerance nor step is given.
@@ -45,7 +44,7 @@ symmetry is the rounding."""
 
 
 @dataclass(frozen=True, eq=False)
-class Pace:
+class EnoughSteps:
     """A run with enough steps."""
 
     passage: Passage  # the finest
@@ -59,8 +58,10 @@ def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
     functions = [f for lumps in chains for f in (*lumps.forces, *lumps.motions)]
     breaks = [at for f in functions for at in f.breaks]
     stops = [*breaks, *_corners(run, chains)]
-    if run.step is not None:
-        return timeline(run.time, run.snapshots, stops, _constant(run.step))
+    if (step := run.step) is not None:
+        return timeline(
+            run.time, run.snapshots, stops, lambda begin, end: np.full(len(begin), step)
+        )
     highest = max((f.highest for f in functions), default=0.0)
     tension = run.model.scene.tension
     if isinstance(tension, Tension):
@@ -87,11 +88,7 @@ def _corners(run: Run, chains: list[Lumps]) -> list[float]:
     return run.time[1:-1].tolist() if run.order and any(map(is_sampled, followed)) else []
 
 
-def _constant(step: float) -> Callable[[Real, Real], Real]:
-    return lambda begin, end: np.full(len(begin), step)
-
-
-def within(run: Run, chains: list[Lumps], g: float) -> Pace:
+def within(run: Run, chains: list[Lumps], g: float) -> EnoughSteps:
     """March with finer and finer steps until their error is within the tolerance."""
     line = steps_of(run, chains)
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
@@ -101,7 +98,7 @@ def within(run: Run, chains: list[Lumps], g: float) -> Pace:
     while True:
         fine = line.finer(factor)
         end = begin + (0.9 * (1 - begin) if trend.last else 0.05)
-        passage = Walk(run, chains, fine, g, (begin, end)).through()
+        passage = Marching(run, chains, fine, g, (begin, end)).through()
         begin = end
         work += (passage.stages, passage.factorisations)
         if isinstance(passage.error, SolveError) and fine.steps <= MOST_STEPS // 100:
@@ -123,7 +120,7 @@ def within(run: Run, chains: list[Lumps], g: float) -> Pace:
             break
         factor *= growth
     run.progress(1.0)
-    return Pace(passage, error, int(work[0]), int(work[1]))
+    return EnoughSteps(passage, error, int(work[0]), int(work[1]))
 
 
 class Trend:
@@ -220,4 +217,4 @@ def _others(run: Run, passage: Passage) -> Real:
 
 def halved(run: Run, chains: list[Lumps], g: float) -> Passage:
     """March with half the steps that are asked for."""
-    return Walk(run, chains, steps_of(run, chains).finer(2), g).through()
+    return Marching(run, chains, steps_of(run, chains).finer(2), g).through()

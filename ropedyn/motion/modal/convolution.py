@@ -26,12 +26,10 @@ def move(expansion: Expansion, drive: int, given: Force | float, time: Real, ord
 
 
 def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: int) -> Real:
-    """Return what one force moves, from rest at the first time, shape (responses, t).
-
-    What the force did before the first time is not felt, and nothing is sampled: sines, steps and
-    blows are exponentials, chirps have Faddeeva's function, straight lines an exact recurrence.
-    Where something jumps, it is the value from the right.
-    """
+    """Return what one force moves, from rest at the first time, shape (responses, t)."""
+    # what the force did before the first time is not felt, and nothing is sampled: sines, steps and
+    # blows are exponentials, chirps have Faddeeva's function, straight lines an exact recurrence.
+    # Where something jumps, it is the value from the right.
     if isinstance(force, Sum):
         still = np.zeros((len(expansion.rest[drive]), len(time)))
         return sum((convolve(expansion, drive, one, time, order) for one in force.forces), still)
@@ -119,10 +117,8 @@ def _sines(modes: Oscillators, rest: Real, turns: list[SinePiece], time: Real, o
 
 
 def _motion(modes: Oscillators, piece: SinePiece, q: Real, v: Real, span: float) -> Exponentials:
-    """Return the motion of each mode under a piece from a state.
-
-    Q(s) = ((cosine s + sine w)/(s^2 + w^2) + v + (s + 2 sigma) q)/(s^2 + 2 sigma s + square)
-    """
+    """Return the motion of each mode under a piece from a state."""
+    # Q(s) = ((cosine s + sine w)/(s^2 + w^2) + v + (s + 2 sigma) q)/(s^2 + 2 sigma s + square)
     w = piece.frequency
     acts = piece.cosine != 0 or (piece.sine != 0 and w != 0)
     forced = np.array([] if not acts else [1j * w, -1j * w] if w else [0])
@@ -149,10 +145,9 @@ def _seen(modes: Oscillators, terms: Exponentials, order: int) -> Complex:
 
 
 class SinePiece(NamedTuple):
-    """A force cosine cos(w (t - start)) + sine sin(w (t - start)) until the next piece.
+    """A force cosine cos(w (t - start)) + sine sin(w (t - start)) until the next piece."""
 
-    A blow at its start moves what it hits by `kick`.
-    """
+    # a blow at its start moves what it hits by `kick`
 
     start: float  # [s]
     frequency: float = 0.0  # w [rad/s]

@@ -218,10 +218,8 @@ def _below(asked: _Asked) -> int:
 def _closed(
     asked: _Asked, known: tuple[Real, Real], beyond: float, closed: Proportional, sigma: Real
 ) -> Expansion:
-    """Sum undamped modes. With stiffness g K, g = stiff + soften s, each is r/(g lambda + ..).
-
-    Internal forces are g times those of K, and so are forces that motion of an end takes.
-    """
+    """Sum undamped modes. With stiffness g K, g = stiff + soften s, each is r/(g lambda + ..)."""
+    # internal forces are g times those of K, and so are forces that motion of an end takes
     eigenvalue, error = known
     circles = contour.on_a_line(eigenvalue, error, beyond)
     stiff, soften = closed.stiff.real, closed.soften.real
@@ -261,10 +259,8 @@ def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[R
 
 
 def _bound(asked: _Asked, left: Any) -> Real:
-    """Return |H| of the modes that are left out, bounded as an inner product.
-
-    There is no bound of internal forces, tips and motion of ends.
-    """
+    """Return |H| of the modes that are left out, bounded as an inner product."""
+    # there is no bound of internal forces, tips and motion of ends
     if not asked.bound:
         return np.full((len(asked.drives), len(asked.responses)), np.inf)
     own: dict[Any, float] = {}
@@ -302,10 +298,8 @@ def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> E
 
 
 def _relaxing(asked: _Asked, terms: Terms, rest: Real, far: float) -> tuple[Terms, Real]:
-    """Let what is left out follow forces as overdamped motion does that accumulates at a rate.
-
-    The higher the mode, the more g lambda outweighs inertia and tension: g = 1 + s/far.
-    """
+    """Let what is left out follow forces as overdamped motion does that accumulates at a rate."""
+    # the higher the mode, the more g lambda outweighs inertia and tension: g = 1 + s/far
     sigma, square, a, b, p, r = terms
     follows = np.logical_or.outer(
         np.array([is_end(drive) for drive in asked.drives]),
@@ -317,10 +311,8 @@ def _relaxing(asked: _Asked, terms: Terms, rest: Real, far: float) -> tuple[Term
 
 
 def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _DampedRates:
-    """Find the rates below a radius between undamped modes; of a whole chain all there are.
-
-    Those before the place where overdamped ones accumulate, and fewer where rounding hides some.
-    """
+    """Find the rates below a radius between undamped modes; of a whole chain all there are."""
+    # those before the place where overdamped ones accumulate, and fewer where rounding hides some
     chain = asked.chain
     spans = [chain.between(*span) for span in chain.spans]
     there_are = [_how_many(span, rates) for span in spans]
@@ -366,10 +358,8 @@ def _how_many(span: Chain, rates: Rates) -> float:
 
 
 def _spurious(chain: Chain) -> int:
-    """Return how many modes of lumps there are whose mass is negative, which are no motion.
-
-    The end correction of tensed elements makes the mass matrix indefinite.
-    """
+    """Return how many modes of lumps there are whose mass is negative, which are no motion."""
+    # the end correction of tensed elements makes the mass matrix indefinite
     each = np.bincount(chain.term_of, minlength=len(chain.mass))
     free = chain.held == 0
     kept = free[:, :, None] & free[:, None, :]
@@ -413,11 +403,9 @@ def _terms(
     circles: contour.Circles,
     shape: tuple[int, int],
 ) -> Terms:
-    """Turn residues into real terms.
-
-    Two real rates, or two that are nearly one, of residues known together alone, are a pair:
-    (m_0 (s - c) + m_1 rho - m_0 (d_1 + d_2))/((s - p_1)(s - p_2)), p = c + d.
-    """
+    """Turn residues into real terms."""
+    # two real rates, or two that are nearly one, of residues known together alone, are a pair:
+    # (m_0 (s - c) + m_1 rho - m_0 (d_1 + d_2))/((s - p_1)(s - p_2)), p = c + d
     upper, is_pair = circles.center.imag >= 0, _is_pair(pole, circles)
     joined, others = (np.flatnonzero(upper & one) for one in (is_pair, ~is_pair))
     pairs: list[tuple[float, float, Real, Real]] = []

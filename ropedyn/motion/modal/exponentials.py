@@ -107,10 +107,8 @@ def is_uniform(time: Real) -> bool:
 
 
 def _on_grid(rate: Complex, coefficient: Complex, time: Real) -> Real:
-    """Evaluate by blocks: e^(z (a BLOCK + b) h) is a product, the sum over z one of matrices.
-
-    Terms leave from the block on in which they have decayed to nothing.
-    """
+    """Evaluate by blocks: e^(z (a BLOCK + b) h) is a product, the sum over z one of matrices."""
+    # terms leave from the block on in which they have decayed to nothing
     h = (time[-1] - time[0]) / (len(time) - 1)
     blocks = -(-len(time) // BLOCK)
     within = np.exp(np.multiply.outer(rate, h * np.arange(min(BLOCK, len(time)))))
@@ -229,11 +227,9 @@ def _ring(poles: Complex, inside: Flags) -> tuple[float, float]:
 
 
 def _circle(poles: Complex, inside: Flags, span: float) -> tuple[float, int]:
-    """Return the radius of a circle around some poles, and how many nodes it takes.
-
-    With n nodes the poles add (inner/radius)^n and (radius/outer)^n, the exponential its term
-    (radius t)^n/n! of Taylor's series, which decay keeps below (radius/decay)^n.
-    """
+    """Return the radius of a circle around some poles, and how many nodes it takes."""
+    # with n nodes the poles add (inner/radius)^n and (radius/outer)^n, the exponential its term
+    # (radius t)^n/n! of Taylor's series, which decay keeps below (radius/decay)^n.
     inner, outer = _ring(poles, inside)
     center = poles[inside].mean()
     width = float(_width(2 * center, span))

@@ -57,11 +57,9 @@ def _seen(residues: Real) -> Flags:
 
 
 def _left_out(model: Compiled, shares: tuple[Share, ...], omega: float, responses: int) -> Real:
-    """Return how far modes that are left out move beyond what is static, at most.
-
-    A mode's response is 1/(1 - x^2 + 2 i zeta x) of its static one, x = omega/omega_k. Where
-    damping couples modes that motion is estimated: its residues have parts in proportion to x.
-    """
+    """Return how far modes that are left out move beyond what is static, at most."""
+    # a mode's response is 1/(1 - x^2 + 2 i zeta x) of its static one, x = omega/omega_k. Where
+    # damping couples modes that motion is estimated: its residues have parts in proportion to x.
     most = np.zeros(responses)
     for share in shares:
         e = share.expansion

@@ -67,11 +67,9 @@ def _reach(
 
 
 def _steady(force: Sine, begin: float, beyond: float, order: int, ratio: float) -> float:
-    """Bound by the steady state's distance and the free motion that begins with it.
-
-    With x = (w/omega)^2 the distance is |x - 2 i ratio sqrt(x)|/|1 - x + 2 i ratio sqrt(x)| of the
-    force: it grows with x, and with the ratio grows or falls throughout.
-    """
+    """Bound by the steady state's distance and the free motion that begins with it."""
+    # with x = (w/omega)^2 the distance is |x - 2 i ratio sqrt(x)|/|1 - x + 2 i ratio sqrt(x)| of
+    # the force: it grows with x, and with the ratio grows or falls throughout.
     w = 2 * math.pi * force.frequency
     x = (w / beyond) ** 2
     if x >= 1:
@@ -151,10 +149,8 @@ def _variation_of_blow(force: Impulse, begin: float, end: float, order: int) -> 
 
 
 def ratio_beyond(model: Compiled, expansion: Expansion) -> float:
-    """Return the largest damping ratio of the modes that are left out.
-
-    (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega.
-    """
+    """Return the largest damping ratio of the modes that are left out."""
+    # (drag + soften lambda)/(2 omega) is at omega' > omega at most omega'/omega of that at omega
     omega = np.sqrt(np.maximum(expansion.square, 0.0))
     ratio = np.divide(expansion.sigma, omega, out=np.zeros_like(omega), where=omega > 0)
     if having(model.scene.dampings, "ratio"):
