@@ -127,16 +127,18 @@ def solve_floquet(model: Compiled, modes: int | None) -> Floquet:
     share = np.zeros((2 * count, count))
     steps = 0
     for block in system.blocks:
-        value, off, part, made = _multipliers(
-            system.only(block), tension.frequency, tension.amplitude
-        )
+        matrix, off, made = converged(system.only(block), tension.frequency, tension.amplitude)
+        value, right = np.linalg.eig(matrix)
+        part = np.abs(right[: len(block)]) ** 2 + np.abs(right[len(block) :]) ** 2
         begin = sum(map(len, multiplier))
-        share[begin : begin + len(value), block] = part
+        share[begin : begin + len(value), block] = (part / part.sum(axis=0)).T
         multiplier.append(value)
-        error.append(off)
+        error.append(_errors(matrix, off, right))
         steps = max(steps, made)
     value = np.concatenate(multiplier)
-    order = _order(value)
+    size = np.abs(value)
+    # of a pair of the same size the one above the real axis comes first
+    order = np.lexsort((-value.imag, -np.round(size / size.max(initial=1.0), 12)))
     return Floquet(
         period=1 / tension.frequency,
         modes=np.arange(1, count + 1),
@@ -163,17 +165,6 @@ def checked_modes(model: Compiled, modes: int | None) -> int | None:
     if finite is None or finite > MOST_MODES:
         raise SceneError(f"modes must be a number for models with more than {MOST_MODES} of them")
     return None
-
-
-def _multipliers(
-    system: ModalSystem, frequency: float, amplitude: float
-) -> tuple[Complex, Real, Real, int]:
-    """Return multipliers, their errors, shares of modes, and how many steps it took."""
-    matrix, off, steps = converged(system, frequency, amplitude)
-    value, right = np.linalg.eig(matrix)
-    k = len(system.eigenvalue)
-    part = np.abs(right[:k]) ** 2 + np.abs(right[k:]) ** 2
-    return value, _errors(matrix, off, right), (part / part.sum(axis=0)).T, steps
 
 
 def converged(system: ModalSystem, frequency: float, amplitude: float) -> tuple[Real, float, int]:
@@ -209,9 +200,3 @@ def _errors(matrix: Real, off: float, right: Complex) -> Real:
     whole = off * len(matrix)
     root = np.sqrt(whole * np.abs(matrix).max())
     return np.fmin(whole * condition, root)
-
-
-def _order(multiplier: Complex) -> Index:
-    """Sort by size; of a pair of the same size the one above the real axis comes first."""
-    size = np.abs(multiplier)
-    return np.lexsort((-multiplier.imag, -np.round(size / size.max(initial=1.0), 12)))

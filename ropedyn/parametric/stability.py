@@ -156,7 +156,12 @@ def solve_stability(
     """Look at every frequency and amplitude; see `Model.stability_map`."""
     f = _increasing(check.numbers(frequency, "frequency", "Hz", sign="positive"), "frequency")
     a = _increasing(check.numbers(amplitude, "amplitude", "N", sign="nonnegative"), "amplitude")
-    _check_tension(model, float(a[-1]))
+    mean, most = model.scene.mean_tension, float(a[-1])
+    if model.scene.rope.bending_stiffness is None and most > mean:
+        raise SceneError(
+            "amplitude must be at most the mean tension for a rope without bending_stiffness, "
+            f"{mean!r} N, got {most!r}"
+        )
     report = reporter(progress)
     start = time.perf_counter()
     system = modal_system(model, checked_modes(model, modes))
@@ -181,12 +186,3 @@ def _increasing(value: Real, name: str) -> Real:
     if len(value) == 0 or (np.diff(value) <= 0).any():
         raise SceneError(f"{name} must hold a number at least, and increase, got {value.tolist()}")
     return value
-
-
-def _check_tension(model: Compiled, amplitude: float) -> None:
-    scene = model.scene
-    if scene.rope.bending_stiffness is None and amplitude > scene.mean_tension:
-        raise SceneError(
-            "amplitude must be at most the mean tension for a rope without bending_stiffness, "
-            f"{scene.mean_tension!r} N, got {amplitude!r}"
-        )

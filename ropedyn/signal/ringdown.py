@@ -111,7 +111,16 @@ def ring_down(
         )
     if not x.any():
         raise SolveError(f"nothing moves in response {response} since {time[first]:g} s")
-    frequencies = _strongest(x, step) if near is None else _checked_near(near, step)
+    if near is None:  # the largest line that is not the lowest
+        lines = np.abs(np.fft.rfft(np.hanning(len(x)) * (x - x.mean())))
+        frequencies = np.array([(1 + int(lines[1:-1].argmax())) / (len(x) * step)])
+    else:
+        frequencies = check.numbers(near, "near", "Hz", sign="positive")
+        if frequencies.max() >= 0.5 / step:
+            raise SceneError(
+                f"near must be below half the rate of the times, {0.5 / step:g} Hz, got "
+                f"{frequencies.max():g}"
+            )
     rows = [_mode_near(_band(x, step, f), f) for f in frequencies.tolist()]
     rate, size, variance, residual = (np.array(column) for column in zip(*rows))
     modulus = np.abs(rate)
@@ -134,22 +143,6 @@ def _first_free(time: Real, force: Real, since: float | None) -> int:
         return int(np.searchsorted(time, check.number(since, "since", "s")))
     changes = np.flatnonzero((np.diff(force, axis=1) != 0).any(axis=0))
     return int(changes[-1]) + 1 if len(changes) else 0
-
-
-def _checked_near(near: Any, step: float) -> Real:
-    f = check.numbers(near, "near", "Hz", sign="positive")
-    if f.max() >= 0.5 / step:
-        raise SceneError(
-            f"near must be below half the rate of the times, {0.5 / step:g} Hz, got {f.max():g}"
-        )
-    return f
-
-
-def _strongest(x: Real, step: float) -> Real:
-    """Return the frequency of the largest line that is not the lowest [Hz]."""
-    lines = np.abs(np.fft.rfft(np.hanning(len(x)) * (x - x.mean())))
-    k = 1 + int(lines[1:-1].argmax())
-    return np.array([k / (len(x) * step)])
 
 
 def _band(x: Real, step: float, f: float) -> Band:

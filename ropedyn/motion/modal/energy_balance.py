@@ -68,7 +68,7 @@ def _refuse(run: Run) -> None:
         raise SceneError(f'method must be "direct" for the energy where {why}, got "modal"')
 
 
-class Group(NamedTuple):
+class AlikeModes(NamedTuple):
     """Modes that are integrated together."""
 
     modes: Index
@@ -96,9 +96,9 @@ class Driven:
 
     def energies(self) -> tuple[Real, Real, Real, Real]:
         """Return kinetic, strain, input and dissipated, each (t,)."""
-        count = len(self.own.sigma)
         kinetic, strain = np.zeros(len(self.time)), np.zeros(len(self.time))
-        for part in _blocks(count):
+        for first in range(0, len(self.own.sigma), BLOCK):
+            part = slice(first, min(first + BLOCK, len(self.own.sigma)))
             q, v = (self._modes(part, self.time, order) for order in (0, 1))
             r = self.own.a[..., part]
             kinetic += np.einsum("dek,dkt,ekt->t", r, v, v, optimize=True) / 2
@@ -112,12 +112,12 @@ class Driven:
             if self.own.sigma[group.modes].any():
                 lost += self._integral(partial(self._loss, group.modes), group)
         if self.lag:
-            rest = Group(np.zeros(0, dtype=np.intp), 0.0, 1 / self.lag)
+            rest = AlikeModes(np.zeros(0, dtype=np.intp), 0.0, 1 / self.lag)
             given += self._integral(self._power_of_rest, rest)
             lost += self._integral(self._loss_of_rest, rest)
         return kinetic, strain + still, given if self.lag else given + still, lost
 
-    def _groups(self) -> list[Group]:
+    def _groups(self) -> list[AlikeModes]:
         """Return modes of like rates."""
         sigma, omega = self.own.sigma, np.sqrt(np.abs(self.own.square))
         split = np.sqrt(np.maximum(sigma**2 - self.own.square, 0.0))
@@ -128,7 +128,7 @@ class Driven:
         while len(order):
             alike = rate[order[:BLOCK]] <= ALIKE * rate[order[0]]
             modes, order = order[: alike.sum()], order[alike.sum() :]
-            groups.append(Group(modes, float(rate[modes[-1]]), float(decay[modes].max())))
+            groups.append(AlikeModes(modes, float(rate[modes[-1]]), float(decay[modes].max())))
         return groups
 
     def _power(self, modes: Index, time: Real) -> Real:
@@ -154,16 +154,10 @@ class Driven:
 
     def _velocity(self, time: Real, modes: Index | slice) -> Real:
         """Return what some modes have of the velocity of each drive, (drives, t)."""
-        own, shape = self.own, self.rest.shape
-        some = own._replace(
-            sigma=own.sigma[modes],
-            square=own.square[modes],
-            a=own.a[..., modes],
-            b=own.b[..., modes],
-            rest=np.zeros(shape),
-            p=np.zeros(0),
-            r=np.zeros((*shape, 0)),
-        )
+        own, still = self.own, np.zeros(self.rest.shape)
+        a, b = own.a[..., modes], own.b[..., modes]
+        some = own._replace(sigma=own.sigma[modes], square=own.square[modes], a=a, b=b, rest=still)
+        some = some._replace(p=np.zeros(0), r=np.zeros((*still.shape, 0)))
         moved = [move(some, d, one, time, 1) for d, one in enumerate(self.given)]
         return np.asarray(np.sum(moved, axis=0))
 
@@ -191,9 +185,7 @@ class Driven:
     def _forces(self) -> list[Force]:
         return [force for force in self.given if not isinstance(force, float)]
 
-    # --- over time ---
-
-    def _integral(self, power: Callable[[Real], Real], group: Group) -> Real:
+    def _integral(self, power: Callable[[Real], Real], group: AlikeModes) -> Real:
         """Integrate from the first time to each, shape (t,)."""
         edges = self._edges(group.decay)
         fastest = max([group.rate, *(2 * math.pi * force.highest for force in self._forces)])
@@ -248,10 +240,6 @@ def _nothing(modes: int, responses: int) -> Expansion:
     return Expansion(
         np.zeros(modes), np.zeros(modes), real, real, np.zeros(0), none, still, still, math.inf
     )
-
-
-def _blocks(count: int) -> list[slice]:
-    return [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
 
 
 def _smooth(given: Force | float) -> Force | float:

@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...base.array import Complex, Flags, Index, Real
+from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain import tip
 from ...chain.chain import Chain
 from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, moving
 from ...eigen.damped.characteristic import Rates, horizon
-from ...eigen.damped.damped_roots import Damped, damped_roots, most_roots
+from ...eigen.damped.damped_roots import damped_roots, most_roots
 from ...eigen.damped.proportional import Proportional, proportional
 from ...eigen.spectrum import HIGHEST, count_component, spectrum
 from ...response.modal_sum import (
@@ -95,33 +95,25 @@ def expand(
     bound: bool = True,
 ) -> tuple[Share, ...]:
     """Expand the transfer functions of each component."""
-    refuse_hysteresis(model)
+    losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
+    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    if losses:  # a complex modulus has a meaning at each frequency, not in time
+        raise SceneError(
+            "damping must be in proportion to velocity, or modal, to have a meaning in time, got "
+            f"{', '.join(losses)}"
+        )
     if damping.having(model.scene.dampings, "ratio"):
         refuse_other_damping(model, drives, responses)
+    roots = [tip.tip_of(model, p).root[0] if tip.is_tip(p) else p for p in responses]
     shares = []
     for component in model.components:
         d = [k for k, drive in enumerate(drives) if moving(drive) in component]
-        r = [k for k, point in enumerate(responses) if _coordinate(model, point) in component]
+        r = [k for k, root in enumerate(roots) if moving(root) in component]
         if d and r:
             pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
             asked = _Asked(model, component, pushed, watched, modes, resolved, bound)
             shares.append(Share(component, np.array(d), np.array(r), _expansion(asked)))
     return tuple(shares)
-
-
-def refuse_hysteresis(model: Compiled) -> None:
-    """Refuse what is a complex modulus: it has a meaning at each frequency, not in time."""
-    losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
-    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
-    if losses:
-        raise SceneError(
-            "damping must be in proportion to velocity, or modal, to have a meaning in time, got "
-            f"{', '.join(losses)}"
-        )
-
-
-def _coordinate(model: Compiled, point: Point) -> str:
-    return tip.tip_of(model, point).root[0][0] if tip.is_tip(point) else moving(point)
 
 
 # --- one component ------------------------------------------------------------------------------
@@ -141,7 +133,6 @@ class _Asked:
 
     @property
     def chain(self) -> Chain:
-        """That of the component."""
         return self.model.chain.only(self.component)
 
     def at(self, factor: Complex) -> Complex:
@@ -190,26 +181,21 @@ def _expansion(asked: _Asked) -> Expansion:
 
 def _eigenvalues(asked: _Asked, most: int) -> tuple[Real, Real, float]:
     """Return those of the undamped modes that are summed, their errors, and the next one."""
-    chain = asked.chain
-    finite = chain.finite
+    chain, finite = asked.chain, asked.chain.finite
     if asked.modes is not None:
         wanted = asked.modes
     elif finite is not None and chain.free <= most:
         wanted = finite
     else:
-        wanted = min(max(_below(asked), LEAST), MANY, most)
+        try:
+            limit = min(REACH * asked.resolved, math.sqrt(HIGHEST)) ** 2
+            below = count_component(asked.model, asked.component, limit)
+        except SolveError:  # more than can be walked
+            below = MANY
+        wanted = min(max(below, LEAST), MANY, most)
     value, error = spectrum(asked.model, asked.component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
     return value[:wanted], error[:wanted], beyond
-
-
-def _below(asked: _Asked) -> int:
-    """Return how many modes there are below eight times what is of interest."""
-    try:
-        below = min(REACH * asked.resolved, math.sqrt(HIGHEST)) ** 2
-        return count_component(asked.model, asked.component, below)
-    except SolveError:  # more than can be walked
-        return MANY
 
 
 # --- damping in proportion ----------------------------------------------------------------------
@@ -315,7 +301,8 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Dam
     # those before the place where overdamped ones accumulate, and fewer where rounding hides some
     chain = asked.chain
     spans = [chain.between(*span) for span in chain.spans]
-    there_are = [_how_many(span, rates) for span in spans]
+    most = [most_roots(span, rates) for span in spans]
+    there_are = [np.inf if n is None else n - 2 * _spurious(s) for n, s in zip(most, spans)]
     edge = EDGE * horizon(chain, rates)
     radius = 1.5 * float(np.sqrt(np.abs(eigenvalue).max(initial=1.0)))
     if np.isfinite(beyond):
@@ -324,13 +311,14 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Dam
     for attempt in range(ATTEMPTS):
         radius = min(radius, edge)
         try:
-            found = [_roots(asked, span, rates, radius) for span in spans]
-        except SolveError:
+            found = [damped_roots(span, rates, radius) for span in spans]
+        except SolveError as refusal:
             if attempt == ATTEMPTS - 1:
-                raise
+                raise SolveError(f"({', '.join(asked.component)}): {refusal}") from refusal
             radius, grows = radius / 2, False
             continue
-        whole = [_count(one) >= most for one, most in zip(found, there_are)]
+        count = [len(one.value) + int((one.value.imag > 0).sum()) for one in found]
+        whole = [n >= all_of for n, all_of in zip(count, there_are)]
         if not grows or all(whole) or attempt >= WIDER or radius == edge:
             break
         radius *= 2
@@ -349,14 +337,6 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Dam
     )
 
 
-def _how_many(span: Chain, rates: Rates) -> float:
-    """Return how many rates of motion a span has, infinitely many where elements do not say."""
-    most = most_roots(span, rates)
-    if most is None:
-        return np.inf
-    return most - 2 * _spurious(span)
-
-
 def _spurious(chain: Chain) -> int:
     """Return how many modes of lumps there are whose mass is negative, which are no motion."""
     # the end correction of tensed elements makes the mass matrix indefinite
@@ -365,17 +345,6 @@ def _spurious(chain: Chain) -> int:
     kept = free[:, :, None] & free[:, None, :]
     negative = (np.linalg.eigvalsh(np.where(kept, chain.mass, 0.0)) < 0).sum(axis=1)
     return int(negative @ each)
-
-
-def _count(found: Damped) -> int:
-    return len(found.value) + int((found.value.imag > 0).sum())
-
-
-def _roots(asked: _Asked, span: Chain, rates: Rates, radius: float) -> Damped:
-    try:
-        return damped_roots(span, rates, radius)
-    except SolveError as refusal:
-        raise SolveError(f"({', '.join(asked.component)}): {refusal}") from refusal
 
 
 Terms = tuple[Real, Real, Real, Real, Real, Real]
@@ -398,15 +367,14 @@ def _taken(
 
 
 def _terms(
-    function: contour.Function,
-    pole: Complex,
-    circles: contour.Circles,
-    shape: tuple[int, int],
+    function: contour.Function, pole: Complex, circles: contour.Circles, shape: tuple[int, int]
 ) -> Terms:
     """Turn residues into real terms."""
     # two real rates, or two that are nearly one, of residues known together alone, are a pair:
     # (m_0 (s - c) + m_1 rho - m_0 (d_1 + d_2))/((s - p_1)(s - p_2)), p = c + d
-    upper, is_pair = circles.center.imag >= 0, _is_pair(pole, circles)
+    still = np.array([bool((pole[one] == 0).all()) for one in circles.members], dtype=np.bool_)
+    is_pair = (circles.center.imag == 0) & (still | (circles.size == 2))
+    upper = circles.center.imag >= 0
     joined, others = (np.flatnonzero(upper & one) for one in (is_pair, ~is_pair))
     pairs: list[tuple[float, float, Real, Real]] = []
     for k in joined:
@@ -437,9 +405,3 @@ def _terms(
         np.array([one[0] for one in real]),
         stacked([one[1] for one in real]),
     )
-
-
-def _is_pair(pole: Complex, circles: contour.Circles) -> Flags:
-    """Whether each circle lies on the real axis and holds two rates, or rigid motion."""
-    still = np.array([bool((pole[one] == 0).all()) for one in circles.members], dtype=np.bool_)
-    return np.asarray((circles.center.imag == 0) & (still | (circles.size == 2)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...base.array import Complex, Index, Real
+from ...base.array import Complex, Real
 from ...scene.force import Samples
 from .exponentials import Oscillators, invert, is_uniform, rates, unity
 
@@ -73,19 +73,14 @@ def _integrals(sigma: Real, square: Real, h: Real) -> tuple[Real, Real, Real]:
     """Return S, P and R at times h, shape (h, k) each."""
     size = np.abs(rates(sigma, square)).max(axis=1)
     result = np.empty((3, len(h), len(sigma)))
-    for octave in _octaves(h):
+    octaves = np.frexp(h)[1]  # lengths within a factor of 2 are taken together
+    for octave in (np.flatnonzero(octaves == each) for each in np.unique(octaves)):
         short = size * h[octave].max() <= SHORT
         for use, found in ((short, _series), (~short, _inverted)):
             at = np.ix_(octave, np.flatnonzero(use))
             for whole, part in zip(result, found(sigma[use], square[use], h[octave])):
                 whole[at] = part
     return result[0], result[1], result[2]
-
-
-def _octaves(h: Real) -> list[Index]:
-    """Return groups of lengths within a factor of 2."""
-    octave = np.frexp(h)[1]
-    return [np.flatnonzero(octave == each) for each in np.unique(octave)]
 
 
 def _series(sigma: Real, square: Real, h: Real) -> Real:

@@ -85,26 +85,21 @@ def _steady(force: Sine, begin: float, beyond: float, order: int, ratio: float) 
 def _variation(force: Force, begin: float, end: float, order: int) -> Variation:
     """Return how a force changes that is differentiated `order` times."""
     if isinstance(force, Sine):
-        return _variation_of_sine(force, begin, end, order)
-    if isinstance(force, Chirp):
-        return _variation_of_chirp(force, begin, end, order)
+        w = 2 * math.pi * force.frequency
+        most = abs(force.amplitude) * w**order
+        jump = most * abs(math.sin(w * begin + force.phase + order * math.pi / 2))
+        turn = w * (end - begin)
+        return Variation(jump, jump + min(turn, 2 + turn * 2 / math.pi) * most)
     if isinstance(force, Step):
         if force.time > end or force.amplitude == 0:
             return STILL
         return Variation(*2 * (abs(force.amplitude),)) if order == 0 else BLOW
+    if isinstance(force, Chirp):
+        return _variation_of_chirp(force, begin, end, order)
     if isinstance(force, Samples):
         return _variation_of_samples(force, begin, end, order)
     assert isinstance(force, Impulse)
     return _variation_of_blow(force, begin, end, order)
-
-
-def _variation_of_sine(force: Sine, begin: float, end: float, order: int) -> Variation:
-    w = 2 * math.pi * force.frequency
-    most = abs(force.amplitude) * w**order
-    jump = most * abs(math.sin(w * begin + force.phase + order * math.pi / 2))
-    return Variation(
-        jump, jump + min(w * (end - begin), 2 + w * (end - begin) * 2 / math.pi) * most
-    )
 
 
 def _variation_of_chirp(force: Chirp, begin: float, end: float, order: int) -> Variation:
