@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..base import check
+from ..base.answer import Cost
 from ..base.array import Complex, Real
 from ..base.errors import SceneError
 from ..base.progress import reporter, silent
@@ -72,6 +73,9 @@ class Run:
         check.one_of(quantity, "quantity", MOTIONS)
         t = _times(time)
         drives, given = _driven(model, drive, force, t)
+        radius = check.number(spectral_radius, "spectral_radius", sign="nonnegative")
+        if radius > 1:
+            raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
         return cls(
             model,
             t,
@@ -85,7 +89,7 @@ class Run:
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
             step=check.optional(step, "step", "s", sign="positive"),
             tolerance=check.optional(tolerance, "tolerance", sign="positive"),
-            spectral_radius=_radius(spectral_radius),
+            spectral_radius=radius,
             progress=reporter(progress),
             partial=check.instance(partial, "partial", bool, "True or False"),
         )
@@ -182,10 +186,7 @@ class SteadyStates(NamedTuple):
 
     value: Complex  # (responses, f) per amplitude
     error: Real  # (responses, f) estimated relative error
-    method: str
-    unknowns: int
-    sweeps: int = 0
-    factorisations: int = 0
+    cost: Cost  # but for the seconds
 
 
 def is_direct(model: Compiled, method: str) -> bool:
@@ -262,10 +263,3 @@ def _snapshots(given: Any, time: Real) -> Real:
             f"got {check.shown(given)}"
         )
     return when
-
-
-def _radius(given: Any) -> float:
-    radius = check.number(given, "spectral_radius", sign="nonnegative")
-    if radius > 1:
-        raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
-    return radius

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from ..base.answer import Cost
 from ..base.unit import QUANTITIES
 from ..response.frf import FRF, MeshOfResponse
 from ..response.harmonic import mesh_of_frf
@@ -44,13 +44,6 @@ def solve_stepped_sine(asked: SteppedSine) -> FRF:
         frequency=f,
         value=value,
         rounding_error=found.error,
-        cost=Cost(
-            seconds,
-            found.method,
-            len(model.x) - 1,
-            found.unknowns,
-            sweeps=found.sweeps,
-            factorisations=found.factorisations,
-        ),
+        cost=replace(found.cost, seconds=seconds),
         mesh=mesh,
     )

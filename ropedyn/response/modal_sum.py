@@ -14,7 +14,7 @@ lambda_k, which a few points give to all digits.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -100,7 +100,9 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     omega = 2 * np.pi * question.frequency
     shape = (len(question.drives), len(question.responses), len(omega))
     value, error = np.empty(shape, dtype=np.complex128), np.empty(shape)
-    for part in _slices(len(omega), len(poles.eigenvalue)):
+    most = max(1, (1 << 20) // max(len(poles.eigenvalue), 1))
+    for first in range(0, len(omega), most):
+        part = slice(first, first + most)
         g, slope = _weights(question, poles, omega, part)
         value[..., part] = static.value[..., None] + residue.value @ g
         error[..., part] = static.error[..., None] + residue.error @ np.abs(g)
@@ -209,17 +211,8 @@ def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Unda
     first = float(elastic[0]) if len(elastic) else 1.0
     shift = shift_of(middle)
     radius = NEAR * np.minimum(gap, np.where(middle == 0, first, np.abs(middle)))
-    return UndampedPoles(
-        eigenvalue=middle,
-        error=spread,
-        radius=radius,
-        ratio=mean,
-        unlike=unlike,
-        beyond=beyond,
-        shift=shift,
-        probe=max(highest, 2 * shift, first),
-        largest=float(ratio.max(initial=0.0)),
-    )
+    probe, largest = max(highest, 2 * shift, first), float(ratio.max(initial=0.0))
+    return UndampedPoles(middle, spread, radius, mean, unlike, beyond, shift, probe, largest)
 
 
 # --- what they give -----------------------------------------------------------------------------
@@ -268,11 +261,6 @@ def _missing(
     g = (s - p) / ((poles.eigenvalue + s) * (poles.eigenvalue + p))
     rest = np.abs(probed.value - static.value - residue.value @ g)
     return np.maximum(rest - probed.error - static.error - residue.error @ np.abs(g), 0.0)
-
-
-def _slices(count: int, modes: int) -> Iterator[slice]:
-    size = max(1, (1 << 20) // max(modes, 1))
-    return (slice(k, k + size) for k in range(0, count, size))
 
 
 def _weights(

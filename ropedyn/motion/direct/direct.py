@@ -18,8 +18,8 @@ from ..modal.superposition import mesh_error
 from ..request import Run, why_direct
 from .lumped import Lumps, lumped_chains, refuse
 from .march import stage_of
-from .run import Marching
-from .steps import EnoughSteps, halved, steps_of, within
+from .run import Passage
+from .steps import given, within
 
 ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")  # In the order of a passage.
 STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an answer.
@@ -32,12 +32,12 @@ def march(run: Run) -> History:
     chains = lumped_chains(run)
     g = stage_of(run.spectral_radius)
     start = time.perf_counter()
-    steps = _stepped(run, chains, g)
-    passage, seconds = steps.passage, time.perf_counter() - start
+    passage = within(run, chains, g) if run.step is None else given(run, chains, g)
+    seconds = time.perf_counter() - start
     error = passage.error
     if error is not None and (passage.reached == 0 or not isinstance(error, STOPS)):
         raise error
-    history = _history(run, chains, steps, seconds)
+    history = _history(run, chains, passage, seconds)
     if error is not None and not run.partial:
         if isinstance(error, SolveError):
             error.history = history
@@ -57,17 +57,7 @@ def refuse_responses(run: Run) -> None:
             )
 
 
-def _stepped(run: Run, chains: list[Lumps], g: float) -> EnoughSteps:
-    """March with the steps that are asked for, or with as many as the tolerance needs."""
-    if run.step is None:
-        return within(run, chains, g)
-    passage = Marching(run, chains, steps_of(run, chains), g).through()
-    unknown = np.full(passage.value.shape, np.nan)
-    return EnoughSteps(passage, unknown, passage.stages, passage.factorisations)
-
-
-def _history(run: Run, chains: list[Lumps], steps: EnoughSteps, seconds: float) -> History:
-    passage, model = steps.passage, run.model
+def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) -> History:
     kept, seen = slice(passage.reached), slice(passage.seen)
     asked = replace(run.kept, time=run.time[kept], snapshots=run.snapshots[seen])
     value = passage.value[:, kept]
@@ -75,25 +65,20 @@ def _history(run: Run, chains: list[Lumps], steps: EnoughSteps, seconds: float) 
     energy = {name: total[:, k].copy() for k, name in enumerate(ENERGIES)}
     if all((lumps.laws.kind == 0).all() for lumps in chains):
         del energy["laws"]
+    unknowns = sum(lumps.chain.free for lumps in chains)
+    work = passage.stages, passage.factorisations
     error, stopped = passage.error, ""
     if error is not None:
         told = f"{type(error).__name__}: {error}"
         stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
-    deviation = partial(_deviation, asked, value, steps.error[:, kept])
+    deviation = partial(_deviation, asked, value, passage.step_error[:, kept])
     return History(
         **asked.told,
         value=value,
         truncation_error=np.zeros(len(run.responses)),
-        x=model.x,
+        x=run.model.x,
         snapshot=passage.snapshot[seen],
-        cost=Cost(
-            seconds,
-            "direct",
-            len(model.x) - 1,
-            sum(lumps.chain.free for lumps in chains),
-            sweeps=steps.stages,
-            factorisations=steps.factorisations,
-        ),
+        cost=Cost(seconds, "direct", len(run.model.x) - 1, unknowns, *work),
         balance=Balance(energy),
         deviation=deviation,
         stopped=stopped,
@@ -103,7 +88,7 @@ def _history(run: Run, chains: list[Lumps], steps: EnoughSteps, seconds: float) 
 def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
     """Return how far the values are from those without steps and without elements."""
     if run.step is not None and len(run.time) > 1:
-        finer = halved(run, lumped_chains(run), stage_of(run.spectral_radius)).value
+        finer = given(run, lumped_chains(run), stage_of(run.spectral_radius), 2).value
         step_error = 4 / 3 * np.abs(value - finer)
     if why_direct(run.model):
         return Deviation(step_error, np.full(value.shape, np.inf))

@@ -173,16 +173,11 @@ def _lumps(
                 f'element must be "tensed", got {model.element!r}, where a response lies between '
                 "nodes beside a force and is an acceleration, or stiffness is damped or changes"
             )
+    kept = np.flatnonzero(np.isin(x, model.x))
+    forces = tuple(run.forces[k] for k in pushed)
+    what = (component, chain, x, kept, beside, laws, calls, drives, forces)
     return Lumps(
-        coordinates=component,
-        chain=chain,
-        x=x,
-        kept=np.flatnonzero(np.isin(x, model.x)),
-        beside=beside,
-        laws=laws,
-        calls=calls,
-        drives=drives,
-        forces=tuple(run.forces[k] for k in pushed),
+        *what,
         moved=np.array(moved, dtype=np.int32).reshape(-1, 2),
         motions=tuple(run.forces[k] for k in ends),
         readout=readout(chain, x, component, asked, beside=beside, pulsation=pulsation),

@@ -28,8 +28,9 @@ class Passage:
     # (2, coordinates) displacement and velocity of any node at the times between calls of the core
     largest: Real
     last: Real  # (nodes, coordinates) displacement where the march ended
-    reached: int = 0  # how many times and snapshots were reached
-    seen: int = 0  # how many times and snapshots were reached
+    step_error: Real  # (responses, t) estimated, nan where one march does not tell
+    reached: int = 0  # how many times were reached
+    seen: int = 0  # how many snapshots were
     error: BaseException | None = None  # why not all
     stages: int = 0  # what it took
     factorisations: int = 0  # what it took
@@ -59,6 +60,7 @@ class Marching:
             snapshot=np.zeros((len(run.snapshots), nodes, width)),
             largest=np.zeros((2, width)),
             last=np.zeros((nodes, width)),
+            step_error=np.full((len(run.responses), len(run.time)), np.nan),
         )
 
     def through(self) -> Passage:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
+from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from ...scene.force import Sine
@@ -15,7 +15,7 @@ from ...scene.tension import Tension
 from ...signal.spectrum import amplitudes
 from ..request import Run, SteadyStates, SteppedSine
 from .direct import refuse_responses
-from .lumped import Lumps, lumped_chains, refuse
+from .lumped import lumped_chains, refuse
 from .march import Motion, stage_of
 
 FEWEST, MOST = 32, 1 << 14  # A period takes from so many steps to so many.
@@ -30,7 +30,8 @@ KEEPS = stage_of(1.0)
 def march_steadily(asked: SteppedSine) -> SteadyStates:
     """Follow the motion through the frequencies in their order, see `Model.stepped_sine`."""
     refuse(asked.model)
-    still, push = np.array([0.0, 1.0]), _push(asked, float(asked.frequency[0]))
+    still = np.array([0.0, 1.0])
+    push = Sine(asked.amplitude, float(asked.frequency[0]), phase=math.pi / 2)
     run = Run(asked.model, still, (asked.drive,), (push,), asked.responses, direct=True, step=1.0)
     refuse_responses(run)
     motions = [Motion(lumps, refined=False) for lumps in lumped_chains(run)]
@@ -42,60 +43,50 @@ def march_steadily(asked: SteppedSine) -> SteadyStates:
         relative = np.divide(wrong, size, out=np.zeros_like(size), where=size > 0)
         value[:, k], error[:, k] = found / asked.amplitude, relative
         asked.progress((k + 1) / len(asked.frequency))
-    return SteadyStates(
-        value,
-        error,
-        "direct",
-        sum(m.lumps.chain.free for m in motions),
-        sum(m.stages for m in motions),
-        sum(m.factorisations for m in motions),
-    )
-
-
-def _push(asked: SteppedSine, frequency: float) -> Sine:
-    return Sine(asked.amplitude, frequency, phase=math.pi / 2)
+    unknowns = sum(m.lumps.chain.free for m in motions)
+    work = sum(m.stages for m in motions), sum(m.factorisations for m in motions)
+    cost = Cost(0.0, "direct", len(asked.model.x) - 1, unknowns, *work)
+    return SteadyStates(value, error, cost)
 
 
 def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:
     """Return the amplitudes with ever shorter steps, extrapolated, and how far they are off."""
     count = FEWEST
-    before = _settled(asked, motions, frequency, count)
+    before, _ = _settled(asked, motions, frequency, count)
     while count < MOST:
         count *= 2
-        after = _settled(asked, motions, frequency, count)
+        after, left = _settled(asked, motions, frequency, count)
         # of second order: a third of the change is what is left of it
-        off = np.abs(after.value - before.value) / 3
-        if (off <= asked.tolerance * np.abs(after.value).max()).all():
-            return after.value + (after.value - before.value) / 3, off + after.left
+        off = np.abs(after - before) / 3
+        if (off <= asked.tolerance * np.abs(after).max()).all():
+            return after + (after - before) / 3, off + left
         before = after
     raise SolveError(
         f"frequency {frequency!r} Hz: with {count} steps a period the amplitude is still known to "
-        f"{float((off / np.abs(after.value).max()).max()):.1e} only: ask for a larger tolerance"
+        f"{float((off / np.abs(after).max()).max()):.1e} only: ask for a larger tolerance"
     )
 
 
-class _Settled(NamedTuple):
-    value: Complex  # (responses,)
-    left: Real  # (responses,) what may still change
-
-
-def _settled(asked: SteppedSine, motions: list[Motion], frequency: float, count: int) -> _Settled:
-    """Follow the motion until its amplitude stays, with so many steps a period."""
+def _settled(
+    asked: SteppedSine, motions: list[Motion], frequency: float, count: int
+) -> tuple[Complex, float]:
+    """Return the amplitudes when they stay, with so many steps a period, and what is left."""
+    push = (Sine(asked.amplitude, frequency, phase=math.pi / 2),)
     for motion in motions:
-        motion.lumps = _pushed(motion.lumps, _push(asked, frequency))
+        drives, ends = push * len(motion.lumps.forces), push * len(motion.lumps.motions)
+        motion.lumps = replace(motion.lumps, forces=drives, motions=ends)
     periods = _together(asked, frequency)
     seen: list[Complex] = []
     for k in range(max(LONGEST // periods, LOOKS + 1)):
-        seen.append(
-            _window(asked, motions, frequency, count, range(k * periods, (k + 1) * periods))
-        )
+        these = range(k * periods, (k + 1) * periods)
+        seen.append(_window(asked, motions, frequency, count, these))
         if len(seen) <= LOOKS:
             continue
         changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
         size = np.abs(seen[-1]).max()
         left = _left(changes)
         if left <= asked.tolerance / 2 * size:
-            return _Settled(seen[-1], np.full(len(seen[-1]), left))
+            return seen[-1], left
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
         f"changes by {float(changes[-1] / size):.1e} of itself in {periods} periods"
@@ -127,12 +118,6 @@ def _left(changes: Real) -> float:
         return 0.0
     ratio = math.sqrt(late / early) if early > 0 else math.inf
     return late * ratio / (1 - ratio) if ratio < 1 else math.inf
-
-
-def _pushed(lumps: Lumps, force: Sine) -> Lumps:
-    """Return the chain under the force of another frequency."""
-    forces = (force,) * len(lumps.forces)
-    return replace(lumps, forces=forces, motions=(force,) * len(lumps.motions))
 
 
 def _window(

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -43,25 +42,14 @@ ROUNDING = 1e-9
 symmetry is the rounding."""
 
 
-@dataclass(frozen=True, eq=False)
-class EnoughSteps:
-    """A run with enough steps."""
-
-    passage: Passage  # the finest
-    error: Real  # (responses, t) Estimated, of the steps
-    stages: int  # of all that were marched
-    factorisations: int  # of all that were marched
-
-
 def steps_of(run: Run, chains: list[Lumps]) -> Timeline:
     """Return the steps that are asked for, or those that a tolerance begins with."""
     functions = [f for lumps in chains for f in (*lumps.forces, *lumps.motions)]
     breaks = [at for f in functions for at in f.breaks]
     stops = [*breaks, *_corners(run, chains)]
     if (step := run.step) is not None:
-        return timeline(
-            run.time, run.snapshots, stops, lambda begin, end: np.full(len(begin), step)
-        )
+        at = run.time, run.snapshots
+        return timeline(*at, stops, lambda begin, end: np.full(len(begin), step))
     highest = max((f.highest for f in functions), default=0.0)
     tension = run.model.scene.tension
     if isinstance(tension, Tension):
@@ -88,7 +76,7 @@ def _corners(run: Run, chains: list[Lumps]) -> list[float]:
     return run.time[1:-1].tolist() if run.order and any(map(is_sampled, followed)) else []
 
 
-def within(run: Run, chains: list[Lumps], g: float) -> EnoughSteps:
+def within(run: Run, chains: list[Lumps], g: float) -> Passage:
     """March with finer and finer steps until their error is within the tolerance."""
     line = steps_of(run, chains)
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
@@ -106,9 +94,9 @@ def within(run: Run, chains: list[Lumps], g: float) -> EnoughSteps:
             factor *= 4
             continue
         if passage.error is not None:
-            error = np.full(passage.value.shape, np.inf)
+            passage.step_error = np.full(passage.value.shape, np.inf)
             break
-        error, worst = trend.add(run, factor, passage)
+        passage.step_error, worst = trend.add(run, factor, passage)
         if worst <= tolerance:
             break
         growth = _growth(trend.error, worst, tolerance)
@@ -120,7 +108,8 @@ def within(run: Run, chains: list[Lumps], g: float) -> EnoughSteps:
             break
         factor *= growth
     run.progress(1.0)
-    return EnoughSteps(passage, error, int(work[0]), int(work[1]))
+    passage.stages, passage.factorisations = work.tolist()
+    return passage
 
 
 class Trend:
@@ -215,6 +204,6 @@ def _others(run: Run, passage: Passage) -> Real:
     return size
 
 
-def halved(run: Run, chains: list[Lumps], g: float) -> Passage:
-    """March with half the steps that are asked for."""
-    return Marching(run, chains, steps_of(run, chains).finer(2), g).through()
+def given(run: Run, chains: list[Lumps], g: float, factor: int = 1) -> Passage:
+    """March with the steps that are asked for, or with so many for each."""
+    return Marching(run, chains, steps_of(run, chains).finer(factor), g).through()

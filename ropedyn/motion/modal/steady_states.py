@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ...base.answer import Cost
 from ...base.array import Complex, Flags, Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
@@ -36,7 +37,8 @@ def superpose_steadily(asked: SteppedSine) -> SteadyStates:
         size = np.abs(value[:, k])
         error[:, k] += np.divide(left_out, size, out=np.zeros_like(size), where=size > 0)
         asked.progress((k + 1) / len(f))
-    return SteadyStates(value, error, "modal", sum(share.expansion.modes for share in shares))
+    modes = sum(share.expansion.modes for share in shares)
+    return SteadyStates(value, error, Cost(0.0, "modal", len(model.x) - 1, modes))
 
 
 def _slowest(share: Share) -> float:

@@ -36,6 +36,7 @@ def superpose(run: Run) -> History:
     x, snapshot = _snapshots(run, resolved)
     seconds = clock.perf_counter() - start
     truncation = _truncation(run, shares)
+    modes = sum(share.expansion.modes for share in shares)
     run = run.kept
     deviation: Deviation | Callable[[], Deviation] = partial(_deviation, run, value)
     if run.model.element == "continuous":
@@ -46,12 +47,7 @@ def superpose(run: Run) -> History:
         truncation_error=truncation,
         x=x,
         snapshot=snapshot,
-        cost=Cost(
-            seconds,
-            "modal",
-            len(run.model.x) - 1,
-            sum(share.expansion.modes for share in shares),
-        ),
+        cost=Cost(seconds, "modal", len(run.model.x) - 1, modes),
         balance=partial(balance, run, resolved),
         deviation=deviation,
     )
