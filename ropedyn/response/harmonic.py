@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,18 +18,15 @@ from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
+from ..chain.compile import compile_scene
 from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point, moving
 from ..scene import damping
+from ..scene.scene import Scene
 from .frf import FRF, MeshOfResponse
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import moves_ends
-
-if TYPE_CHECKING:
-    pass
-from ..chain.compile import compile_scene
-from ..scene.scene import Scene
 from .question import Question, Solver
 from .solvers import SOLVERS
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +16,6 @@ from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, cut, is_force, locate, stops
 from ..chain.reaction import at_start
 from ..scene import damping
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)

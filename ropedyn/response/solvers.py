@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, local, locate, moving, ports
 from ..chain.reaction import at_start, first_left_end, tellers
 from ..scene import damping
-
-if TYPE_CHECKING:
-    pass
 from .question import Question
 
 LANES = 16

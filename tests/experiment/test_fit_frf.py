@@ -5,7 +5,7 @@ import pytest
 from conftest import slow
 
 import ropedyn as rd
-from ropedyn.experiment.identify.residual_noise import line_std
+from ropedyn.experiment.identify.fit_frf import line_std
 
 LINES = np.linspace(5.0, 250.0, 150)
 POINTS = [("z", 0.33), ("z", 1.1)]

@@ -27,8 +27,7 @@ from ...signal.response_shape import residues
 from .calculated import CalculatedPeaks, calculated_peaks, is_motion
 from .cause import likely_cause
 from .measured import MeasuredPeaks, measured_peaks
-from .overlay import calculated_at, drive_of
-from .pairing import paired
+from .pairing import calculated_at, drive_of, paired
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,7 +19,7 @@ from ..fitting.misfit import PeakMisfit
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.response_misfit import LogMisfit, Response
 from ..fitting.unknown import CALIBRATION
-from .peak_start import start_of_peaks
+from .fit_peaks import start_of_peaks
 
 # Modes with less than this part of the largest residue are not looked for among the peaks.
 SEEN = 1e-3
