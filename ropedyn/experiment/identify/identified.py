@@ -93,9 +93,5 @@ class Identified(Answer):
 
     def table(self) -> Table:
         """Return one row for each number."""
-        columns: dict[str, Any] = {
-            "unknown": self.unknown,
-            "value": self.value,
-            "std": self.std,
-        }
+        columns: dict[str, Any] = {"unknown": self.unknown, "value": self.value, "std": self.std}
         return Table.of("identified", columns)

@@ -173,11 +173,7 @@ def _once_each(at: Index, orders: Integer) -> tuple[Index, Integer]:
 
 
 def _fitted(
-    grid: Grid,
-    likelihood: Likelihood,
-    limits: tuple[Real, Real],
-    at: Index,
-    orders: Integer,
+    grid: Grid, likelihood: Likelihood, limits: tuple[Real, Real], at: Index, orders: Integer
 ) -> Real:
     """Return parameters near points of the grid that fit peaks of these orders, shape (h, p)."""
     peaks, point = likelihood.frequency, grid.parameters[at]
