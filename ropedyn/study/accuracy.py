@@ -24,8 +24,7 @@ from ..scene.scene import Scene
 from .truth import CUTS, Truth
 from .way import check_question, priced, words
 
-# relative errors within which the cheapest way is looked for
-TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
+TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)  # The cheapest way is looked for within each of them.
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,8 +29,8 @@ One = TypeVar("One")
 Result = TypeVar("Result")
 
 CHUNKS = 128  # Scenes are sent in so many chunks, or one by one where there are fewer.
-# These have columns of their own in the table, of a row at most so many.
-NUMBERS, WIDEST = (bool, int, float, complex), 20
+NUMBERS = (bool, int, float, complex)  # These have columns of their own in the table.
+WIDEST = 20  # A row has at most so many of them.
 
 
 @dataclass(frozen=True, eq=False, repr=False)

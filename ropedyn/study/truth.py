@@ -16,12 +16,10 @@ from ..experiment.compare.difference import relative
 from ..scene.scene import Scene
 from .way import Way, answered, ask_once
 
-# spans are cut into so many parts for other arithmetic; powers of two would join to the same bits
+# Spans are cut into so many parts for other arithmetic; powers of two would join to the same bits.
 CUTS = (3, 5, 7)
-# chains are tried between these powers of two
-FEWEST, MOST = 3, 12
-# assembled solvers that nobody asked for by number of elements may take so long [s]
-LONGEST = 1.0
+FEWEST, MOST = 3, 12  # Chains are tried between these powers of two.
+LONGEST = 1.0  # Assembled solvers that nobody asked for by number of elements may take so long [s].
 EPSILON = float(np.finfo(float).eps)
 
 

@@ -67,8 +67,8 @@ def words(element: str, elements: int, solver: str) -> str:
     return element if element == "continuous" else f"{element}, {elements}, {solver}"
 
 
+# Tries a way, and returns it with the numbers of its row.
 Attempt = Callable[[], tuple[Way, Mapping[str, Any]]]
-"""Tries a way, and returns it with the numbers of its row."""
 
 
 def check_question(scene: Scene, question: Question) -> None:

@@ -20,8 +20,7 @@ from ...response.frf import FRF
 from ...signal.response_shape import residues
 from .measured import peaks_in
 
-# A smaller product of a shape at the drive and at a response is rounding at a node of the shape.
-UNSEEN = 1e-9
+UNSEEN = 1e-9  # Smaller products of a shape at drive and response are rounding at a node.
 
 
 @dataclass(frozen=True, eq=False)

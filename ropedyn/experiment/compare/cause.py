@@ -21,11 +21,8 @@ from ...eigen.spectrum import spectrum
 from ...scene.path import value_at, with_values
 from .calculated import CalculatedPeaks
 
-# What explains differences leaves some that rounding and noise exceed at least so often.
-LIKELY = 0.05
-# What leaves some that they exceed more rarely does not explain them; so rare must differences be
-# at all, and differences at random that one number explains as well.
-EXCLUDED = 1e-3
+LIKELY = 0.05  # What explains differences leaves some that chance exceeds at least so often.
+EXCLUDED = 1e-3  # What leaves some that chance exceeds more rarely does not explain them.
 FEWEST = 3  # Fewer pairs are explained by one number too easily.
 MOST = 4  # At most so many numbers that explain the same are named, more say nothing.
 ITERATIONS = 20

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-# FRAC at each line is taken over this part of the measured range, where nothing else is said.
-BAND = 0.1
+BAND = 0.1  # FRAC at each line is taken over this part of the measured range by default.
 FEWEST = 10  # That part has so many lines at least.
 
 

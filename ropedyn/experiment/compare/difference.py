@@ -25,8 +25,7 @@ MOTIONS = {
     "torsional": ("alpha",),
     **{kind: (name,) for kind, name in CARRIED.items()},
 }
-# Modes are paired with those among at most so many times as many as were asked for.
-FURTHEST = 16
+FURTHEST = 16  # Modes are paired with those among at most so many times as many.
 # What is measured of a change, the largest first.
 OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")

@@ -14,8 +14,7 @@ from ...model import Model
 from ...response.frf import FRF
 from .calculated import index
 
-# Calculated frequencies nearer than this part of their mean distance are close to each other.
-CLOSE = 0.1
+CLOSE = 0.1  # Frequencies nearer than this part of their mean distance are close to each other.
 ALONE = math.log(2.0)  # A frequency without neighbour is spaced like the first two of a string.
 SPREAD = 3.0  # A measured frequency may be off by so many standard uncertainties.
 SAME = 1e-9  # Lines that differ by less than this share are one.

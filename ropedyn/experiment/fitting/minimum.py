@@ -12,8 +12,7 @@ from ...base.errors import SceneError, SolveError
 from .misfit import Misfit
 
 BLIND = 1e-8  # Singular values below this share of the largest are the rounding of derivatives.
-# No variable leaves its start by more, a logarithm of ten decades: nothing depends on it there.
-FARTHEST = 23.0
+FARTHEST = 23.0  # A variable leaves its start by at most so much, a logarithm of ten decades.
 # ftol is the square of 1e-4 standard deviations, gtol the rounding of relative residuals.
 DIGITS = {"ftol": 1e-8, "gtol": 1e-14, "xtol": 1e-13}
 # The trust region measures first by factors e, then, for narrow valleys, by what residuals feel.

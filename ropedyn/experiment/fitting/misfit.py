@@ -42,6 +42,14 @@ class PriorMisfit:
         return residual, slope
 
 
+def unseen_of(slope: Real, known: PriorMisfit | None) -> Index:
+    """Return which numbers change no residual and are not known beforehand."""
+    unseen = np.asarray(~slope.any(axis=0))
+    if known is not None:
+        unseen[known.at] = False
+    return np.flatnonzero(unseen)
+
+
 @dataclass(frozen=True, eq=False)
 class JointMisfit:
     """What was measured and what was known, the last in units of the noise of the first."""

@@ -9,6 +9,7 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...curves.measured import Measured
+from ...model import Model
 from ...response.frf import FRF
 from .unknown import CALIBRATION, Unknowns
 
@@ -34,10 +35,13 @@ class Response:
             self._last[key] = answer
         return self._last[key]
 
+    def model(self, u: Real) -> Model:
+        """Compile the scene with these numbers."""
+        return self.unknowns.at(u).compile(elements=self.elements, element=self.element)
+
     def _solve(self, u: Real) -> tuple[Complex, Complex]:
         measured, unknowns = self.measured, self.unknowns
-        model = unknowns.at(u).compile(elements=self.elements, element=self.element)
-        frf = model.frf(
+        frf = self.model(u).frf(
             measured.frequency,
             drive=measured.drive[0],
             response=list(measured.response),

@@ -6,14 +6,14 @@ import time
 
 import numpy as np
 
-from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...curves.measured import Measured
 from ..fitting.minimum import minimise
-from ..fitting.misfit import PriorMisfit
+from ..fitting.misfit import PriorMisfit, unseen_of
 from ..fitting.response_misfit import LineMisfit, LogMisfit, Response
 from ..fitting.unknown import Unknowns
+from .identified import found_by
 from .notes import RESPONSE, notes_of
 from .response_fit import ResponseFit
 from .response_start import start_of_response
@@ -70,10 +70,7 @@ def _refuse_few(unknowns: Unknowns, lines: int, known: PriorMisfit | None) -> No
 
 def _refuse_unseen(misfit: LogMisfit, u: Real, known: PriorMisfit | None) -> None:
     """Refuse numbers that the response does not depend on, unless they are known beforehand."""
-    unseen = np.asarray(~misfit(u)[1].any(axis=0))
-    if known is not None:
-        unseen[known.at] = False
-    for i in np.flatnonzero(unseen):
+    for i in unseen_of(misfit(u)[1], known):
         raise SceneError(
             f"unknown[{i}] must change the response that was measured, got "
             f"{misfit.response.unknowns.paths[i]!r}, which does not"
@@ -85,12 +82,7 @@ def _answer(
 ) -> ResponseFit:
     measured = response.measured
     value, _ = response(solution.minimum.u)
-    off = solution.minimum.residual[: solution.rows]
     return ResponseFit(
-        unknown=solution.unknowns.paths,
-        value=solution.value,  # type: ignore[arg-type]
-        std=solution.std,  # type: ignore[arg-type]
-        correlation=solution.uncertainty.correlation,
         drive=measured.drive,
         response=measured.response,
         quantity=measured.quantity,
@@ -98,17 +90,8 @@ def _answer(
         measured=measured.value,
         calculated=value,
         measured_std=solution.noise * std,
-        freedom=solution.freedom,
-        chi_square=float(np.sum((off / solution.noise) ** 2)),
         notes=(*notes_of(solution, RESPONSE), *_systematic(measured.value, value, std)),
-        cost=Cost(
-            seconds=seconds,
-            method="least squares",
-            elements=response.elements or 0,
-            unknowns=len(solution.unknowns),
-            factorisations=evaluations,
-        ),
-        solution=solution,
+        **found_by(solution, seconds=seconds, elements=response.elements, evaluations=evaluations),
     )
 
 

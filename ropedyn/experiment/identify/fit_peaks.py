@@ -10,17 +10,17 @@ from functools import partial
 
 import numpy as np
 
-from ...base.answer import Cost
 from ...base.array import Flags, Index, Real
 from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...scene.scene import Scene
 from ..fitting.minimum import BLIND, told_directions
-from ..fitting.misfit import PeakMisfit, PriorMisfit
+from ..fitting.misfit import PeakMisfit, PriorMisfit, unseen_of
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import Unknowns
 from ..orders.orders import RunnerUp
 from .fit import Fit, alternatives_of
+from .identified import found_by
 from .notes import notes_of
 from .solution import Solution, solve
 
@@ -86,26 +86,18 @@ class Identification:
         off = minimum.residual[: solution.rows]
         frequency = self.frequency + off * self.misfit.weight
         found = Fit(
-            unknown=self.unknowns.paths,
-            value=solution.value,  # type: ignore[arg-type]
-            std=solution.std,  # type: ignore[arg-type]
-            correlation=solution.uncertainty.correlation,
             orders=self.orders.astype(np.int64),
             measured=self.frequency,
             measured_std=solution.noise * self.misfit.weight,
             calculated=np.where(self.orders > 0, frequency, np.nan),
-            freedom=solution.freedom,
-            chi_square=float(np.sum((off / solution.noise) ** 2)),
             runner_up=self.runner_up,
             notes=notes_of(solution),
-            cost=Cost(
+            **found_by(
+                solution,
                 seconds=seconds,
-                method="least squares",
-                elements=self.calculated.elements or 0,
-                unknowns=len(self.unknowns),
-                factorisations=minimum.evaluations,
+                elements=self.calculated.elements,
+                evaluations=minimum.evaluations,
             ),
-            solution=solution,
         )
         source = partial(alternatives_of, found, self.unknowns.scene, self.instead)
         return dataclasses.replace(found, alternatives_source=source)
@@ -120,13 +112,11 @@ class Identification:
 
     def _refuse_unseen(self, u: Real) -> None:
         """Refuse numbers that no peak depends on, unless they are known beforehand."""
-        unseen = np.asarray(~self.misfit(u)[1].any(axis=0))
-        for path, is_unseen, i in zip(self.unknowns.paths, unseen, range(len(unseen))):
-            if is_unseen and path not in self.prior:
-                raise SceneError(
-                    f"unknown[{i}] must change the natural frequencies of these peaks, got "
-                    f"{path!r}, which does not"
-                )
+        for i in unseen_of(self.misfit(u)[1], self.known):
+            raise SceneError(
+                f"unknown[{i}] must change the natural frequencies of these peaks, got "
+                f"{self.unknowns.paths[i]!r}, which does not"
+            )
 
 
 def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:

@@ -4,13 +4,38 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ...base import check
-from ...base.answer import Answer
+from ...base.answer import Answer, Cost
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table
 from ...scene.scene import Scene
 from .solution import Solution
+
+
+def found_by(
+    solution: Solution, *, seconds: float, elements: int | None, evaluations: int
+) -> dict[str, Any]:
+    """Return the fields that say what a solution found."""
+    off = solution.minimum.residual[: solution.rows]
+    return {
+        "unknown": solution.unknowns.paths,
+        "value": solution.value,
+        "std": solution.std,
+        "correlation": solution.uncertainty.correlation,
+        "freedom": solution.freedom,
+        "chi_square": float(np.sum((off / solution.noise) ** 2)),
+        "cost": Cost(
+            seconds,
+            "least squares",
+            elements or 0,
+            len(solution.unknowns),
+            factorisations=evaluations,
+        ),
+        "solution": solution,
+    }
 
 
 class Identified(Answer):

@@ -12,10 +12,8 @@ from ...base.errors import SceneError, SolveError
 from ..fitting.minimum import Minimum, minimise, told_directions
 from ..fitting.misfit import Misfit
 
-# A bound is known to this share of its distance, which changes what is covered by 1e-4.
-CLOSE = 1e-3
-# A linear step may take off this share of the growth: what it leaves is its square.
-ACCEPTED = 0.02
+CLOSE = 1e-3  # A bound is known to this share of its distance: 1e-4 of what is covered.
+ACCEPTED = 0.02  # A linear step may take off this share of the growth and leaves its square.
 OTHERS = (-0.9, 9.0)  # Relative changes that others are guessed to have are between these.
 
 

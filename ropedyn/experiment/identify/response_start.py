@@ -14,6 +14,7 @@ from ...chain.port import moving
 from ...chain.rate import Places, rates_of
 from ...curves.measured import Measured, lines_of
 from ...curves.peaks import Peaks
+from ...model import Model
 from ..fitting.minimum import Minimum, minimise
 from ..fitting.misfit import PeakMisfit
 from ..fitting.natural_frequencies import NaturalFrequencies
@@ -21,8 +22,7 @@ from ..fitting.response_misfit import LogMisfit, Response
 from ..fitting.unknown import CALIBRATION
 from .fit_peaks import start_of_peaks
 
-# Modes with less than this part of the largest residue are not looked for among the peaks.
-SEEN = 1e-3
+SEEN = 1e-3  # Modes with less than this part of the largest residue are not looked for.
 HIDDEN = 3  # So many of the lowest modes may be missing below the first line.
 LINES = 200  # Starts are compared on so many lines.
 CLOSE = 0.2  # No other start has to better this root mean square of logarithms.
@@ -112,7 +112,7 @@ def _candidates(response: Response) -> Iterator[Real]:
     unknowns = response.unknowns
     guess = np.zeros(len(unknowns))
     yield guess
-    model = unknowns.at(guess).compile(elements=response.elements, element=response.element)
+    model = response.model(guess)
     rates = rates_of(Places(model))
     shifts = np.array([path in rates for path in unknowns.paths])
     peaks = peaks_of(response.measured)
@@ -120,7 +120,7 @@ def _candidates(response: Response) -> Iterator[Real]:
         return
     calculated = NaturalFrequencies(unknowns.only(shifts), response.elements, response.element)
     try:
-        seen = _seen(response, calculated, len(peaks) + HIDDEN)
+        seen = _visible_orders(response.measured, model, len(peaks) + HIDDEN)
     except (SceneError, SolveError):
         return
     # the lowest peaks alone: among higher ones some may be missing or no mode
@@ -139,12 +139,8 @@ def _candidates(response: Response) -> Iterator[Real]:
         yield u
 
 
-def _seen(response: Response, calculated: NaturalFrequencies, count: int) -> Index:
-    """Return the lowest modes of the guess that the drive and some response see, from 1."""
-    measured, unknowns = response.measured, response.unknowns
-    model = unknowns.at(np.zeros(len(unknowns))).compile(
-        elements=response.elements, element=response.element
-    )
+def _visible_orders(measured: Measured, model: Model, count: int) -> Index:
+    """Return the lowest modes that the drive and some response see, from 1."""
     modes = model.modes(2 * count)
     vibrating = np.flatnonzero(modes.frequency > 0)
 

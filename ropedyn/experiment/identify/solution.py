@@ -17,15 +17,13 @@ from ..fitting.unknown import Unknowns
 from .profile_interval import Profile
 
 NOMINAL = 1e-3  # Where nothing tells the noise this relative one is thought of.
-# Relative residuals below this are the rounding of frequencies.
-LEAST_NOISE = float(np.finfo(float).eps)
+LEAST_NOISE = float(np.finfo(float).eps)  # Relative residuals below it are rounding.
 ROUNDING = 1e-12  # Frequencies themselves may have this relative noise, which does not settle.
 NARROW = 1e-8  # Below this standard deviation a variable's profile is a parabola, but for rounding.
 UNFELT = 100.0  # A number whose logarithm has a larger standard deviation is gone to 0 or infinity.
 BACK = 0.1  # Such a number is tried again where it has this share of what the residuals feel most.
 FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
-# A number that has more than this share in directions that nothing tells is not told itself.
-APART = 1e-6
+APART = 1e-6  # A number with more than this share in directions that nothing tells is not told.
 
 
 def freedom_of(minimum: Minimum, peaks: int) -> float:

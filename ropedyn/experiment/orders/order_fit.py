@@ -13,8 +13,7 @@ from .rayleigh import Quotients
 
 SETTLED = 0.02  # A fit ends when frequencies are off by less, in standard uncertainties.
 ROUNDS = 8  # One fit takes so many calculations at most.
-# The fit of an assignment is given up when it is dearer than the second best by more.
-HOPELESS = 50.0
+HOPELESS = 50.0  # A fit is given up when it is dearer than the second best by more.
 STRIDE = 4.0  # A parameter changes by at most this factor at once.
 
 

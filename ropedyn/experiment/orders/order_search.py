@@ -23,10 +23,8 @@ KEPT = 5  # At most so many assignments are returned.
 NOISES = (0.0005, 0.002, 0.008)
 FINEST = 1e-6  # Measured frequencies have at least this relative standard uncertainty.
 CANDIDATES = 8  # So many numberings of the grid are fitted to the calculation itself.
-# So many modes may be missing, unless told: what a search costs grows by their square.
-MISSING = 32
-# So many pairs of peaks are taken for any two modes, unless more peaks may be spurious.
-SUBSETS = 4
+MISSING = 32  # So many modes may be missing, unless told: what a search costs grows squared.
+SUBSETS = 4  # So many pairs of peaks are taken for any two modes, more if more are spurious.
 ROUNDS = 3  # Peaks are numbered on the grid so often, each time after a fit.
 
 

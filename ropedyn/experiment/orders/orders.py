@@ -16,21 +16,17 @@ from ..fitting.minimum import BLIND
 from ..fitting.natural_frequencies import NaturalFrequencies
 from .order_search import OVERLOOKED, search
 
-# Peaks without a standard deviation have this relative one, to judge the lowest modes alone.
-NOISE = 0.005
+NOISE = 0.005  # Relative standard deviation of peaks that have none, to judge the lowest modes.
 
 
-# Noise alone puts the lowest modes off by more than what is accepted with this probability.
-UNLIKELY = 0.05
+UNLIKELY = 0.05  # Noise alone exceeds what is accepted of the lowest modes so often.
 
 
 class RunnerUp(NamedTuple):
     """The second best way to see peaks as modes."""
 
-    orders: tuple[int, ...]
-    """Of each peak from 1; 0 where it is no mode."""
-    worse: float
-    """By how much chi-square is larger, with what peaks that are missing or none cost."""
+    orders: tuple[int, ...]  # of each peak from 1; 0 where it is no mode
+    worse: float  # by how much chi-square is larger, with the price of what is missing or none
 
 
 def given_orders(orders: Any, peaks: Peaks) -> Index | None:

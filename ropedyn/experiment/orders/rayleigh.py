@@ -11,8 +11,7 @@ from ...base.array import Index, Integer, Real
 
 STEPS = 3  # Gauss and Newton take so many steps; for stiffnesses alone the first is exact.
 STEEPEST = 4.0  # f^2 may follow at most this power of a parameter: that of the length of a beam.
-# A side of the quotient that is changed to less of itself is beyond what the shapes tell.
-LEAST = 0.01
+LEAST = 0.01  # A side of the quotient that falls to less of itself is beyond what shapes tell.
 ROUNDING = 1e-13  # Normal equations have this relative rounding.
 FIRM = 1e4  # The pull that holds a ratio at its bound is so many times narrower.
 

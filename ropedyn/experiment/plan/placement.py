@@ -9,8 +9,7 @@ import numpy as np
 
 from ...base.array import Real
 
-# The mean over modes has this weight beside the least: of equals the one that sees more is taken.
-TIE = 1e-6
+TIE = 1e-6  # Weight of the mean over modes beside the least: of equals one that sees more is taken.
 STARTS = 24  # The exchange of several sensors begins with so many places of the drive.
 
 

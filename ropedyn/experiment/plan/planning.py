@@ -26,8 +26,7 @@ DamageKind = LocalChange | AddedMass | PointMass | Hinge
 
 LINES = 4  # A half-power bandwidth and the distance of two modes must hold so many lines.
 ROOM = 1.1  # The top of the band is so many times the highest wanted frequency.
-# Less of the highest peak that a mode can have is what straight lines leave of its node.
-UNSEEN = 1e-4
+UNSEEN = 1e-4  # Less of the highest peak of a mode is what straight lines leave of its node.
 MOST_SENSORS = 64  # At most so many sensors are placed.
 SHARE = 0.01  # A damage that is given as a place has this share of the rope.
 

@@ -13,8 +13,7 @@ from ...eigen.modes import Modes
 from ...model import Model
 
 GRID = 512  # At least so many places along the rope are looked at.
-# A mode that moves another coordinate by less than this share of its own does not move it.
-UNMOVED = 1e-9
+UNMOVED = 1e-9  # A mode that moves a coordinate by less, over its own, does not move it.
 MOST_MODES = 4096  # At most so many modes are solved for, to find enough of them that move.
 
 
