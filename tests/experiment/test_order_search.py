@@ -8,10 +8,9 @@ import pytest
 from measured_ropes import CORD_FREQUENCY, CORD_TENSION, cord
 
 import ropedyn as rd
-from ropedyn.experiment.orders.order_grid import Grid
-from ropedyn.experiment.orders.order_likelihood import Likelihood, numbered
+from ropedyn.experiment.orders.order_fit import Likelihood, numbered
+from ropedyn.experiment.orders.order_grid import Grid, Quotients
 from ropedyn.experiment.orders.order_search import _subsets, search
-from ropedyn.experiment.orders.rayleigh import Quotients
 from ropedyn.scene.path import with_values
 
 PATHS = ("tension", "bending_stiffness")

@@ -10,8 +10,7 @@ from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...curves.measured import Measured
 from ..fitting.minimum import minimise
-from ..fitting.misfit import PriorMisfit, unseen_of
-from ..fitting.response_misfit import LineMisfit, LogMisfit, Response
+from ..fitting.misfit import LineMisfit, LogMisfit, PriorMisfit, Response, unseen_of
 from ..fitting.unknown import Unknowns
 from .identified import found_by
 from .notes import RESPONSE, notes_of

@@ -20,6 +20,7 @@ def found_by(
 ) -> dict[str, Any]:
     """Return the fields that say what a solution found."""
     off = solution.minimum.residual[: solution.rows]
+    sought = len(solution.unknowns)
     return {
         "unknown": solution.unknowns.paths,
         "value": solution.value,
@@ -27,13 +28,7 @@ def found_by(
         "correlation": solution.uncertainty.correlation,
         "freedom": solution.freedom,
         "chi_square": float(np.sum((off / solution.noise) ** 2)),
-        "cost": Cost(
-            seconds,
-            "least squares",
-            elements or 0,
-            len(solution.unknowns),
-            factorisations=evaluations,
-        ),
+        "cost": Cost(seconds, "least squares", elements or 0, sought, factorisations=evaluations),
         "solution": solution,
     }
 

@@ -19,9 +19,8 @@ from ...curves.resonance import Resonances
 from ...scene.path import with_values
 from ...scene.prior import Prior
 from ...scene.scene import Scene
-from ..fitting.misfit import PriorMisfit
+from ..fitting.misfit import PriorMisfit, Response
 from ..fitting.natural_frequencies import NaturalFrequencies
-from ..fitting.response_misfit import Response
 from ..fitting.unknown import Unknowns
 from ..orders.orders import found_orders, given_orders, lowest_orders, lowest_suffice
 from .fit import Fit

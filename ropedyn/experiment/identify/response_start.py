@@ -16,9 +16,8 @@ from ...curves.measured import Measured, lines_of
 from ...curves.peaks import Peaks
 from ...model import Model
 from ..fitting.minimum import Minimum, minimise
-from ..fitting.misfit import PeakMisfit
+from ..fitting.misfit import LogMisfit, PeakMisfit, Response
 from ..fitting.natural_frequencies import NaturalFrequencies
-from ..fitting.response_misfit import LogMisfit, Response
 from ..fitting.unknown import CALIBRATION
 from .fit_peaks import start_of_peaks
 

@@ -10,9 +10,8 @@ import numpy as np
 
 from ...base.array import Index, Integer, Real
 from ...base.errors import SolveError
-from .order_fit import OrderFit, OrderFits
+from .order_fit import Likelihood, OrderFit, OrderFits
 from .order_grid import COARSE, STEP, Calculated, Grid
-from .order_likelihood import Likelihood
 
 OVERLOOKED = 0.1  # A mode of the band is not among the peaks with this probability.
 STRAY = 0.5  # On average so many peaks are no mode.
