@@ -106,8 +106,7 @@ class AccuracyCost(Answer):
     def cheapest_within(self, tolerance: float) -> int | None:
         """Return the row that takes the least time of those whose true error is within a tolerance.
 
-        Of rows whose time is not told apart from the least, because quartiles overlap, it is the
-        most accurate.
+        Of rows whose time quartiles do not tell from the least it is the most accurate.
 
         Parameters
         ----------
@@ -211,8 +210,7 @@ def accuracy_cost(
     question : ModesQuestion or FRFQuestion
         Such as ``rd.ask.modes(10)`` or ``rd.ask.frf(frequency, drive=("z", 0.5))``.
     elements : int or sequence of int, optional
-        Of chains; powers of two from 8 to 4096 where left out, for assembled solvers as far as
-        they take about a second.
+        Of chains; powers of two from 8 to 4096, assembled within about a second, where left out.
     element : str or sequence of str
         Kinds of element; continuous spans are one row, by the sweep.
     solver : str or sequence of str
@@ -262,11 +260,12 @@ def accuracy_cost(
             f"elements must be given where {' and '.join(solvers)} would take more than about a "
             "second, got None"
         )
+    cuts = ", ".join(map(str, CUTS[:-1]))
     nothing = dict.fromkeys(("error", "estimated_error", "digits_lost"), np.nan)
     columns, times = priced([partial(truth.tried, *way) for way in ways], nothing, repeat, report)
     return AccuracyCost(
         question=str(question),
-        reference=f"continuous spans, of these against cuts into {_listed(CUTS)} parts",
+        reference=f"continuous spans, of these against cuts into {cuts} and {CUTS[-1]} parts",
         **{name: np.array(c) for name, c in zip(("element", "elements", "solver"), zip(*ways))},
         **times._asdict(),
         **columns,
@@ -292,7 +291,3 @@ def _counts(given: Any) -> tuple[int, ...]:
     return tuple(
         sorted({check.count(n, f"elements[{k}]", most=MOST_ELEMENTS) for k, n in enumerate(given)})
     )
-
-
-def _listed(numbers: Sequence[int]) -> str:
-    return ", ".join(map(str, numbers[:-1])) + f" and {numbers[-1]}"

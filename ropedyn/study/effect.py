@@ -35,24 +35,21 @@ class EffectCost(Answer):
     effect : ndarray of str, shape (rows,)
         One row for each effect of the scene, in the order of `Scene.effects`.
     change : dict of ndarray, shape (rows,)
-        What leaving the effect out changes. Of modes ``"largest [Hz]"``, ``"rms [Hz]"``,
-        ``"largest [%]"`` and ``"rms [%]"``, of frequencies; where motion grows -growth/2 pi is the
-        frequency. Each mode is compared with that of the same order among those of the same
-        motion: transverse, torsional, axial, of a resonator or of a broken wire. And
-        ``"damping ratio [1]"``, the largest change of any damping ratio, which has no error bars.
-        Of a frequency response ``"largest [dB]"`` and ``"median [dB]"``, of the level
-        |20 log10(without/with)| of all lines, and ``"peak shift [Hz]"``, from the largest peak to
-        the nearest one without the effect, where that has the same number. NaN where there is
-        nothing to compare.
+        What leaving the effect out changes. Of modes ``"largest [Hz]"``, ``"rms [Hz]"``, ``"largest
+        [%]"`` and ``"rms [%]"``, of frequencies; where motion grows -growth/2 pi is the frequency.
+        Each mode is compared with that of the same order among those of the same motion:
+        transverse, torsional, axial, of a resonator or of a broken wire. And ``"damping ratio
+        [1]"``, the largest change of any damping ratio, which has no error bars. Of a frequency
+        response ``"largest [dB]"`` and ``"median [dB]"``, of the level |20 log10(without/with)| of
+        all lines, and ``"peak shift [Hz]"``, from the largest peak to the nearest one without the
+        effect, where that has the same number. NaN where there is nothing to compare.
     error : ndarray, shape (rows,)
-        Error bars of both answers together, of mesh and rounding, where the change is largest
-        [Hz, dB].
+        Error bars of both answers, of mesh and rounding, where the change is largest [Hz, dB].
     beyond_error : ndarray of bool, shape (rows,)
         Whether the effect changes any frequency or level by more than the error bars there, or
         modes or responses are only there with it.
     only_with : ndarray of int, shape (rows,)
-        How many of the modes are only there with the effect; of a frequency response how many
-        responses are 0 without.
+        How many of the modes are only there with the effect; how many responses are 0 without.
     seconds_with, lower_quartile_with, upper_quartile_with : float
         Processor time from the scene to the answer, `Scene.compile` and the question, one thread:
         the median and, of the question, the quartiles [s]; of modes that of frequencies.
@@ -63,8 +60,7 @@ class EffectCost(Answer):
     unknowns_without : ndarray of int, shape (rows,)
         The same without the effect; 0 where there is no answer.
     refusal : ndarray of str, shape (rows,)
-        Why there is no answer without the effect, empty where there is one; numbers of such rows
-        are NaN or 0.
+        Why there is no answer without the effect, or empty; numbers of such rows are NaN or 0.
 
     Examples
     --------
@@ -205,8 +201,7 @@ def effect_cost(
     Returns
     -------
     EffectCost
-        Where nothing is left to ask without an effect, as without the coordinate that is driven, is
-        a row with the reason.
+        Where nothing is left to ask without an effect, as its coordinate, a row has the reason.
 
     Raises
     ------

@@ -45,6 +45,7 @@ class Implied:
 
     def table(self) -> Table:
         """Return one row for each reading, with intervals of 95 %."""
+        fitted = self.fits[ENDS[0]].scene.rope.linear_density
         readings = [(rope, ends) for rope in self.densities for ends in self.fits]
         columns: dict[str, list[object]] = {
             "rope": [rope for rope, _ in readings],
@@ -52,13 +53,10 @@ class Implied:
         }
         for path, unit in zip(UNKNOWN, ("N", "N m^2")):
             told = {e: [f.value[path], *self.intervals[e][path]] for e, f in self.fits.items()}
-            rows = [self._over_fitted(rope) * np.array(told[ends]) for rope, ends in readings]
+            rows = [self.densities[rope] / fitted * np.array(told[ends]) for rope, ends in readings]
             names = (f"{path} [{unit}]", f"95 % from [{unit}]", f"to [{unit}]")
             columns |= dict(zip(names, np.transpose(rows).tolist()))
         return Table.of("what the peaks imply", columns)
-
-    def _over_fitted(self, rope: str) -> float:
-        return self.densities[rope] / self.fits[ENDS[0]].scene.rope.linear_density
 
     @property
     def verdict(self) -> str:
@@ -87,7 +85,8 @@ class Implied:
         modes = self.own.compile().modes(12)
         twist = float(modes.frequency[modes.family == "torsional"][0])
         more = fit.scene.replace(tension=1.1 * fit.scene.mean_tension)
-        rise = 100 * (_third(more) / _third(fit.scene) - 1)
+        third_modes = [scene.compile().modes(3).frequency[2] for scene in (more, fit.scene)]
+        rise = 100 * (float(third_modes[0]) / float(third_modes[1]) - 1)
         return (
             f"The study's own constants twist at {twist:.0f} Hz, twice {twist / 2:.0f} Hz, which "
             f"is {100 * abs(twist / 2 / third - 1):.1f} % from the third peak. One frequency "
@@ -130,7 +129,3 @@ def _density(fit: Fit) -> str:
         f"that the study states would take a rope of {density:.3f} kg/m, "
         f"{100 * density / CATALOGUE_DENSITY:.0f} % of a catalogue's."
     )
-
-
-def _third(scene: Scene) -> float:
-    return float(scene.compile().modes(3).frequency[2])

@@ -47,8 +47,7 @@ class Sweep(Sequence[Result | None], Generic[Result]):
     seconds : ndarray, shape (k,)
         Wall time of each scene, NaN where it was not run or did not come back [s].
     cost : Cost
-        Wall time of all together, `method` says on what; counts are sums over those results that
-        have a cost.
+        Wall time of all together, `method` says on what; counts are sums over the costs of results.
 
     Examples
     --------
@@ -104,7 +103,9 @@ class Sweep(Sequence[Result | None], Generic[Result]):
         columns |= {name: tuple(row.get(name) for row in rows) for name in names}
         if self.failed:
             why = (self.failed.get(k) for k in range(len(self)))
-            columns["failed"] = tuple(error and _words(error) for error in why)
+            # an exception without words by its kind
+            told = (e and (" ".join(str(e).split()) or type(e).__name__) for e in why)
+            columns["failed"] = tuple(told)
         return Table.of("sweep over scenes", columns)
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -190,7 +191,8 @@ def sweep(
     report = reporter(progress)
     found: dict[int, Outcome] = {}
     start = time.perf_counter()
-    outcomes = _here(function, given) if executor is None else _sent(function, given, executor)
+    here = ((k, outcome_of(function, scene)) for k, scene in enumerate(given))
+    outcomes = here if executor is None else _sent(function, given, executor)
     try:
         with closing(outcomes):
             for k, outcome in outcomes:
@@ -241,11 +243,6 @@ def _dumps(executor: Executor) -> Callable[[Any], Any]:
 
 
 # --- the work of all ------------------------------------------------------------------------------
-
-
-def _here(function: Callable[[One], Any], scenes: Sequence[One]) -> Generator[tuple[int, Outcome]]:
-    for k, scene in enumerate(scenes):
-        yield k, outcome_of(function, scene)
 
 
 def _sent(
@@ -350,7 +347,3 @@ def _cell(value: Any) -> Any:
     if isinstance(value, np.generic):
         value = value.item()
     return value if value is None or isinstance(value, (*NUMBERS, str)) else type(value).__name__
-
-
-def _words(error: BaseException) -> str:
-    return " ".join(str(error).split()) or type(error).__name__

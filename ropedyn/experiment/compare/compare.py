@@ -53,8 +53,7 @@ class Comparison(Answer):
     std : ndarray, shape (k,)
         Standard uncertainty of the measured peaks [Hz], NaN where it is not known.
     error : ndarray, shape (k,)
-        Of the calculated peaks [Hz]: of modes by mesh and rounding, of peaks of a response that of
-        the fit to them.
+        Of the calculated peaks [Hz]: by mesh and rounding, of a response by the fit to them.
     damping_ratio, calculated_damping_ratio : ndarray, shape (k,)
         NaN where it is not known or nothing damps.
     all_calculated : ndarray, shape (m,)
@@ -229,8 +228,7 @@ def compare(
         Of an FRF its peaks count, to the drive of the measurement or else the first one.
     measured : Peaks, Measured, Resonances or array_like of frequencies [Hz]
         Of a whole response the peaks of all its responses are merged, as by `Peaks.of`; its line at
-        0 Hz is not compared. With the orders of `Peaks` each is compared with that mode, however
-        far away.
+        0 Hz is not compared. With orders of `Peaks` each is compared with that mode in any case.
     within : float, optional
         Largest relative error that the calculated frequencies may have: no pair is farther apart
         than that and three standard uncertainties of the peak.
@@ -241,8 +239,7 @@ def compare(
         Measured shapes, one for each peak; of a whole response those that its peaks show in two
         responses and more, where left out.
     points : sequence of points, optional
-        Where they were measured, such as ``[("z", 0.2), ("z", 0.5)]``; of one coordinate, or MAC
-        depends on units.
+        Where, such as ``[("z", 0.2), ("z", 0.5)]``; of one coordinate, or MAC depends on units.
 
     Returns
     -------

@@ -50,8 +50,7 @@ class Fit(Identified):
         Paths of the numbers.
     value, std : Named, shape (p,)
         Each number, ``fit.value["tension"]``, and its standard deviation by the exact derivatives;
-        infinite where the peaks do not tell it. A stiffness that went to 0, because the peaks do
-        not show it, is 0.
+        infinite where the peaks do not tell it. A stiffness that they do not show is 0.
     correlation : ndarray, shape (p, p)
         NaN where one of both is not told.
     orders : ndarray of int, shape (k,)
@@ -59,8 +58,7 @@ class Fit(Identified):
     measured, calculated : ndarray, shape (k,)
         [Hz]; calculated is NaN where the peak is no mode.
     measured_std : ndarray, shape (k,)
-        Of the peaks [Hz]: as they were given; else the relative noise that the residuals show,
-        equal for all.
+        Of the peaks [Hz]: as given, else the relative noise that all residuals show.
     freedom : float or None
         Degrees of freedom the noise was estimated with; None where it was given.
     chi_square : float
@@ -180,7 +178,8 @@ class Fit(Identified):
         lines = [str(numbers), "", str(self.peaks), ""]
         lines.append(f"rms residual {100 * self.rms:.3g} %; {self._said_of_noise}")
         if self.runner_up is not None:
-            lines.append(f"second best orders {list(self.runner_up.orders)}: {self._worse}")
+            orders, worse = list(self.runner_up.orders), self.runner_up.worse
+            lines.append(f"second best orders {orders}: chi-square larger by {worse:.3g}")
         if self.alternatives_source is not None:
             lines += map(str, self.alternatives)
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
@@ -195,11 +194,6 @@ class Fit(Identified):
         if self.freedom is None:
             return f"chi-square {self.chi_square:.3g} of {int((self.orders > 0).sum())} peaks"
         return f"noise estimated with {self.freedom:.3g} degrees of freedom"
-
-    @property
-    def _worse(self) -> str:
-        assert self.runner_up is not None
-        return f"chi-square larger by {self.runner_up.worse:.3g}"
 
 
 def alternatives_of(

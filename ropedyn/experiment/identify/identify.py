@@ -94,8 +94,7 @@ def identify(
     """Find the numbers of a scene that make its answers those that were measured.
 
     Weighted least squares with exact derivatives, of natural frequencies or of a whole frequency
-    response. Numbers keep the sign of their guess in the scene; the guess may be wrong by powers of
-    ten.
+    response. Numbers keep the sign of their guess, which may be wrong by powers of ten.
 
     Parameters
     ----------
@@ -104,11 +103,10 @@ def identify(
     measured : Peaks, Resonances, array_like of shape (k,), a list of Peaks, or Measured
         Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
         to be the same for all and estimated from the residuals. A list has one for each of many
-        ropes, which the scene describes alike; responses in it stand for their peaks. Or one
-        whole response, which tells damping too, without its line at 0 Hz; to use its peaks alone
-        give `Peaks.of` it. Its
-        noise is estimated from the residuals, for each point a part that is equal on all lines
-        and one in proportion to the amplitude; of measured coherence the first is what that tells.
+        ropes, which the scene describes alike; responses in it stand for their peaks. Or one whole
+        response, which tells damping too, without its line at 0 Hz (for its peaks alone give
+        `Peaks.of` it). Its noise is estimated from the residuals, for each point a part equal on
+        all lines, or what measured coherence tells, and one in proportion to the amplitude.
     unknown : str or sequence of str
         Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
         ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
@@ -124,11 +122,9 @@ def identify(
     spurious : int
         Of a search: at most so many peaks are no modes.
     scale : bool
-        Of a whole response: whether its calibration is unknown too, one real factor on all of it,
-        of either sign.
+        Whether the calibration of a whole response is unknown too, a real factor of either sign.
     prior : Prior or mapping from str to (float, float), optional
-        What is known beforehand: value and standard deviation by path. Of a `Prior` what is not
-        sought does not matter.
+        What is known beforehand: value and std by path; more than what is sought in a `Prior` only.
     elements, element
         As `Scene.compile` takes them: continuous spans where left out.
 
@@ -149,9 +145,8 @@ def identify(
     Warns
     -----
     IdentifyWarning
-        If what was measured does not tell all numbers: tension and linear density from peaks
-        alone, say. The warning names what is told. And if a response differs from the model by more
-        than noise.
+        If what was measured does not tell all numbers, as tension and linear density from peaks
+        alone; it names what is told. And if a response differs from the model beyond noise.
 
     Examples
     --------

@@ -38,8 +38,7 @@ class ResponseFit(Identified):
     measured, calculated : ndarray of complex, shape (responses, f)
         [as `Measured.value`]; the calculated one with the scale that was found.
     measured_std : ndarray, shape (responses, f)
-        Of real and imaginary part of each line, estimated from what is left; infinite where a line
-        was not used.
+        Of either part of each line, estimated from what is left; infinite where it was not used.
     freedom : float
         Degrees of freedom the noise was estimated with.
     chi_square : float

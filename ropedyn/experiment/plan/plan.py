@@ -31,8 +31,7 @@ class Plan(Answer):
     frequency, damping_ratio : ndarray, shape (k,)
         [Hz, 1].
     visibility : ndarray, shape (sensors, k)
-        |phi_n(x_d) phi_n(x_r)| over its largest along the rope: the share of the highest peak that
-        mode n can have.
+        |phi_n(x_d) phi_n(x_r)| over its largest: the share of the highest peak of mode n.
     amplitude : ndarray, shape (sensors, k)
         |phi_n(x_d) phi_n(x_r)|/(2 zeta_n m_n omega_n^2): receptance at the peak by its own mode
         alone [m/N and so on]; infinite without damping.

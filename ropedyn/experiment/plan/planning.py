@@ -61,8 +61,7 @@ def plan_measurement(
     * a frequency read to the nearest line has the standard uncertainty df/sqrt(12) (GUM, JCGM
       100:2008, 4.3.7), which must not be more than `std`.
 
-    The rate is 2.56 times the top of the band, as analysers have it, to leave room for the slope of
-    the anti-alias filter.
+    The rate is 2.56 times the top of the band, which leaves room for the anti-alias filter.
 
     Parameters
     ----------
@@ -104,8 +103,7 @@ def plan_measurement(
         If an argument is out of range, a mode cannot be seen from anywhere that is allowed, or
         nothing moves the response when the drive does.
     SolveError
-        If the rope has not so many modes, or two wanted modes have the same frequency and no
-        damping.
+        If the rope has not so many modes, or two wanted ones have one frequency and no damping.
 
     Examples
     --------
