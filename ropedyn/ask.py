@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,8 +26,8 @@ from .base.array import Complex, Real
 from .base.errors import SceneError
 from .base.unit import QUANTITIES, place
 from .chain.port import Point
-from .eigen import spectrum
 from .eigen.modes import Modes
+from .eigen.spectrum import SOLVERS as MODES_SOLVERS
 from .experiment.compare.difference import (
     OF_FRF,
     OF_MODES,
@@ -36,8 +36,8 @@ from .experiment.compare.difference import (
     change_of_modes,
 )
 from .model import Model
-from .response import solvers
 from .response.frf import FRF
+from .response.solvers import SOLVERS as FRF_SOLVERS
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,8 @@ class ModesQuestion:
 
     number: int | None = None
     below: float | None = None
+    measures: ClassVar[tuple[str, ...]] = OF_MODES  # what is measured of a change of the answer
+    solvers: ClassVar[tuple[str, ...]] = tuple(MODES_SOLVERS)  # what can answer it
 
     def __post_init__(self) -> None:
         if (self.number is None) == (self.below is None):
@@ -84,16 +86,6 @@ class ModesQuestion:
 
     def __str__(self) -> str:
         return f"{self.number} modes" if self.below is None else f"modes below {self.below:g} Hz"
-
-    @property
-    def measures(self) -> tuple[str, ...]:
-        """What is measured of a change of the answer, with units."""
-        return OF_MODES
-
-    @property
-    def solvers(self) -> tuple[str, ...]:
-        """What can answer it."""
-        return tuple(spectrum.SOLVERS)
 
     def of(self, model: Model, *, solver: str = "sweep", threads: int | None = None) -> Modes:
         """Ask a model; see `Model.modes`. Modes are found by one thread whatever `threads`."""
@@ -161,6 +153,8 @@ class FRFQuestion(Frozen):
     drive: Any
     response: Any = None
     quantity: str = "receptance"
+    measures: ClassVar[tuple[str, ...]] = OF_FRF  # what is measured of a change of the answer
+    solvers: ClassVar[tuple[str, ...]] = tuple(FRF_SOLVERS)  # what can answer it
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequency", check.frequencies(self.frequency))
@@ -177,16 +171,6 @@ class FRFQuestion(Frozen):
         drives = (self.drive,) if isinstance(self.drive[0], str) else self.drive
         driven = " and ".join(map(place, drives))
         return f"{self.quantity} of {lines}, driven in {driven}"
-
-    @property
-    def measures(self) -> tuple[str, ...]:
-        """What is measured of a change of the answer, with units."""
-        return OF_FRF
-
-    @property
-    def solvers(self) -> tuple[str, ...]:
-        """What can answer it."""
-        return tuple(solvers.SOLVERS)
 
     def of(self, model: Model, *, solver: str = "sweep", threads: int | None = None) -> FRF:
         """Ask a model; see `Model.frf`."""

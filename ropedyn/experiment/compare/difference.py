@@ -68,7 +68,8 @@ def change_of_modes(whole: Modes, model: Model, solver: str) -> AnswerChange:
     hertz, percent = np.abs(after - before), 100 * relative(after, before)
     error = error + uncertain
     lost = len(mine) - len(after)
-    size = [_of(each, of) for of in (hertz, percent) for each in (np.max, _root_mean_square)]
+    measures = (np.max, lambda each: np.sqrt(np.mean(each**2)))
+    size = [_of(measure, each) for each in (hertz, percent) for measure in measures]
     damping = np.abs(left - ratio)
     return AnswerChange(
         size=dict(zip(OF_MODES, (*size, _of(np.max, damping[~np.isnan(damping)])))),
@@ -200,7 +201,3 @@ def _peak_shift(whole: FRF, left: FRF) -> float:
 def _of(measure: Callable[[Real], Any], change: Real) -> float:
     """Return a measure of changes, NaN of none."""
     return float(measure(change)) if change.size else np.nan
-
-
-def _root_mean_square(change: Real) -> Any:
-    return np.sqrt(np.mean(change**2))

@@ -44,7 +44,8 @@ class Unknowns:
         if not paths or len(set(paths)) < len(paths):
             raise SceneError(f"unknown must be different {what}, got {check.shown(unknown)}")
         start = np.array([_start(scene, path, i) for i, path in enumerate(paths)])
-        scale = np.array([_scale(scene, path) for path in paths])
+        length = scene.rope.length
+        scale = np.array([length if _PLACE.fullmatch(p) else float(p == _ANGLE) for p in paths])
         for i, path in enumerate(paths):
             if start[i] == 0 and scale[i] == 0:
                 raise SceneError(
@@ -109,9 +110,3 @@ def _start(scene: Scene, path: str, i: int) -> float:
         return value_at(scene, path)
     except SceneError as error:
         raise SceneError(f"unknown[{i}]: {error}") from error
-
-
-def _scale(scene: Scene, path: str) -> float:
-    if _PLACE.fullmatch(path):
-        return scene.rope.length
-    return 1.0 if path == _ANGLE else 0.0

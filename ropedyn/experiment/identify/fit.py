@@ -176,7 +176,10 @@ class Fit(Identified):
         """
         numbers = self.table() if self.solution is None else self._with_intervals()
         lines = [str(numbers), "", str(self.peaks), ""]
-        lines.append(f"rms residual {100 * self.rms:.3g} %; {self._said_of_noise}")
+        noise = f"chi-square {self.chi_square:.3g} of {int((self.orders > 0).sum())} peaks"
+        if self.freedom is not None:
+            noise = f"noise estimated with {self.freedom:.3g} degrees of freedom"
+        lines.append(f"rms residual {100 * self.rms:.3g} %; {noise}")
         if self.runner_up is not None:
             orders, worse = list(self.runner_up.orders), self.runner_up.worse
             lines.append(f"second best orders {orders}: chi-square larger by {worse:.3g}")
@@ -189,12 +192,6 @@ class Fit(Identified):
         low, high = self.interval().T.tolist()
         return Table.of("identified", columns | {"95 % from": low, "to": high})
 
-    @property
-    def _said_of_noise(self) -> str:
-        if self.freedom is None:
-            return f"chi-square {self.chi_square:.3g} of {int((self.orders > 0).sum())} peaks"
-        return f"noise estimated with {self.freedom:.3g} degrees of freedom"
-
 
 def alternatives_of(
     fit: Fit, scene: Scene, instead: Callable[[Scene], Fit]
@@ -206,7 +203,9 @@ def alternatives_of(
     for word in WORDS:
         if scene.ends != (word, word):
             try:
-                other = instead(_guess(fit, scene, word))
+                # what was found is a guess, where nothing went to 0 or infinity
+                guess = scene if fit.value_is_bound else fit.scene
+                other = instead(guess.replace(ends=(word, word)))
             except RopedynError:
                 continue
             found.append(Alternative(word, other, _verdict(fit, other), _change(fit, other)))
@@ -216,16 +215,8 @@ def alternatives_of(
 def _change(fit: Fit, other: Fit) -> dict[str, float]:
     """Return relative changes of the numbers that both tell."""
     before, after = dict(fit.value), dict(other.value)
-    told = np.isfinite(fit.std) & np.isfinite(other.std)
-    return {
-        path: float(after[path] / before[path] - 1) for path, one in zip(fit.unknown, told) if one
-    }
-
-
-def _guess(fit: Fit, scene: Scene, word: str) -> Scene:
-    """Return the scene with other ends and, where nothing went to 0 or infinity, what was found."""
-    found = scene if fit.value_is_bound else fit.scene
-    return found.replace(ends=(word, word))
+    told = np.flatnonzero(np.isfinite(fit.std) & np.isfinite(other.std))
+    return {p: float(after[p] / before[p] - 1) for p in (fit.unknown[i] for i in told)}
 
 
 def _verdict(fit: Fit, other: Fit) -> str:

@@ -180,7 +180,8 @@ def identify(
         return whole
     if scale:
         raise SceneError("scale must be False of peaks, which have no amplitude, got True")
-    if _is_of_many(measured):
+    listed = isinstance(measured, (list, tuple))
+    if listed and any(isinstance(one, (Peaks, Measured)) for one in measured):
         return _fits(scene, measured, how)
     fit = _fit(scene, _peaks(measured, "measured"), how)
     _warn(fit.notes)
@@ -201,7 +202,7 @@ class Options(NamedTuple):
 
 def _fit(scene: Scene, peaks: Peaks, how: Options) -> Fit:
     """Identify one rope."""
-    frequency, std = _frequency(peaks), _weights(peaks)
+    frequency, std = _weighted(peaks)
     if scene.mean_tension == 0 and "tension" in how.paths:
         # a string whose lowest peak is its first mode
         wave = 2 * scene.rope.length * float(frequency.min())
@@ -276,11 +277,6 @@ def _warn(notes: Sequence[str]) -> None:
 # --- what was given ---------------------------------------------------------------------------
 
 
-def _is_of_many(measured: Any) -> bool:
-    kinds = (Peaks, Measured)
-    return isinstance(measured, (list, tuple)) and any(isinstance(m, kinds) for m in measured)
-
-
 def _peaks(measured: Any, name: str) -> Peaks:
     """Return peaks from what they may be given as."""
     if isinstance(measured, Peaks):
@@ -289,13 +285,6 @@ def _peaks(measured: Any, name: str) -> Peaks:
     if many or isinstance(measured, (Measured, Resonances)):
         return Peaks.of(measured)
     return Peaks(check.numbers(measured, name, "Hz", sign="positive"))
-
-
-def _frequency(peaks: Peaks) -> Real:
-    """Return the frequencies, if their squares are numbers."""
-    frequency = np.asarray(peaks.frequency, dtype=np.float64)
-    _within(frequency, "measured", "Hz")
-    return frequency
 
 
 def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> None:
@@ -311,10 +300,12 @@ def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> No
         )
 
 
-def _weights(peaks: Peaks) -> Real | None:
-    """Return the standard deviations, if there are any."""
+def _weighted(peaks: Peaks) -> tuple[Real, Real | None]:
+    """Return frequencies whose squares are numbers, and standard deviations if there are any."""
+    frequency = np.asarray(peaks.frequency, dtype=np.float64)
+    _within(frequency, "measured", "Hz")
     if peaks.std is None:
-        return None
+        return frequency, None
     std = np.asarray(peaks.std, dtype=np.float64)
     if (std == 0).any():
         at = int(np.flatnonzero(std == 0)[0])
@@ -322,8 +313,8 @@ def _weights(peaks: Peaks) -> Real | None:
             f"measured.std[{at}] must be a finite number > 0 [Hz] to be a weight, got 0.0: leave "
             "std out where it is not known"
         )
-    _within(std, "measured.std", "Hz", np.asarray(peaks.frequency, dtype=np.float64))
-    return std
+    _within(std, "measured.std", "Hz", frequency)
+    return frequency, std
 
 
 def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:

@@ -88,14 +88,10 @@ def _crossing(root: Callable[[float], float], target: float, step: float, limit:
             if high - low <= 1e-6 * high:
                 return high if np.isfinite(at_high) else np.inf
             halve = max(below, above) > 2 or not np.isfinite(at_high)
-            step = low + (high - low) * (0.5 if halve else _secant(at_low, at_high, target))
+            secant = 0.5 if halve else (target - at_low) / (at_high - at_low)
+            step = low + (high - low) * min(max(secant, 0.02), 0.98)
         elif low >= limit:
             return np.inf
         else:
             ahead = low * target / at_low if at_low > 0 else np.inf
             step, leap = min(max(ahead, 1.1 * low), leap * low, limit), min(leap**2, 1e4)
-
-
-def _secant(low: float, high: float, target: float) -> float:
-    """Return the part of the way from low to high where a straight line is `target`."""
-    return min(max((target - low) / (high - low), 0.02), 0.98)

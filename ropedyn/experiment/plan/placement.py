@@ -46,10 +46,6 @@ def best_placement(
     return max((one for one in found if one is not None), key=lambda one: one.score, default=None)
 
 
-def _score(seen: Real) -> Real:
-    return np.asarray(seen.min(axis=0) + TIE * seen.mean(axis=0))
-
-
 def _pair(drive: CandidatePlaces, sensor: CandidatePlaces, apart: float) -> Placement | None:
     least = np.full((len(drive.x), len(sensor.x)), np.inf)
     mean = np.zeros_like(least)
@@ -102,7 +98,7 @@ def _best(
     else:
         driven = slots[0].share[:, at[0]]
         seen = driven[:, None] * np.maximum(slots[slot].share, heard[:, None])
-    score = _score(seen)
+    score = seen.min(axis=0) + TIE * seen.mean(axis=0)
     for k in others:
         score[np.abs(slots[slot].x - slots[k].x[at[k]]) < apart] = -np.inf
     best = int(score.argmax())

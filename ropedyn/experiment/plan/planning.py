@@ -136,6 +136,9 @@ def plan_measurement(
     pairs = [(one, at) for one, at in zip(listeners, found.sensors)]
     visibility = driver.share[:, found.drive] * np.array([one.share[:, at] for one, at in pairs])
     _refuse_unseen(target, visibility)
+    # peaks are 0 where a mode is not seen at all, whatever its damping
+    amplitude = np.zeros_like(visibility)
+    np.multiply(visibility, target.highest_peak, out=amplitude, where=visibility > 0)
     need = _needs(target, check.optional(std, "std", "Hz", sign="positive"))
     reason = min(need, key=need.__getitem__)
     part = _damage(scene, damage, check.number(loss, "loss", sign="positive"))
@@ -146,7 +149,7 @@ def plan_measurement(
         frequency=target.frequency,
         damping_ratio=target.damping_ratio,
         visibility=visibility,
-        amplitude=_amplitude(visibility, target.highest_peak),
+        amplitude=amplitude,
         separation=target.separation,
         line_spacing=need[reason],
         reason=reason,
@@ -235,12 +238,6 @@ def _refuse_unseen(target: TargetModes, visibility: Real) -> None:
             f"drive and response must be able to see mode {unseen[0]}: no place that is allowed or "
             "fixed shows it together with the other modes"
         )
-
-
-def _amplitude(visibility: Real, highest: Real) -> Real:
-    """Return peaks, 0 where a mode is not seen at all, whatever its damping."""
-    seen = visibility > 0
-    return np.multiply(visibility, highest, out=np.zeros_like(visibility), where=seen)
 
 
 def _needs(target: TargetModes, std: float | None) -> dict[str, float]:
