@@ -353,16 +353,13 @@ class Report:
         >>> rd.study2015.report().table().column("f1 [Hz]")[:4]
         ('70', '64', '29.73', '69.40')
         """
-        rows: list[tuple[Any, ...]] = []
         against = (np.asarray(published.frequency), np.asarray(measured.frequency))
-        for name, peaks in zip(("published model", "measured, 4 mm rope"), against):
-            rows.append((name, *(f"{f:.0f}" for f in peaks), "", ""))
+        names = ("published model", "measured, 4 mm rope")
+        rows = [(n, *(f"{f:.0f}" for f in peaks), "", "") for n, peaks in zip(names, against)]
         for reading in self.readings:
             f = np.array(reading.frequency)
-            per_cent = [
-                " ".join(f"{d:+.0f}" for d in 100 * (f - peaks) / peaks) for peaks in against
-            ]
-            rows.append((reading.name, *(f"{value:.2f}" for value in f), *per_cent))
+            off = (" ".join(f"{d:+.0f}" for d in 100 * (f - peaks) / peaks) for peaks in against)
+            rows.append((reading.name, *(f"{value:.2f}" for value in f), *off))
         columns = ("reading", "f1 [Hz]", "f2", "f3", "% of published", "% of measured")
         return Table("the 2015 study: first three natural frequencies", columns, tuple(rows))
 

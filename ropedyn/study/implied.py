@@ -25,11 +25,7 @@ UNKNOWN = ("tension", "bending_stiffness")
 
 @dataclass(frozen=True)
 class Implied:
-    """A tensed beam fitted to three peaks, for each reading of the mass and of the ends.
-
-    Frequencies tell tension and bending stiffness per linear density alone: one fit for each kind
-    of ends holds for every density, multiplied by it.
-    """
+    """A tensed beam fitted to three peaks, for each reading of the ends; densities scale it."""
 
     peaks: Peaks  # of the study
     densities: dict[str, float]  # what its rope may weigh [kg/m]

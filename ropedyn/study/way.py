@@ -84,10 +84,7 @@ def priced(
     report: Callable[[float], Any],
     *first: Way,
 ) -> tuple[dict[str, NDArray[Any]], Times]:
-    """Try ways and time them after those that come first; return columns and times.
-
-    A way that refuses is a row with the numbers of nothing and the reason.
-    """
+    """Try ways, with rows of nothing for refusals, and time them after those that come first."""
     rows: list[Mapping[str, Any]] = []
     calls = [way.calls for way in first]
     for attempt in attempts:

@@ -106,17 +106,12 @@ def calculated_peaks(
         found = _of_frf(given, drive)
     else:
         if isinstance(given, Model):
-            given = _enough_modes(given, highest, more, least)
+            number = max(given.count(below=highest) + more, least) + len(given.coordinates) + 1
+            given = solve_modes(given, number, below=None, solver="sweep", strict=False)
         found = _of_modes(given)
     if len(found.frequency) == 0:
         raise SceneError("calculated must have at least one peak, got none")
     return found
-
-
-def _enough_modes(model: Model, highest: float, more: int, least: int) -> Modes:
-    number = max(model.count(below=highest) + more, least)
-    rigid = len(model.coordinates) + 1
-    return solve_modes(model, number + rigid, below=None, solver="sweep", strict=False)
 
 
 def _of_modes(modes: Modes) -> CalculatedPeaks:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -44,12 +43,8 @@ class Cause(NamedTuple):
 def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Real) -> str:
     """Say which one number of the scene explains all differences, where they prove it.
 
-    It is named, and with it all that leave no more than chance exceeds in one of 1000 cases,
-
-    - if the differences are none by chance, which exceeds them in less than one of 1000 cases,
-    - if what it leaves is: chance exceeds that in 5 % of cases,
-    - if it is no chance that it fits: differences at random of any size are explained as well, by
-      one of the numbers tried, in one of 1000 cases (F test).
+    Chance must exceed the differences in less than one of 1000 cases, what the number leaves in 5 %
+    and more, and differences at random must be explained as well by less than one of 1000 (F test).
     """
     from scipy.special import fdtrc
 
@@ -66,7 +61,8 @@ def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Re
     if chance(len(wanted), before) > EXCLUDED:
         return ""
     tracked = Tracked(found.modes, found.number[at])
-    causes = [one for path in tracked.paths() if (one := _fitted(tracked, path, wanted, weight))]
+    paths = rates_of(found.modes.sensitivity.places)
+    causes = [one for path in paths if (one := _fitted(tracked, path, wanted, weight))]
     possible = [one for one in causes if chance(rest, one.chi2) >= EXCLUDED]
     best = min(possible, key=lambda one: one.chi2, default=None)
     if best is None or len(possible) > MOST or chance(rest, best.chi2) < LIKELY:
@@ -148,10 +144,6 @@ class Tracked:
             if len(at):
                 found.append((component, at, np.cumsum(mine)[self.number[at]] - 1))
         return found
-
-    def paths(self) -> Iterator[str]:
-        """Yield the numbers of the scene that may shift modes."""
-        yield from rates_of(self.modes.sensitivity.places)
 
     def slope(self, path: str) -> Real | None:
         """Return d log f/d log p, shape (k,), or None where there is no such derivative."""

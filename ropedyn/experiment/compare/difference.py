@@ -56,10 +56,7 @@ def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
 
 
 def change_of_modes(whole: Modes, model: Model, solver: str) -> AnswerChange:
-    """Compare each mode with that of the same order among those of the same motion of a model.
-
-    Where the model has none of a motion, or too few, the others are only there in the whole.
-    """
+    """Compare modes with those of the same motion and order of a model that has less."""
     mine = motions(whole)
     others = _modes_alike(mine, model, solver)
     paired = [np.flatnonzero(mine == motion)[: len(one)] for motion, one in others.items()]
@@ -181,10 +178,7 @@ def _decibel(relative_error: Real) -> Real:
 
 
 def _peak_shift(whole: FRF, left: FRF) -> float:
-    """Return how far the largest peak moves [Hz], of several responses the furthest.
-
-    NaN where the nearest peak that is left has another number: which one it became is not clear.
-    """
+    """Return how far the largest peak moves [Hz], if the nearest one has the same number."""
     shifts = []
     drives = len(whole.drive) if whole.value.ndim == 3 else 1
     for drive in range(drives):

@@ -21,10 +21,7 @@ SAME = 1e-9  # Lines that differ by less than this share are one.
 
 
 def reach(calculated: Real) -> Real:
-    """Return how far away a partner may be: half the distance to a neighbour, in logarithms.
-
-    Of two neighbours the farther one counts; modes close to each other are one.
-    """
+    """Return half the distance to the farther neighbour, in logarithms: partners are no farther."""
     log = np.log(calculated)
     mean = (log[-1] - log[0] + ALONE) / len(log)
     group = np.append(0, np.cumsum(np.diff(log) > CLOSE * mean))
@@ -38,11 +35,7 @@ def reach(calculated: Real) -> Real:
 def paired(
     measured: Real, calculated: Real, *, std: Real | None = None, within: float | None = None
 ) -> Integer:
-    """Return which calculated frequency each measured one is, from 1; 0 of what is none.
-
-    The sum of d^2, d = log(measured/calculated), and of the squared reach of what is left out is
-    smallest. As d^2 is convex, no two pairs cross.
-    """
+    """Pair frequencies: squares of distances, and of the reach of what is left out, are least."""
     from scipy.optimize import linear_sum_assignment
 
     order = np.zeros(len(measured), dtype=np.int64)

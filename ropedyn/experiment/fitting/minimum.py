@@ -71,10 +71,7 @@ def minimise(
     *,
     digits: Mapping[str, float] = DIGITS,
 ) -> Minimum:
-    """Find the least sum of squares by a trust region method.
-
-    Directions that do not change the residuals at the start are not gone.
-    """
+    """Find the least sum of squares along directions that change residuals at the start."""
     remembered = Memory(misfit, start)
     residual, slope = remembered(start)
     free = np.eye(len(start)) if directions is None else directions

@@ -147,11 +147,7 @@ def _derivative(frf: FRF, path: str, i: int) -> Complex:
 
 @dataclass(frozen=True, eq=False)
 class LogMisfit:
-    """Logarithms of amplitude ratios, and how far phases are apart.
-
-    A peak at a wrong place is off by its height in decades: a wide valley. Phases are compared by
-    exp(i phi), which knows no jump of 2 pi.
-    """
+    """Logarithms of amplitude ratios, with wide valleys, and phases as exp(i phi): no jumps."""
 
     response: Response
 

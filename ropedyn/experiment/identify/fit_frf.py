@@ -112,10 +112,10 @@ def _systematic(measured: Complex, calculated: Complex, std: Real) -> list[str]:
 
 
 def line_std(measured: Measured, off: Complex) -> Real:
-    """Estimate the standard deviation of real and imaginary part of each line, a^2 + b^2 |H|^2.
+    """Estimate the standard deviation of either part of each line, a^2 + b^2 |H|^2.
 
-    Where coherence C was measured the first kind is what that tells, a^2 |H|^2 (1 - C)/C, as of n
-    averages with a^2 = 1/2n (J. S. Bendat, A. G. Piersol, Random Data, 2010, section 9.2).
+    Measured coherence C tells the first kind, (1 - C)/C |H|^2/2n of n averages (Bendat, Piersol,
+    Random Data, 2010, section 9.2).
     """
     std = np.empty(off.shape)
     for r, value in enumerate(measured.value):
@@ -133,10 +133,7 @@ def line_std(measured: Measured, off: Complex) -> Real:
 
 
 def _most_likely(kinds: Real, square: Real) -> Real:
-    """Return the sizes of kinds of variance, (2,), that make squares of differences most likely.
-
-    A second kind that is not there would be found where a few high lines happen to be off by more.
-    """
+    """Return the likeliest sizes of kinds of variance, (2,); one alone unless both tell more."""
     each = np.array([_alone(kind, square) for kind in kinds])
     alone = [np.array([each[0], 0.0]), np.array([0.0, each[1]])]
     likeliest = min(alone, key=lambda size: _unlikely(size, kinds, square)[0])

@@ -62,10 +62,7 @@ def _blind(solution: Solution, data: Data) -> list[str]:
 
 
 def combinations(solution: Solution, at: Index) -> list[Real]:
-    """Return exponents of products that are told, where all are small fractions.
-
-    Null directions N in echelon form, a pivot each: p_i is told with pivots to the power -N.
-    """
+    """Return exponents, small fractions, of products that are told: null space in echelon form."""
     if not solution.unknowns.by_factor[at].all():
         return []
     basis = solution.uncertainty.basis[at]

@@ -19,11 +19,7 @@ OTHERS = (-0.9, 9.0)  # Relative changes that others are guessed to have are bet
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """How the least sum of squares grows when one number is held off its best value.
-
-    The interval on which the root of the growth is below a quantile covers the truth as often as it
-    says (D. M. Bates, D. G. Watts, Nonlinear Regression Analysis, 1988, section 6.1).
-    """
+    """How the least sum of squares grows as a number moves off (Bates, Watts 1988, section 6.1)."""
 
     misfit: Misfit
     minimum: Minimum

@@ -49,10 +49,7 @@ class Likelihood:
         return np.where(within, -2 * np.log(self.overlooked), 0.0)
 
     def prices(self, calculated: Real, sigma: Real) -> tuple[Real, Real]:
-        """Return prices of each peak as each mode, (..., k, m), and as none, (..., k).
-
-        A peak that is a mode saves the price of that one missing.
-        """
+        """Return prices of peaks as modes less missing ones, (.., k, m), and as none, (.., k)."""
         z = (calculated[..., None, :] - self.frequency[:, None]) / sigma[:, None]
         seen = z * z - 2 * np.log1p(-self.overlooked)
         seen -= self.price_of_missing(calculated)[..., None, :]
@@ -78,10 +75,7 @@ class Likelihood:
         return orders, cost + self.price_of_missing(calculated).sum(axis=-1)
 
     def others(self, calculated: Real, orders: Integer) -> Integer:
-        """Return the likeliest orders that differ from these in each peak, shape (h, k).
-
-        The next best is among them (Murty's ranking, Operations Research 16 (1968) 682).
-        """
+        """Return the likeliest orders that differ in a peak, (h, k) (Murty, Oper. Res. 16, 682)."""
         seen, none = (
             np.repeat(one[None], len(orders), 0) for one in self.prices(calculated, self.sigma)
         )

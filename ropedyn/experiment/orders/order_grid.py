@@ -128,11 +128,7 @@ def _minimum(rows: Real, right: Real, centre: Real, tight: Real) -> Real:
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Points around a start with Rayleigh's quotients of their shapes.
-
-    Directions that change all frequencies alike need no points: steps v of the logarithms do so
-    where the shares s of a mode have the same s v for all modes (Euler).
-    """
+    """Points around a start; steps v with the same s v for the shares s of all modes need none."""
 
     parameters: Real  # (points, p)
     quotients: Quotients  # of each point

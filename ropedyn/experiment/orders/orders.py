@@ -85,10 +85,7 @@ class Factors:
 
 
 def lowest_suffice(residual: Real, frequency: Real, std: Real | None, freedom: int) -> bool:
-    """Say whether the lowest modes explain the peaks, so that no others need be looked for.
-
-    Others have a mode missing: what they gain must be more than that costs, and than noise is.
-    """
+    """Say whether the lowest modes explain the peaks as well as noise or a missing mode allow."""
     from scipy.special import chdtri
 
     off = residual / (NOISE * frequency if std is None else std)

@@ -31,10 +31,7 @@ class Placement(NamedTuple):
 def best_placement(
     drive: CandidatePlaces, sensors: Sequence[CandidatePlaces], apart: float
 ) -> Placement | None:
-    """Maximise the least of a_n(x_d) max_s b_n(x_s) over modes n.
-
-    Of one sensor every pair is tried; of more each place is moved to where it is best in turn.
-    """
+    """Maximise the least of a_n(x_d) max_s b_n(x_s) over modes n, more sensors one by one."""
     if len(sensors) == 1:
         return _pair(drive, sensors[0], apart)
     many = len(drive.x)

@@ -223,10 +223,7 @@ def _allowed(length: float, x: Real, between: Any, places: Any) -> Real:
 
 
 def _candidates(x: Real, motion: Real, fixed: float | None, allowed: Real) -> CandidatePlaces:
-    """Return where one of them may be, and what is seen there: a line between places tried.
-
-    Of 32 places a half wave at least it misses (pi/32)^2/8 of the largest.
-    """
+    """Return where one may be, and what is seen there, (pi/32)^2/8 of the largest off at most."""
     at = allowed if fixed is None else np.array([fixed])
     return CandidatePlaces(at, np.abs([np.interp(at, x, row) for row in motion]))
 
