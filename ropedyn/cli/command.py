@@ -1,43 +1,37 @@
-"""The command line."""
+"""The command line: its commands and what they leave with. Alone it is the 2015 study."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
+from .. import study2015
 from ..base.errors import RopedynError, SolveError
-from .accuracy import accuracy_command
-from .compare import compare_command
-from .effects import effects_command
-from .floquet import floquet_command
-from .frf import frf_command
-from .identify import identify_command
-from .modes import modes_command
-from .stability import stability_command
-from .study import FOLDER, run_study, study_command
-from .transient import transient_command
+from .experiment import COMPARE, IDENTIFY
+from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 
 COMMANDS = (
-    study_command,
-    modes_command,
-    frf_command,
-    compare_command,
-    accuracy_command,
-    effects_command,
-    identify_command,
-    transient_command,
-    floquet_command,
-    stability_command,
+    MODES,
+    FRF,
+    COMPARE,
+    ACCURACY,
+    EFFECTS,
+    IDENTIFY,
+    TRANSIENT,
+    FLOQUET,
+    STABILITY,
 )
+FOLDER = Path("ropedyn-study")
 
 SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
-    options = _parser().parse_args(arguments)
     try:
+        options = _parser().parse_args(arguments)
         options.run(options)
     except SolveError as error:
         return _complain(error, REFUSED)
@@ -57,8 +51,21 @@ def _parser() -> argparse.ArgumentParser:
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
         epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad.",
     )
-    parser.set_defaults(run=run_study, folder=FOLDER)
+    parser.set_defaults(run=_study, folder=FOLDER)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    study = commands.add_parser("study", help="the 2015 study: table, verdict, figures")
+    study.add_argument("--folder", type=Path, default=FOLDER, help="of the figures (%(default)s)")
+    study.set_defaults(run=_study)
     for command in COMMANDS:
-        command(commands)
+        command.add(commands)
     return parser
+
+
+def _study(options: argparse.Namespace) -> None:
+    """Print the study and draw its figures."""
+    from ..plot import study2015 as study_figures
+
+    print(study2015.report())
+    print()
+    for path in study_figures.draw(options.folder):
+        print(f"figure: {path}")

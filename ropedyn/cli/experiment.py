@@ -1,0 +1,184 @@
+"""Commands that take a measurement: compare a scene with it, identify numbers of the scene."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from typing import Any
+
+from ..base.errors import IdentifyWarning
+from ..base.unit import QUANTITIES
+from ..curves.measured import Measured
+from ..curves.peaks import Peaks
+from ..experiment.compare.compare import compare
+from ..experiment.identify.identify import identify
+from ..scene.scene import Scene
+from .options import Command, Group, compiled, option, refuse, repeated, show, switch
+from .text import column, drive, known, node, numbers, orders, pair, point, whole_numbers, words
+
+MEASURED = Group(
+    (
+        option("--peaks", "measured peaks, comma list [Hz]", numbers),
+        option("--measured", "measured response, universal file or CSV", metavar="FILE"),
+    ),
+    required=True,
+)
+OF_FILE = (
+    option("--drive", "coordinate@position [m], such as z@0.5, or end:0:z", drive),
+    repeated("--response", "as --drive", point),
+    option("--quantity", "of the values", choices=QUANTITIES),
+    option("--unit", 'of the values, such as "m/s^2/N" or "g/N"'),
+    repeated(
+        "--position",
+        "where a node of a universal file is [m], such as 1=0.5",
+        node,
+        metavar="NODE=X",
+    ),
+    repeated(
+        "--coordinate",
+        "what a direction of a universal file is, such as Z=z or RY=-beta",
+        pair,
+        metavar="DIRECTION=COORDINATE",
+    ),
+    repeated(
+        "--column",
+        "column of a CSV file: frequency, real, imag, amplitude, phase or coherence",
+        column,
+        metavar="KIND=NAME",
+    ),
+    switch(
+        "--reciprocal",
+        "exchange what was driven and what was watched, for a hammer that roves",
+        default=None,
+    ),
+)
+"""What only a file takes."""
+
+FILE_TITLE = "of a FILE, where it does not say so itself"
+STD = "of the peaks, one number or a comma list [Hz]"
+
+ONLY_PEAKS = switch("--only-peaks", "of the FILE, not all of it", default=None)
+SCALE = switch("--scale", "seek the calibration of the FILE too", default=None)
+STD_OF_COMPARED = option("--std", STD, numbers)
+STD_OF_FITTED = option("--std", f"{STD}; estimated without it", numbers)
+ORDER = option("--order", "which mode each peak is, comma list of whole numbers", whole_numbers)
+BAND = option("--band", "that FRAC is taken over at each line [Hz]", type=float)
+
+
+def _read(options: argparse.Namespace) -> Measured:
+    """Read the file."""
+    given = {
+        "quantity": options.quantity,
+        "unit": options.unit,
+        "reciprocal": options.reciprocal,
+        "drive": options.drive,
+        "response": options.response,
+        "positions": options.position and dict(options.position),
+        "coordinate": options.coordinate and dict(options.coordinate),
+        "columns": options.column and _columns(options.column),
+    }
+    return Measured.read(options.measured, **{k: v for k, v in given.items() if v is not None})
+
+
+def _columns(pairs: list[tuple[str, str | int]]) -> dict[str, Any]:
+    """Return columns by their kind, a list where there are several."""
+    found: dict[str, Any] = {}
+    for kind, name in pairs:
+        found.setdefault(kind, []).append(name)
+    return {kind: many[0] if len(many) == 1 else many for kind, many in found.items()}
+
+
+def _compare(options: argparse.Namespace) -> None:
+    measured: Any
+    if options.peaks is not None:
+        refuse(options, (*OF_FILE, BAND), "--measured")
+        measured = Peaks(options.peaks, std=options.std, order=options.order)
+    else:
+        refuse(options, (STD_OF_COMPARED, ORDER), "--peaks")
+        measured = _read(options)
+    model = compiled(options)
+    calculated = model if options.modes is None else model.modes(options.modes)
+    comparison = compare(calculated, measured, within=options.within, band=options.band)
+    show(options, comparison, comparison.report())
+
+
+COMPARE = Command(
+    "compare",
+    _compare,
+    "calculated against measured peaks or responses",
+    (
+        option("--modes", "compare with so many (as many as are needed)", type=int),
+        MEASURED,
+        STD_OF_COMPARED,
+        ORDER,
+        option("--within", "largest relative error of calculated peaks, such as 0.05", type=float),
+        Group((*OF_FILE, BAND), FILE_TITLE),
+    ),
+    "Calculated against measured peaks, or a measured frequency response: pairs of peaks, likeness "
+    "of responses (FRAC), and what their differences prove of their cause.",
+)
+
+
+def _identify(options: argparse.Namespace) -> None:
+    measured: Any
+    if options.peaks is not None:
+        refuse(options, (*OF_FILE, ONLY_PEAKS, SCALE), "--measured")
+        measured = Peaks(options.peaks, std=options.std)
+    else:
+        refuse(options, (STD_OF_FITTED,), "--peaks")
+        measured = _read(options)
+        measured = measured if options.only_peaks is None else Peaks.of(measured)
+    given: dict[str, Any] = {} if options.scale is None else {"scale": True}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", IdentifyWarning)
+        found: Any = identify(
+            Scene.load(options.scene),
+            measured,
+            options.unknown,
+            orders=options.orders,
+            prior=dict(options.prior) or None,
+            elements=options.elements,
+            element=options.element,
+            **given,
+        )
+    # what limits the report stands in it, and beside a table alone
+    if options.json or options.csv:
+        for note in found.notes:
+            print(f"ropedyn: {note}", file=sys.stderr)
+    show(options, found, found.report())
+
+
+IDENTIFY = Command(
+    "identify",
+    _identify,
+    "tension, stiffness and other numbers from measured peaks or responses",
+    (
+        MEASURED,
+        ONLY_PEAKS,
+        SCALE,
+        STD_OF_FITTED,
+        option(
+            "--orders",
+            'which mode each peak is, comma list, 0 for none, "auto" or "search" (%(default)s)',
+            orders,
+            default="auto",
+        ),
+        option(
+            "--unknown",
+            "comma list, such as tension,bending_stiffness,ends[0].spring.beta (%(default)s)",
+            words,
+            default="tension",
+        ),
+        repeated(
+            "--prior",
+            "what is known of an unknown beforehand",
+            known,
+            default=[],
+            metavar="PATH=VALUE:STD",
+        ),
+        Group(OF_FILE, FILE_TITLE),
+    ),
+    "Tension, stiffness and other numbers of the scene from measured peaks, or a measured "
+    "frequency response; what the scene says of them is a guess.",
+)

@@ -1,0 +1,231 @@
+"""Commands that ask a scene: modes, responses, motion, growth, and what they cost."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import ask
+from ..base import check
+from ..base.errors import SceneError
+from ..base.unit import MOTIONS
+from ..motion.request import METHODS
+from ..scene.scene import Scene
+from ..study.accuracy import accuracy_cost
+from ..study.effect import effect_cost
+from .options import Command, Group, compiled, option, refuse, repeated, show, switch
+from .text import (
+    FORCES,
+    drive,
+    force,
+    force_words,
+    load_at,
+    point,
+    spaced,
+    whole_numbers,
+    words,
+)
+
+LINES = ("--frequency", "start:stop:lines or a comma list [Hz]", spaced("Hz"))
+DRIVE = ("--drive", "coordinate@position [m], such as z@0.5, or end:0:z", drive)
+RESPONSE = repeated("--response", "as --drive", point)
+CARRYING = option(
+    "--modes", "with transverse motion, the lowest (%(default)s)", type=int, default=4
+)
+PROGRESS = switch("--progress", "say on stderr how far it is")
+
+QUESTION = (
+    Group(
+        (
+            option("--modes", "how many", type=int),
+            option("--below", "instead: modes below this [Hz]", type=float),
+            option(*LINES),
+        )
+    ),
+    option(*DRIVE),
+    RESPONSE,
+)
+EITHER = (
+    "for modes (10 of them unless --modes or --below is given) or, with --frequency and --drive, "
+    "a frequency response."
+)
+"""What a command says that takes a `QUESTION`."""
+
+
+def _modes(options: argparse.Namespace) -> None:
+    if options.mode is not None and options.animate is None:
+        raise SceneError("--animate must be given with --mode, got none")
+    modes: Any = compiled(options).modes(options.modes, damped=options.damped)
+    if options.animate is not None:
+        number = 1 if options.mode is None else options.mode
+        check.count(number, "--mode", most=len(modes.frequency))
+        modes.animate(number - 1, path=options.animate)
+    show(options, modes)
+
+
+MODES = Command(
+    "modes",
+    _modes,
+    "natural frequencies and shapes",
+    (
+        option("--modes", "how many (%(default)s)", type=int, default=10),
+        switch("--damped", "complex modes"),
+        option("--animate", "write a mode in motion: .gif, .html, .mp4", type=Path, metavar="FILE"),
+        option("--mode", "which of them --animate shows (1)", type=int),
+    ),
+)
+
+
+def _frf_question(options: argparse.Namespace) -> ask.FRFQuestion:
+    return ask.frf(options.frequency, drive=options.drive, response=options.response)
+
+
+FRF = Command(
+    "frf",
+    lambda options: show(options, _frf_question(options).of(compiled(options))),
+    "frequency response",
+    (option(*LINES, required=True), option(*DRIVE, required=True), RESPONSE),
+)
+
+
+def _question(options: argparse.Namespace) -> ask.Question:
+    if options.frequency is not None:
+        if options.drive is None:
+            raise SceneError("--drive must be given with --frequency, got none")
+        return _frf_question(options)
+    refuse(options, (option(*DRIVE), RESPONSE), "--frequency")
+    if options.below is not None:
+        return ask.modes(below=options.below)
+    return ask.modes(10 if options.modes is None else options.modes)
+
+
+def _accuracy(options: argparse.Namespace) -> None:
+    cost = accuracy_cost(
+        Scene.load(options.scene),
+        _question(options),
+        elements=options.elements,
+        element=options.element,
+        solver=options.solver,
+    )
+    show(options, cost)
+
+
+ACCURACY = Command(
+    "accuracy",
+    _accuracy,
+    "time and error of every element and solver",
+    QUESTION,
+    f"Time and error of every element and solver, {EITHER}",
+    (
+        option("--elements", "of chains, comma list (powers of two from 8 to 4096)", whole_numbers),
+        option("--element", "kinds (%(default)s)", words, default="rigid,tensed,continuous"),
+        option("--solver", "comma list (%(default)s)", words, default="sweep,lapack"),
+    ),
+)
+
+
+def _effects(options: argparse.Namespace) -> None:
+    scene = Scene.load(options.scene)
+    how = {"elements": options.elements, "element": options.element}
+    show(options, effect_cost(scene, _question(options), **how))
+
+
+EFFECTS = Command(
+    "effects",
+    _effects,
+    "what each effect of the scene changes and costs",
+    QUESTION,
+    f"What each effect of the scene changes and costs, {EITHER}",
+)
+
+
+def _transient(options: argparse.Namespace) -> None:
+    time = np.asarray(options.time, dtype=np.float64)
+    if len(options.drive) != len(options.force):
+        raise SceneError(
+            f"--force must be given once for each of {len(options.drive)} --drive, got "
+            f"{len(options.force)}"
+        )
+    history = compiled(options).transient(
+        time,
+        drive=[drive(text, "--drive") for text in options.drive] or None,
+        force=[force(text, time) for text in options.force] or None,
+        response=options.response,
+        quantity=options.quantity,
+        start=dict(options.start) or None,
+        method=options.method,
+        step=options.step,
+        tolerance=options.tolerance,
+        progress=options.progress,
+    )
+    show(options, history)
+
+
+TRANSIENT = Command(
+    "transient",
+    _transient,
+    "motion over time",
+    (
+        option("--time", "start:stop:count or a comma list [s]", spaced("s"), required=True),
+        option(
+            "--drive",
+            "coordinate@position [m], such as z@0.5, or an end that is moved, such as end:0:z; "
+            "may be repeated",
+            action="append",
+            default=[],
+        ),
+        option(
+            "--force",
+            " or ".join(f"{kind}:{force_words(kind)}" for kind in FORCES)
+            + " [N, N s, Hz, rad, s], or a CSV file whose last column is the force, a line for "
+            "each of the times; one for each --drive",
+            action="append",
+            default=[],
+        ),
+        repeated("--response", "coordinate@position [m]", point),
+        option("--quantity", "of responses (%(default)s)", choices=MOTIONS, default="displacement"),
+        repeated(
+            "--start",
+            "load that is let go [N, N m], such as z@0.5=10",
+            load_at,
+            default=[],
+            metavar="POINT=LOAD",
+        ),
+        option("--method", "(%(default)s)", choices=METHODS, default="auto"),
+        option("--step", "of the direct method, at most [s]", type=float),
+        option("--tolerance", "instead: of the error that steps cause", type=float),
+        PROGRESS,
+    ),
+    "Motion over time, driven by forces or moved ends, or let go from a load.",
+)
+
+FLOQUET = Command(
+    "floquet",
+    lambda options: show(options, compiled(options).floquet(modes=options.modes)),
+    "growth of free motion under the pulsating tension of the scene",
+    (CARRYING,),
+)
+
+
+def _stability(options: argparse.Namespace) -> None:
+    chart = compiled(options).stability_map(
+        options.frequency, options.amplitude, modes=options.modes, progress=options.progress
+    )
+    show(options, chart)
+
+
+OF_TENSION = "of the tension, start:stop:count or a comma list"
+STABILITY = Command(
+    "stability",
+    _stability,
+    "frequencies and amplitudes of the tension at which motion grows",
+    (
+        option("--frequency", f"{OF_TENSION} [Hz]", spaced("Hz"), required=True),
+        option("--amplitude", f"{OF_TENSION} [N]", spaced("N"), required=True),
+        CARRYING,
+        PROGRESS,
+    ),
+)

@@ -1,0 +1,207 @@
+"""How texts of the command line become numbers, points and forces.
+
+Each takes the text and the name of its option, which its error says.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..base.array import Real
+from ..base.check import shown
+from ..base.errors import SceneError
+from ..base.parameter import Description
+from ..base.unit import END, WIRE
+from ..chain.port import Point
+from ..scene.force import Chirp, Force, Impulse, Sine, Step
+
+_Number = TypeVar("_Number", int, float)
+
+FORCES: dict[str, tuple[type[Description], tuple[str, ...]]] = {
+    "sine": (Sine, ("amplitude", "frequency", "phase")),
+    "step": (Step, ("amplitude", "time")),
+    "impulse": (Impulse, ("impulse", "duration", "time")),
+    "chirp": (Chirp, ("amplitude", "start", "stop", "duration")),
+}
+"""Each kind of force, and its numbers in the order in which they follow the word."""
+
+ORDERS = {"auto": "auto", "search": None}
+"""Orders that are words."""
+
+
+def words(text: str, option: str) -> list[str]:
+    """Return the words of a comma list."""
+    return text.split(",")
+
+
+def numbers(text: str, option: str) -> list[float]:
+    """Return the numbers of a comma list."""
+    return _listed(text, float, f"{option} must be a comma list of numbers")
+
+
+def whole_numbers(text: str, option: str) -> list[int]:
+    """Return the whole numbers of a comma list."""
+    return _listed(text, int, f"{option} must be a comma list of whole numbers")
+
+
+def _listed(text: str, kind: Callable[[str], _Number], expected: str) -> list[_Number]:
+    try:
+        return [kind(part) for part in text.split(",")]
+    except ValueError:
+        raise SceneError(f"{expected}, got {shown(text)}") from None
+
+
+def orders(text: str, option: str) -> Any:
+    """Return which mode each peak is, or the word that says how that is found."""
+    return ORDERS[text] if text in ORDERS else whole_numbers(text, option)
+
+
+def spaced(unit: str) -> Callable[[str, str], Real | list[float]]:
+    """Return what takes ``start:stop:count``, equally spaced numbers, or a comma list."""
+
+    def parse(text: str, option: str) -> Real | list[float]:
+        if ":" not in text:
+            return numbers(text, option)
+        parts = text.split(":")
+        try:
+            start, stop, count = float(parts[0]), float(parts[1]), int(parts[2])
+            if len(parts) == 3 and 1 <= count <= 10_000_000 and np.isfinite([start, stop]).all():
+                return np.linspace(start, stop, count)
+        except (ValueError, IndexError):
+            pass
+        raise SceneError(f"{option} must be start:stop:count [{unit}], got {shown(text)}")
+
+    return parse
+
+
+def point(text: str, option: str) -> Point:
+    """Return a point from ``coordinate@position``."""
+    coordinate, at, position = text.partition("@")
+    try:
+        if at:
+            return coordinate, int(position) if coordinate == WIRE else float(position)
+    except ValueError:
+        pass
+    raise SceneError(f"{option} must be coordinate@position [m] such as z@0.5, got {shown(text)}")
+
+
+def drive(text: str, option: str) -> Any:
+    """Return what is driven: a point, or from ``end:number:coordinate`` an end that is moved."""
+    kind, *rest = text.split(":")
+    if kind != END:
+        return point(text, option)
+    try:
+        number, coordinate = rest
+        return END, int(number), coordinate
+    except ValueError:
+        raise SceneError(
+            f"{option} must be {END}:number:coordinate such as {END}:0:z, got {shown(text)}"
+        ) from None
+
+
+def load_at(text: str, option: str) -> tuple[Point, float]:
+    """Return a point and its load from ``coordinate@position=load``."""
+    where, _, load = text.partition("=")
+    try:
+        value = float(load)
+    except ValueError:
+        raise SceneError(
+            f"{option} must be point=load [N, N m] such as z@0.5=10, got {shown(text)}"
+        ) from None
+    return point(where, option), value
+
+
+def known(text: str, option: str) -> tuple[str, tuple[float, float]]:
+    """Return a path with its value and standard deviation from ``path=value:std``."""
+    path, _, pair = text.partition("=")
+    value, _, std = pair.partition(":")
+    try:
+        return path, (float(value), float(std))
+    except ValueError:
+        raise SceneError(
+            f"{option} must be path=value:std such as tension=300:15, got {text!r}"
+        ) from None
+
+
+def pair(text: str, option: str) -> tuple[str, str]:
+    """Return what stands on both sides of an equals sign."""
+    name, between, value = text.partition("=")
+    if not (name and between and value):
+        raise SceneError(f"{option} must be two words with = between, got {shown(text)}")
+    return name, value
+
+
+def node(text: str, option: str) -> tuple[int, float]:
+    """Return the number of a node and its position from ``NODE=X``."""
+    number, x = pair(text, option)
+    return _of_node(number, int, option), _of_node(x, float, option)
+
+
+def _of_node(text: str, kind: Callable[[str], _Number], option: str) -> _Number:
+    try:
+        return kind(text)
+    except ValueError:
+        raise SceneError(f"{option} must be NODE=X, such as 1=0.5, got {shown(text)}") from None
+
+
+def column(text: str, option: str) -> tuple[str, str | int]:
+    """Return a kind of column and which one it is: whole numbers are numbers."""
+    kind, name = pair(text, option)
+    return kind, int(name) if name.isdecimal() else name
+
+
+def force_words(kind: str) -> str:
+    """Say what follows the word of a force, such as ``AMPLITUDE[:TIME]``."""
+    numbers = FORCES[kind][1]
+    needed = [name.upper() for name in numbers[: _needed(kind)]]
+    left = [f"[:{name.upper()}" for name in numbers[_needed(kind) :]]
+    return ":".join(needed) + "".join(left) + "]" * len(left)
+
+
+def _needed(kind: str) -> int:
+    """Return how many numbers of a force have no default."""
+    made, numbers = FORCES[kind]
+    defaults = {field.name: field.default for field in dataclasses.fields(made)}
+    return sum(defaults[name] is dataclasses.MISSING for name in numbers)
+
+
+def force(text: str, time: Real) -> Force | Real:
+    """Return a force from its kind and numbers, or its samples from a file."""
+    kind, *rest = text.split(":")
+    if kind not in FORCES:
+        return _samples(text, time)
+    made, names = FORCES[kind]
+    try:
+        values = [float(part) for part in rest]
+    except ValueError:
+        values = []
+    if not _needed(kind) <= len(values) <= len(names):
+        raise SceneError(f"--force must be {kind}:{force_words(kind)}, got {shown(text)}")
+    return made(**dict(zip(names, values)))  # type: ignore[return-value]
+
+
+def _samples(path: str, time: Real) -> Real:
+    """Return the last column of a file: a line for each time, and maybe one that names columns."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = [line.split(",")[-1].strip() for line in file if line.strip()]
+    except FileNotFoundError:
+        kinds = ", ".join(FORCES)
+        raise SceneError(
+            f"--force must be one of {kinds} with its numbers, or a file, got {shown(path)}"
+        ) from None
+    named = len(lines) == len(time) + 1
+    try:
+        values = np.array([float(line) for line in lines[named:]])
+    except ValueError as error:
+        raise SceneError(f"--force must be a file of numbers, got {shown(path)}: {error}") from None
+    if len(values) != len(time):
+        raise SceneError(
+            f"--force must be a file with a line for each of {len(time)} times, got "
+            f"{len(values)} in {shown(path)}"
+        )
+    return values
