@@ -36,10 +36,9 @@ from .scene.end import End
 from .scene.force import Chirp, Impulse, Sine, Step
 from .scene.gravity import Gravity
 from .scene.parts.broken_wire import BrokenWire
-from .scene.parts.node_force import NodeForce
+from .scene.parts.law import NodeForce, Stop
 from .scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
 from .scene.parts.resonator import Resonator
-from .scene.parts.stop import Stop
 from .scene.parts.stretch import AddedMass, LocalChange
 from .scene.prior import Prior
 from .scene.rope import Rope

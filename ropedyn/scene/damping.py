@@ -43,20 +43,18 @@ class DampingTerm(NamedTuple):
 
 
 class Damping(Protocol):
-    """What the analyses ask of a damping."""
+    """What the analyses ask of a damping.
+
+    >>> import ropedyn as rd
+    >>> rd.ViscousDamping(2.0).term().drag
+    2.0
+    """
 
     kind: ClassVar[str]
     """Name of the effect."""
 
     def term(self) -> DampingTerm:
-        """Return what it adds.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.ViscousDamping(2.0).term().drag
-        2.0
-        """
+        """Return what it adds."""
 
 
 class StiffnessDamping(Description):

@@ -18,76 +18,43 @@ ANY = "N or N m or m or rad"
 
 
 class Force(Protocol):
-    """What the analyses ask of a force, or of the motion of an end, in time."""
+    """What the analyses ask of a force, or of the motion of an end, in time.
+
+    >>> import ropedyn as rd
+    >>> rd.Step(10.0, time=0.5).value(np.array([0.0, 0.5, 1.0]))
+    array([ 0., 10., 10.])
+    >>> rd.Sine(10.0, 0.5).rate(np.array([0.0, 1.0])).round(4)
+    array([ 31.4159, -31.4159])
+    >>> rd.Sine(10.0, 70.0).bandwidth, rd.Impulse(0.1, time=0.5).blows
+    (70.0, ((0.5, 0.1),))
+    >>> rd.Chirp(10.0, 20.0, 400.0, 2.0).breaks, rd.Chirp(10.0, 20.0, 400.0, 2.0).highest
+    ((2.0,), 400.0)
+    """
 
     def value(self, time: Real) -> Real:
-        """Return it at times [s], of the time's shape; from the right where it jumps.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import ropedyn as rd
-        >>> rd.Step(10.0, time=0.5).value(np.array([0.0, 0.5, 1.0]))
-        array([ 0., 10., 10.])
-        """
+        """Return it at times [s], of the time's shape; from the right where it jumps."""
 
     def rate(self, time: Real) -> Real:
-        """Return its derivative at times [s], of the time's shape; from the right at `breaks`.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import ropedyn as rd
-        >>> rd.Sine(10.0, 0.5).rate(np.array([0.0, 1.0])).round(4)
-        array([ 31.4159, -31.4159])
-        """
+        """Return its derivative at times [s], of the time's shape; from the right at `breaks`."""
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """When it jumps or bends [s], the times of samples apart.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Chirp(10.0, 20.0, 400.0, 2.0).breaks
-        (2.0,)
-        """
+        """When it jumps or bends [s], the times of samples apart."""
         return ()
 
     @property
     def blows(self) -> tuple[tuple[float, float], ...]:
-        """Impulses at one instant: when [s] and how much [N s, N m s].
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Impulse(0.1, time=0.5).blows
-        ((0.5, 0.1),)
-        """
+        """Impulses at one instant: when [s] and how much [N s, N m s]."""
         return ()
 
     @property
     def highest(self) -> float:
-        """Frequency that steps must resolve to see it at all [Hz]; 0 of what only breaks.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Chirp(10.0, 20.0, 400.0, 2.0).highest
-        400.0
-        """
+        """Frequency that steps must resolve to see it at all [Hz]; 0 of what only breaks."""
         return 0.0
 
     @property
     def bandwidth(self) -> float:
-        """Frequency up to which modes must reach to follow it between its breaks [Hz].
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Sine(10.0, 70.0).bandwidth
-        70.0
-        """
+        """Frequency up to which modes must reach to follow it between its breaks [Hz]."""
         return self.highest
 
 

@@ -16,7 +16,7 @@ from . import damping
 from .end import End
 from .gravity import Gravity
 from .parts import part
-from .parts.node_force import NodeForce
+from .parts.law import NodeForce
 from .rope import Rope
 from .tension import Tension
 

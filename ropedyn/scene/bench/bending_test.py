@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import KW_ONLY
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import axes
-from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.parameter import Description, depending, number, numbers, one_of
 from .static_test import StaticTest
@@ -134,21 +132,10 @@ class BendingTest(Description, StaticTest, eq=False):
 
     stiffness_name = "bending_stiffness"
     symbol = "B"
-    load_label = "force [N]"
-    reading_label = "deflection [m]"
+    names = ("force", "deflection")
 
     def _agree(self) -> None:
         self._check_readings()
-
-    @property
-    def load(self) -> Real:
-        """Forces [N], shape (k,)."""
-        return np.asarray(self.force)
-
-    @property
-    def reading(self) -> Real:
-        """Deflections [m], shape (k,)."""
-        return np.asarray(self.deflection)
 
     @property
     def factor(self) -> float:

@@ -12,6 +12,7 @@ from ...base.answer import Answer
 from ...base.array import Real
 from ...base.computed import computed
 from ...base.errors import SceneError
+from ...base.parameter import parameters
 from ...base.table import Table
 
 
@@ -24,6 +25,8 @@ class StaticTest(Answer):
     >>> test = rd.TorsionTest(0.5, [0.0, 0.01, 0.02], [0.0, 0.034, 0.067])
     >>> test.load, test.reading, test.factor
     (array([0.  , 0.01, 0.02]), array([0.   , 0.034, 0.067]), 0.5)
+    >>> test.load_label, test.reading_label
+    ('torque [N m]', 'angle [rad]')
     >>> print(test.title)
     torsional stiffness C = 0.149254 +- 0.0013 N m^2
     >>> (test.residual * 1e3).round(2), round(test.line.slope, 3)
@@ -32,20 +35,35 @@ class StaticTest(Answer):
 
     stiffness_name: ClassVar[str]
     symbol: ClassVar[str]
-    load_label: ClassVar[str]
-    reading_label: ClassVar[str]
+    names: ClassVar[tuple[str, str]]
+    """The parameters that are load and reading."""
     zero: float | None
     reading_std: float | None
 
     @property
     def load(self) -> Real:
-        """What was put on, shape (k,)."""
-        raise NotImplementedError
+        """What was put on [N, N m], shape (k,)."""
+        return np.asarray(getattr(self, self.names[0]))
 
     @property
     def reading(self) -> Real:
-        """What was read, shape (k,)."""
-        raise NotImplementedError
+        """What was read [m, rad], shape (k,)."""
+        return np.asarray(getattr(self, self.names[1]))
+
+    @property
+    def load_label(self) -> str:
+        """What was put on, with its unit."""
+        return self._label(0)
+
+    @property
+    def reading_label(self) -> str:
+        """What was read, with its unit."""
+        return self._label(1)
+
+    def _label(self, which: int) -> str:
+        test: Any = self
+        name = self.names[which]
+        return f"{name} [{parameters(test)[name].unit}]"
 
     @property
     def factor(self) -> float:
@@ -113,7 +131,7 @@ class StaticTest(Answer):
 
     def _check_readings(self) -> None:
         """Refuse what has no line, or none that goes up."""
-        loads, readings = self.load_label.split(" [")[0], self.reading_label.split(" [")[0]
+        loads, readings = self.names
         if len(self.load) != len(self.reading):
             raise SceneError(
                 f"{readings} must have as many numbers as {loads}, {len(self.load)}, "
@@ -137,7 +155,7 @@ class StaticTest(Answer):
         columns: dict[str, Any] = {
             self.load_label: self.load,
             self.reading_label: self.reading,
-            "residual" + self.reading_label[self.reading_label.index(" [") :]: self.residual,
+            self.reading_label.replace(self.names[1], "residual"): self.residual,
         }
         return Table.of(self.title, columns)
 

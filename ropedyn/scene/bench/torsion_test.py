@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base.answer import axes
-from ...base.array import Real
 from ...base.parameter import Description, number, numbers
 from .static_test import StaticTest
 
@@ -68,21 +66,10 @@ class TorsionTest(Description, StaticTest, eq=False):
 
     stiffness_name = "torsional_stiffness"
     symbol = "C"
-    load_label = "torque [N m]"
-    reading_label = "angle [rad]"
+    names = ("torque", "angle")
 
     def _agree(self) -> None:
         self._check_readings()
-
-    @property
-    def load(self) -> Real:
-        """Torques [N m], shape (k,)."""
-        return np.asarray(self.torque)
-
-    @property
-    def reading(self) -> Real:
-        """Angles [rad], shape (k,)."""
-        return np.asarray(self.angle)
 
     @property
     def factor(self) -> float:

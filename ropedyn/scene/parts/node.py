@@ -93,44 +93,28 @@ class NodeRate(NamedTuple):
 
 
 class Part(Description):
-    """Base of what stands at one place of the rope: what the compiler asks of it."""
+    """Base of what stands at one place of the rope: what the compiler asks of it.
+
+    >>> import ropedyn as rd
+    >>> spring = rd.Spring(0.5, 1e4)
+    >>> spring.stands_on, spring.term().stiffness, spring.rates()["stiffness"].stiffness
+    (('z',), {'z': 10000.0}, {'z': 1.0})
+    """
 
     kind: ClassVar[str]
     """Name of the effect."""
 
     x: float = position()
-    """Where it stands [m]."""
 
     @property
     def stands_on(self) -> tuple[str, ...]:
-        """Coordinates without which it has no meaning: the one it acts on, if it has one.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Spring(0.5, 1e4).stands_on, rd.PointMass(0.5, 0.1).stands_on
-        (('z',), ())
-        """
+        """Coordinates without which it has no meaning: the one it acts on, if it has one."""
         return (self.coordinate,) if hasattr(self, "coordinate") else ()
 
     def term(self) -> NodeTerm:
-        """Return what it adds to its node.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Spring(0.5, 1e4).term().stiffness
-        {'z': 10000.0}
-        """
+        """Return what it adds to its node."""
         raise NotImplementedError
 
     def rates(self) -> Mapping[str, NodeRate]:
-        """Return how fast that changes with each number of it, positions apart.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Spring(0.5, 1e4).rates()["stiffness"].stiffness
-        {'z': 1.0}
-        """
+        """Return how fast that changes with each number of it, positions apart."""
         return {}

@@ -11,10 +11,9 @@ from ...base import check
 from ...base.parameter import depending, number, one_of, parameters
 from . import stretch as _stretch
 from .broken_wire import BrokenWire
+from .law import NodeForce, Stop
 from .node import Law, NodeRate, NodeTerm, Part
-from .node_force import NodeForce
 from .resonator import Resonator
-from .stop import Stop
 from .stretch import Stretch
 
 
