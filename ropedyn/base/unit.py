@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 UNIT = {"x": "m", "z": "m", "alpha": "rad", "beta": "rad"}
@@ -47,6 +48,16 @@ def label(
 ) -> str:
     """Say what a response is, such as ``z at 0.500 m [m/N]``; per motion of an end ``[m/m]``."""
     return f"{place(response)} [{curve_unit(response, drive, quantity)}]"
+
+
+def named(
+    responses: Sequence[Any], drives: Sequence[Any], quantity: str
+) -> Iterator[tuple[str, int, int]]:
+    """Yield the name of each response to each drive with the numbers of both."""
+    for d, drive in enumerate(drives):
+        for r, response in enumerate(responses):
+            more = f" driven in {place(drive)}" if len(drives) > 1 else ""
+            yield label(response, drive, quantity) + more, r, d
 
 
 def curve_unit(response: tuple[str, float], drive: tuple[Any, ...] | None, quantity: str) -> str:

@@ -14,8 +14,10 @@ from ..base.array import Complex, Real
 from ..base.computed import changed
 from ..base.errors import SceneError
 from ..base.table import Table
-from ..base.unit import QUANTITIES, label, place
+from ..base.unit import QUANTITIES, label, named
 from ..chain.port import Point
+from .files import Content
+from .files.formats import write
 from .resonance import Resonances, resonances
 
 
@@ -171,9 +173,16 @@ class Curves(Answer):
         >>> bool((rd.Measured.read(path).value == frf.value).all())
         True
         """
-        from .files.formats import write
-
-        write(self, path, binary)
+        content = Content(
+            self.frequency,
+            self.value if self.value.ndim == 3 else self.value[None],
+            self.drive,
+            self.response,
+            self.quantity,
+            coherence=getattr(self, "coherence", None),
+            averages=getattr(self, "averages", None),
+        )
+        write(content, path, binary)
 
     def table(self) -> Table:
         """Return amplitude and phase of every response over frequency."""
@@ -189,9 +198,5 @@ class Curves(Answer):
 
 def named_curves(curves: Curves) -> Iterator[tuple[str, int, Complex]]:
     """Yield each response to each drive: its name, which response it is, and the curve."""
-    for d, drive in enumerate(curves.drive):
-        for r, point in enumerate(curves.response):
-            name = label(point, drive, curves.quantity)
-            if len(curves.drive) > 1:
-                name += f" driven in {place(drive)}"
-            yield name, r, curves.curve(r, d)
+    for name, r, d in named(curves.response, curves.drive, curves.quantity):
+        yield name, r, curves.curve(r, d)

@@ -17,9 +17,15 @@ from ..base.errors import SceneError
 from ..base.unit import QUANTITIES, curve_unit, is_quantity
 from ..chain.port import Point
 from .curves import Curves
-from .line_noise import by_coherence, by_differences
+from .files.formats import read
 
 ROWS = "response and frequency"
+
+AROUND = 41
+"""Lines that the median of the differences goes over: narrow peaks are few of them."""
+
+LEAST = 12
+"""Lines below which nothing is said."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,8 +190,6 @@ class Measured(Curves):
         >>> measured.labels
         ('z at 0.200 m [m/s^2/N]',)
         """
-        from .files.formats import read
-
         given = read(
             path,
             anything={"drive": drive, "response": response, "unit": unit, "quantity": quantity},
@@ -204,7 +208,7 @@ class Measured(Curves):
             },
         )
         try:
-            return cls(**given)
+            return cls(**given._asdict())
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from error
 
@@ -222,6 +226,30 @@ class Measured(Curves):
             for name, values in zip(self.labels, self.coherence):
                 columns[f"coherence of {name}"] = values
         return columns
+
+
+def by_coherence(value: Complex, coherence: Real, averages: float) -> Real:
+    """Return the standard deviation of real and of imaginary part of each line.
+
+    var |H|/|H|^2 = (1 - gamma^2)/(2 n gamma^2) for n averages, and as much for the phase: J. S.
+    Bendat, A. G. Piersol, Random Data (2010), table 9.6.
+    """
+    share = np.maximum(coherence, np.finfo(float).tiny)
+    return np.abs(value) * np.sqrt((1 - coherence) / (2 * averages * share))
+
+
+def by_differences(value: Complex) -> Real | None:
+    """Estimate that from the lines alone, None where they are too few.
+
+    What is smooth has small third differences y_0 - 3 y_1 + 3 y_2 - y_3, noise large ones: |.|^2 is
+    distributed as 40 sigma^2 times an exponential variable, whose median is ln 2.
+    """
+    from scipy.ndimage import median_filter
+
+    if len(value) < LEAST:
+        return None
+    size = np.abs(np.diff(value, 3)) / np.sqrt(40 * np.log(2))
+    return np.pad(median_filter(size, AROUND, mode="nearest"), (1, 2), mode="edge")
 
 
 def lines_of(measured: Measured, which: NDArray[Any]) -> Measured:

@@ -14,6 +14,7 @@ from ..base.answer import Answer, axes
 from ..base.errors import SceneError
 from ..base.table import Table
 from .curves import Curves
+from .merge_peaks import merge_peaks
 from .resonance import Resonances
 
 
@@ -98,8 +99,6 @@ class Peaks(Answer):
         >>> print(rd.Peaks.of(frf).frequency.round(2))
         [15.81 31.62]
         """
-        from .merge_peaks import merge_peaks
-
         given = (measured,) if isinstance(measured, Resonances) else measured
         what = "responses such as a Measured, or the Resonances of some"
         check.instance(given, "measured", (Curves, list, tuple), what)

@@ -17,7 +17,7 @@ from ..chain.compiled import Compiled
 from ..eigen.spectrum import SOLVERS, ComponentModes, pieces_of, spectrum
 from ..response.modal_sum import mode_numbers
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
-from ..signal.cluster import clusters
+from ..signal.contour import clusters
 
 SLOPE_OF_TENSION = 6
 """The slope by the tension is this one of an element, see `_core.sensitivity`."""

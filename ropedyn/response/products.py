@@ -19,8 +19,7 @@ from ..scene import damping
 from ..scene.stations import stations_at
 from .hamiltonian import Span, generator, hamiltonian
 from .harmonic import solve_harmonic
-from .quadrature import rule
-from .span_waves import SpanWaves
+from .span_waves import SpanWaves, rule
 
 MOST = 1 << 21
 """Numbers of a field at once."""

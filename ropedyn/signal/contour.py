@@ -16,8 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.array import Complex, Index, Real
-from .cluster import clusters
+from ..base.array import Complex, Flags, Index, Real
 
 Function = Callable[[Complex], Complex]
 """Takes points, shape (n,), and returns values, shape (..., n)."""
@@ -141,3 +140,11 @@ def _split(pole: Complex | Real, circle: Circles, moment: Complex) -> Complex:
     powers = place ** np.arange(len(place))[:, None]
     own = np.linalg.lstsq(powers, moment.reshape(len(moment), -1), rcond=1e-13)[0]
     return np.asarray(np.moveaxis(own.reshape(moment.shape), 0, -1), dtype=np.complex128)
+
+
+def clusters(near: Flags) -> list[Index]:
+    """Gather what is near, or near to what is near, and so on."""
+    from scipy.sparse.csgraph import connected_components
+
+    count, label = connected_components(near, directed=False)
+    return [np.flatnonzero(label == k) for k in range(count)]

@@ -7,9 +7,8 @@ import pytest
 from conftest import EPS
 
 import ropedyn as rd
-from ropedyn.curves.assurance import frac, frac_over, mac
 from ropedyn.eigen.vectors import shapes_at
-from ropedyn.signal.response_shape import residues
+from ropedyn.signal.likeness import frac, frac_over, mac, residues
 
 RANDOM = np.random.default_rng(7)
 CURVES = RANDOM.normal(size=(2, 40)) + 1j * RANDOM.normal(size=(2, 40))

@@ -7,7 +7,7 @@ from scipy.signal import cont2discrete, lfilter
 from test_measured import noisy
 
 import ropedyn as rd
-from ropedyn.curves.line_noise import by_coherence, by_differences
+from ropedyn.curves.measured import by_coherence, by_differences
 
 LINES = np.arange(40.0, 170.0, 0.5)  # Hz
 POINT = {"drive": ("z", 0.5), "response": ("z", 0.5)}

@@ -15,9 +15,9 @@ from ...base import check
 from ...base.array import Complex, Real
 from ...base.atomic import write_bytes
 from ...base.errors import SceneError
-from ...base.unit import QUANTITIES
-from ..curves import Curves, named_curves
+from ...base.unit import QUANTITIES, named
 from ..motion_unit import EXAMPLES, scale, stated
+from . import Content
 
 OWN = "# ropedyn "
 """How a file begins that `write` has written: JSON of what is in it follows."""
@@ -66,7 +66,7 @@ def read(
     quantity: str | None,
     columns: Any,
     **layout: Any,
-) -> dict[str, Any]:
+) -> Content:
     """Read what a `Measured` is made of; see `Measured.read`."""
     text = _text(file)
     if columns is None and text.startswith(OWN):
@@ -83,7 +83,10 @@ def read(
             f"columns must say what the columns of {str(file)!r} are ({there}), such as {SUCH}, "
             "got None"
         )
-    return _columns(file, sheet, columns) | _meaning(file, drive, response, unit, quantity)
+    found = _columns(file, sheet, columns)
+    meaning, factor = _meaning(file, drive, response, unit, quantity)
+    found["value"] = found["value"] * np.reshape(factor, (-1, 1))
+    return Content(**found, **meaning)
 
 
 def _text(file: Path) -> str:
@@ -213,8 +216,8 @@ def _complex(real: Real, imag: Real) -> Complex:
 
 def _meaning(
     file: Path, drive: Any, response: Any, unit: Any, quantity: str | None
-) -> dict[str, Any]:
-    """Return what the user says that the numbers are; "factor" makes them SI."""
+) -> tuple[dict[str, Any], list[float]]:
+    """Return what the user says that the numbers are, and the factors that make them SI."""
     for name, value, what in (
         ("drive", drive, 'what the force acts on, such as ("z", 0.5)'),
         ("response", response, 'what is watched, such as ("z", 0.5)'),
@@ -238,15 +241,11 @@ def _meaning(
         names.add(quantity)
     if len(names) > 1:
         raise SceneError(f"unit and quantity must agree, got {unit!r} and {quantity!r}")
-    return {
-        "drive": cause,
-        "response": points,
-        "quantity": names.pop(),
-        "factor": [size for _, size in scales],
-    }
+    meaning = {"drive": cause, "response": points, "quantity": names.pop()}
+    return meaning, [size for _, size in scales]
 
 
-def _own(file: Path, text: str, drive: Any) -> dict[str, Any]:
+def _own(file: Path, text: str, drive: Any) -> Content:
     """Read what `write` wrote."""
     first, _, rest = text.partition("\n")
     try:
@@ -270,16 +269,15 @@ def _own(file: Path, text: str, drive: Any) -> dict[str, Any]:
         )
     shape = (len(head.drives), len(head.responses), each, -1)
     block = sheet.numbers[:, 1:].T.reshape(shape)[head.drives.index(wanted)]
-    return {
-        "frequency": sheet.numbers[:, 0],
-        "value": _complex(block[:, 0], block[:, 1]),
-        "coherence": block[:, 2] if head.has_coherence else None,
-        "drive": wanted,
-        "response": head.responses,
-        "quantity": head.quantity,
-        "averages": head.averages,
-        "factor": None,
-    }
+    return Content(
+        frequency=sheet.numbers[:, 0],
+        value=_complex(block[:, 0], block[:, 1]),
+        drive=wanted,
+        response=head.responses,
+        quantity=head.quantity,
+        coherence=block[:, 2] if head.has_coherence else None,
+        averages=head.averages,
+    )
 
 
 def _head(text: str) -> Head:
@@ -296,20 +294,20 @@ def _head(text: str) -> Head:
     )
 
 
-def write(curves: Curves, path: Path) -> None:
+def write(content: Content, path: Path) -> None:
     """Write responses, and their coherences, with every digit; see `Curves.write`."""
-    coherence = getattr(curves, "coherence", None)
+    coherence = content.coherence
     head = {
-        "drive": curves.drive,
-        "response": curves.response,
-        "quantity": curves.quantity,
+        "drive": content.drive,
+        "response": content.response,
+        "quantity": content.quantity,
         "coherence": coherence is not None,
-        "averages": getattr(curves, "averages", None),
+        "averages": content.averages,
     }
-    names, columns = ["frequency [Hz]"], [curves.frequency]
-    for name, r, curve in named_curves(curves):
+    names, columns = ["frequency [Hz]"], [content.frequency]
+    for name, r, d in named(content.response, content.drive, content.quantity):
         names += [f"real {name}", f"imag {name}"]
-        columns += [curve.real, curve.imag]
+        columns += [content.value[d, r].real, content.value[d, r].imag]
         if coherence is not None:
             names.append(f"coherence of {name}")
             columns.append(coherence[r])

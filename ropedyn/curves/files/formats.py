@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...base import check
 from ...base.errors import SceneError
-from . import columns as curves_csv
-from . import uff_read, uff_write
-
-if TYPE_CHECKING:
-    from ..curves import Curves
+from . import Content, columns, uff, uff_read
 
 UNIVERSAL = (".uff", ".unv", ".uf")
 TEXT = (".csv", ".txt", ".dat", ".tsv")
@@ -28,7 +24,7 @@ def read(
     anything: dict[str, Any],
     universal: dict[str, Any],
     text: dict[str, Any],
-) -> dict[str, Any]:
+) -> Content:
     """Read what a `Measured` is made of; options by the kind of file they are for."""
     file = check.path(path)
     is_universal = _is_universal(file)
@@ -39,30 +35,25 @@ def read(
             kind = "text in columns" if is_universal else "a universal file"
             raise SceneError(f"{name} is for {kind}, got {check.shown(value)} for {str(file)!r}")
     if is_universal:
-        given = uff_read.read(file, **anything, **universal)
-    else:
-        given = curves_csv.read(file, **anything, **text)
-    factor = given.pop("factor")
-    if factor is not None:
-        given["value"] = given["value"] * np.reshape(factor, (-1, 1))
-    return given
+        return uff_read.read(file, **anything, **universal)
+    return columns.read(file, **anything, **text)
 
 
-def write(curves: Curves, path: str | os.PathLike[str], binary: bool) -> None:
+def write(content: Content, path: str | os.PathLike[str], binary: bool) -> None:
     """Write responses; see `Curves.write`."""
     file = check.path(path)
     check.instance(binary, "binary", bool, "True or False")
     is_universal = _is_universal(file)
-    if not np.isfinite(curves.value).all():
+    if not np.isfinite(content.value).all():
         raise SceneError("value must be finite to be written")
-    if (np.diff(curves.frequency) <= 0).any():
+    if (np.diff(content.frequency) <= 0).any():
         raise SceneError("frequency must increase to be written")
     if is_universal:
-        uff_write.write(curves, file, binary)
+        uff.write(content, file, binary)
     elif binary:
         raise SceneError(f"binary is for a universal file, got {binary!r} for {str(file)!r}")
     else:
-        curves_csv.write(curves, file)
+        columns.write(content, file)
 
 
 def _is_universal(file: Path) -> bool:

@@ -1,50 +1,76 @@
-"""Universal files: their datasets, read and written by pyuff."""
+"""Universal files: their datasets, read and written by pyuff, and responses as such datasets."""
 
 from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...base.array import Complex, Real
 from ...base.atomic import replacing
 from ...base.errors import SceneError
 from ...base.extra import pyuff
+from ...base.unit import QUANTITIES, label
+from ...chain.port import Point
+from ..motion_unit import dimensions
+from . import Content
 
 FUNCTION = 58
+
+
 NODES = (15, 2411)
+
+
 UNITS = 164
+
 
 FRF, COHERENCE = 4, 6
 """Function types."""
+
+
 FREQUENCY = 18
 """A type of abscissa."""
+
+
 MOTION = {8: 0, 11: 1, 12: 2}
 """How often the displacement is differentiated in each type of ordinate."""
+
+
 FORCE = (13, 9)
 """Types of what a motion is divided by: excitation and reaction force."""
+
+
 UNSAID = (0, 1)
 """Types of anything: unknown and general."""
+
 
 DIRECTIONS = ("scalar", "X", "Y", "Z", "RX", "RY", "RZ")
 """By their codes without sign; R is rotation."""
 
+
 OWN = re.compile(r"ropedyn (?P<r>[a-z]+) (?P<rx>\S+) per (?P<d>[a-z]+) (?P<dx>\S+)$")
 """What is written as second line of a function: its points."""
+
+
 AVERAGES = re.compile(r"ropedyn averages (\S+)$")
 """And as fifth line."""
+
 
 MARK = re.compile(rb"(?=    -1(?:[\r\n]|\Z| {74}.))", re.DOTALL)
 """A line that opens or closes a dataset; the one pyuff looks for."""
 
+
 IEEE = 2
 """Floating point format of a binary dataset 58."""
 
+
 LONGEST_LINE = 6
 """Numbers: the last line of a dataset may be filled up."""
+
 
 Fields = dict[str, Any]
 
@@ -182,18 +208,6 @@ def label_of(text: str) -> str:
     return "" if text.strip().upper() == "NONE" else text.strip()
 
 
-def write(path: Path, datasets: Sequence[Fields]) -> None:
-    """Write datasets to a file, whole or not at all."""
-    library = pyuff()
-    with replacing(path) as draft:
-        with warnings.catch_warnings():
-            # pyuff leaves it to the collector to close what it opened again after binary numbers
-            warnings.simplefilter("ignore", ResourceWarning)
-            library.UFF(str(draft)).write_sets([dict(one) for one in datasets], mode="overwrite")
-        if any(one.get("binary") for one in datasets):
-            _state_bytes(draft, [_bytes(one) for one in datasets if one["type"] == FUNCTION])
-
-
 def _bytes(dataset: Fields) -> int:
     """Return how many bytes the numbers of a binary function take."""
     each = (2 if np.iscomplexobj(dataset["data"]) else 1) + (not dataset["abscissa_spacing"])
@@ -215,3 +229,131 @@ def _state_bytes(file: Path, sizes: Sequence[int]) -> None:
             at = content.index(b"\n", at) + 1
         at += size
     file.write_bytes(content)
+
+
+# --- responses as datasets ----------------------------------------------------------------------
+
+
+EVEN = 1e-13
+"""A relative distance of frequencies: rounding of start + k step."""
+
+
+CODE = {"x": 1, "z": 3, "alpha": 4, "beta": -5}
+"""Directions: x along the rope and z of a right-handed system, where dz/dx turns against +Y."""
+
+
+def write(content: Content, path: Path, binary: bool) -> None:
+    """Write responses, and their coherences, as datasets 58 in SI; see `Curves.write`."""
+    _refuse(content)
+    points = [*content.drive, *content.response]
+    nodes = {x: k for k, x in enumerate(sorted({x for _, x in points}), start=1)}
+    datasets: list[Fields] = [_si_units()]
+    for d, drive in enumerate(content.drive):
+        for r, response in enumerate(content.response):
+            common = _common(content, nodes, drive, response, binary)
+            datasets.append(common | _ordinate(content, drive, response, content.value[d, r]))
+            if content.coherence is not None:
+                datasets.append(common | _share(content.coherence[r]))
+    _write_all(path, datasets)
+
+
+def _refuse(content: Content) -> None:
+    """Refuse what a dataset 58 has no words for."""
+    for name, points in ("drive", content.drive), ("response", content.response):
+        for k, point in enumerate(points):
+            if point[0] not in CODE:
+                raise SceneError(
+                    f"{name}[{k}] must be a coordinate at a position to be written as a universal "
+                    f"file, got {point!r}: write a .csv"
+                )
+    if len(content.frequency) < 2:
+        raise SceneError("frequency must have at least two lines for a universal file, got 1")
+
+
+def _si_units() -> Fields:
+    return {
+        "type": UNITS,
+        "units_code": 1,
+        "units_description": "SI",
+        "temp_mode": 1,
+        "length": 1.0,
+        "force": 1.0,
+        "temp": 1.0,
+        "temp_offset": 273.15,
+    }
+
+
+def _common(
+    content: Content, nodes: Mapping[float, int], drive: Point, response: Point, binary: bool
+) -> Fields:
+    """Return the fields of a function and of its coherence."""
+    (r, rx), (d, dx) = response, drive
+    averages = getattr(content, "averages", None)
+    return {
+        "type": FUNCTION,
+        "binary": int(binary),
+        "id1": label(response, drive, content.quantity),
+        "id2": f"ropedyn {r} {float(rx)!r} per {d} {float(dx)!r}",
+        "id5": "NONE" if averages is None else f"ropedyn averages {averages!r}",
+        "rsp_node": nodes[rx],
+        "rsp_dir": CODE[r],
+        "ref_node": nodes[dx],
+        "ref_dir": CODE[d],
+        "x": content.frequency,
+        "abscissa_spacing": int(_is_even(content.frequency, binary)),
+        "abscissa_spec_data_type": FREQUENCY,
+        "abscissa_axis_lab": "Frequency",
+        "abscissa_axis_units_lab": "Hz",
+        "orddenom_spec_data_type": UNSAID[0],
+    }
+
+
+def _is_even(frequency: Real, binary: bool) -> bool:
+    """Whether the start and the step, with the 6 digits a header has, are the frequencies.
+
+    Else each is written: with 6 digits too, or in full where the file is binary.
+    """
+    start, step = (float(f"{x:.5e}") for x in (frequency[0], frequency[1] - frequency[0]))
+    written = start + np.arange(len(frequency)) * step
+    if binary:
+        return bool((written == frequency).all())
+    if np.allclose(written, frequency, rtol=EVEN, atol=0.0):
+        return True
+    if (np.diff([float(f"{x:.5e}") for x in frequency]) <= 0).any():
+        raise SceneError(
+            "frequency must increase in the 6 digits of an ASCII universal file, got a step of "
+            f"{np.diff(frequency).min():g} Hz: write a binary one"
+        )
+    return False
+
+
+def _ordinate(content: Content, drive: Point, response: Point, curve: Complex) -> Fields:
+    order = QUANTITIES[content.quantity]
+    above, below = dimensions(response, drive)
+    kind = next(code for code, times in MOTION.items() if times == order)
+    return {
+        "func_type": FRF,
+        "data": curve,
+        "ordinate_spec_data_type": kind,
+        "ordinate_axis_lab": ("Displacement", "Velocity", "Acceleration")[order],
+        "ordinate_axis_units_lab": above + ("", "/s", "/s2")[order],
+        "orddenom_spec_data_type": FORCE[0],
+        "orddenom_axis_lab": "Force",
+        "orddenom_axis_units_lab": below,
+    }
+
+
+def _share(coherence: Real) -> Fields:
+    return {"func_type": COHERENCE, "data": coherence, "ordinate_axis_lab": "Coherence"}
+
+
+def _write_all(path: Path, datasets: Sequence[Fields]) -> None:
+    """Write datasets to a file, whole or not at all."""
+    library = pyuff()
+    with replacing(path) as draft:
+        with warnings.catch_warnings():
+            # pyuff leaves it to the collector to close what it opened again after binary numbers
+            warnings.simplefilter("ignore", ResourceWarning)
+            library.UFF(str(draft)).write_sets([dict(one) for one in datasets], mode="overwrite")
+        if any(one.get("binary") for one in datasets):
+            _state_bytes(draft, [_bytes(one) for one in datasets if one["type"] == FUNCTION])

@@ -1,23 +1,39 @@
-"""Frequency responses out of universal files."""
+"""Responses out of universal files: which, where on the rope, in which unit."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...base import check
 from ...base.array import Real
 from ...base.errors import SceneError
-from . import uff
-from .uff import AVERAGES, COHERENCE, FREQUENCY, FRF, UNSAID, Record, label_of
-from .uff_points import Line, chosen, located
-from .uff_units import scale
+from ...base.unit import QUANTITIES
+from ...chain.port import Point
+from ..motion_unit import Unit, dimensions, ratio, side, stated
+from ..motion_unit import scale as scaled
+from . import Content, uff
+from .uff import (
+    AVERAGES,
+    COHERENCE,
+    DIRECTIONS,
+    FORCE,
+    FREQUENCY,
+    FRF,
+    MOTION,
+    OWN,
+    UNSAID,
+    Record,
+    label_of,
+)
 
 SAME = 1e-6
 """A relative distance of frequencies: they may have six digits."""
+
 
 HERTZ = {
     "Hz": 1.0,
@@ -42,7 +58,7 @@ def read(
     coordinate: Any,
     reciprocal: bool,
     records: Any,
-) -> dict[str, Any]:
+) -> Content:
     """Read what a `Measured` is made of; see `Measured.read`."""
     found = uff.read(file, lambda fields: fields["func_type"] in (FRF, COHERENCE))
     found = _numbered(found, records, file)
@@ -66,16 +82,17 @@ def read(
             f"quantity must be one for all responses, got {sorted(names)} in {str(file)!r}: choose "
             "some by response="
         )
-    return {
-        "frequency": frequency,
-        "value": np.array([line.record.fields["data"] for line in lines]),
-        "factor": [line.sign * size for line, (_, size) in zip(lines, scales)],
-        "drive": lines[0].drive,
-        "response": [line.response for line in lines],
-        "quantity": names.pop(),
-        "coherence": _coherence(lines, found, file),
-        "averages": _averages(lines),
-    }
+    factor = [line.sign * size for line, (_, size) in zip(lines, scales)]
+    value = np.array([line.record.fields["data"] for line in lines])
+    return Content(
+        frequency=frequency,
+        value=value * np.reshape(factor, (-1, 1)),
+        drive=lines[0].drive,
+        response=[line.response for line in lines],
+        quantity=names.pop(),
+        coherence=_coherence(lines, found, file),
+        averages=_averages(lines),
+    )
 
 
 def _numbered(found: Sequence[Record], records: Any, file: Path) -> list[Record]:
@@ -126,7 +143,7 @@ def _alike(a: Real, b: Real) -> bool:
     return len(a) == len(b) and np.allclose(a, b, rtol=SAME, atol=0.0)
 
 
-def _coherence(lines: Sequence[Line], found: Sequence[Record], file: Path) -> Real | None:
+def _coherence(lines: Sequence[Located], found: Sequence[Record], file: Path) -> Real | None:
     """Return the coherence of each response, by its nodes and directions; None without any."""
     frequency = _frequency(lines[0].record, file)
     rows = []
@@ -161,10 +178,213 @@ def _key(record: Record) -> tuple[int, ...]:
     return (*nodes, abs(fields["rsp_dir"]), abs(fields["ref_dir"]))
 
 
-def _averages(lines: Sequence[Line]) -> float | None:
+def _averages(lines: Sequence[Located]) -> float | None:
     """Return the number of averages that `write` has written down."""
     said = {match[1] for line in lines if (match := AVERAGES.match(line.record.fields["id5"]))}
     try:
         return float(said.pop()) if len(said) == 1 else None
     except ValueError:
         return None
+
+
+# --- nodes and directions as points of a rope ---------------------------------------------------
+
+
+AXES = ("X", "Y", "Z")
+"""Of the nodes in a file."""
+
+
+class Located(NamedTuple):
+    """One response to one drive."""
+
+    record: Record
+    response: Point
+    drive: Point
+    sign: int
+
+
+def located(
+    records: Sequence[Record], file: Path, positions: Any, coordinate: Any
+) -> list[Located]:
+    """Say where on the rope each record is and which way it counts."""
+    own = [(record, m) for record in records if (m := OWN.match(record.fields["id2"]))]
+    if positions is None and coordinate is None and len(own) == len(records):
+        return [_own(record, match) for record, match in own]
+    where = _positions(positions, records, file)
+    lines = []
+    for record in records:
+        rx, dx = (where[record.fields[side]] for side in ("rsp_node", "ref_node"))
+        if rx is None or dx is None:
+            continue
+        codes = [record.fields[side] for side in ("rsp_dir", "ref_dir")]
+        (r, plus), (d, minus) = (_turned(code, coordinate, records, file) for code in codes)
+        lines.append(Located(record, (r, rx), (d, dx), plus * minus))
+    if not lines:
+        raise SceneError(f"positions must leave a response of {str(file)!r}, got {positions!r}")
+    return lines
+
+
+def _own(record: Record, match: re.Match[str]) -> Located:
+    """Return the points that `write` has written down."""
+    points = []
+    for name, x in (match["r"], match["rx"]), (match["d"], match["dx"]):
+        try:
+            at = float(x)
+        except ValueError:
+            at = np.nan
+        points.append(
+            check.point((name, at), "the second line of a record", check.COORDINATES, None)
+        )
+    return Located(record, points[0], points[1], 1)
+
+
+def _positions(given: Any, records: Sequence[Record], file: Path) -> dict[int, float | None]:
+    """Return where each node is, None for one that is left out."""
+    nodes = sorted({record.fields[side] for record in records for side in ("rsp_node", "ref_node")})
+    what = f"a position [m] for each node of {str(file)!r} ({', '.join(map(str, nodes))})"
+    if given is None:
+        raise SceneError(
+            f'positions must be {what}, such as {{{nodes[0]}: 0.5}}, or "X", "Y" or "Z", got None'
+        )
+    if isinstance(given, str):
+        axis = check.one_of(given, "positions", AXES)
+        given = uff.nodes(file, axis)
+    check.instance(given, "positions", Mapping, what)
+    for node in nodes:
+        if node not in given:
+            raise SceneError(
+                f"positions must be {what}, got {check.shown(dict(given))} without node {node}; "
+                "None leaves a node out"
+            )
+    return {node: check.optional(given[node], f"positions[{node}]", "m") for node in nodes}
+
+
+def _turned(code: int, coordinate: Any, records: Sequence[Record], file: Path) -> tuple[str, int]:
+    """Return which coordinate of the rope a direction is and with which sign."""
+    axis = DIRECTIONS[abs(code)] if abs(code) < len(DIRECTIONS) else str(code)
+    codes = {abs(r.fields[side]) for r in records for side in ("rsp_dir", "ref_dir")}
+    axes = [DIRECTIONS[k] if k < len(DIRECTIONS) else str(k) for k in sorted(codes)]
+    what = f"which coordinate of the rope each direction in {str(file)!r} is ({', '.join(axes)})"
+    such = f'such as {{"{axes[0]}": "z"}}'
+    if isinstance(coordinate, str) and len(axes) == 1:
+        coordinate = {axes[0]: coordinate}
+    if not isinstance(coordinate, (str, Mapping, type(None))):
+        raise TypeError(f"coordinate must say {what}, {such}, got {check.shown(coordinate)}")
+    if not isinstance(coordinate, Mapping) or axis not in coordinate:
+        raise SceneError(f"coordinate must say {what}, {such}, got {check.shown(coordinate)}")
+    name = coordinate[axis]
+    signed = [sign + word for word in check.COORDINATES for sign in ("", "-")]
+    check.one_of(name, f"coordinate[{axis!r}]", signed)
+    sign = -1 if name.startswith("-") != (code < 0) else 1
+    return name.removeprefix("-"), sign
+
+
+def chosen(lines: Sequence[Located], file: Path, drive: Any, response: Any) -> list[Located]:
+    """Return the responses to one drive, one for each point."""
+    drives = list(dict.fromkeys(line.drive for line in lines))
+    if drive is None and len(drives) > 1:
+        one = len({line.response for line in lines}) == 1
+        raise SceneError(
+            f"drive must be one of those of {str(file)!r}, {_list(drives)}, got None"
+            + one * "; with reciprocal=True these are watched and what was watched is driven"
+        )
+    cause = drives[0] if drive is None else _one(drive, "drive", drives, file)
+    to_it = [line for line in lines if line.drive == cause]
+    if response is not None:
+        points = check.points(response, "response", forces=True)
+        points = (points,) if isinstance(points[0], str) else points
+        there = list(dict.fromkeys(line.response for line in to_it))
+        wanted = [_one(point, "response", there, file) for point in points]
+        to_it = [line for point in wanted for line in to_it if line.response == point]
+    for k, line in enumerate(to_it):
+        for other in to_it[:k]:
+            if other.response == line.response:
+                both = f"{other.record.number} and {line.record.number} of {str(file)!r}"
+                raise SceneError(
+                    f"records must leave one of datasets {both}: both are {line.response!r} to "
+                    f"{cause!r}"
+                )
+    return to_it
+
+
+def _one(given: Any, name: str, there: Sequence[Point], file: Path) -> Point:
+    point = check.points(given, name, forces=name == "response")
+    for one in there:
+        if point[0] == one[0] and abs(point[1] - one[1]) <= check.NEAR * abs(one[1]):
+            return one
+    raise SceneError(f"{name} must be one of those of {str(file)!r}, {_list(there)}, got {given!r}")
+
+
+def _list(points: Sequence[Point]) -> str:
+    return ", ".join(map(repr, points))
+
+
+# --- units --------------------------------------------------------------------------------------
+
+
+def scale(
+    line: Located, file: Path, unit: str | None, quantity: str | None, reciprocal: bool
+) -> tuple[str, float]:
+    """Return the quantity of a record and what makes it SI."""
+    fields = line.record.fields
+    where = f"dataset {line.record.number} of {str(file)!r}"
+    if not np.iscomplexobj(fields["data"]):
+        raise SceneError(f"path must hold complex responses, got real numbers in {where}")
+    kind, over = fields["ordinate_spec_data_type"], fields["orddenom_spec_data_type"]
+    if kind not in (*MOTION, *UNSAID) or over not in (*FORCE, *UNSAID):
+        raise SceneError(
+            f"path must hold motion per force, got {where}: ordinate type {kind} over {over}"
+        )
+    ends = (line.drive, line.response) if reciprocal else (line.response, line.drive)
+    sides = _said(line.record, where, ends) if unit is None else stated(unit)
+    name, size = scaled(sides, *ends, f"unit of {where}" if unit is None else "unit")
+    expected = quantity
+    if expected is None and kind in MOTION:
+        expected = next(word for word, order in QUANTITIES.items() if order == MOTION[kind])
+    elif expected is not None:
+        check.one_of(expected, "quantity", QUANTITIES)
+    if expected not in (None, name):
+        raise SceneError(
+            f"unit and quantity must agree, got {name} by unit and {expected} by "
+            f"{'quantity' if quantity else 'the type of the ordinate'} for {where}"
+        )
+    return name, size
+
+
+def _said(record: Record, where: str, ends: tuple[Point, Point]) -> tuple[Unit, Unit]:
+    """Return the unit that a record says itself, by its labels or by dataset 164."""
+    fields = record.fields
+    above = label_of(fields["ordinate_axis_units_lab"])
+    below = label_of(fields["orddenom_axis_units_lab"])
+    whole = ratio(above)
+    by_label = whole if whole is not None and not below else (side(above), side(below))
+    by_units = _by_dataset(record, ends)
+    found = []
+    for text, labelled, general in zip((above, below), by_label, by_units):
+        if text and labelled is None:
+            raise SceneError(f"unit must be stated: {where} says {text!r}, which is not known")
+        if labelled and general and not np.isclose(labelled.size, general.size, rtol=1e-6):
+            raise SceneError(
+                f"unit must be stated: {where} says {text!r} but dataset 164 a unit of "
+                f"{general.size:g} in SI"
+            )
+        one = labelled or general
+        if one is None:
+            raise SceneError(
+                f'unit must be stated, such as "m/s^2/N" or "g/N": {where} says {above or None!r} '
+                f"per {below or None!r} and no dataset 164 stands before it"
+            )
+        found.append(one)
+    return found[0], found[1]
+
+
+def _by_dataset(record: Record, ends: tuple[Point, Point]) -> tuple[Unit | None, Unit | None]:
+    """Return what dataset 164 and the types of the ordinate make of motion and force."""
+    kind, over = (record.fields[f"{side}_spec_data_type"] for side in ("ordinate", "orddenom"))
+    if record.units is None:
+        return None, None
+    length, force = record.units
+    above, below = dimensions(*ends)
+    size = {"m": 1 / length, "rad": 1.0, "N": 1 / force, "N m": 1 / (length * force)}
+    motion = Unit(above, MOTION[kind], size[above]) if kind in MOTION else None
+    return motion, Unit(below, 0, size[below]) if over in FORCE else None

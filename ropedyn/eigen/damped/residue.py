@@ -9,7 +9,7 @@ from ...base.array import Complex, Index, Integer, Real
 from ...base.errors import SolveError
 from ...chain.chain import Chain
 from ...chain.port import Ports
-from ...signal.cluster import clusters
+from ...signal.contour import clusters
 from .characteristic import Rates
 from .damped_roots import Damped
 

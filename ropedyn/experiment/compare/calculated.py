@@ -17,7 +17,7 @@ from ...eigen.modes import Modes
 from ...eigen.vectors import shapes_at
 from ...model import Model
 from ...response.frf import FRF
-from ...signal.response_shape import residues
+from ...signal.likeness import residues
 from .measured import peaks_in
 
 UNSEEN = 1e-9  # Smaller products of a shape at drive and response are rounding at a node.

@@ -16,14 +16,13 @@ from ...base.drawing import draw
 from ...base.errors import SceneError
 from ...base.table import Table, numbers
 from ...chain.port import Point
-from ...curves.assurance import frac, frac_over, mac
 from ...curves.measured import Measured
 from ...curves.peaks import Peaks
 from ...curves.resonance import Resonances
 from ...eigen.modes import Modes
 from ...model import Model
 from ...response.frf import FRF
-from ...signal.response_shape import residues
+from ...signal.likeness import frac, frac_over, mac, residues
 from .calculated import CalculatedPeaks, calculated_peaks, is_motion
 from .cause import likely_cause
 from .measured import MeasuredPeaks, measured_peaks
