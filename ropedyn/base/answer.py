@@ -24,9 +24,8 @@ if TYPE_CHECKING:
 
 KIND = "ropedyn"
 """Attribute of a file that says which answer it holds."""
-
 PREFIX = "ropedyn_"
-"""Of the attributes that hold fields: netCDF gives some names, as "coordinates", a meaning."""
+"""Attributes that hold fields begin so: netCDF gives some names, as "coordinates", a meaning."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +72,7 @@ class Work(NamedTuple):
 
     sweeps: int = 0
     factorisations: int = 0
-    redone: int = 0
-    """How many of its numbers were solved twice."""
+    redone: int = 0  # How many of its numbers were solved twice
 
     @classmethod
     def of(cls, parts: Iterable[Work]) -> Work:

@@ -10,21 +10,31 @@ from typing import Any, Generic, Self, TypeVar, cast, overload
 Value = TypeVar("Value")
 
 
-class computed(cached_property[Value]):
-    """A property that is computed once; of two threads that both compute it one value is kept."""
+class Reader(Generic[Value]):
+    """What is read of a thing as its attribute."""
 
     @overload
     def __get__(self, thing: None, owner: type[Any] | None = None) -> Self: ...
     @overload
     def __get__(self, thing: object, owner: type[Any] | None = None) -> Value: ...
     def __get__(self, thing: object | None, owner: type[Any] | None = None) -> Self | Value:
-        if thing is None:
-            return self
+        return self if thing is None else self.read(thing)
+
+    def read(self, thing: object) -> Value:
+        """Return what it is."""
+        raise NotImplementedError
+
+
+class computed(Reader[Value], cached_property[Value]):
+    """A property that is computed once; of two threads that both compute it one value is kept."""
+
+    def read(self, thing: object) -> Value:
+        """Compute it, since it is not kept yet."""
         assert self.attrname is not None
         return vars(thing).setdefault(self.attrname, self.func(thing))
 
 
-class Lazy(Generic[Value]):
+class Lazy(Reader[Value]):
     """A field of a dataclass that is given as it is, or as what computes it when it is read."""
 
     def __init__(self, kind: type[Any]) -> None:
@@ -38,13 +48,8 @@ class Lazy(Generic[Value]):
             raise TypeError(f"{type(thing).__name__} needs {self.name}")
         vars(thing)[self.name if isinstance(value, self.kind) else self.unread] = value
 
-    @overload
-    def __get__(self, thing: None, owner: type[Any] | None = None) -> Self: ...
-    @overload
-    def __get__(self, thing: object, owner: type[Any] | None = None) -> Value: ...
-    def __get__(self, thing: object | None, owner: type[Any] | None = None) -> Self | Value:
-        if thing is None:
-            return self
+    def read(self, thing: object) -> Value:
+        """Compute it, unless it is kept."""
         kept = vars(thing)
         # taken before the look at the part: a thread that has computed it takes this away after
         compute = kept.get(self.unread)
@@ -60,7 +65,7 @@ def lazy(kind: type[Any]) -> Any:
     return field(default=Lazy(kind), repr=False, kw_only=True, metadata={"nested": kind})
 
 
-class Read(Generic[Value]):
+class Read(Reader[Value]):
     """A property that is read from a part: ``limit = Read[Real]("mesh", "What it is.")``."""
 
     def __init__(self, where: str, text: str) -> None:
@@ -69,12 +74,9 @@ class Read(Generic[Value]):
     def __set_name__(self, owner: type[Any], name: str) -> None:
         self.name = name
 
-    @overload
-    def __get__(self, thing: None, owner: type[Any] | None = None) -> Self: ...
-    @overload
-    def __get__(self, thing: object, owner: type[Any] | None = None) -> Value: ...
-    def __get__(self, thing: object | None, owner: type[Any] | None = None) -> Self | Value:
-        return self if thing is None else getattr(getattr(thing, self.where), self.name)
+    def read(self, thing: object) -> Value:
+        """Return what the part has."""
+        return getattr(getattr(thing, self.where), self.name)
 
 
 def changed(thing: Value, **changes: Any) -> Value:

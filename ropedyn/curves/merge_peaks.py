@@ -24,7 +24,7 @@ class Merged(NamedTuple):
     damping_ratio: Real
 
 
-class _Seen(NamedTuple):
+class _ResponsePeak(NamedTuple):
     """A peak of one response."""
 
     frequency: float
@@ -32,8 +32,7 @@ class _Seen(NamedTuple):
     ratio: float
     ratio_std: float
     response: int
-    near: float
-    """Another response may have the same peak so far from here [Hz]."""
+    near: float  # another response may have the same peak so far from here [Hz]
 
 
 def merge_peaks(source: Curves | Sequence[Resonances]) -> Merged:
@@ -56,7 +55,7 @@ def merge_peaks(source: Curves | Sequence[Resonances]) -> Merged:
     return Merged(*(np.array(column) for column in zip(*means)))
 
 
-def _seen(peaks: Resonances, response: int, lines: Real) -> list[_Seen]:
+def _seen(peaks: Resonances, response: int, lines: Real) -> list[_ResponsePeak]:
     found = []
     for f, std, ratio, ratio_std in zip(
         peaks.frequency.tolist(),
@@ -67,13 +66,15 @@ def _seen(peaks: Resonances, response: int, lines: Real) -> list[_Seen]:
         at = min(max(int(np.searchsorted(lines, f)), 1), len(lines) - 1)
         spacing = float(lines[at] - lines[at - 1]) if len(lines) > 1 else 0.0
         if f > 0:
-            found.append(_Seen(f, std, ratio, ratio_std, response, max(spacing, abs(ratio) * f)))
+            found.append(
+                _ResponsePeak(f, std, ratio, ratio_std, response, max(spacing, abs(ratio) * f))
+            )
     return found
 
 
-def _groups(seen: Sequence[_Seen]) -> list[list[_Seen]]:
+def _groups(seen: Sequence[_ResponsePeak]) -> list[list[_ResponsePeak]]:
     """Put peaks of one mode together, one of each response at most."""
-    groups: list[list[_Seen]] = []
+    groups: list[list[_ResponsePeak]] = []
     for one in seen:
         last = groups[-1] if groups else []
         if last and one.response not in {other.response for other in last}:
@@ -86,7 +87,7 @@ def _groups(seen: Sequence[_Seen]) -> list[list[_Seen]]:
     return groups
 
 
-def _mean(group: Sequence[_Seen]) -> tuple[float, float, float]:
+def _mean(group: Sequence[_ResponsePeak]) -> tuple[float, float, float]:
     """Return the weighted mean of frequency, its uncertainty, and that of the damping ratio."""
     f, std = np.array([s.frequency for s in group]), np.array([s.std for s in group])
     # what a fit of clean numbers leaves is 0
@@ -100,7 +101,7 @@ def _mean(group: Sequence[_Seen]) -> tuple[float, float, float]:
     return mean, float(error), _ratio(group)
 
 
-def _ratio(group: Sequence[_Seen]) -> float:
+def _ratio(group: Sequence[_ResponsePeak]) -> float:
     ratio = np.array([s.ratio for s in group])
     std = np.array([s.ratio_std for s in group])
     weight = 1 / np.maximum(std, np.finfo(float).eps) ** 2

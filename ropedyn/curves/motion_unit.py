@@ -10,7 +10,6 @@ from ..base.unit import END, FORCE_UNIT, OF_FORCE, QUANTITIES, UNIT
 
 STANDARD_GRAVITY = 9.80665
 """[m/s^2]"""
-
 SIZE = {
     "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048},
     "rad": {"rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "deg": math.pi / 180},
@@ -18,20 +17,16 @@ SIZE = {
     "N m": {"N.m": 1.0, "Nm": 1.0, "mN.m": 1e-3, "kN.m": 1e3},
 }
 """Units of each dimension in SI; the pound is 0.45359237 kg (1959)."""
-
 RATES = ("", "/s", "/s2")
 """How often something is differentiated."""
-
 EXAMPLES = '"m/N", "mm/s/N", "m/s^2/N", "g/N", "rad/(N m)"'
 
 
 class Unit(NamedTuple):
     """Of one side of a ratio, in SI."""
 
-    dimension: str
-    """A key of `SIZE`."""
-    order: int
-    """How often it is differentiated."""
+    dimension: str  # a key of `SIZE`
+    order: int  # how often it is differentiated
     size: float
 
 
@@ -48,7 +43,7 @@ def _table() -> dict[str, Unit]:
 
 
 KNOWN = _table()
-"""What `side` knows: of units with their rates."""
+"""Units that `side` knows, with their rates."""
 
 
 def side(text: str) -> Unit | None:

@@ -15,7 +15,7 @@ from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..chain.compile import lumped
 from ..chain.rate import DENSITIES, ENTRIES, Places, inertia_rate
-from .sensitivity import SAG, SECTIONS, Pairs, Shapes, Slopes
+from .sensitivity import SAG, SECTIONS, ModePairs, Shapes, Slopes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,9 +24,8 @@ if TYPE_CHECKING:
 
 
 STIFFNESSES = ("bending_stiffness", "torsional_stiffness", "axial_stiffness")
-
 COUPLED = 1e-9
-"""Of the changes of two modes themselves: less between them is rounding."""
+"""Less between two modes than this part of their own changes is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +123,7 @@ class Damage(Answer):
 
 def damage_of(frequency: Real, shapes: Shapes) -> Damage:
     """Return the damage map of modes; see `Modes.damage`."""
-    pairs = Pairs.of(shapes)
+    pairs = ModePairs.of(shapes)
     forms = _forms(shapes.model, pairs)
     edge = shapes.model.x[shapes.edges]
     number = len(frequency)
@@ -145,13 +144,13 @@ def damage_of(frequency: Real, shapes: Shapes) -> Damage:
     return Damage(edge=edge, frequency=frequency, change=change)
 
 
-def _mass(pairs: Pairs) -> Real:
+def _mass(pairs: ModePairs) -> Real:
     """Return u^T M u of the modes, shape (k,)."""
     chain = pairs.shapes.model.chain
     return pairs.bilinear(pairs.slopes(chain).mass(chain))[0]
 
 
-def _forms(model: Compiled, pairs: Pairs) -> dict[str, Real]:
+def _forms(model: Compiled, pairs: ModePairs) -> dict[str, Real]:
     """Return p dPi/dp of each element, by property, shape (k + 2 p, elements)."""
     chain = model.chain
     each = chain._replace(
@@ -187,7 +186,7 @@ def _moving(model: Compiled, slopes: Slopes, inertia: Real) -> Real:
     return np.asarray(moving)
 
 
-def _refuse_coupled(pairs: Pairs, name: str, own: Real, cross: Real) -> None:
+def _refuse_coupled(pairs: ModePairs, name: str, own: Real, cross: Real) -> None:
     """Refuse modes that damage mixes: their own shapes say nothing of it."""
     largest = np.abs(own).max(initial=0.0)
     for (i, j), form in zip(pairs.pair, cross):

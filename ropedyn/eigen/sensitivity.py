@@ -19,15 +19,12 @@ if TYPE_CHECKING:
     from ..chain.compiled import Compiled
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
-
 SECTIONS = 9
-"""Slopes of an element before those of its inertia: section, tension, length, sag."""
-
+"""An element has so many slopes (section, tension, length, sag) before those of its inertia."""
 SAG = 8
-"""Among them that of the sag."""
-
+"""Number of the slope of the sag among those of an element."""
 NOTHING = 1e-12
-"""Of the largest change that a shape of the same size could make: less is rounding."""
+"""Less than this part of the largest change that a shape of its size could make is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,21 +54,14 @@ class Slopes:
     """How the form Pi of each shape changes with the numbers of each stretch."""
 
     eigenvalue: Real  # (m,) of each shape
-    # shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width, width):
     # see csrc/sensitivity.h
-    element: Real
-    # shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width, width):
-    # see csrc/sensitivity.h
-    jump: Real
-    # shape (m, stretches - 1, 9 + width), (m, stretches - 1, width), (m, stretches, width, width):
-    # see csrc/sensitivity.h
-    node: Real
-    # shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h
-    stiffer: Real
-    # shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h
-    heavier: Real
-    # shape (m, attached), (m, attached) and (m, attached, 2, width): see csrc/attached.h
-    foot: Real
+    element: Real  # (m, stretches - 1, 9 + width)
+    jump: Real  # (m, stretches - 1, width)
+    node: Real  # (m, stretches, width, width)
+    # see csrc/attached.h
+    stiffer: Real  # (m, attached)
+    heavier: Real  # (m, attached)
+    foot: Real  # (m, attached, 2, width)
 
     @classmethod
     def of(cls, chain: Chain, eigenvalue: Real, shape: Real, motion: Real) -> Slopes:
@@ -106,14 +96,14 @@ def _sum(slopes: Real, weights: Real) -> Real:
 
 
 @dataclass(frozen=True, eq=False)
-class Pairs:
+class ModePairs:
     """Shapes, and sums and differences in a cluster: bilinear forms from quadratic ones."""
 
     shapes: Shapes  # the modes
     pair: Index  # (p, 2) different modes of one cluster
 
     @classmethod
-    def of(cls, shapes: Shapes) -> Pairs:
+    def of(cls, shapes: Shapes) -> ModePairs:
         """Take the modes of each cluster two by two."""
         found = [pair for cluster in shapes.clusters for pair in combinations(cluster, 2)]
         return cls(shapes, np.array(found, dtype=np.intp).reshape(-1, 2))
@@ -159,9 +149,9 @@ class Sensitivity:
         return Places(self.shapes.model)
 
     @computed
-    def pairs(self) -> Pairs:
+    def pairs(self) -> ModePairs:
         """What the clusters need."""
-        return Pairs.of(self.shapes)
+        return ModePairs.of(self.shapes)
 
     @computed
     def slopes(self) -> Slopes:

@@ -20,10 +20,8 @@ from ..chain.compiled import MOST_STEPS, Compiled
 
 LARGEST_DENSE = 8_000
 """Unknowns above which the dense matrix of the assembled solver, 8 n^2 bytes, is refused."""
-
-
 HIGHEST = 1e100
-"""Of eigenvalues that are counted [rad^2/s^2], so that their products do not overflow."""
+"""Eigenvalues are counted up to this [rad^2/s^2], so that their products do not overflow."""
 
 
 @dataclass(frozen=True)

@@ -21,13 +21,10 @@ from .spectrum import count_component, distance, eigenvalue_of, in_hertz, spectr
 
 NEAR = 0.05
 """The chain that is chosen has so much more elements than one that fails, or one more."""
-
 FARTHEST = 16
 """Times as many elements as the last chain that failed: a small one predicts no better."""
-
 SECANTS = 4
 """Interpolations between a chain that fails and one that does not, before they are halved."""
-
 Component = tuple[str, ...]
 
 

@@ -26,10 +26,8 @@ from .spectrum import SOLVERS, ComponentModes, merged, pieces_of
 
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
 """What stores strain energy, in the core's order."""
-
-
 UNSEEN = 1e-8
-"""Of the largest component of a shape: less at all points is rounding at nodes of the mode."""
+"""Less than this part of the largest component at all points is rounding at nodes of a mode."""
 
 
 def later_vectors(
@@ -227,14 +225,10 @@ def largest(shape: NDArray[Any], own: Index) -> NDArray[Any]:
 class _Energies(NamedTuple):
     """Twice the energies of shapes."""
 
-    strain: Real
-    """(k, strains)."""
-    kinetic: Real
-    """(k, coordinates) modal mass of the rope and its nodes."""
-    dragged: Real
-    """(k,) modal damping of drag and dashpots."""
-    carried: Real
-    """(k, 3) strain, modal mass and losses of all structures that nodes carry."""
+    strain: Real  # (k, strains)
+    kinetic: Real  # (k, coordinates) modal mass of the rope and its nodes
+    dragged: Real  # (k,) modal damping of drag and dashpots
+    carried: Real  # (k, 3) strain, modal mass and losses of all structures that nodes carry
 
 
 def _damping_ratio(model: Compiled, omega: Real, energies: _Energies) -> Real:

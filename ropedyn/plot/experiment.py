@@ -20,10 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PAIR, ALONE = "C2", "C3"
-"""Of peaks with a partner and without."""
-
+"""Colours of peaks with a partner and without."""
 PHASES = (-180, -90, 0, 90, 180)
-"""Ticks [deg]."""
+"""Ticks of a phase [deg]."""
 
 
 @plots(Comparison)

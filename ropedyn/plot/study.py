@@ -17,10 +17,9 @@ if TYPE_CHECKING:
 
 COLOR = {"difference": "C3", "rigid": "C0", "tensed": "C1", "continuous": "C2"}
 LINE = {"sweep": "-", "lapack": "--", "band": ":"}
-"""Of each kind of element, and of each solver."""
-
+"""Colours of each kind of element, and lines of each solver."""
 CHANGE, TIME = "C0", "C1"
-"""Of what an effect changes, and of its share of time."""
+"""Colours of what an effect changes, and of its share of time."""
 
 
 @plots(AccuracyCost)

@@ -114,10 +114,9 @@ def solve_static(
 
 
 POINTS = 64
-"""Parts of each continuous span that a deflection is given at."""
-
+"""A deflection is given at so many parts of each continuous span."""
 BLOCK = 4096
-"""Nodes whose motion one sweep reports."""
+"""One sweep reports the motion of so many nodes."""
 
 
 def _sweep(

@@ -44,7 +44,7 @@ from .products import Loaded, Products, driven
 from .ridders import frf_difference
 
 TENSION, LENGTH, SAG = 6, 7, 8
-"""Of the weights of an element, behind the entries of its section."""
+"""Numbers of these weights of an element, behind the entries of its section."""
 
 
 @dataclass(frozen=True, eq=False)

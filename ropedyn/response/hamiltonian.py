@@ -24,16 +24,11 @@ from ..chain.chain import CHANNELS, Chain
 class Span(NamedTuple):
     """What a span is made of, or how fast that changes."""
 
-    section: Real
-    """Flexibility, shape (3, 3)."""
-    tension: float
-    """[N]."""
-    inertia: Real
-    """Per length, shape (width,)."""
-    drag: Real
-    """Damping per length, shape (width,)."""
-    sag: float
-    """Curvature of the rope that hangs [1/m]."""
+    section: Real  # flexibility, shape (3, 3)
+    tension: float  # [N]
+    inertia: Real  # per length, shape (width,)
+    drag: Real  # damping per length, shape (width,)
+    sag: float  # curvature of the rope that hangs [1/m]
 
     @classmethod
     def of(cls, chain: Chain, element: int) -> Span:

@@ -94,16 +94,11 @@ def solve_harmonic(
 class Receptance(NamedTuple):
     """Motion and internal forces per unit force, of all components."""
 
-    value: Complex
-    """(drives, responses, f)."""
-    error: Real
-    """Estimated relative error of rounding, as value."""
-    truncation: Real
-    """Bound of the relative error that modes cause which are left out, as value."""
-    unknowns: int
-    """Of the components that take part."""
-    lines: int
-    """That were solved."""
+    value: Complex  # (drives, responses, f)
+    error: Real  # estimated relative error of rounding, as value
+    truncation: Real  # bound of the relative error that modes cause which are left out, as value
+    unknowns: int  # of the components that take part
+    lines: int  # that were solved
 
 
 def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:

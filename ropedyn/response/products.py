@@ -22,7 +22,7 @@ from .harmonic import solve_harmonic
 from .span_waves import SpanWaves, rule
 
 MOST = 1 << 21
-"""Numbers of a field at once."""
+"""So many numbers of a field are held at once."""
 
 
 class Products(NamedTuple):
@@ -34,8 +34,6 @@ class Products(NamedTuple):
     # (spans, drives, responses, f) y_response^T H y_drive, H the Hamiltonian, at the left and at
     # the right end of each span. It is the same as far as there is no load
     first: Complex
-    # (spans, drives, responses, f) y_response^T H y_drive, H the Hamiltonian, at the left and at
-    # the right end of each span. It is the same as far as there is no load
     last: Complex
     node: Complex  # (stations, drives, responses, f, width) of the motion there
     # (spans, drives, responses, f, width) of the jumps across the hinges at the left end of each
@@ -49,8 +47,9 @@ class Loaded:
 
     model: Compiled  # of continuous spans
     coordinates: tuple[str, ...]  # of the components that are driven
-    drives: tuple[Point, ...]  # on motion, where the loads act
-    responses: tuple[Point, ...]  # on motion, where the loads act
+    # on motion, where the loads act
+    drives: tuple[Point, ...]
+    responses: tuple[Point, ...]
 
     @computed
     def chain(self) -> Chain:
@@ -98,7 +97,9 @@ class Loaded:
                     into[:, :, :, some] = found
         return whole
 
-    def _at(self, frequency: Real, pieces: Sequence[Piece], waves: Sequence[SpanWaves]) -> Products:
+    def _at(
+        self, frequency: Real, pieces: Sequence[Unloaded], waves: Sequence[SpanWaves]
+    ) -> Products:
         """Return the products at these frequencies."""
         factor, width = self._factor(frequency), len(self.coordinates)
         form = self._forms(factor)
@@ -137,7 +138,7 @@ class Loaded:
         }
         return [found[e] for e in elements]
 
-    def _readings(self, waves: Sequence[SpanWaves]) -> Iterator[tuple[Index, list[Piece]]]:
+    def _readings(self, waves: Sequence[SpanWaves]) -> Iterator[tuple[Index, list[Unloaded]]]:
         """Yield frequencies by their numbers, with the pieces as they are integrated there.
 
         Where the waves of a piece can be told apart two places say all of it. Where its waves are
@@ -155,12 +156,12 @@ class Loaded:
                 yield (
                     np.flatnonzero(lines),
                     [
-                        Piece.of(k, begin, end, rate[k], by_waves=by)
+                        Unloaded.of(k, begin, end, rate[k], by_waves=by)
                         for k, begin, end, by in zip(which, edges, edges[1:], by_waves.tolist())
                     ],
                 )
 
-    def _fields(self, frequency: Real, pieces: Sequence[Piece]) -> tuple[Complex, list[Complex]]:
+    def _fields(self, frequency: Real, pieces: Sequence[Unloaded]) -> tuple[Complex, list[Complex]]:
         """Return the motion of stations, (loads, stations, width, f), and y at points of pieces."""
         w = len(self.coordinates)
         names = [*self.coordinates, *(FORCE[c] for c in self.coordinates)]
@@ -176,7 +177,7 @@ class Loaded:
 
     def _jumps(
         self,
-        pieces: Sequence[Piece],
+        pieces: Sequence[Unloaded],
         fields: Sequence[Complex],
         nodes: Complex,
         form: Sequence[Complex],
@@ -205,7 +206,7 @@ class Loaded:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class Unloaded:
     """A stretch of a span without loads."""
 
     span: int  # to which it belongs
@@ -216,7 +217,7 @@ class Piece:
     weight: Real | None
 
     @classmethod
-    def of(cls, span: int, begin: float, end: float, rate: Complex, *, by_waves: bool) -> Piece:
+    def of(cls, span: int, begin: float, end: float, rate: Complex, *, by_waves: bool) -> Unloaded:
         """Choose the points for waves of these rates, shape (f, 2 width)."""
         reach = end - begin
         if by_waves:

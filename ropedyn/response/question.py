@@ -23,12 +23,12 @@ class Question:
     """What is asked of one component."""
 
     model: Compiled  # whose component it is
-    component: tuple[str, ...]  # Coordinates
+    component: tuple[str, ...]  # coordinates
     frequency: Real  # (f,) [Hz]
     factor: Complex  # (5, f) on sections, tension, springs, inertia and dashpots
     drives: list[Point]  # on these coordinates
     responses: list[Point]  # on these coordinates
-    workers: int  # Threads
+    workers: int  # threads
 
     @property
     def is_damped(self) -> Flags:

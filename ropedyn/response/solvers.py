@@ -19,8 +19,6 @@ from .question import Question
 
 LANES = 16
 """Frequencies that the sweep solves side by side."""
-
-
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 

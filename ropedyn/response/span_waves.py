@@ -12,22 +12,17 @@ from ..base.array import Complex, Flags, Index, Real
 from .hamiltonian import generator
 
 LONG = 0.5
-"""Radians of every wave on a stretch, below which their sum cancels."""
-
+"""Below so many radians of every wave on a stretch their sum cancels."""
 APART = 1e3
-"""Condition of their shapes, each coordinate in units of its own, beyond which they are one."""
-
+"""Waves whose shapes, each coordinate in its unit, have a condition beyond this are one."""
 LEAST = 1e-12
-"""Determinant of shapes that are apart."""
-
+"""Shapes that are apart have a determinant above this."""
 SMALL = 0.1
-"""Radians below which exp(s) - 1 is a series."""
-
+"""Below so many radians exp(s) - 1 is a series."""
 DEEP = 40.0
 """What decays as exp(-s) is nothing beyond: 4e-18."""
-
 PANEL = 128
-"""Radians in one panel of Gauss points."""
+"""One panel of Gauss points spans so many radians."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +31,8 @@ class SpanWaves:
 
     # (f, 2 width) by their real parts, increasing: the first half decays to the right
     rate: Complex
-    shape: Complex  # (f, 2 width, 2 width) in columns, and what makes amplitudes of y
-    inverse: Complex  # (f, 2 width, 2 width) in columns, and what makes amplitudes of y
+    shape: Complex  # (f, 2 width, 2 width) in columns
+    inverse: Complex  # (f, 2 width, 2 width) makes amplitudes of y
     condition: Real  # (f,) of the shapes, each coordinate in units of its own
 
     @classmethod

@@ -20,29 +20,22 @@ from ..base.array import Complex, Flags, Index, Real
 
 Function = Callable[[Complex], Complex]
 """Takes points, shape (n,), and returns values, shape (..., n)."""
-
 ALONE, TOGETHER = 8, 32
 """Points of a circle around one pole, and around several."""
-
 RADIUS = 1 / 50
-"""Of a circle over the distance to the next pole: 50^-8 of that is seen."""
-
+"""Radius of a circle over the distance to the next pole: 50^-8 of that is seen."""
 ALIKE = 1e-5
 """Poles that differ by this share are in one circle."""
-
 MOST = 1 << 21
-"""Numbers at a time."""
+"""So many numbers are computed at a time."""
 
 
 class Circles(NamedTuple):
     """Around poles, with no others in them."""
 
-    center: Complex
-    """(n,)."""
-    radius: Real
-    """(n,)."""
-    members: list[Index]
-    """Which poles, n arrays."""
+    center: Complex  # (n,)
+    radius: Real  # (n,)
+    members: list[Index]  # which poles, n arrays
 
     def some(self, which: Index) -> Circles:
         """Return some of them."""

@@ -12,10 +12,8 @@ from ..base.unit import QUANTITIES
 
 BROAD = 3.0
 """Half widths of a peak, damping ratio times frequency, on each side that a mode is fitted to."""
-
-
 FEWEST = 3
-"""Lines at least: a mode and what all others add are two numbers."""
+"""So many lines at least are fitted: a mode and what all others add are two numbers."""
 
 
 def residues(

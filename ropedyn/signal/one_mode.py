@@ -9,27 +9,19 @@ import numpy as np
 from ..base.array import Complex, Real
 
 POWERS = np.arange(3)
-"""Of the numerator: one mode as accelerance has a square, and so has a constant beside it."""
-
+"""Powers of the numerator: a mode as accelerance has a square, so has a constant beside it."""
 UNKNOWN = 2 + 2 * len(POWERS)
-"""Real unknowns: pole and numerator."""
-
+"""Pole and numerator are so many real unknowns."""
 LEAST = UNKNOWN // 2 + 2
-"""Lines, each with two numbers."""
-
+"""So few lines, each with two numbers, can be fitted."""
 STEPS = 20
-"""Of Gauss and Newton at most."""
-
+"""Gauss and Newton take so many steps at most."""
 SETTLED = 1e-10
 """A step of the pole in half widths of the window after which there is none."""
-
 FARTHEST = 1.0
-"""From the middle of the window to the pole, in its half widths."""
-
+"""The pole is no farther from the middle of the window, in its half widths."""
 WIDEST = 4.0
-"""Half width of the peak in those of the window."""
-
-
+"""A peak is no wider, in half widths of the window."""
 QUIETEST = 1e-3
 """Noise of a line in that of the loudest at least, where it is said to have none."""
 
@@ -37,30 +29,23 @@ QUIETEST = 1e-3
 class OneMode(NamedTuple):
     """The mode that fits best."""
 
-    omega: float
-    """Undamped, of the standard error `omega_std` [rad/s]."""
-    ratio: float
-    """Of damping, of the standard error `ratio_std`."""
+    omega: float  # undamped, of the standard error `omega_std` [rad/s]
+    ratio: float  # of damping, of the standard error `ratio_std`
     omega_std: float
     ratio_std: float
+    # what the sum of the squared distances is less than that of a curve without a pole, over the
+    # square of the largest line
     gain: float
-    """What the sum of the squared distances is less than that of a curve without a pole, over the
-    square of the largest line."""
 
 
 class _Window(NamedTuple):
     """Lines about a peak in units of their own."""
 
-    h: Complex
-    """(n,) response over its largest."""
-    t: Real
-    """(n,) (omega - middle)/half, from -1 to 1."""
-    bend: Real
-    """(n,) (omega^2 - middle^2)/(2 middle half)."""
-    lean: Complex
-    """(n,) i omega/middle."""
-    powers: Real
-    """(n, 3) of t."""
+    h: Complex  # (n,) response over its largest
+    t: Real  # (n,) (omega - middle)/half, from -1 to 1
+    bend: Real  # (n,) (omega^2 - middle^2)/(2 middle half)
+    lean: Complex  # (n,) i omega/middle
+    powers: Real  # (n, 3) of t
 
 
 def fit(omega: Real, value: Complex, noise: Real | None) -> OneMode | None:

@@ -16,15 +16,15 @@ import numpy as np
 from ..base.array import Complex, Real
 
 MOST = 12
-"""Modes that are fitted together."""
+"""So many modes at most are fitted together."""
 ROWS = 150
-"""Of the matrix whose column space tells the rates, at most."""
+"""The matrix whose column space tells the rates has so many rows at most."""
 PARTS = (1, 2, 4, 8)
-"""Of the record, its first ones, from which modes are estimated."""
+"""Modes are estimated from the first of so many parts of the record."""
 LEAST = 16
-"""Samples that are a part."""
+"""A part has so many samples at least."""
 ROUNDS = 30
-"""Of refinement, at most."""
+"""Modes are refined in so many rounds at most."""
 EXACT = 1e-26
 """Share of the energy that is left, at most, where more modes would fit rounding."""
 
@@ -32,24 +32,18 @@ EXACT = 1e-26
 class DecayingModes(NamedTuple):
     """What decays."""
 
-    log: Complex
-    """Rate times the step of the samples."""
-    size: Complex
-    """At the first sample."""
-    variance: Real
-    """Of each log: E |error|^2."""
-    residual: float
-    """Rms of what no mode explains, over that of the samples."""
+    log: Complex  # rate times the step of the samples
+    size: Complex  # at the first sample
+    variance: Real  # of each log: E |error|^2
+    residual: float  # rms of what no mode explains, over that of the samples
 
 
 class PencilTrial(NamedTuple):
     """Modes with how well they explain samples."""
 
     log: Complex
-    left: float
-    """Share of the energy."""
-    criterion: float
-    """Of Schwarz, 0 of no modes, the less the better."""
+    left: float  # share of the energy
+    criterion: float  # of Schwarz, 0 of no modes, the less the better
 
 
 NOTHING = PencilTrial(np.zeros(0, np.complex128), 1.0, 0.0)

@@ -11,14 +11,10 @@ from ...base.array import Complex, Real
 class Content(NamedTuple):
     """Responses in SI, as they are read and written."""
 
-    frequency: Real
-    """(f,) [Hz]."""
-    value: Complex
-    """(responses, f) of what is read, (drives, responses, f) of what is written."""
-    drive: Sequence[Any]
-    """Points; of what is read one alone."""
+    frequency: Real  # (f,) [Hz]
+    value: Complex  # (responses, f) of what is read, (drives, responses, f) of what is written
+    drive: Sequence[Any]  # points; of what is read one alone
     response: Sequence[Any]
     quantity: str
-    coherence: Real | None = None
-    """(responses, f)."""
+    coherence: Real | None = None  # (responses, f)
     averages: float | None = None

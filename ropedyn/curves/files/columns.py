@@ -21,11 +21,9 @@ from . import Content
 
 OWN = "# ropedyn "
 """How a file begins that `write` has written: JSON of what is in it follows."""
-
 PAIRS = (("real", "imag"), ("amplitude", "phase"))
 KEYS = ("frequency", "real", "imag", "amplitude", "phase", "coherence")
 """What columns may be; phases in degrees."""
-
 SUCH = '{"frequency": 0, "real": 1, "imag": 2}'
 
 
@@ -51,10 +49,8 @@ class Head(NamedTuple):
 class Sheet(NamedTuple):
     """Text in columns."""
 
-    names: tuple[str, ...] | None
-    """Of the columns; None where the first line has numbers already."""
-    numbers: Real
-    """(rows, columns)."""
+    names: tuple[str, ...] | None  # of the columns; None where the first line has numbers already
+    numbers: Real  # (rows, columns)
 
 
 def read(

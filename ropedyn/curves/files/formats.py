@@ -15,7 +15,7 @@ from . import Content, columns, uff, uff_read
 UNIVERSAL = (".uff", ".unv", ".uf")
 TEXT = (".csv", ".txt", ".dat", ".tsv")
 DEFAULTS = {"reciprocal": False, "decimal": ".", "comments": "#", "skip": 0}
-"""Of options that are not None where left out."""
+"""Values of the options that are not None where left out."""
 
 
 def read(

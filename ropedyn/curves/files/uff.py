@@ -20,70 +20,40 @@ from ..motion_unit import dimensions
 from . import Content
 
 FUNCTION = 58
-
-
 NODES = (15, 2411)
-
-
 UNITS = 164
-
-
 FRF, COHERENCE = 4, 6
-"""Function types."""
-
-
+"""Types of functions."""
 FREQUENCY = 18
-"""A type of abscissa."""
-
-
+"""The type of an abscissa over frequency."""
 MOTION = {8: 0, 11: 1, 12: 2}
 """How often the displacement is differentiated in each type of ordinate."""
-
-
 FORCE = (13, 9)
 """Types of what a motion is divided by: excitation and reaction force."""
-
-
 UNSAID = (0, 1)
 """Types of anything: unknown and general."""
-
-
 DIRECTIONS = ("scalar", "X", "Y", "Z", "RX", "RY", "RZ")
-"""By their codes without sign; R is rotation."""
-
-
+"""Directions by their codes without sign; R is rotation."""
 OWN = re.compile(r"ropedyn (?P<r>[a-z]+) (?P<rx>\S+) per (?P<d>[a-z]+) (?P<dx>\S+)$")
-"""What is written as second line of a function: its points."""
-
-
+"""The second line of a function that was written here: its points."""
 AVERAGES = re.compile(r"ropedyn averages (\S+)$")
-"""And as fifth line."""
-
-
+"""The fifth line of a function that was written here."""
 MARK = re.compile(rb"(?=    -1(?:[\r\n]|\Z| {74}.))", re.DOTALL)
 """A line that opens or closes a dataset; the one pyuff looks for."""
-
-
 IEEE = 2
 """Floating point format of a binary dataset 58."""
-
-
 LONGEST_LINE = 6
-"""Numbers: the last line of a dataset may be filled up."""
-
-
+"""The last line of a dataset may be filled up with so many numbers."""
 Fields = dict[str, Any]
 
 
 class Record(NamedTuple):
     """One function of a file."""
 
-    number: int
-    """Among the datasets, from 0."""
-    fields: Fields
-    """As pyuff names them; "x" and "data" are the numbers."""
+    number: int  # among the datasets, from 0
+    fields: Fields  # as pyuff names them; "x" and "data" are the numbers
+    # how many of its units of length and of force are 1 m and 1 N, by dataset 164; or None
     units: tuple[float, float] | None
-    """How many of its units of length and of force are 1 m and 1 N, by dataset 164; or None."""
 
 
 def read(file: Path, wanted: Callable[[Fields], bool]) -> list[Record]:
@@ -235,9 +205,7 @@ def _state_bytes(file: Path, sizes: Sequence[int]) -> None:
 
 
 EVEN = 1e-13
-"""A relative distance of frequencies: rounding of start + k step."""
-
-
+"""Frequencies nearer than this relative distance differ by rounding of start + k step."""
 CODE = {"x": 1, "z": 3, "alpha": 4, "beta": -5}
 """Directions: x along the rope and z of a right-handed system, where dz/dx turns against +Y."""
 

@@ -32,9 +32,7 @@ from .uff import (
 )
 
 SAME = 1e-6
-"""A relative distance of frequencies: they may have six digits."""
-
-
+"""Frequencies nearer than this relative distance are the same: they may have six digits."""
 HERTZ = {
     "Hz": 1.0,
     "HZ": 1.0,
@@ -191,7 +189,7 @@ def _averages(lines: Sequence[Located]) -> float | None:
 
 
 AXES = ("X", "Y", "Z")
-"""Of the nodes in a file."""
+"""Axes along which the nodes of a file may be."""
 
 
 class Located(NamedTuple):

@@ -13,11 +13,9 @@ from ...chain.chain import ATTACHED, Chain
 from ...scene.damping import DASHPOT, INERTIA
 
 LEAST = 12
-"""Polynomials for the curvature of a wire whose waves are long."""
-
+"""The curvature of a wire whose waves are long has so many polynomials."""
 MOST = 120
-"""Of a wire with forty half waves; energies of shorter waves are those of smoother motion."""
-
+"""Polynomials of forty half waves; energies of shorter waves are those of smoother motion."""
 WIRE = ATTACHED.index("broken wire")
 
 

@@ -14,7 +14,7 @@ from ...chain.chain import Chain
 from ...scene.damping import INERTIA, SECTION, TENSION, Damping
 
 ROUNDING = 4.0
-"""Of values, in units of eps sqrt(steps)."""
+"""Rounding of a value of the function, in units of eps sqrt(steps)."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,6 @@ class Rates:
 
     # (5,) of sections, tension, springs, inertia, dashpots; inertia has s^2 as well
     constant: Complex
-    # (5,) of sections, tension, springs, inertia, dashpots; inertia has s^2 as well
     linear: Complex
 
     @classmethod

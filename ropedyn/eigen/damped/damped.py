@@ -33,11 +33,9 @@ from .modal_rates import solve_modal
 from .residue import motions
 
 MORE = 4
-"""Times the modes asked for: so many undamped ones a search passes before it gives up."""
-
+"""A search passes so many undamped modes for each one asked for before it gives up."""
 DOUBLINGS = 40
-"""Of the radius beyond them: dashpots on light nodes have rates far above all frequencies."""
-
+"""Beyond them the radius doubles so often: dashpots on light nodes have rates far above all."""
 Between = tuple[tuple[str, ...], int, int]
 """A component between two nodes."""
 
@@ -46,12 +44,12 @@ Between = tuple[tuple[str, ...], int, int]
 class DampedRates:
     """Rates of all parts in order."""
 
-    parts: list[Between]  # Chains
-    found: list[Damped]  # their rates
+    parts: list[Between]
+    found: list[Damped]  # of each part
     value: Complex  # (k,) those asked for [rad/s]
-    error: Real  # (k,) those asked for [rad/s]
-    which: Index  # (k,) of which part each is, and which of its rates
-    at: Index  # (k,) of which part each is, and which of its rates
+    error: Real  # (k,) [rad/s]
+    which: Index  # (k,) of which part each is
+    at: Index  # (k,) which of its rates
     radius: float  # none of a modulus below this is missing [rad/s]
 
     def first(self, number: int) -> DampedRates:

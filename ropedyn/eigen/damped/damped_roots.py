@@ -17,10 +17,9 @@ from .roots import Roots, find_roots
 from .winding import winding
 
 MARGIN = 0.98
-"""Of the horizon: so far motion is told apart."""
-
+"""Motion is told apart up to this part of the horizon."""
 NUDGES = (1.0, 1.004, 1.01, 1.03, 1.07)
-"""Of a circle on which a root lies."""
+"""A circle on which a root lies grows by these factors."""
 
 
 @dataclass(frozen=True)

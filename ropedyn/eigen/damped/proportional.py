@@ -21,9 +21,9 @@ class Proportional:
         s^2 + (drag + soften lambda) s + stiff lambda = 0
     """
 
-    stiff: complex  # 1 and 0, 0 where nothing is damped; soften [s], drag [1/s]
-    soften: complex  # 1 and 0, 0 where nothing is damped; soften [s], drag [1/s]
-    drag: complex  # 1 and 0, 0 where nothing is damped; soften [s], drag [1/s]
+    stiff: complex  # 1 where nothing is damped
+    soften: complex  # [s]
+    drag: complex  # [1/s]
 
     def rates(self, eigenvalue: Real) -> Complex:
         """Return both rates of undamped modes, shape (k, 2) [rad/s].

@@ -14,22 +14,17 @@ from .characteristic import Rates
 from .damped_roots import Damped
 
 SAMPLES = 8
-"""Points on the circle around a rate."""
-
+"""The circle around a rate has so many points."""
 CIRCLE = 0.02
-"""Its radius in distances to the next rate: what lies outside shows as CIRCLE^SAMPLES."""
-
+"""Radius of a circle in distances to the next rate: what lies outside shows as CIRCLE^SAMPLES."""
 ALIKE = 1e3
-"""Times their errors: rates so near to each other have their residues together."""
-
+"""Rates nearer to each other than so many times their errors have their residues together."""
 MOST_NUMBERS = 1 << 20
-"""Of the response at a time."""
-
+"""So many numbers of the response are computed at a time."""
 PLACES = 16
-"""Where the rope is pushed, to find where a mode moves."""
-
+"""The rope is pushed at so many places, to find where a mode moves."""
 GOLDEN = 0.6180339887498949
-"""Multiples of it, without whole turns, are spread evenly."""
+"""Multiples of the golden ratio, without whole turns, are spread evenly."""
 
 
 def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:

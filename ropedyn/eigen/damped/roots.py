@@ -11,43 +11,30 @@ from .characteristic import Characteristic
 from .winding import Winding
 
 MOST_STEPS = 30
-"""Of the simultaneous iteration."""
-
+"""The simultaneous iteration takes so many steps at most."""
 CLOSE = 1e-7
-"""Of the mean distance of roots: a step that ends it."""
-
+"""A step of this part of the mean distance of roots ends the iteration."""
 MOST_TRIES = 6
-"""With other beginnings, where roots are missing."""
-
+"""Where roots are missing the iteration begins anew so often at most."""
 MOST_MOMENTS = 6
-"""Roots whose places are guessed from moments."""
-
+"""So many missing roots at most have their places guessed from moments."""
 SAMPLES = 16
-"""Points on the circle around a root, for each root in it."""
-
+"""The circle around a cluster has so many points for each root in it."""
 CIRCLE = 0.03
-"""Its radius in distances to the next root: what lies outside shows as powers of it."""
-
+"""Radius of a circle in distances to the next root: what lies outside shows as powers of it."""
 NOISE = 8.0
-"""Of roots, in units of the last quarter of a series, where nothing else is left."""
-
+"""Noise of roots in units of the last quarter of a series, where nothing else is left."""
 CENTERED = 0.05
-"""Of its radius: how far the roots may be from the middle of the circle."""
-
+"""The mean of the roots lies within this part of the radius from the middle of a circle."""
 INNER = 0.7
-"""Of its radius: how far any of them may be."""
-
+"""Each root lies within this part of the radius from the middle of a circle."""
 MOST_CIRCLES = 4
-
 APART = (1e-6, 1e-4, 1e-2)
-"""Of the distance to others, in one try after another: roots that are nearer are a cluster."""
-
+"""Roots nearer than this part of the distance to others are a cluster, in one try after another."""
 TOGETHER = 0.1
-"""Of that part of the mean distance of roots: those that are nearer are a cluster in any case."""
-
-
+"""Times that part of the mean distance of roots: those that are nearer are one in any case."""
 REAL = 1e-6
-"""Of the mean distance of roots: an imaginary part that may be rounding."""
+"""An imaginary part below this part of the mean distance of roots may be rounding."""
 
 
 @dataclass(frozen=True)

@@ -12,18 +12,14 @@ from ...chain.chain import Chain
 from .characteristic import Characteristic
 
 FIRST = 16
-"""Arcs of a half circle to begin with, at least."""
-
+"""A half circle begins with so many arcs at least."""
 MOST_HALVINGS = 40
-
 MOST_ARCS = 10_000
-"""At a time: more are those that rounding makes."""
-
+"""More arcs at a time are those that rounding makes."""
 LARGEST = 0.8
-"""Change of the logarithm along half an arc that is believed."""
-
+"""A change of the logarithm along half an arc is believed below this."""
 CLEAR = 1e3
-"""Times its rounding: a value whose argument is known."""
+"""A value so many times its rounding has a known argument."""
 
 
 @dataclass(frozen=True)
