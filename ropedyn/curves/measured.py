@@ -227,21 +227,17 @@ class Measured(Curves):
 
 
 def by_coherence(value: Complex, coherence: Real, averages: float) -> Real:
-    """Return the standard deviation of real and of imaginary part of each line.
-
-    var |H|/|H|^2 = (1 - gamma^2)/(2 n gamma^2) for n averages, and as much for the phase: J. S.
-    Bendat, A. G. Piersol, Random Data (2010), table 9.6.
-    """
+    """Return the standard deviation of real and of imaginary part of each line."""
+    # var |H|/|H|^2 = (1 - gamma^2)/(2 n gamma^2) for n averages, and as much for the phase: J. S.
+    # Bendat, A. G. Piersol, Random Data (2010), table 9.6
     share = np.maximum(coherence, np.finfo(float).tiny)
     return np.abs(value) * np.sqrt((1 - coherence) / (2 * averages * share))
 
 
 def by_differences(value: Complex) -> Real | None:
-    """Estimate that from the lines alone, None where they are too few.
-
-    What is smooth has small third differences y_0 - 3 y_1 + 3 y_2 - y_3, noise large ones: |.|^2 is
-    distributed as 40 sigma^2 times an exponential variable, whose median is ln 2.
-    """
+    """Estimate the noise of lines from them alone, None where they are too few."""
+    # what is smooth has small third differences y_0 - 3 y_1 + 3 y_2 - y_3, noise large ones: |.|^2
+    # is distributed as 40 sigma^2 times an exponential variable, whose median is ln 2
     from scipy.ndimage import median_filter
 
     if len(value) < LEAST:

@@ -36,13 +36,11 @@ class _ResponsePeak(NamedTuple):
 
 
 def merge_peaks(source: Curves | Sequence[Resonances]) -> Merged:
-    """Return the peaks of all responses, those of one mode as their weighted mean.
-
-    Peaks of different responses are of one mode if they are nearer than a line, or than half the
-    width of the peak at half its power, or than 3 of their standard uncertainties. Its uncertainty
-    is that of the mean, by the scatter where that is more (R. T. Birge, Physical Review 40 (1932)
-    207-227).
-    """
+    """Return the peaks of all responses, those of one mode as their weighted mean."""
+    # peaks of different responses are of one mode if they are nearer than a line, or than half the
+    # width of the peak at half its power, or than 3 of their standard uncertainties. Its
+    # uncertainty is that of the mean, by the scatter where that is more (R. T. Birge, Physical
+    # Review 40 (1932) 207-227)
     if isinstance(source, Curves):
         peaks = [one for d in range(len(source.drive)) for one in source.peaks(d)]
         lines = np.unique(source.frequency)

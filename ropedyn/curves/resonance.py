@@ -137,13 +137,11 @@ def _stands_out(mode: one_mode.OneMode, noise: float) -> bool:
 
 
 def _by_three(omega: Real, value: Complex, quantity: str, k: int) -> _Peak:
-    """Return the mode through line k and its neighbours.
-
-    Of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
-    omega: the one through the three lines about the maximum has its root there at the pole
-    omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact for
-    one mode; others tilt it a little.
-    """
+    """Return the mode through line k and its neighbours."""
+    # of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
+    # omega: the one through the three lines about the maximum has its root there at the pole
+    # omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact
+    # for one mode; others tilt it a little
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = (1j * omega) ** QUANTITIES[quantity] / value
     pole = _pole(omega, inverse, k)
@@ -152,11 +150,9 @@ def _by_three(omega: Real, value: Complex, quantity: str, k: int) -> _Peak:
 
 
 def _pole(omega: Real, inverse: Complex, k: int) -> complex:
-    """Return the root of the parabola through line k and its neighbours [rad/s].
-
-    At 0 Hz a velocity or an acceleration is 0 and says nothing: the parabola then goes through
-    what lies above, and where there is nothing more it is a straight line.
-    """
+    """Return the root of the parabola through line k and its neighbours [rad/s]."""
+    # at 0 Hz a velocity or an acceleration is 0 and says nothing: the parabola then goes through
+    # what lies above, and where there is nothing more it is a straight line
     first = k - 1 if np.isfinite(inverse[k - 1]) else k
     x, f = omega[first : first + 3], inverse[first : first + 3]
     slope = np.diff(f) / np.diff(x)

@@ -41,10 +41,8 @@ def solve_modes(
     points: int | None = None,
     strict: bool = True,
 ) -> Modes:
-    """Find natural frequencies and shapes; see `Model.modes`.
-
-    Without `strict` fewer modes than asked for are no error.
-    """
+    """Find natural frequencies and shapes; see `Model.modes`."""
+    # without `strict` fewer modes than asked for are no error
     solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
     check_points(model, points)
     if model.element == "continuous" and solver != "sweep":
@@ -123,10 +121,8 @@ def mesh_of_modes(
 
 
 def _lowest(model: Compiled, component: tuple[str, ...], number: int) -> tuple[Real, Real]:
-    """Return the lowest eigenvalues and their errors [rad^2/s^2].
-
-    None where they are refused or too much for the memory: the chain's own answer stands.
-    """
+    """Return the lowest eigenvalues and their errors [rad^2/s^2]."""
+    # None where they are refused or too much for the memory: the chain's own answer stands
     if number > 0:
         with suppress(SolveError, MemoryError):
             return spectrum(model, component, number)

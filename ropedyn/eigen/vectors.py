@@ -68,12 +68,10 @@ def points_for(model: Compiled, eigenvalue: Real) -> int:
 def later_within(
     model: Compiled, number: int | None, limit: float, eigenvalue: Real, points: int
 ) -> UndampedVectors:
-    """Solve continuous spans once more, with shapes inside them.
-
-    Energies want elements below their own resonance, and a mode may have its nodes at all points,
-    so there may be more elements than points. A mode that the points show nothing of is as large as
-    its largest component elsewhere is 1.
-    """
+    """Solve continuous spans once more, with shapes inside them."""
+    # energies want elements below their own resonance, and a mode may have its nodes at all points,
+    # so there may be more elements than points. A mode that the points show nothing of is as large
+    # as its largest component elsewhere is 1
     more = -(-points_for(model, eigenvalue) // points)
     vectors = later_vectors(finer(model, points * more), "sweep", number, limit)
     own = np.array([FAMILY[c] for c in model.coordinates])
@@ -87,10 +85,8 @@ def later_within(
 
 
 def _cut(model: Compiled, highest: float, points: int | None) -> tuple[Compiled, Index]:
-    """Cut continuous spans into elements below their own resonance.
-
-    Two for each piece of the highest eigenvalue: more would be differences of ever closer nodes.
-    """
+    """Cut continuous spans into elements below their own resonance."""
+    # two for each piece of the highest eigenvalue: more would be differences of ever closer nodes
     at = station_nodes(model)
     chain = model.chain.undamped
     elements = [chain.between(first, first + 1) for first in at[:-1].tolist()]
@@ -110,11 +106,9 @@ def _cut(model: Compiled, highest: float, points: int | None) -> tuple[Compiled,
 def solve_shapes(
     model: Compiled, solver: str, eigenvalue: Real, points: int | None = None
 ) -> Shapes:
-    """Solve as many modes as there are eigenvalues, with the shapes that sensitivities need.
-
-    Modes that coincide with the last one belong to them. Of eigenvalues of continuous spans the
-    largest tells how short elements must be.
-    """
+    """Solve as many modes as there are eigenvalues, with the shapes that sensitivities need."""
+    # modes that coincide with the last one belong to them. Of eigenvalues of continuous spans the
+    # largest tells how short elements must be
     check_points(model, points)
     edges = np.arange(len(model.x))
     if model.element == "continuous":
@@ -141,11 +135,9 @@ def shapes_of(model: Compiled, solver: str, number: int, edges: Index) -> Shapes
 
 
 def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
-    """Return the shapes of modes at points of the rope.
-
-    Inside elements of a chain that of the element between its nodes; continuous spans are cut
-    there, which changes nothing.
-    """
+    """Return the shapes of modes at points of the rope."""
+    # inside elements of a chain that of the element between its nodes; continuous spans are cut
+    # there, which changes nothing
     shapes, number = modes.sensitivity.shapes, len(modes.frequency)
     model = shapes.model
     inside = [at for _, at in points if locate(model.x, at)[1] is not None]
@@ -232,10 +224,8 @@ class _Energies(NamedTuple):
 
 
 def _damping_ratio(model: Compiled, omega: Real, energies: _Energies) -> Real:
-    """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega.
-
-    And the ratio that a mode has by itself.
-    """
+    """Return zeta = shape^T Im(dynamic stiffness) shape / (2 omega^2 modal mass) at omega."""
+    # and the ratio that a mode has by itself
     strain, kinetic, dragged, carried = energies
     part = np.stack(
         [
@@ -262,10 +252,8 @@ def fractions(
     kinetic: Real,
     carried: Real,
 ) -> dict[str, Real]:
-    """Return shares of the strain and of the kinetic energy.
-
-    `carried`, shape (kinds, k, 3), is of each kind of structure that the nodes carry.
-    """
+    """Return shares of the strain and of the kinetic energy."""
+    # `carried`, shape (kinds, k, 3), is of each kind of structure that the nodes carry
     of_all = carried.sum(axis=0)
     total, moving = strain.sum(axis=1) + of_all[:, 0], kinetic.sum(axis=1) + of_all[:, 1]
     moves = (eigenvalue != 0) & (total != 0)

@@ -99,10 +99,8 @@ def plot_floquet(floquet: Floquet, ax: Axes) -> None:
 
 @plots(StabilityMap)
 def plot_stability(stability: StabilityMap, ax: Axes) -> None:
-    """Plot growth as colours over frequency and amplitude.
-
-    Dashed: the boundaries of tongues of order 1 without damping, to first order in the amplitude.
-    """
+    """Plot growth as colours over frequency and amplitude."""
+    # dashed: the boundaries of tongues of order 1 without damping, to first order in the amplitude
     f, a = stability.frequency, stability.amplitude
     shown = np.ma.masked_where(stability.stable, stability.growth)
     if shown.count():

@@ -71,10 +71,8 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes) -> None:
 
 @plots(EffectCost, height=lambda cost: 2.0 + 0.3 * len(cost.effect))
 def plot_effects(cost: EffectCost, ax: Axes) -> None:
-    """Plot a row for each effect: the largest change as a bar, the share of time as a point.
-
-    The largest change is on top; effects without which there is no answer are at the bottom.
-    """
+    """Plot a row for each effect: the largest change as a bar, the share of time as a point."""
+    # the largest change is on top; effects without which there is no answer are at the bottom
     rows, least, most = _effect_rows(cost)
     y = np.arange(len(rows))
     ax.set(xscale="log", xlim=(least, most), yticks=y, ylim=(len(rows) - 0.5, -0.7))

@@ -189,10 +189,8 @@ def _on_nodes(
 
 
 def _kept(compliance: Real, Q: Real) -> Real:
-    """Return the share 1/(1 + Q C) that a hinge leaves of f_a without it, none where it is free.
-
-    f_a = E f_b - Q (u_a + C f_a) + P u_b, and a hinge stands on the one coordinate that Q has.
-    """
+    """Return the share 1/(1 + Q C) that a hinge leaves of f_a without it, none where it is free."""
+    # f_a = E f_b - Q (u_a + C f_a) + P u_b, and a hinge stands on the one coordinate that Q has
     free = np.isinf(compliance)
     finite = np.where(free, 0.0, compliance)
     return np.where(free, 0.0, 1 / (1 + np.einsum("nii->ni", Q) * finite))

@@ -176,10 +176,8 @@ def _response(
     responses: tuple[Point, ...],
     quantity: str,
 ) -> tuple[Complex, Real]:
-    """Return value and relative error, (drives, responses, f); NaN where there is no answer.
-
-    One frequency without an answer refuses all: halves are asked until it is alone.
-    """
+    """Return value and relative error, (drives, responses, f); NaN where there is no answer."""
+    # one frequency without an answer refuses all: halves are asked until it is alone
     try:
         answer = solve_harmonic(
             model, frequency, drive=drives, response=responses, quantity=quantity

@@ -95,10 +95,8 @@ def released(model: Compiled, end: tuple[Any, ...]) -> tuple[Compiled, Point]:
 
 
 def _hold(model: Compiled, coordinate: str) -> tuple[float, float]:
-    """Return a spring as soft as the elements one after another, and a dashpot.
-
-    The rope's inertia on that spring takes as long as the dashpot on it.
-    """
+    """Return a spring as soft as the elements one after another, and a dashpot."""
+    # the rope's inertia on that spring takes as long as the dashpot on it
     component = model.component_of(coordinate)
     chain = model.chain.only(component)
     soft = _softness(chain)

@@ -139,11 +139,9 @@ class Loaded:
         return [found[e] for e in elements]
 
     def _readings(self, waves: Sequence[SpanWaves]) -> Iterator[tuple[Index, list[Unloaded]]]:
-        """Yield frequencies by their numbers, with the pieces as they are integrated there.
-
-        Where the waves of a piece can be told apart two places say all of it. Where its waves are
-        longer than itself it has a quadrature, which few points are enough for.
-        """
+        """Yield frequencies by their numbers, with the pieces as they are integrated there."""
+        # where the waves of a piece can be told apart two places say all of it. Where its waves are
+        # longer than itself it has a quadrature, which few points are enough for
         within = [p[1] for p in self.loads if locate(self.stations, p[1])[1] is not None]
         edges = stations_at(self.model.scene.rope.length, [*self.stations.tolist(), *within])
         which = np.searchsorted(self.stations, (edges[1:] + edges[:-1]) / 2) - 1

@@ -32,15 +32,12 @@ def frf_difference(
     drives: tuple[Point, ...],
     responses: tuple[Point, ...],
 ) -> Complex:
-    """Return the derivative of receptances by Ridders' method.
-
-    Central differences over ever smaller steps, extrapolated to none; of each line the one that
-    changed least counts. Near resonances of a damping ratio z steps below z of the number are
-    needed; the least is 1e-9 of it.
-
-    C. J. F. Ridders, Accurate computation of F'(x) and F'(x)F''(x), Advances in Engineering
-    Software 4 (1982).
-    """
+    """Return the derivative of receptances by Ridders' method."""
+    # central differences over ever smaller steps, extrapolated to none; of each line the one that
+    # changed least counts. Near resonances of a damping ratio z steps below z of the number are
+    # needed; the least is 1e-9 of it
+    # C. J. F. Ridders, Accurate computation of F'(x) and F'(x)F''(x), Advances in Engineering
+    # Software 4 (1982)
     scene, here = model.scene, value_at(model.scene, path)
     if here == 0:
         raise SceneError(

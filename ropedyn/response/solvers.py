@@ -24,10 +24,8 @@ SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 
 
 def _relative(value: Complex, error: Real) -> Real:
-    """Return the relative error: 0 where both are 0, infinite where only the value is.
-
-    Below the smallest normal number digits vanish however small the error is.
-    """
+    """Return the relative error: 0 where both are 0, infinite where only the value is."""
+    # below the smallest normal number digits vanish however small the error is
     size = np.abs(value)
     ratio = np.full(size.shape, np.inf)
     np.divide(error + np.finfo(float).tiny, size, out=ratio, where=size > 0)

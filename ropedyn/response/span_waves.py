@@ -91,12 +91,10 @@ class SpanWaves:
 
 
 def rule(waves: float, decay: float) -> tuple[Real, Real]:
-    """Return points and weights that integrate products of two such functions to rounding.
-
-    n points are exact up to the degree 2 n - 1. Products of waves, exp(2 i k x) over a length h,
-    are polynomials of degree k h and some (k h)^(1/3) more, those of what decays, exp(-2 a x), of
-    degree 8 sqrt(a h), to 1e-16. Layers that are thin beside the stretch get panels of their own.
-    """
+    """Return points and weights that integrate products of two such functions to rounding."""
+    # n points are exact up to the degree 2 n - 1. Products of waves, exp(2 i k x) over a length h,
+    # are polynomials of degree k h and some (k h)^(1/3) more, those of what decays, exp(-2 a x), of
+    # degree 8 sqrt(a h), to 1e-16. Layers that are thin beside the stretch get panels of their own
     points, weights = [], []
     for begin, end, deep in _panels(decay):
         wide = waves * (end - begin)

@@ -19,12 +19,10 @@ FEWEST = 3
 def residues(
     frequency: Real, value: Complex, quantity: str, peak: Real, damping_ratio: Real
 ) -> Complex:
-    """Return what each response shows of the mode of each peak: its shape there.
-
-    Around a peak receptances are A/(w0^2 - w^2 + 2 i zeta w0 w) + R with the same pole for all
-    responses, and A in proportion to the shape; R is what other modes add. Both follow by least
-    squares from the lines within three half widths, and not beyond the middle to another peak.
-    """
+    """Return what each response shows of the mode of each peak: its shape there."""
+    # around a peak receptances are A/(w0^2 - w^2 + 2 i zeta w0 w) + R with the same pole for all
+    # responses, and A in proportion to the shape; R is what other modes add. Both follow by least
+    # squares from the lines within three half widths, and not beyond the middle to another peak
     omega = 2 * np.pi * frequency
     receptance = value / (1j * omega) ** QUANTITIES[quantity]
     found = np.empty((len(peak), len(value)), dtype=np.complex128)
@@ -49,23 +47,19 @@ def _around(frequency: Real, peak: float, width: float, others: Real) -> Any:
 
 
 def mac(first: NDArray[Any], second: NDArray[Any]) -> Real:
-    """Return the modal assurance criterion of each two shapes.
-
-    |a^H b|^2/(a^H a b^H b): 1 where one shape is a multiple of the other, 0 where they are
-    orthogonal (Allemang and Brown, A correlation coefficient for modal vector analysis, 1st
-    International Modal Analysis Conference, 1982).
-    """
+    """Return the modal assurance criterion of each two shapes."""
+    # |a^H b|^2/(a^H a b^H b): 1 where one shape is a multiple of the other, 0 where they are
+    # orthogonal (Allemang and Brown, A correlation coefficient for modal vector analysis, 1st
+    # International Modal Analysis Conference, 1982)
     a, b = _unit(first), _unit(second)
     return np.asarray(np.abs(a.conj() @ b.T) ** 2)
 
 
 def frac(measured: Complex, calculated: Complex) -> Real:
-    """Return the frequency response assurance criterion of each response.
-
-    |sum Hm^* Hc|^2/(sum |Hm|^2 sum |Hc|^2) over all lines: 1 where one is a multiple of the other
-    (Heylen and Lammens, FRAC: a consistent way of comparing frequency response functions,
-    Conference on Identification in Engineering Systems, Swansea, 1996).
-    """
+    """Return the frequency response assurance criterion of each response."""
+    # |sum Hm^* Hc|^2/(sum |Hm|^2 sum |Hc|^2) over all lines: 1 where one is a multiple of the other
+    # (Heylen and Lammens, FRAC: a consistent way of comparing frequency response functions,
+    # Conference on Identification in Engineering Systems, Swansea, 1996)
     a, b = _unit(measured), _unit(calculated)
     return np.asarray(np.abs((a.conj() * b).sum(axis=1)) ** 2)
 

@@ -49,16 +49,14 @@ class _Window(NamedTuple):
 
 
 def fit(omega: Real, value: Complex, noise: Real | None) -> OneMode | None:
-    """Fit one mode beside a constant by least squares.
-
-    H = (b_0 + b_1 t + b_2 t^2)/(omega_0^2 - omega^2 + 2 i zeta omega_0 omega), b complex. First
-    H times the denominator less the numerator, each line weighted by |H| (E. C. Levy, IRE
-    Transactions on Automatic Control AC-4 (1959) 37-43), then, by Gauss and Newton, H itself. The
-    numerator is linear and is solved for in each step. The covariance is that of linear least
-    squares (J^T J)^-1 J^T S J (J^T J)^-1, with S from the noise of each line where it is known,
-    times what the fit leaves in units of S where that is more than 1; and from what it leaves
-    alone where the noise is not known.
-    """
+    """Fit one mode beside a constant by least squares."""
+    # H = (b_0 + b_1 t + b_2 t^2)/(omega_0^2 - omega^2 + 2 i zeta omega_0 omega), b complex. First H
+    # times the denominator less the numerator, each line weighted by |H| (E. C. Levy, IRE
+    # Transactions on Automatic Control AC-4 (1959) 37-43), then, by Gauss and Newton, H itself. The
+    # numerator is linear and is solved for in each step. The covariance is that of linear least
+    # squares (J^T J)^-1 J^T S J (J^T J)^-1, with S from the noise of each line where it is known,
+    # times what the fit leaves in units of S where that is more than 1; and from what it leaves
+    # alone where the noise is not known
     middle, half = (omega[-1] + omega[0]) / 2, (omega[-1] - omega[0]) / 2
     scale = np.abs(value).max()
     t = (omega - middle) / half

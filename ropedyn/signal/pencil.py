@@ -121,11 +121,9 @@ def _size(y: Complex, log: Complex) -> Complex:
 
 
 def _refined(y: Complex, log: Complex, noise: Real) -> DecayingModes:
-    """Return the modes of least squares, by Gauss and Newton, with their variance.
-
-    With the slopes J and G = J^+ of least squares, noise of covariance s^2 R moves modes by that of
-    s^2 G R G^H, and leaves s^2 (tr R - tr J G R) of the samples.
-    """
+    """Return the modes of least squares, by Gauss and Newton, with their variance."""
+    # with the slopes J and G = J^+ of least squares, noise of covariance s^2 R moves modes by that
+    # of s^2 G R G^H, and leaves s^2 (tr R - tr J G R) of the samples
     from scipy.linalg import matmul_toeplitz
 
     j, modes = np.arange(len(y)), len(log)

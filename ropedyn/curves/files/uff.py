@@ -185,11 +185,9 @@ def _bytes(dataset: Fields) -> int:
 
 
 def _state_bytes(file: Path, sizes: Sequence[int]) -> None:
-    """Correct the number of bytes that the header of each binary function says.
-
-    pyuff, up to 2.5.8, counts 8 for each value, complex or with its abscissa too; readers that go
-    by the header would stop there.
-    """
+    """Correct the number of bytes that the header of each binary function says."""
+    # pyuff, up to 2.5.8, counts 8 for each value, complex or with its abscissa too; readers that go
+    # by the header would stop there
     content = bytearray(file.read_bytes())
     at = 0
     for size in sizes:
@@ -277,10 +275,8 @@ def _common(
 
 
 def _is_even(frequency: Real, binary: bool) -> bool:
-    """Whether the start and the step, with the 6 digits a header has, are the frequencies.
-
-    Else each is written: with 6 digits too, or in full where the file is binary.
-    """
+    """Whether the start and the step, with the 6 digits a header has, are the frequencies."""
+    # else each is written: with 6 digits too, or in full where the file is binary
     start, step = (float(f"{x:.5e}") for x in (frequency[0], frequency[1] - frequency[0]))
     written = start + np.arange(len(frequency)) * step
     if binary:

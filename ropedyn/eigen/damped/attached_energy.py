@@ -84,11 +84,9 @@ def _resonator(value: Real, inertia: Complex, dashpot: Complex, foot: Complex) -
 
 
 def _wire(value: Real, inertia: Complex, foot: Complex) -> tuple[Real, Real]:
-    """Energies of a cantilever with a free tip by Galerkin's method.
-
-    With xi = x/l and w = u + l beta xi + sum of a_j phi_j, phi_j'' = P_j(2 xi - 1) and phi_j =
-    phi_j' = 0 at the root: k (1 + 2 i z) a_j/(2 j + 1) + s^2 m (integral of phi_j w) = 0.
-    """
+    """Energies of a cantilever with a free tip by Galerkin's method."""
+    # with xi = x/l and w = u + l beta xi + sum of a_j phi_j, phi_j'' = P_j(2 xi - 1) and phi_j =
+    # phi_j' = 0 at the root: k (1 + 2 i z) a_j/(2 j + 1) + s^2 m (integral of phi_j w) = 0
     mass, spring, length, ratio = value
     waves = float((np.abs(inertia) * mass / spring).max(initial=0.0) ** 0.25)
     count = min(LEAST + int(waves), MOST)

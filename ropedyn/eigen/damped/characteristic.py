@@ -64,11 +64,9 @@ def elastic(chain: Chain) -> list[int]:
 
 
 def horizon(chain: Chain, rates: Rates) -> float:
-    """Return the least |s| [rad/s] where what holds a chain together comes to nothing.
-
-    With section 1 + gamma s that is 1/gamma: infinitely many overdamped motions of ever shorter
-    waves accumulate there.
-    """
+    """Return the least |s| [rad/s] where what holds a chain together comes to nothing."""
+    # with section 1 + gamma s that is 1/gamma: infinitely many overdamped motions of ever shorter
+    # waves accumulate there
     least = (abs(rates.constant[k] / rates.linear[k]) for k in elastic(chain) if rates.linear[k])
     return float(min(least, default=np.inf))
 

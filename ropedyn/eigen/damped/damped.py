@@ -167,9 +167,6 @@ def _solve(model: Compiled, part: Between, limit: float) -> Damped:
         raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
 
 
-# --- what follows from the shapes ---------------------------------------------------------------
-
-
 def _vectors(model: Compiled, answer: DampedRates, points: int) -> Vectors[np.complex128]:
     """Shapes at `points` parts of each element, energies with as many as the waves need."""
     value, which, at = answer.value, answer.which, answer.at
@@ -242,9 +239,6 @@ def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
     real = _core.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
     imag = _core.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
     return real[0] + imag[0], real[1] + imag[1]
-
-
-# --- against continuous spans -------------------------------------------------------------------
 
 
 def _mesh(model: Compiled, answer: DampedRates) -> MeshOfModes:

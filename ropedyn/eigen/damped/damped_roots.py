@@ -54,9 +54,6 @@ def damped_roots(chain: Chain, rates: Rates, radius: float) -> Damped:
     return _searched(chain, rates, radius, edge)
 
 
-# --- in closed form -----------------------------------------------------------------------------
-
-
 def _closed(chain: Chain, rates: Rates, closed: Proportional, radius: float, edge: float) -> Damped:
     """Two rates of each undamped mode; beyond the edge the highest modes may have the lowest."""
     if radius < edge:
@@ -89,9 +86,6 @@ def _closed(chain: Chain, rates: Rates, closed: Proportional, radius: float, edg
         closed,
         mode[order],
     )
-
-
-# --- by search ----------------------------------------------------------------------------------
 
 
 def _searched(chain: Chain, rates: Rates, radius: float, edge: float) -> Damped:
@@ -134,11 +128,9 @@ def _sorted(roots: Roots, paired: bool, still: int) -> tuple[Complex, Real, Comp
 
 
 def most_roots(chain: Chain, rates: Rates) -> int | None:
-    """Return how many rates a chain has in all; None where elements do not say.
-
-    The determinant of s^2 M + s C + K has the power 2 rank M + rank of C where M is nothing; masses
-    and dashpots stand at nodes, on masses of resonators and between those and their nodes.
-    """
+    """Return how many rates a chain has in all; None where elements do not say."""
+    # the determinant of s^2 M + s C + K has the power 2 rank M + rank of C where M is nothing;
+    # masses and dashpots stand at nodes, on masses of resonators and between those and their nodes
     if chain.finite is None or rates.linear[elastic(chain)].any():
         return None
     count = 0

@@ -26,11 +26,9 @@ class Proportional:
     drag: complex  # [1/s]
 
     def rates(self, eigenvalue: Real) -> Complex:
-        """Return both rates of undamped modes, shape (k, 2) [rad/s].
-
-        With p = (drag + soften lambda)/2: -p +- sqrt(p^2 - stiff lambda); where that cancels the
-        smaller is their product over the larger.
-        """
+        """Return both rates of undamped modes, shape (k, 2) [rad/s]."""
+        # with p = (drag + soften lambda)/2: -p +- sqrt(p^2 - stiff lambda); where that cancels the
+        # smaller is their product over the larger
         p = (self.drag + self.soften * eigenvalue) / 2
         root = np.sqrt(np.asarray(p * p - self.stiff * eigenvalue, dtype=np.complex128))
         root = np.where((root * np.conj(p)).real < 0, -root, root)
@@ -57,11 +55,9 @@ class Proportional:
 
 
 def proportional(chain: Chain, rates: Rates) -> Proportional | None:
-    """Say how the damping of a chain is proportional, or None where it is not.
-
-    Everything that holds the chain has one factor, and dashpots are to masses everywhere as one
-    number.
-    """
+    """Say how the damping of a chain is proportional, or None where it is not."""
+    # everything that holds the chain has one factor, and dashpots are to masses everywhere as one
+    # number
     parts = elastic(chain)
     if chain.stiffness.any() or (chain.hinge is not None and chain.hinge.any()):
         parts.append(SPRING)

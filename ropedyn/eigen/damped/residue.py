@@ -28,11 +28,9 @@ GOLDEN = 0.6180339887498949
 
 
 def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:
-    """Return motions phi with phi^T D'(s) phi = 1, or twice that where s = 0 twice.
-
-    The dynamic stiffness D has D(s)^-1 = phi phi^T/(s - s_k) + .., so the mean of D^-1 t over a
-    circle s_k + t is phi phi^T, of all rates in it together.
-    """
+    """Return motions phi with phi^T D'(s) phi = 1, or twice that where s = 0 twice."""
+    # the dynamic stiffness D has D(s)^-1 = phi phi^T/(s - s_k) + .., so the mean of D^-1 t over a
+    # circle s_k + t is phi phi^T, of all rates in it together
     value, error, rates = damped.value, damped.error, damped.rates
     motion = np.zeros((len(value), chain.nodes, chain.held.shape[1]), dtype=np.complex128)
     groups = [g for g in _groups(value, error) if np.isin(g, wanted).any()]
@@ -110,11 +108,9 @@ def _response(chain: Chain, rates: Rates, s: Complex, drives: Ports, responses: 
 
 
 def _pivots(residue: Complex, largest: Real, count: int) -> tuple[int, ...]:
-    """Return the drives that show so many modes best.
-
-    Those with the largest pivots in the elimination of the residues, each compared with all that
-    the response has on the circle, because drives have different units.
-    """
+    """Return the drives that show so many modes best."""
+    # those with the largest pivots in the elimination of the residues, each compared with all that
+    # the response has on the circle, because drives have different units
     rest, chosen = residue.copy(), []
     for _ in range(count):
         pivot = np.abs(rest.diagonal())

@@ -87,11 +87,9 @@ def _completed(root: Complex, tolerance: float) -> Complex:
 
 
 def _iterate(function: Characteristic, begin: Complex, fixed: Complex, spacing: float) -> Complex:
-    """Return the roots, other than fixed ones, that several approximations find.
-
-    By Ehrlich's and Aberth's steps: with Newton's w = f/f' and all others repelling,
-    z <- z - w/(1 - w sum 1/(z - z_j)), of third order for single roots; no two find the same.
-    """
+    """Return the roots, other than fixed ones, that several approximations find."""
+    # by Ehrlich's and Aberth's steps: with Newton's w = f/f' and all others repelling,
+    # z <- z - w/(1 - w sum 1/(z - z_j)), of third order for single roots; no two find the same
     z = begin + spacing * 1e-3 * np.exp(1j * np.arange(len(begin)))
     h = 1e-5 * spacing
     active = np.arange(len(z))
@@ -177,10 +175,8 @@ def _clusters(
 
 
 def _settle(function: Characteristic, member: Complex, gap: float) -> tuple[Complex, Real] | None:
-    """Return the roots of a cluster and their errors, from moments of f'/f on a circle.
-
-    None where the circle does not surround as many.
-    """
+    """Return the roots of a cluster and their errors, from moments of f'/f on a circle."""
+    # None where the circle does not surround as many
     count = len(member)
     samples = SAMPLES * count
     turn = np.exp(2j * np.pi * np.arange(samples) / samples)
@@ -204,11 +200,9 @@ def _settle(function: Characteristic, member: Complex, gap: float) -> tuple[Comp
 
 
 def _moments(value: Complex, turn: Complex, count: int) -> Complex | None:
-    """Return sums of powers 1 .. count of the roots within the unit circle.
-
-    The function's Taylor series from its values on the circle, t f'/f there, and its moments. None
-    where it does not surround as many.
-    """
+    """Return sums of powers 1 .. count of the roots within the unit circle."""
+    # the function's Taylor series from its values on the circle, t f'/f there, and its moments.
+    # None where it does not surround as many
     change = np.angle(np.roll(value, -1) / value)
     if np.abs(change).max() > 2.0 or round(float(change.sum()) / (2 * np.pi)) != count:
         return None
@@ -230,11 +224,9 @@ def _from_moments(moments: Complex) -> Complex:
 
 
 def _spread(root: Complex, noise: float) -> Real:
-    """Return how far roots move where all coefficients of their polynomial change by `noise`.
-
-    Of a root with others at distances d it is noise over their product, and never more than the
-    root of its order.
-    """
+    """Return how far roots move where all coefficients of their polynomial change by `noise`."""
+    # of a root with others at distances d it is noise over their product, and never more than the
+    # root of its order
     count = len(root)
     spread = np.full(count, noise ** (1 / count))
     distance = np.abs(root[:, None] - root[None, :])

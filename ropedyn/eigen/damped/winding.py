@@ -33,11 +33,9 @@ class Winding:
     paired: bool  # whether the roots come in conjugate pairs
 
     def moments(self, known: Complex, number: int) -> Complex:
-        """Return sums of powers 1 .. number of root/radius over unknown roots, to some per cent.
-
-        With the factors s - s_j of the known ones taken out little is left that changes along an
-        arc: 2 pi i sum s^k is the integral of s^k over the change of the logarithm.
-        """
+        """Return sums of powers 1 .. number of root/radius over unknown roots, to some per cent."""
+        # with the factors s - s_j of the known ones taken out little is left that changes along an
+        # arc: 2 pi i sum s^k is the integral of s^k over the change of the logarithm
         begin, end = self.point[:, :1] - known, self.point[:, 1:] - known
         change = self.change - np.log(end / begin).sum(axis=1)
         powers = np.arange(1, number + 1)
@@ -47,13 +45,11 @@ class Winding:
 
 
 def winding(function: Characteristic, radius: float) -> Winding | None:
-    """Count the roots with |s| < radius.
-
-    The argument of the function turns 2 pi times the number of roots on the way round. The walk
-    begins with arcs along which waves on the rope turn by a radian or so. Each is halved until its
-    two halves turn as much as the whole does, and the logarithm changes little along both: what
-    turns once more in between would show in one of them.
-    """
+    """Count the roots with |s| < radius."""
+    # the argument of the function turns 2 pi times the number of roots on the way round. The walk
+    # begins with arcs along which waves on the rope turn by a radian or so. Each is halved until
+    # its two halves turn as much as the whole does, and the logarithm changes little along both:
+    # what turns once more in between would show in one of them
     paired = function.is_paired
     whole = np.pi if paired else 2 * np.pi
     # pieces turn by 1.2 at most, and twice that between s and -s
@@ -97,11 +93,9 @@ def winding(function: Characteristic, radius: float) -> Winding | None:
 
 
 def turning(chain: Chain, radius: float) -> int:
-    """Return how many radians structures alone turn the function by on a half circle, and more.
-
-    As many times pi as they have modes there with their feet held: a resonator one, a broken wire
-    x/pi where x^4 = m radius^2/k (csrc/attached.h).
-    """
+    """Return how many radians structures alone turn the function by on a half circle, and more."""
+    # as many times pi as they have modes there with their feet held: a resonator one, a broken wire
+    # x/pi where x^4 = m radius^2/k (csrc/attached.h)
     if chain.attached_value is None:
         return 0
     mass, spring = chain.attached_value[:, :2].T
