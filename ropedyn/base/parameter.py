@@ -17,14 +17,11 @@ from . import check
 class Parameter(NamedTuple):
     """What is declared of a field."""
 
-    check: Callable[[Any, str, Any], Any]
-    """Of a value, its name and what it describes: return what is kept, or raise."""
+    check: Callable[[Any, str, Any], Any]  # of value, name and thing: return what is kept, or raise
     unit: str = ""
-    turning: str = ""
-    """Unit on a coordinate that is an angle, where that is another."""
+    turning: str = ""  # the unit on a coordinate that is an angle, where that is another
     is_position: bool = False
-    is_late: bool = False
-    """Whether its check asks for other parameters, which are checked before it."""
+    is_late: bool = False  # whether its check asks for other parameters, checked before it
 
     def units(self) -> tuple[str, ...]:
         """Return the units it can have."""
@@ -180,6 +177,12 @@ class Description:
 def parameters(kind: type[Description] | Description) -> dict[str, Parameter]:
     """Return what is declared of each field."""
     return kind._parameters
+
+
+def required(kind: type[Description]) -> list[str]:
+    """Return the names of the fields without a default."""
+    fields = dataclasses.fields(kind)
+    return [f.name for f in fields if f.default is MISSING and f.default_factory is MISSING]
 
 
 class PerCoordinate(Mapping[str, float]):

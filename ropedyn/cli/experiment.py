@@ -14,10 +14,10 @@ from ..curves.peaks import Peaks
 from ..experiment.compare.compare import compare
 from ..experiment.identify.identify import identify
 from ..scene.scene import Scene
-from .options import Command, Group, compiled, option, refuse, repeated, show, switch
+from .options import Command, OptionGroup, compiled, option, refuse, repeated, show, switch
 from .text import column, drive, known, node, numbers, orders, pair, point, whole_numbers, words
 
-MEASURED = Group(
+MEASURED = OptionGroup(
     (
         option("--peaks", "measured peaks, comma list [Hz]", numbers),
         option("--measured", "measured response, universal file or CSV", metavar="FILE"),
@@ -113,7 +113,7 @@ COMPARE = Command(
         STD_OF_COMPARED,
         ORDER,
         option("--within", "largest relative error of calculated peaks, such as 0.05", type=float),
-        Group((*OF_FILE, BAND), FILE_TITLE),
+        OptionGroup((*OF_FILE, BAND), FILE_TITLE),
     ),
     "Calculated against measured peaks, or a measured frequency response: pairs of peaks, likeness "
     "of responses (FRAC), and what their differences prove of their cause.",
@@ -177,7 +177,7 @@ IDENTIFY = Command(
             default=[],
             metavar="PATH=VALUE:STD",
         ),
-        Group(OF_FILE, FILE_TITLE),
+        OptionGroup(OF_FILE, FILE_TITLE),
     ),
     "Tension, stiffness and other numbers of the scene from measured peaks, or a measured "
     "frequency response; what the scene says of them is a guess.",

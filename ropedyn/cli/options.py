@@ -28,7 +28,7 @@ class Option(NamedTuple):
         parser.add_argument(self.name, **self.how)
 
 
-class Group(NamedTuple):
+class OptionGroup(NamedTuple):
     """Options of which one may be given or, under a title, all."""
 
     options: tuple[Option, ...]
@@ -54,7 +54,7 @@ class Command(NamedTuple):
     name: str
     run: Callable[[argparse.Namespace], None]
     text: str
-    own: tuple[Option | Group, ...]
+    own: tuple[Option | OptionGroup, ...]
     description: str = ""
     elements: tuple[Option, ...] | None = None
 
@@ -100,7 +100,7 @@ ELEMENTS = (
     option("--element", "kind (tensed where --elements is given)", choices=KINDS),
 )
 FORM = (switch("--json", "print the table as JSON"), switch("--csv", "print the table as CSV"))
-OUTPUT = (option("--plot", "write a figure", type=Path, metavar="FILE"), Group(FORM))
+OUTPUT = (option("--plot", "write a figure", type=Path, metavar="FILE"), OptionGroup(FORM))
 
 
 def refuse(options: argparse.Namespace, refused: tuple[Option, ...], instead: str) -> None:

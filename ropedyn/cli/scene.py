@@ -16,7 +16,7 @@ from ..motion.request import METHODS
 from ..scene.scene import Scene
 from ..study.accuracy import accuracy_cost
 from ..study.effect import effect_cost
-from .options import Command, Group, compiled, option, refuse, repeated, show, switch
+from .options import Command, OptionGroup, compiled, option, refuse, repeated, show, switch
 from .text import (
     FORCES,
     drive,
@@ -38,7 +38,7 @@ CARRYING = option(
 PROGRESS = switch("--progress", "say on stderr how far it is")
 
 QUESTION = (
-    Group(
+    OptionGroup(
         (
             option("--modes", "how many", type=int),
             option("--below", "instead: modes below this [Hz]", type=float),

@@ -5,7 +5,6 @@ Each takes the text and the name of its option, which its error says.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -14,7 +13,7 @@ import numpy as np
 from ..base.array import Real
 from ..base.check import shown
 from ..base.errors import SceneError
-from ..base.parameter import Description
+from ..base.parameter import Description, required
 from ..base.unit import END, WIRE
 from ..chain.port import Point
 from ..scene.force import Chirp, Force, Impulse, Sine, Step
@@ -156,17 +155,10 @@ def column(text: str, option: str) -> tuple[str, str | int]:
 
 def force_words(kind: str) -> str:
     """Say what follows the word of a force, such as ``AMPLITUDE[:TIME]``."""
-    numbers = FORCES[kind][1]
-    needed = [name.upper() for name in numbers[: _needed(kind)]]
-    left = [f"[:{name.upper()}" for name in numbers[_needed(kind) :]]
-    return ":".join(needed) + "".join(left) + "]" * len(left)
-
-
-def _needed(kind: str) -> int:
-    """Return how many numbers of a force have no default."""
-    made, numbers = FORCES[kind]
-    defaults = {field.name: field.default for field in dataclasses.fields(made)}
-    return sum(defaults[name] is dataclasses.MISSING for name in numbers)
+    made, names = FORCES[kind]
+    least, upper = len(required(made)), ":".join(names).upper().split(":")
+    left = [f"[:{name}" for name in upper[least:]]
+    return ":".join(upper[:least]) + "".join(left) + "]" * len(left)
 
 
 def force(text: str, time: Real) -> Force | Real:
@@ -179,7 +171,7 @@ def force(text: str, time: Real) -> Force | Real:
         values = [float(part) for part in rest]
     except ValueError:
         values = []
-    if not _needed(kind) <= len(values) <= len(names):
+    if not len(required(made)) <= len(values) <= len(names):
         raise SceneError(f"--force must be {kind}:{force_words(kind)}, got {shown(text)}")
     return made(**dict(zip(names, values)))  # type: ignore[return-value]
 

@@ -32,14 +32,10 @@ NOTHING: Mapping[int, float] = MappingProxyType({})
 class DampingTerm(NamedTuple):
     """What a damping adds."""
 
-    rate: Mapping[int, float] = NOTHING
-    """Times i omega, to the factors of these parts [s, of the inertia 1/s]."""
-    loss: Mapping[int, float] = NOTHING
-    """Times i, to the factors of these parts."""
-    drag: float = 0.0
-    """Along the rope, to C of transverse and axial motion [N s/m^2]."""
-    ratio: float | tuple[float, ...] = 0.0
-    """To the damping ratio of all modes, or of the lowest ones."""
+    rate: Mapping[int, float] = NOTHING  # times i omega, to factors of parts [s, of inertia 1/s]
+    loss: Mapping[int, float] = NOTHING  # times i, to factors of parts
+    drag: float = 0.0  # along the rope, to C of transverse and axial motion [N s/m^2]
+    ratio: float | tuple[float, ...] = 0.0  # to that of all modes, or of the lowest ones
 
 
 class Damping(Protocol):
@@ -50,8 +46,7 @@ class Damping(Protocol):
     2.0
     """
 
-    kind: ClassVar[str]
-    """Name of the effect."""
+    kind: ClassVar[str]  # name of the effect
 
     def term(self) -> DampingTerm:
         """Return what it adds."""

@@ -31,8 +31,7 @@ class _Place(NamedTuple):
     of: str
     name: str
     at: int | None = None
-    kind: str = ""
-    """Of what stands at an end; then the name is a coordinate."""
+    kind: str = ""  # of what stands at an end; then the name is a coordinate
 
 
 def _place(path: str) -> _Place:

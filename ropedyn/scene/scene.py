@@ -153,9 +153,9 @@ NodeForce, Stop, AddedMass, LocalChange
         self._check_coordinates()
         self._check_places()
         # a rope that is changed must be one
-        changing = _part.stretches(self.parts)
-        ends = stations_at(self.rope.length, _part.places(changing))
-        ropes(self.rope, changing, ends)
+        if changing := _part.stretches(self.parts):
+            ends = stations_at(self.rope.length, _part.places(changing))
+            ropes(self.rope, changing, ends)
         self._check_gravity()
         self._check_stretching()
 
@@ -175,7 +175,7 @@ NodeForce, Stop, AddedMass, LocalChange
             )
 
     def _check_places(self) -> None:
-        present = ", ".join(self.coordinates)
+        coordinates, present = self.coordinates, ", ".join(self.coordinates)
         for i, part in enumerate(self.parts):
             for name in _part.position_names(part):
                 check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
@@ -183,7 +183,7 @@ NodeForce, Stop, AddedMass, LocalChange
                 self._check_stretch(i, part)
                 continue
             for coordinate in part.stands_on:
-                if coordinate not in self.coordinates:
+                if coordinate not in coordinates:
                     chosen = hasattr(part, "coordinate")
                     name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
                     raise SceneError(
@@ -194,7 +194,7 @@ NodeForce, Stop, AddedMass, LocalChange
         for i, end in enumerate(self.ends):
             for name, values in _end.end_of(end).standing.items():
                 for coordinate in values:
-                    if coordinate not in self.coordinates:
+                    if coordinate not in coordinates:
                         raise SceneError(
                             f"ends[{i}].{name} must stand on coordinates the scene has "
                             f"({present}), got {coordinate!r}"

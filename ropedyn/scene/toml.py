@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from ..base import check
 from ..base.atomic import write_bytes
 from ..base.errors import SceneError
-from ..base.parameter import Description
+from ..base.parameter import Description, required
 from . import damping
 from .end import End
 from .gravity import Gravity
@@ -85,8 +85,11 @@ def _arguments(document: Mapping[str, Any], known: set[str]) -> dict[str, Any]:
         arguments["tension"] = _built(Tension, document["tension"], "tension")
     if "gravity" in document:
         arguments["gravity"] = _built(Gravity, document["gravity"], "gravity")
-    if "ends" in document:
-        arguments["ends"] = _ends(document["ends"])
+    if isinstance(document.get("ends"), list):
+        arguments["ends"] = tuple(
+            _built(End, end, f"ends[{i}]") if isinstance(end, dict) else end
+            for i, end in enumerate(document["ends"])
+        )
     if "damping" in document:
         given = document["damping"]
         many = given if isinstance(given, list) else [given]
@@ -94,15 +97,6 @@ def _arguments(document: Mapping[str, Any], known: set[str]) -> dict[str, Any]:
     if "parts" in document:
         arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
     return arguments
-
-
-def _ends(given: Any) -> Any:
-    if not isinstance(given, list):
-        return given
-    return tuple(
-        _built(End, end, f"ends[{i}]") if isinstance(end, dict) else end
-        for i, end in enumerate(given)
-    )
 
 
 def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:
@@ -123,22 +117,14 @@ def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:
 def _built(kind: type[Description], table: Any, where: str) -> Any:
     """Call a description with the keys of a table, and say where an error comes from."""
     check.instance(table, where, dict, "a table")
-    fields = dataclasses.fields(kind)
-    _known_keys(table, {field.name for field in fields}, where)
-    required = [
-        field.name
-        for field in fields
-        if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
-    ]
-    for key in required:
+    _known_keys(table, {field.name for field in dataclasses.fields(kind)}, where)
+    for key in required(kind):
         if key not in table:
             raise SceneError(f"key {where}.{key} is missing")
     try:
         return kind(**table)
-    except SceneError as error:
-        raise SceneError(f"{where}.{error}") from error
-    except TypeError as error:
-        raise TypeError(f"{where}.{error}") from error
+    except (SceneError, TypeError) as error:
+        raise type(error)(f"{where}.{error}") from error
 
 
 def _known_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:

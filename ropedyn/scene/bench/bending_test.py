@@ -33,7 +33,7 @@ DEFLECTION = {
     "simply-supported": _simply_supported,
     "clamped": _clamped,
 }
-"""Of each kind of ends B times the deflection at t per force at s <= t, or the reverse."""
+"""B times the deflection at t per force at s <= t, or the reverse, for each kind of ends."""
 
 
 def _load_place(x: Any, name: str, test: BendingTest) -> float:

@@ -8,79 +8,64 @@ from typing import ClassVar, NamedTuple
 
 from ...base.parameter import Description, position
 
+NOTHING: Mapping[str, float] = MappingProxyType({})
+
 
 class Attached(NamedTuple):
     """A structure condensed to its foot at a node; see csrc/attached.h."""
 
-    kind: str
-    """In `chain.ATTACHED`."""
-    displacement: Mapping[str, float]
-    """Of the foot per motion of the node."""
+    kind: str  # in `chain.ATTACHED`
+    displacement: Mapping[str, float]  # of the foot per motion of the node
     rotation: Mapping[str, float]
-    value: tuple[float, float, float, float]
-    """Its numbers."""
+    value: tuple[float, float, float, float]  # its numbers
 
 
 class Law(NamedTuple):
     """A force on one coordinate that is not in proportion to its motion."""
 
     coordinate: str
+    # "power": value[0] |v|^value[1] sign(v); "stop": value[0] times how far u is beyond value[1]
+    # in the direction value[2], +1 or -1; "call": what `call` returns
     kind: str
-    """"power": value[0] |v|^value[1] sign(v); "stop": value[0] times how far u is beyond value[1]
-    in the direction value[2], +1 or -1; "call": what `call` returns."""
     value: tuple[float, ...] = ()
+    # of time, displacement and velocity, the force on the rope
     call: Callable[[float, float, float], float] | None = None
-    """Of time, displacement and velocity, the force on the rope."""
 
 
 class NodeTerm(NamedTuple):
     """What stands at one node, per coordinate."""
 
-    mass: Mapping[str, float] = MappingProxyType({})
-    """[kg, kg m^2]; inertia on an absent coordinate is ignored."""
-    stiffness: Mapping[str, float] = MappingProxyType({})
-    """To the ground [N/m, N m]."""
-    held: Sequence[str] = ()
-    """Coordinates that cannot move."""
-    hinge: Mapping[str, float] = MappingProxyType({})
-    """Compliance between the node and the rope on its right [rad/(N m)], infinite where free."""
-    damping: Mapping[str, float] = MappingProxyType({})
-    """To the ground, in proportion to velocity [N s/m, N m s]."""
-    nonlinear: str = ""
-    """What must be otherwise where time is not integrated, empty where nothing must."""
-    attached: Sequence[Attached] = ()
-    """Structures that it carries."""
-    laws: Sequence[Law] = ()
-    """Forces that only integration over time takes."""
+    mass: Mapping[str, float] = NOTHING  # [kg, kg m^2]; ignored on an absent coordinate
+    stiffness: Mapping[str, float] = NOTHING  # to the ground [N/m, N m]
+    held: Sequence[str] = ()  # coordinates that cannot move
+    # compliance between the node and the rope on its right [rad/(N m)], infinite where free
+    hinge: Mapping[str, float] = NOTHING
+    damping: Mapping[str, float] = NOTHING  # to the ground, of velocity [N s/m, N m s]
+    nonlinear: str = ""  # what must be otherwise where time is not integrated, empty if nothing
+    attached: Sequence[Attached] = ()  # structures that it carries
+    laws: Sequence[Law] = ()  # forces that only integration over time takes
 
 
 class AttachedRate(NamedTuple):
     """How fast a structure changes with one number of it."""
 
-    size: float = 0.0
-    """Relative, of mass and stiffness together."""
-    mass: float = 0.0
-    """Relative, at the same stiffness."""
-    stiffness: float = 0.0
-    """Relative, at the same mass."""
-    damping: float = 0.0
-    """Of its damping ratio."""
-    displacement: Mapping[str, float] = MappingProxyType({})
-    """Of the foot per motion of the node."""
-    rotation: Mapping[str, float] = MappingProxyType({})
-    """Times the length of the structure, over that length: it feels no other rotation."""
+    size: float = 0.0  # relative, of mass and stiffness together
+    mass: float = 0.0  # relative, at the same stiffness
+    stiffness: float = 0.0  # relative, at the same mass
+    damping: float = 0.0  # of its damping ratio
+    displacement: Mapping[str, float] = NOTHING  # of the foot per motion of the node
+    # times the length of the structure, over that length: it feels no other rotation
+    rotation: Mapping[str, float] = NOTHING
 
 
 class NodeRate(NamedTuple):
     """How fast what stands at a node changes with one number of it, per coordinate."""
 
-    mass: Mapping[str, float] = MappingProxyType({})
-    stiffness: Mapping[str, float] = MappingProxyType({})
-    hinge: Mapping[str, float] = MappingProxyType({})
-    """Of the stiffness across a hinge."""
-    damping: Mapping[str, float] = MappingProxyType({})
-    attached: AttachedRate | None = None
-    """Of the structure that it carries."""
+    mass: Mapping[str, float] = NOTHING
+    stiffness: Mapping[str, float] = NOTHING
+    hinge: Mapping[str, float] = NOTHING  # of the stiffness across a hinge
+    damping: Mapping[str, float] = NOTHING
+    attached: AttachedRate | None = None  # of the structure that it carries
 
     def acts(self, coordinates: Collection[str]) -> bool:
         """Whether it changes anything where there are only some coordinates."""
@@ -101,8 +86,7 @@ class Part(Description):
     (('z',), {'z': 10000.0}, {'z': 1.0})
     """
 
-    kind: ClassVar[str]
-    """Name of the effect."""
+    kind: ClassVar[str]  # name of the effect
 
     x: float = position()
 

@@ -22,10 +22,8 @@ class RopeChange(NamedTuple):
     bending: float = 1.0
     torsion: float = 1.0
     density: float = 1.0
-    linear_density: float = 0.0
-    """[kg/m]."""
-    polar_inertia: float = 0.0
-    """[kg m]."""
+    linear_density: float = 0.0  # [kg/m]
+    polar_inertia: float = 0.0  # [kg m]
 
 
 FACTORS = slice(0, 3)
