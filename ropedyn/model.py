@@ -19,9 +19,12 @@ from .eigen.eigen import solve_modes
 from .eigen.modes import Modes
 from .eigen.spectrum import count_modes
 from .eigen.tolerance import compile_within
+from .motion.direct.direct import march
+from .motion.direct.steady_states import march_steadily
 from .motion.history import History
+from .motion.modal.steady_states import superpose_steadily
+from .motion.modal.superposition import superpose
 from .motion.request import Run, SteppedSine
-from .motion.transient import solve_stepped_sine, solve_transient
 from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
@@ -418,7 +421,7 @@ class Model(Compiled):
             progress=progress,
             partial=partial,
         )
-        return solve_transient(run)
+        return march(run) if run.direct else superpose(run)
 
     def floquet(self, modes: int | None = 4) -> Floquet:
         """Find how free motion grows or decays under the tension that pulsates.
@@ -585,7 +588,7 @@ class Model(Compiled):
             tolerance=tolerance,
             progress=progress,
         )
-        return solve_stepped_sine(asked)
+        return march_steadily(asked) if asked.direct else superpose_steadily(asked)
 
 
 def compile_model(

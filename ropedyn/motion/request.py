@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point
 from ..response.deflection import Deflection, checked_loads
+from ..response.frf import FRF, MeshOfResponse
+from ..response.harmonic import mesh_of_frf
 from ..scene.force import Force, forces
 from ..scene.parts.part import standing
 from ..scene.tension import Tension
@@ -180,13 +183,23 @@ class SteppedSine:
             progress=reporter(progress),
         )
 
-
-class SteadyStates(NamedTuple):
-    """What solvers answer to a stepped sine."""
-
-    value: Complex  # (responses, f) per amplitude
-    error: Real  # (responses, f) estimated relative error
-    cost: Cost  # but for the seconds
+    def answer(self, value: Complex, error: Real, cost: Cost) -> FRF:
+        """Return steady states per amplitude, (responses, f), with their relative errors."""
+        scene, f, ends = self.model.scene, self.frequency, ((self.drive,), self.responses)
+        value = value * (2j * np.pi * f) ** QUANTITIES[self.quantity]
+        mesh: MeshOfResponse | Callable[[], MeshOfResponse]
+        mesh = partial(mesh_of_frf, scene, f, *ends, quantity=self.quantity, value=value)
+        if why_direct(self.model):
+            mesh = MeshOfResponse(np.full(value.shape, np.inf))
+        return FRF(
+            *ends,
+            quantity=self.quantity,
+            frequency=f,
+            value=value,
+            rounding_error=error,
+            cost=cost,
+            mesh=mesh,
+        )
 
 
 def is_direct(model: Compiled, method: str) -> bool:

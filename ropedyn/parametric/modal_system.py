@@ -135,10 +135,9 @@ class _Basis:
                 f"modes must be at most {len(found.eigenvalue)}, the transverse ones this model "
                 f"has, got {number}"
             )
-        shape, motion = found.shape, found.motion
+        shape = found.shape
         assert shape is not None
-        assert motion is not None
-        carried = _StructureForms.of(chain, shape, motion, found.eigenvalue)
+        of_structures, stiffness, resisted = _structures(chain, found)
         own = _form(shape, chain.mass[chain.term_of])
         dragged = np.zeros_like(own)
         if chain.damping is not None:
@@ -146,7 +145,7 @@ class _Basis:
         if weight is not None:
             own += _integral(chain, chain.inertia, weight, shape)
             dragged += _integral(chain, chain.drag, weight, shape)
-        mass = own + carried.mass
+        mass = own + of_structures
         if "broken wire" in chain.carried:
             mass = np.diag(np.diag(mass))  # what is not known of wires makes modes orthogonal
         if weight is None:
@@ -155,17 +154,14 @@ class _Basis:
             slope = shape[:, :, component.index("beta")]
             geometric = (slope * weight) @ slope.T
         else:
-            geometric = _of_string(chain, found, mass, carried)
-        return cls(
-            model.scene.mean_tension,
-            # what rounding cannot tell from 0 is 0
-            np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue),
-            mass,
-            geometric,
-            dragged,
-            carried.stiffness,
-            carried.damping,
-        )
+            # in tension is stored what springs and structures do not store
+            total = np.diag(found.eigenvalue * np.sqrt(np.diag(mass)) ** 2)
+            springs = _form(shape, chain.stiffness[chain.term_of])
+            geometric = (total - springs - stiffness) / chain.tension[0]
+        # what rounding cannot tell from 0 is 0
+        eigenvalue = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
+        tension = model.scene.mean_tension
+        return cls(tension, eigenvalue, mass, geometric, dragged, stiffness, resisted)
 
 
 def _at_gauss_points(
@@ -234,48 +230,32 @@ def _slope(chain: Chain, shape: Real) -> Real:
     return np.asarray(element[:, :, SLOPE_OF_TENSION].sum(axis=1))
 
 
-def _of_string(chain: Chain, found: ComponentModes, mass: Real, carried: _StructureForms) -> Real:
-    """Return what is stored in tension, all that springs and structures do not store, over T."""
-    assert found.shape is not None
-    root = np.sqrt(np.diag(mass))
-    total = np.diag(found.eigenvalue * root**2)
-    springs = _form(found.shape, chain.stiffness[chain.term_of])
-    return np.asarray((total - springs - carried.stiffness) / chain.tension[0])
-
-
-@dataclass(frozen=True, eq=False)
-class _StructureForms:
-    """Forms of the structures that nodes carry, shape (k, k)."""
-
-    mass: Real
-    stiffness: Real
-    damping: Real
-
-    @classmethod
-    def of(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> _StructureForms:
-        """Of resonators all; of wires the mass that each mode has of them."""
-        count = len(shape)
-        form = cls(*(np.zeros((count, count)) for _ in range(3)))
-        if chain.attached_kind is None:
-            return form
-        assert chain.attached_row is not None
-        assert chain.attached_value is not None
-        for k, kind in enumerate(chain.attached_kind):
-            if kind != RESONATOR:
-                continue
-            node = chain.feet[k]
-            mass, stiffness, _, damping = chain.attached_value[k]
-            y = motion[:, k]
-            stretched = y - shape[:, node] @ chain.attached_row[k, 0]
-            form.mass[:] += mass * np.outer(y, y)
-            form.stiffness[:] += stiffness * np.outer(stretched, stretched)
-            form.damping[:] += damping * np.outer(stretched, stretched)
-        wires = chain.attached_kind != RESONATOR
-        if wires.any():
-            part = np.ascontiguousarray(motion[:, wires])
-            energy = _core.carried(chain.carrying(wires), shape, part, eigenvalue)
-            form.mass[np.diag_indices(count)] += energy[:, 1]
+def _structures(chain: Chain, found: ComponentModes) -> Real:
+    """Return mass, stiffness and damping of what nodes carry, (3, k, k); of wires the mass."""
+    shape, motion = found.shape, found.motion
+    assert shape is not None
+    assert motion is not None
+    count = len(shape)
+    form = np.zeros((3, count, count))
+    if chain.attached_kind is None:
         return form
+    assert chain.attached_row is not None
+    assert chain.attached_value is not None
+    for k, kind in enumerate(chain.attached_kind):
+        if kind != RESONATOR:
+            continue
+        mass, stiffness, _, damping = chain.attached_value[k]
+        y = motion[:, k]
+        stretched = y - shape[:, chain.feet[k]] @ chain.attached_row[k, 0]
+        form[0] += mass * np.outer(y, y)
+        form[1] += stiffness * np.outer(stretched, stretched)
+        form[2] += damping * np.outer(stretched, stretched)
+    wires = chain.attached_kind != RESONATOR
+    if wires.any():
+        part = np.ascontiguousarray(motion[:, wires])
+        energy = _core.carried(chain.carrying(wires), shape, part, found.eigenvalue)
+        form[0][np.diag_indices(count)] += energy[:, 1]
+    return form
 
 
 # --- damping ----------------------------------------------------------------------------------

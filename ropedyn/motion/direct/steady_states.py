@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time as clock
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +11,11 @@ import numpy as np
 from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
+from ...response.frf import FRF
 from ...scene.force import Sine
 from ...scene.tension import Tension
 from ...signal.spectrum import amplitudes
-from ..request import Run, SteadyStates, SteppedSine
+from ..request import Run, SteppedSine
 from .direct import refuse_responses
 from .lumped import lumped_chains, refuse
 from .march import Motion, stage_of
@@ -27,8 +29,9 @@ LONGEST = 100_000  # A motion that changes after so many periods is said not to 
 KEEPS = stage_of(1.0)
 
 
-def march_steadily(asked: SteppedSine) -> SteadyStates:
+def march_steadily(asked: SteppedSine) -> FRF:
     """Follow the motion through the frequencies in their order, see `Model.stepped_sine`."""
+    start = clock.perf_counter()
     refuse(asked.model)
     still = np.array([0.0, 1.0])
     push = Sine(asked.amplitude, float(asked.frequency[0]), phase=math.pi / 2)
@@ -45,8 +48,9 @@ def march_steadily(asked: SteppedSine) -> SteadyStates:
         asked.progress((k + 1) / len(asked.frequency))
     unknowns = sum(m.lumps.chain.free for m in motions)
     work = sum(m.stages for m in motions), sum(m.factorisations for m in motions)
-    cost = Cost(0.0, "direct", len(asked.model.x) - 1, unknowns, *work)
-    return SteadyStates(value, error, cost)
+    seconds = clock.perf_counter() - start
+    cost = Cost(seconds, "direct", len(asked.model.x) - 1, unknowns, *work)
+    return asked.answer(value, error, cost)
 
 
 def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time as clock
 
 import numpy as np
 
@@ -10,9 +11,10 @@ from ...base.answer import Cost
 from ...base.array import Complex, Flags, Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
+from ...response.frf import FRF
 from ...scene.force import Sine
 from ...signal.spectrum import amplitudes
-from ..request import SteadyStates, SteppedSine
+from ..request import SteppedSine
 from .convolution import convolve
 from .expansion import Share, expand
 from .truncation import ratio_beyond
@@ -23,8 +25,9 @@ UNSEEN = 1e-11  # A mode with a residue below this part of the largest has a nod
 DOUBLINGS = 30  # The wait for the steady state is doubled so often at most.
 
 
-def superpose_steadily(asked: SteppedSine) -> SteadyStates:
+def superpose_steadily(asked: SteppedSine) -> FRF:
     """Sum modes at each frequency; see `Model.stepped_sine`."""
+    start = clock.perf_counter()
     model, f = asked.model, asked.frequency
     resolved = 2 * math.pi * float(f.max())
     shares = expand(model, [asked.drive], asked.responses, resolved=resolved)
@@ -38,7 +41,8 @@ def superpose_steadily(asked: SteppedSine) -> SteadyStates:
         error[:, k] += np.divide(left_out, size, out=np.zeros_like(size), where=size > 0)
         asked.progress((k + 1) / len(f))
     modes = sum(share.expansion.modes for share in shares)
-    return SteadyStates(value, error, Cost(0.0, "modal", len(model.x) - 1, modes))
+    seconds = clock.perf_counter() - start
+    return asked.answer(value, error, Cost(seconds, "modal", len(model.x) - 1, modes))
 
 
 def _slowest(share: Share) -> float:
