@@ -79,6 +79,11 @@ class Run:
         radius = check.number(spectral_radius, "spectral_radius", sign="nonnegative")
         if radius > 1:
             raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
+        loads: Mapping[Point, float] = {}
+        if isinstance(start, Deflection):
+            loads = dict(start.load)
+        elif start is not None:
+            loads = checked_loads(model, start, "start")
         return cls(
             model,
             t,
@@ -87,7 +92,7 @@ class Run:
             responses=observed(model, response, drives),
             direct=direct,
             order=MOTIONS[quantity],
-            loads=_loads(model, start),
+            loads=loads,
             snapshots=_snapshots(snapshots, t),
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
             step=check.optional(step, "step", "s", sign="positive"),
@@ -255,15 +260,6 @@ def _driven(
         forces(one, f"force[{k}]", time, push_unit(drive))
         for k, (one, drive) in enumerate(zip(force, drives))
     )
-
-
-def _loads(model: Compiled, start: Any) -> dict[Point, float]:
-    """Return the loads that are let go."""
-    if start is None:
-        return {}
-    if isinstance(start, Deflection):
-        return dict(start.load)
-    return checked_loads(model, start, "start")
 
 
 def _snapshots(given: Any, time: Real) -> Real:

@@ -60,6 +60,7 @@ class Lumps:
     # once
     local: Real
     number: Index  # which of the responses of the run each is
+    massless: Flags  # (nodes, width) free coordinates without inertia
     pulsation: Callable[[Real], Real] | None  # what is added to the tension at times [s]
     start: State  # where the motion begins
     released: bool  # whether loads on coordinates without inertia are let go
@@ -73,11 +74,6 @@ class Lumps:
         free = (self.chain.held == 0) & (np.einsum("tii->ti", self.chain.mass) > 0)
         along = np.einsum("tii->ti", damping)[free]
         return bool(self.beside.rate.all()) or bool(len(along) and along.all())
-
-    @property
-    def massless(self) -> Flags:
-        """Which free coordinates have no inertia, shape (nodes, width)."""
-        return _massless(self.chain)
 
     @property
     def is_bare(self) -> Flags:
@@ -173,6 +169,8 @@ def _lumps(
                 f'element must be "tensed", got {model.element!r}, where a response lies between '
                 "nodes beside a force and is an acceleration, or stiffness is damped or changes"
             )
+    no_mass = (np.einsum("tii->ti", chain.mass) == 0) & (chain.held == 0)
+    massless = no_mass[chain.term_of]
     kept = np.flatnonzero(np.isin(x, model.x))
     forces = tuple(run.forces[k] for k in pushed)
     what = (component, chain, x, kept, beside, laws, calls, drives, forces)
@@ -183,9 +181,10 @@ def _lumps(
         readout=readout(chain, x, component, asked, beside=beside, pulsation=pulsation),
         local=inside,
         number=np.array(watched, dtype=np.intp),
+        massless=massless,
         pulsation=pulsation,
         start=start,
-        released=bool(((load != 0) & _massless(chain)).any()),
+        released=bool(((load != 0) & massless).any()),
     )
 
 
@@ -210,11 +209,6 @@ def _cut(
             f"must be shorter than sqrt(B/|T|), got {most.max():.3g} of it"
         )
     return cut(chain, x, [p[1] for p in inside])
-
-
-def _massless(chain: Chain) -> Flags:
-    none = (np.einsum("tii->ti", chain.mass) == 0) & (chain.held == 0)
-    return np.asarray(none[chain.term_of])
 
 
 def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside) -> State:

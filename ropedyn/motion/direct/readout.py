@@ -89,15 +89,12 @@ def readout(
     e = int(chain.element[0])
     F, _, Q = (array[e] for array in _core.triples(chain.at_rest))
     length = float(chain.length[e])
-    left = LeftForce(
-        channel,
-        F,
-        Q,
-        rate=float(beside.rate[e]),
-        string=float(beside.string[e]) / length,
-        drag=float(beside.string_drag[e]) / length,
-        extra=lambda time: np.zeros(len(time)) if pulsation is None else pulsation(time) / length,
-        z=coordinates.index("z") if "z" in coordinates else None,
-    )
+
+    def extra(time: Real) -> Real:
+        return np.zeros(len(time)) if pulsation is None else pulsation(time) / length
+
+    string, drag = (float(one[e]) / length for one in (beside.string, beside.string_drag))
+    z = coordinates.index("z") if "z" in coordinates else None
+    left = LeftForce(channel, F, Q, float(beside.rate[e]), string, drag, extra, z)
     read = ports(chain, x, coordinates, direct + tellers(coordinates, x))
     return Readout(read, number, left)

@@ -99,7 +99,10 @@ def within(run: Run, chains: list[Lumps], g: float) -> Passage:
         passage.step_error, worst = trend.add(run, factor, passage)
         if worst <= tolerance:
             break
-        growth = _growth(trend.error, worst, tolerance)
+        growth = 2
+        if math.isfinite(trend.error):
+            wanted = math.ceil(math.sqrt(trend.error / (AIM * tolerance)))
+            growth = min(max(wanted, 2), 8 if worst > FAR else 64)
         if growth * fine.steps > MOST_STEPS:
             passage.error = SolveError(
                 f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with {fine.steps} "
@@ -128,14 +131,19 @@ class Trend:
         ratio, coarse = factor / self.last[0], self.last[1]
         self.last = (factor, passage)
         apart = np.abs(passage.value - coarse.value)
-        distance = _worst(run, passage, apart)
+        size = np.maximum(np.abs(passage.value).max(axis=1), _floor(run, passage))
+        most = apart.max(axis=1)
+        distance = float(np.divide(most, size, out=np.zeros_like(most), where=most > 0).max())
         order, guess = 1.0, 2.0
         if self._before is not None:
             order = guess = _order(*self._before, ratio, distance)
         self._before = (ratio, distance)
         self.error = distance / (ratio**guess - 1)
         share = max(1 / (ratio**order - 1), AGREE)
-        resolved = _is_resolved(run, passage, coarse)
+        # both must have seen the same motion of the whole rope, however coarsely
+        moved = np.abs(passage.last - coarse.last).max(axis=0)
+        largest = np.maximum(passage.largest, NOTHING * _others(run, passage))[0]
+        resolved = bool((moved <= RESOLVED * largest).all())
         return apart * share, max(distance * share, 0.0 if resolved else FAR)
 
 
@@ -155,28 +163,6 @@ def _order(ratio: float, distance: float, next_ratio: float, next_distance: floa
         falls = next_distance < fall(middle) * distance
         low, high = (middle, high) if falls else (low, middle)
     return low
-
-
-def _growth(error: float, worst: float, tolerance: float) -> int:
-    """Return how much finer steps must be."""
-    if not math.isfinite(error):
-        return 2
-    wanted = math.ceil(math.sqrt(error / (AIM * tolerance)))
-    return min(max(wanted, 2), 8 if worst > FAR else 64)
-
-
-def _worst(run: Run, passage: Passage, apart: Real) -> float:
-    """Return the largest distance of any response, relative to its largest value."""
-    size = np.maximum(np.abs(passage.value).max(axis=1), _floor(run, passage))
-    most = apart.max(axis=1)
-    return float(np.divide(most, size, out=np.zeros_like(most), where=most > 0).max())
-
-
-def _is_resolved(run: Run, fine: Passage, coarse: Passage) -> bool:
-    """Whether both saw the same motion of the whole rope, however coarsely."""
-    apart = np.abs(fine.last - coarse.last).max(axis=0)
-    size = np.maximum(fine.largest, NOTHING * _others(run, fine))[0]
-    return bool((apart <= RESOLVED * size).all())
 
 
 def _floor(run: Run, passage: Passage) -> Real:

@@ -397,11 +397,7 @@ def _terms(
     def stacked(arrays: list[Real]) -> Real:
         return np.stack(arrays, axis=-1) if arrays else np.zeros((*shape, 0))
 
-    return (
-        np.array([one[0] for one in pairs]),
-        np.array([one[1] for one in pairs]),
-        stacked([one[2] for one in pairs]),
-        stacked([one[3] for one in pairs]),
-        np.array([one[0] for one in real]),
-        stacked([one[1] for one in real]),
-    )
+    sigma, square = (np.array([one[i] for one in pairs]) for i in range(2))
+    a_k, b_k = stacked([one[2] for one in pairs]), stacked([one[3] for one in pairs])
+    p_j, r_j = np.array([one[0] for one in real]), stacked([one[1] for one in real])
+    return sigma, square, a_k, b_k, p_j, r_j
