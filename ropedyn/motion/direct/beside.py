@@ -27,7 +27,7 @@ class Beside(NamedTuple):
     mass_rate: float  # Damping of the masses of resonators, of the mass [1/s]
 
 
-def plain(model: Compiled, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:
+def plain_lumps(model: Compiled, component: tuple[str, ...], chain: Chain) -> tuple[Chain, Beside]:
     """Return the chain with plain lumps and dashpots, and what stands beside it."""
     share = factors(model.scene.dampings, np.array(1.0)).imag
     mass = np.eye(len(component)) * chain.mass

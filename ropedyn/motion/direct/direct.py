@@ -16,10 +16,10 @@ from ...chain.port import is_force
 from ..history import Balance, Deviation, History
 from ..modal.superposition import mesh_error
 from ..request import Run, why_direct
-from .lumped import Lumps, lumped_chains, refuse
+from .lumped import Lumps, lumped_chains, refuse_model
 from .march import stage_of
 from .run import Passage
-from .steps import given, within
+from .steps import march_given, march_within
 
 ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")  # In the order of a passage.
 STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an answer.
@@ -27,12 +27,12 @@ STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an ans
 
 def march(run: Run) -> History:
     """Integrate step by step; see `Model.transient`."""
-    refuse(run.model)
+    refuse_model(run.model)
     refuse_responses(run)
     chains = lumped_chains(run)
     g = stage_of(run.spectral_radius)
     start = time.perf_counter()
-    passage = within(run, chains, g) if run.step is None else given(run, chains, g)
+    passage = march_within(run, chains, g) if run.step is None else march_given(run, chains, g)
     seconds = time.perf_counter() - start
     error = passage.error
     if error is not None and (passage.reached == 0 or not isinstance(error, STOPS)):
@@ -88,7 +88,7 @@ def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) ->
 def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
     """Return how far the values are from those without steps and without elements."""
     if run.step is not None and len(run.time) > 1:
-        finer = given(run, lumped_chains(run), stage_of(run.spectral_radius), 2).value
+        finer = march_given(run, lumped_chains(run), stage_of(run.spectral_radius), 2).value
         step_error = 4 / 3 * np.abs(value - finer)
     if why_direct(run.model):
         return Deviation(step_error, np.full(value.shape, np.inf))

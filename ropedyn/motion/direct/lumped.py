@@ -20,8 +20,8 @@ from ...response.moved_end import is_end
 from ...scene.damping import having
 from ...scene.force import Force
 from ..request import Run
-from .beside import Beside, plain, pulsation_of
-from .point_law import Call, Laws, Standing, laws_of, standing_laws
+from .beside import Beside, plain_lumps, pulsation_of
+from .point_law import Laws, PythonLaw, StandingLaw, laws_of, standing_laws
 from .readout import Readout, readout
 
 
@@ -50,7 +50,7 @@ class Lumps:
     kept: Index  # those that the model has
     beside: Beside
     laws: Laws
-    calls: tuple[Call, ...]  # those among them that Python knows
+    calls: tuple[PythonLaw, ...]  # those among them that Python knows
     drives: Ports  # of the forces
     forces: tuple[Force, ...]  # one for each
     moved: NDArray[np.int32]  # (moved, 2) node and coordinate of ends whose motion is given
@@ -140,7 +140,7 @@ def _refuse_pushes(run: Run, lumps: Lumps) -> None:
 def _lumps(
     run: Run,
     component: tuple[str, ...],
-    laws_there: list[Standing],
+    laws_there: list[StandingLaw],
     driving: list[int],
     loads: dict[Point, float],
 ) -> Lumps:
@@ -152,7 +152,7 @@ def _lumps(
     motions: list[Any] = [run.drives[k] for k in ends]
     asked = [run.responses[k] for k in watched]
     whole, x = _cut(model, component, points, asked)
-    chain, beside = plain(model, component, whole)
+    chain, beside = plain_lumps(model, component, whole)
     laws, calls = laws_of(chain, x, component, laws_there)
     load = nodal(whole, x, component, loads)
     start = _start(whole, component, load, beside)
@@ -231,7 +231,7 @@ def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside)
     return State(u, np.zeros_like(u), f, y, np.zeros_like(y))
 
 
-def refuse(model: Compiled) -> None:
+def refuse_model(model: Compiled) -> None:
     """Refuse what the direct method does not take, by name and with what to do."""
     scene = model.scene
     if model.element == "continuous":

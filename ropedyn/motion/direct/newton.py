@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,11 +11,8 @@ from ... import _core
 from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
-
-if TYPE_CHECKING:
-    from .lumped import Lumps
-    from .point_law import Call
-
+from .lumped import Lumps
+from .point_law import PythonLaw
 
 MOST = 50  # A stage takes so many Newton steps at most.
 ENOUGH = 1e-12  # A stage holds where the residual is this part of the terms of its forces,
@@ -140,7 +137,7 @@ def _forces(stage: Stage, moved: Real) -> Real:
     return np.array([_force(stage, one, float(moved[one.law])) for one in stage.lumps.calls])
 
 
-def _force(stage: Stage, one: Call, moved: float) -> float:
+def _force(stage: Stage, one: PythonLaw, moved: float) -> float:
     """Return what a law says where its point has moved."""
     u, v = float(stage.q[one.law]) + moved, moved / stage.theta
     try:

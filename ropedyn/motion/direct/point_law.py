@@ -27,7 +27,7 @@ class Laws(NamedTuple):
     value: Real
 
 
-class Call(NamedTuple):
+class PythonLaw(NamedTuple):
     """A law in Python."""
 
     law: int  # Number among the laws
@@ -35,7 +35,7 @@ class Call(NamedTuple):
     call: Callable[[float, float, float], float]
 
 
-class Standing(NamedTuple):
+class StandingLaw(NamedTuple):
     """A law of a scene."""
 
     part: int  # Number among the parts
@@ -43,18 +43,18 @@ class Standing(NamedTuple):
     law: Law
 
 
-def standing_laws(model: Compiled, component: tuple[str, ...]) -> list[Standing]:
+def standing_laws(model: Compiled, component: tuple[str, ...]) -> list[StandingLaw]:
     """Return the laws that act on a component."""
     found = []
     for i, part in enumerate(model.scene.parts):
         for one in standing([part]):
-            found += [Standing(i, one.x, law) for law in one.term().laws]
+            found += [StandingLaw(i, one.x, law) for law in one.term().laws]
     return [one for one in found if one.law.coordinate in component]
 
 
 def laws_of(
-    chain: Chain, x: Real, component: tuple[str, ...], laws: list[Standing]
-) -> tuple[Laws, tuple[Call, ...]]:
+    chain: Chain, x: Real, component: tuple[str, ...], laws: list[StandingLaw]
+) -> tuple[Laws, tuple[PythonLaw, ...]]:
     """Return the laws where something can move, and those among them that Python knows."""
     free = [one for one in laws if not _is_held(chain, x, component, one)]
     where = ports(chain, x, component, [(law.coordinate, at) for _, at, law in free])
@@ -62,10 +62,10 @@ def laws_of(
     for k, (_, _, law) in enumerate(free):
         value[k, : len(law.value)] = law.value
     kind = np.array([KINDS.index(law.kind) for _, _, law in free], dtype=np.int32)
-    calls = tuple(Call(k, i, law.call) for k, (i, _, law) in enumerate(free) if law.call)
+    calls = tuple(PythonLaw(k, i, law.call) for k, (i, _, law) in enumerate(free) if law.call)
     return Laws(where.node, where.row, kind, value), calls
 
 
-def _is_held(chain: Chain, x: Real, component: tuple[str, ...], one: Standing) -> bool:
+def _is_held(chain: Chain, x: Real, component: tuple[str, ...], one: StandingLaw) -> bool:
     node = locate(x, one.x)[0]
     return bool(chain.held[chain.term[chain.stretch(node)], component.index(one.law.coordinate)])

@@ -17,7 +17,7 @@ from ...scene.tension import Tension
 from ...signal.spectrum import amplitudes
 from ..request import Run, SteppedSine
 from .direct import refuse_responses
-from .lumped import lumped_chains, refuse
+from .lumped import lumped_chains, refuse_model
 from .march import Motion, stage_of
 
 FEWEST, MOST = 32, 1 << 14  # A period takes from so many steps to so many.
@@ -32,7 +32,7 @@ KEEPS = stage_of(1.0)
 def march_steadily(asked: SteppedSine) -> FRF:
     """Follow the motion through the frequencies in their order, see `Model.stepped_sine`."""
     start = clock.perf_counter()
-    refuse(asked.model)
+    refuse_model(asked.model)
     still = np.array([0.0, 1.0])
     push = Sine(asked.amplitude, float(asked.frequency[0]), phase=math.pi / 2)
     run = Run(asked.model, still, (asked.drive,), (push,), asked.responses, direct=True, step=1.0)

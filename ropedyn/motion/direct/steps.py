@@ -76,7 +76,7 @@ def _corners(run: Run, chains: list[Lumps]) -> list[float]:
     return run.time[1:-1].tolist() if run.order and any(map(is_sampled, followed)) else []
 
 
-def within(run: Run, chains: list[Lumps], g: float) -> Passage:
+def march_within(run: Run, chains: list[Lumps], g: float) -> Passage:
     """March with finer and finer steps until their error is within the tolerance."""
     line = steps_of(run, chains)
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
@@ -190,6 +190,6 @@ def _others(run: Run, passage: Passage) -> Real:
     return size
 
 
-def given(run: Run, chains: list[Lumps], g: float, factor: int = 1) -> Passage:
+def march_given(run: Run, chains: list[Lumps], g: float, factor: int = 1) -> Passage:
     """March with the steps that are asked for, or with so many for each."""
     return Marching(run, chains, steps_of(run, chains).finer(factor), g).through()

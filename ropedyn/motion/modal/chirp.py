@@ -43,7 +43,7 @@ class Chirping(NamedTuple):
         return np.asarray(self.amplitude * wave)
 
 
-def chirping(force: Chirp, begin: float, end: float) -> Chirping:
+def chirp_between(force: Chirp, begin: float, end: float) -> Chirping:
     """Return a chirp as it is between two times."""
     rate = (force.stop - force.start) / force.duration
     angle = 2 * math.pi * (force.start + rate * begin / 2) * begin + force.phase
@@ -51,7 +51,7 @@ def chirping(force: Chirp, begin: float, end: float) -> Chirping:
     return Chirping(force.amplitude, angle, w, 2 * math.pi * rate, end - begin)
 
 
-def while_it_lasts(
+def under_chirp(
     modes: Oscillators, rest: Real, force: Chirping, t: Real, order: int
 ) -> tuple[Real, Real, Real]:
     """Return the responses at times since the motion began, and q and q' at the end."""

@@ -10,7 +10,7 @@ import numpy as np
 from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
-from .chirp import chirping, while_it_lasts
+from .chirp import chirp_between, under_chirp
 from .expansion import Expansion
 from .exponentials import Exponentials, Oscillators, evaluate, invert, rates
 from .recurrence import straight_lines
@@ -18,7 +18,9 @@ from .recurrence import straight_lines
 LARGEST = 1e300  # A growing mode may reach this.
 
 
-def move(expansion: Expansion, drive: int, given: Force | float, time: Real, order: int) -> Real:
+def motion_under(
+    expansion: Expansion, drive: int, given: Force | float, time: Real, order: int
+) -> Real:
     """Return what a force moves, or the motion after a static load [N, N m] is let go."""
     if isinstance(given, float):
         return release(expansion, drive, given, time, order)
@@ -83,13 +85,13 @@ def _chirp(modes: Oscillators, rest: Real, force: Chirp, time: Real, order: int)
     begin, end = float(time[0]), force.duration
     if begin >= end:
         return np.zeros((len(rest), len(time)))
-    now = chirping(force, begin, min(end, float(time[-1])))
+    now = chirp_between(force, begin, min(end, float(time[-1])))
     if now.is_steady:
         turns = [_sine(begin, now.frequency, now.amplitude, now.phase), SinePiece(end)]
         return _sines(modes, rest, turns, time, order)
     last = np.searchsorted(time, end)
     value = np.zeros((len(rest), len(time)))
-    value[:, :last], q, v = while_it_lasts(modes, rest, now, time[:last] - begin, order)
+    value[:, :last], q, v = under_chirp(modes, rest, now, time[:last] - begin, order)
     if last < len(time):
         terms = _motion(modes, SinePiece(end), q, v, time[-1] - end or now.span)
         value[:, last:] = evaluate(terms.rate, _seen(modes, terms, order), time[last:] - end)

@@ -32,7 +32,7 @@ from ...scene import damping
 from ...scene.force import Force, Sum
 from ..history import Balance
 from ..request import Run
-from .convolution import move
+from .convolution import motion_under
 from .expansion import Expansion, Share, expand
 
 NAMES = ("kinetic", "strain", "input", "dissipated")
@@ -52,7 +52,7 @@ def balance(run: Run, resolved: float) -> Balance:
         run.model, run.places, run.places, modes=run.modes, resolved=resolved, bound=False
     )
     for share in shares:
-        for name, part in zip(NAMES, Driven.of(run, share).energies()):
+        for name, part in zip(NAMES, DrivenModes.of(run, share).energies()):
             energy[name] += part
     return Balance(energy)
 
@@ -77,7 +77,7 @@ class AlikeModes(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Driven:
+class DrivenModes:
     """Modes of one component under all that drives it."""
 
     time: Real  # (t,) [s]
@@ -87,7 +87,7 @@ class Driven:
     rest: Real  # (drives, drives)
 
     @classmethod
-    def of(cls, run: Run, share: Share) -> Driven:
+    def of(cls, run: Run, share: Share) -> DrivenModes:
         """Take what drives a component."""
         own = share.expansion
         lag = -1 / float(own.p[0]) if len(own.p) else 0.0
@@ -158,7 +158,7 @@ class Driven:
         a, b = own.a[..., modes], own.b[..., modes]
         some = own._replace(sigma=own.sigma[modes], square=own.square[modes], a=a, b=b, rest=still)
         some = some._replace(p=np.zeros(0), r=np.zeros((*still.shape, 0)))
-        moved = [move(some, d, one, time, 1) for d, one in enumerate(self.given)]
+        moved = [motion_under(some, d, one, time, 1) for d, one in enumerate(self.given)]
         return np.asarray(np.sum(moved, axis=0))
 
     def _modes(self, part: Index | slice, time: Real, order: int) -> Real:
@@ -167,7 +167,7 @@ class Driven:
         k = len(sigma)
         unit = _nothing(k, k)._replace(sigma=sigma, square=square, a=np.eye(k)[None])
         unit = unit._replace(b=np.zeros((1, k, k)))
-        return np.stack([move(unit, 0, one, time, order) for one in self.given])
+        return np.stack([motion_under(unit, 0, one, time, order) for one in self.given])
 
     def _rest(self, time: Real, order: int) -> Real:
         """Return y of each drive, (drives, t)."""
@@ -175,7 +175,7 @@ class Driven:
             return self._force(time)
         p = np.array([-1 / self.lag])
         unit = _nothing(0, 1)._replace(p=p, r=np.full((1, 1, 1), 1 / self.lag))
-        return np.stack([move(unit, 0, _smooth(one), time, order)[0] for one in self.given])
+        return np.stack([motion_under(unit, 0, _smooth(one), time, order)[0] for one in self.given])
 
     def _force(self, time: Real) -> Real:
         still = np.zeros(len(time))

@@ -19,7 +19,7 @@ from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import Deviation, History
 from ..request import Run
-from .convolution import move
+from .convolution import motion_under
 from .energy_balance import balance
 from .expansion import Share, expand
 from .truncation import left_out, ratio_beyond
@@ -64,7 +64,9 @@ def _responses(run: Run, shares: tuple[Share, ...], count: int) -> Real:
     value = np.zeros((count, len(run.time)))
     for done, share in enumerate(shares):
         for k, d in enumerate(share.drive):
-            value[share.response] += move(share.expansion, k, run.pushes[d], run.time, run.order)
+            value[share.response] += motion_under(
+                share.expansion, k, run.pushes[d], run.time, run.order
+            )
             run.progress((done + (k + 1) / len(share.drive)) / len(shares))
     return value
 
