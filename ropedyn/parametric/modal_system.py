@@ -15,8 +15,8 @@ from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
 from ..chain.compiled import Compiled
 from ..eigen.spectrum import SOLVERS, ComponentModes, pieces_of, spectrum
-from ..response.modal_sum import mode_numbers
-from ..scene.damping import INERTIA, SECTION, TENSION, factors, having, ratios
+from ..response.modal_sum import numbered_ratios
+from ..scene.damping import INERTIA, SECTION, TENSION, factors, having
 from ..signal.contour import clusters
 
 SLOPE_OF_TENSION = 6
@@ -104,9 +104,6 @@ def _cut(matrix: Real) -> Real:
     size = np.sqrt(np.abs(np.diag(matrix)))
     even = (matrix + matrix.T) / 2
     return np.where(np.abs(even) <= ROUNDING * np.outer(size, size), 0.0, even)
-
-
-# --- forms of the shapes ----------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,9 +255,6 @@ def _structures(chain: Chain, found: ComponentModes) -> Real:
     return form
 
 
-# --- damping ----------------------------------------------------------------------------------
-
-
 def _damping(model: Compiled, basis: _Basis) -> Real:
     """Return shape^T C shape; of what bends, all stiffness but that of tension and structures."""
     share = factors(model.scene.dampings, np.array(1.0)).imag
@@ -278,8 +272,7 @@ def _damping(model: Compiled, basis: _Basis) -> Real:
 
 def _modal(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
     """Return 2 zeta omega of damping ratios, in the order of all modes of the model."""
-    number = mode_numbers(model, component, eigenvalue)
-    ratio = ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)[number]
+    number, ratio = numbered_ratios(model, component, eigenvalue)
     if np.isnan(ratio).any():
         raise SceneError(
             "damping ratio must be one number or one for each mode, got none for mode "

@@ -147,9 +147,6 @@ def _within(system: ModalSystem, begin: Real, end: Real, amplitude: float) -> Re
     return np.concatenate(looked)
 
 
-# --- resonances -------------------------------------------------------------------------------
-
-
 def _near_resonances(system: ModalSystem, frequency: Real, amplitude: float) -> Real:
     """Return frequencies in each undamped tongue, as far as it is wide enough, and beside."""
     # tongues of order n are some e^n of their frequency wide, with e the relative pulsation of the

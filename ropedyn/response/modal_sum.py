@@ -121,9 +121,6 @@ class Estimated(NamedTuple):
     error: Real
 
 
-# --- which modes --------------------------------------------------------------------------------
-
-
 def _poles(question: Question) -> UndampedPoles:
     """Find the modes, each with its damping ratio."""
     model, component = question.model, question.component
@@ -154,21 +151,23 @@ def _too_high(question: Question, why: str) -> SolveError:
     )
 
 
-def mode_numbers(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Index:
-    """Return the numbers of modes of one component among those of all, from 0."""
+def numbered_ratios(
+    model: Compiled, component: tuple[str, ...], eigenvalue: Real
+) -> tuple[Index, Real]:
+    """Return the numbers of a component's modes among those of all, from 0, and their ratios."""
     number = np.arange(len(eigenvalue))
     for other in model.components:
         if other != component:
             below = _core.count(model.chain.only(other), np.minimum(eigenvalue, HIGHEST))
             number = number + below.astype(np.intp)
-    return number
+    every = damping.ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)
+    return number, every[number]
 
 
 def known_ratios(model: Compiled, component: tuple[str, ...], eigenvalue: Real) -> Real:
     """Return the damping ratios of modes up to the first that has none."""
-    number = mode_numbers(model, component, eigenvalue)
-    ratio = damping.ratios(model.scene.dampings, int(number.max(initial=-1)) + 1)[number]
-    return np.asarray(ratio[: int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])])
+    _, ratio = numbered_ratios(model, component, eigenvalue)
+    return ratio[: int(np.append(np.flatnonzero(np.isnan(ratio)), len(ratio))[0])]
 
 
 def shift_of(eigenvalue: Real) -> float:
@@ -213,9 +212,6 @@ def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Unda
     radius = NEAR * np.minimum(gap, np.where(middle == 0, first, np.abs(middle)))
     probe, largest = max(highest, 2 * shift, first), float(ratio.max(initial=0.0))
     return UndampedPoles(middle, spread, radius, mean, unlike, beyond, shift, probe, largest)
-
-
-# --- what they give -----------------------------------------------------------------------------
 
 
 def _taken_apart(

@@ -186,7 +186,14 @@ def _shifted(x: Real, step: float, shift: float, taps: Real, q: int) -> Band:
 
 def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     """Return rate [1/s], amplitude, variance of the rate and residual of the mode near f."""
-    found = decaying(band.y, _correlation(band))
+    from scipy.signal import correlate
+
+    # white noise in the band has this correlation at the lags of y
+    thinned = round(band.step / band.fine)
+    full = correlate(band.taps, band.taps)[len(band.taps) - 1 :: thinned]
+    noise = np.zeros(len(band.y))
+    noise[: len(full)] = full[: len(noise)] / full[0]
+    found = decaying(band.y, noise)
     if found is None:
         raise SolveError(f"no mode near {f:g} Hz is told from noise")
     rate = found.log / band.step + 1j * band.shift
@@ -198,14 +205,3 @@ def _mode_near(band: Band, f: float) -> tuple[complex, complex, float, float]:
     gain = band.taps @ np.exp((rate[k] - 1j * band.shift) * band.fine * np.arange(len(band.taps)))
     # of a real record half the mode is at -f
     return rate[k], 2 * found.size[k] / gain, float(variance[k]), found.residual
-
-
-def _correlation(band: Band) -> Real:
-    """Return the correlation of white noise in the band, at the lags of y."""
-    from scipy.signal import correlate
-
-    q = round(band.step / band.fine)
-    full = correlate(band.taps, band.taps)[len(band.taps) - 1 :: q]
-    noise = np.zeros(len(band.y))
-    noise[: len(full)] = full[: len(noise)] / full[0]
-    return noise

@@ -143,9 +143,6 @@ def _seen(modes: Oscillators, terms: Exponentials, order: int) -> Complex:
     return (modes.a[:, k] + modes.b[:, k] * s) * s**order * terms.weight
 
 
-# --- forces as pieces of sines --------------------------------------------------------------------
-
-
 class SinePiece(NamedTuple):
     """A force cosine cos(w (t - start)) + sine sin(w (t - start)) until the next piece."""
 

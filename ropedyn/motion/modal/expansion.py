@@ -79,7 +79,6 @@ class Expansion(NamedTuple):
 class Share(NamedTuple):
     """What one component has of all drives and responses; others are not coupled."""
 
-    component: tuple[str, ...]
     drive: Index  # Which of the drives are on it
     response: Index  # Which of the responses
     expansion: Expansion
@@ -112,7 +111,7 @@ def expand(
         if d and r:
             pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
             asked = _Asked(model, component, pushed, watched, modes, resolved, bound)
-            shares.append(Share(component, np.array(d), np.array(r), _expansion(asked)))
+            shares.append(Share(np.array(d), np.array(r), _expansion(asked)))
     return tuple(shares)
 
 
