@@ -85,10 +85,11 @@ class Truth:
             error = _largest(relative(values, self.values), self.known)
             estimated = self.same.mesh(same.answer) + bound
         lost = bound if solver == "sweep" else self._rounding(way, values, bound)
+        rounding = _largest(lost, self.known)
         return way, {
             "error": max(error, EPSILON / 2),
             "estimated_error": _largest(estimated, self.known),
-            "digits_lost": _digits(_largest(lost, self.known)),
+            "digits_lost": float(np.log10(np.clip(rounding / EPSILON, 1.0, 1 / EPSILON))),
         }
 
     def _rounding(self, way: Way, values: NDArray[Any], bound: Real) -> Real:
@@ -101,8 +102,3 @@ class Truth:
 
 def _largest(errors: Real, known: Flags) -> float:
     return float(errors[known].max())
-
-
-def _digits(rounding: float) -> float:
-    """Return how many of the decimal digits there are a relative error by rounding takes."""
-    return float(np.log10(min(max(rounding / EPSILON, 1.0), 1 / EPSILON)))

@@ -1,1 +1,1 @@
-"""Calculated against measured."""
+"""Calculated against measured, and one calculation against another."""

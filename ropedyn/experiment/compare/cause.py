@@ -41,11 +41,9 @@ class Cause(NamedTuple):
 
 
 def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Real) -> str:
-    """Say which one number of the scene explains all differences, where they prove it.
-
-    Chance must exceed the differences in less than one of 1000 cases, what the number leaves in 5 %
-    and more, and differences at random must be explained as well by less than one of 1000 (F test).
-    """
+    """Say which one number of the scene explains all differences, where they prove it."""
+    # Chance must exceed the differences in less than one of 1000 cases, what the number leaves in
+    # 5 % and more, and random differences be explained as well in less than one of 1000 (F test).
     from scipy.special import fdtrc
 
     at = order[order > 0] - 1

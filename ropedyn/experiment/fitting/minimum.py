@@ -85,7 +85,7 @@ def minimise(
     return Minimum(u, residual, slope, remembered.evaluations)
 
 
-class _Settled(Exception):
+class _LastStep(Exception):
     """Of all that a solver of SciPy calls, what can end it."""
 
 
@@ -115,7 +115,7 @@ class _Descent:
                     max_nfev=EVALUATIONS,
                     **self.digits,
                 )
-            except _Settled:
+            except _LastStep:
                 return self.at
             self.at = found.x
             if found.success:
@@ -134,15 +134,12 @@ class _Descent:
             return np.full(len(self.remembered(self.start)[0]), np.inf)
 
     def slope(self, y: Real) -> Real:
-        """Return the slopes at the end of a step, unless a linear step would gain too little there.
-
-        SciPy would take it, and more where rounding hides what it gains.
-        """
+        """Return the slopes at the end of a step; end where a linear step would gain too little."""
         residual, slope = self.remembered(self.start + self.basis @ y)
         residual, slope = residual / self.size, slope @ self.basis / self.size
         gain = slope @ np.linalg.lstsq(slope, residual, rcond=BLIND)[0]
         enough = self.digits["ftol"] * (residual @ residual) + self.digits["gtol"] ** 2
         if gain @ gain <= enough:
             self.at = y
-            raise _Settled
+            raise _LastStep
         return slope

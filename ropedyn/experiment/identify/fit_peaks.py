@@ -120,12 +120,9 @@ class Identification:
 
 
 def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
-    """Return variables at which frequencies are near the measured ones.
-
-    With frozen shapes u^T K u = lambda u^T M u is linear in what stiffness and inertia are made of:
-    sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* - lambda, lambda* measured. Where shapes
-    do not depend on p, as those of pinned ropes, one step is exact however far off the start is.
-    """
+    """Return variables at which frequencies are near the measured ones."""
+    # with frozen shapes, exact for pinned ropes, u^T K u = lambda u^T M u is linear in p:
+    # sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* - lambda, lambda* measured
     best, least, felt = u, np.inf, np.zeros((1, len(u)))
     for _ in range(STEPS):
         try:

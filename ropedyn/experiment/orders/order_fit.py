@@ -38,10 +38,6 @@ class Likelihood:
         """Return sigma with a relative error of the calculation, shape (k,)."""
         return np.hypot(self.sigma, error * self.frequency)
 
-    def price_of_spurious(self, sigma: Real) -> Real:
-        """Return the price of a peak that is no mode, shape (k,)."""
-        return 2 * np.log(self.band[1] / (self.stray * np.sqrt(2 * np.pi) * sigma))
-
     def price_of_missing(self, calculated: Real) -> Real:
         """Return the prices of modes that no peak is, in the shape of their frequencies."""
         low, high = self.band
@@ -53,7 +49,8 @@ class Likelihood:
         z = (calculated[..., None, :] - self.frequency[:, None]) / sigma[:, None]
         seen = z * z - 2 * np.log1p(-self.overlooked)
         seen -= self.price_of_missing(calculated)[..., None, :]
-        return seen, np.broadcast_to(self.price_of_spurious(sigma), seen.shape[:-1])
+        none = 2 * np.log(self.band[1] / (self.stray * np.sqrt(2 * np.pi) * sigma))
+        return seen, np.broadcast_to(none, seen.shape[:-1])
 
     def cost(self, calculated: Real, orders: Integer, sigma: Real) -> float:
         """Return -2 ln of the likelihood, up to a constant, of peaks of these orders."""

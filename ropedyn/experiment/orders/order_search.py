@@ -49,10 +49,8 @@ def search(
 ) -> list[Assignment]:
     """Find which mode each peak is, and the parameters with it; the likeliest first.
 
-    On a grid of parameters around `start` the frequencies are calculated once; Rayleigh's quotients
-    give them between. Every two peaks, taken as every two modes they may be, determine parameters,
-    with which all peaks are numbered and fitted. What is likeliest is fitted to the calculation.
-    Without `std` peaks have one relative uncertainty, for which `NOISES` are tried.
+    Every two peaks, taken as every two modes they may be, determine parameters on a grid, with
+    which all are numbered and fitted. What is likeliest is fitted to the calculation itself.
     """
     order = np.argsort(measured, kind="stable")
     frequency = measured[order]
@@ -74,7 +72,9 @@ def search(
     back = np.argsort(order, kind="stable")
     found: dict[bytes, Assignment] = {}
     for noise in (None,) if std is not None else NOISES:
-        fits = OrderFits(_with(likelihood, noise), calculated, limits)
+        if noise is not None:
+            likelihood = dataclasses.replace(likelihood, sigma=noise * likelihood.frequency)
+        fits = OrderFits(likelihood, calculated, limits)
         for orders, parameters in candidates:
             fits.settle(orders, parameters)
         fits.look_around()
@@ -101,13 +101,6 @@ def _remembered(calculated: Calculated) -> Calculated:
     return remembered
 
 
-def _with(likelihood: Likelihood, noise: float | None) -> Likelihood:
-    """Return the likelihood with a relative noise."""
-    if noise is None:
-        return likelihood
-    return dataclasses.replace(likelihood, sigma=noise * likelihood.frequency)
-
-
 def _keep(found: dict[bytes, Assignment], fit: OrderFit, back: Index, noise: float | None) -> None:
     """Keep an assignment with the noise that makes it likeliest."""
     orders, cost = fit.orders[back], fit.cost
@@ -128,7 +121,8 @@ def _candidates(
     orders = np.tile(guesses, (len(grid.parameters), 1))
     sigma = likelihood.coarser(COARSE)
     for _ in range(ROUNDS):
-        at, orders = _once_each(at, orders)
+        both = np.unique(np.column_stack([at, orders]), axis=0)
+        at, orders = both[:, 0], both[:, 1:]
         parameters = _fitted(grid, likelihood, limits, at, orders)
         frequency = grid.quotients.take(at).at(parameters / grid.parameters[at])
         orders, cost = likelihood.numbered(frequency, sigma)
@@ -162,11 +156,6 @@ def _subsets(peaks: int, size: int, spurious: int) -> list[tuple[int, ...]]:
     if len(nested) > spurious:
         return nested[: max(spurious + 1, SUBSETS)]
     return list(combinations(range(peaks), size))
-
-
-def _once_each(at: Index, orders: Integer) -> tuple[Index, Integer]:
-    both = np.unique(np.column_stack([at, orders]), axis=0)
-    return both[:, 0], both[:, 1:]
 
 
 def _fitted(
