@@ -14,37 +14,48 @@ from ..curves.peaks import Peaks
 from ..experiment.compare.compare import compare
 from ..experiment.identify.identify import identify
 from ..scene.scene import Scene
-from .options import Command, OptionGroup, compiled, option, refuse, repeated, show, switch
-from .text import column, drive, known, node, numbers, orders, pair, point, whole_numbers, words
+from . import text
+from .options import (
+    DRIVE,
+    RESPONSE,
+    Command,
+    OptionGroup,
+    compiled,
+    option,
+    refuse,
+    repeated,
+    show,
+    switch,
+)
 
 MEASURED = OptionGroup(
     (
-        option("--peaks", "measured peaks, comma list [Hz]", numbers),
+        option("--peaks", "measured peaks, comma list [Hz]", text.numbers),
         option("--measured", "measured response, universal file or CSV", metavar="FILE"),
     ),
     required=True,
 )
 OF_FILE = (
-    option("--drive", "coordinate@position [m], such as z@0.5, or end:0:z", drive),
-    repeated("--response", "as --drive", point),
+    option(*DRIVE),
+    RESPONSE,
     option("--quantity", "of the values", choices=QUANTITIES),
     option("--unit", 'of the values, such as "m/s^2/N" or "g/N"'),
     repeated(
         "--position",
         "where a node of a universal file is [m], such as 1=0.5",
-        node,
+        text.node,
         metavar="NODE=X",
     ),
     repeated(
         "--coordinate",
         "what a direction of a universal file is, such as Z=z or RY=-beta",
-        pair,
+        text.pair,
         metavar="DIRECTION=COORDINATE",
     ),
     repeated(
         "--column",
         "column of a CSV file: frequency, real, imag, amplitude, phase or coherence",
-        column,
+        text.column,
         metavar="KIND=NAME",
     ),
     switch(
@@ -60,9 +71,11 @@ STD = "of the peaks, one number or a comma list [Hz]"
 
 ONLY_PEAKS = switch("--only-peaks", "of the FILE, not all of it", default=None)
 SCALE = switch("--scale", "seek the calibration of the FILE too", default=None)
-STD_OF_COMPARED = option("--std", STD, numbers)
-STD_OF_FITTED = option("--std", f"{STD}; estimated without it", numbers)
-ORDER = option("--order", "which mode each peak is, comma list of whole numbers", whole_numbers)
+STD_OF_COMPARED = option("--std", STD, text.numbers)
+STD_OF_FITTED = option("--std", f"{STD}; estimated without it", text.numbers)
+ORDER = option(
+    "--order", "which mode each peak is, comma list of whole numbers", text.whole_numbers
+)
 BAND = option("--band", "that FRAC is taken over at each line [Hz]", type=float)
 
 
@@ -161,19 +174,19 @@ IDENTIFY = Command(
         option(
             "--orders",
             'which mode each peak is, comma list, 0 for none, "auto" or "search" (%(default)s)',
-            orders,
+            text.orders,
             default="auto",
         ),
         option(
             "--unknown",
             "comma list, such as tension,bending_stiffness,ends[0].spring.beta (%(default)s)",
-            words,
+            text.words,
             default="tension",
         ),
         repeated(
             "--prior",
             "what is known of an unknown beforehand",
-            known,
+            text.known,
             default=[],
             metavar="PATH=VALUE:STD",
         ),

@@ -15,6 +15,7 @@ from ..base.errors import RopedynError, SceneError
 from ..chain.chain import KINDS
 from ..model import Model
 from ..scene.scene import Scene
+from .text import drive, point
 
 
 class Option(NamedTuple):
@@ -100,6 +101,8 @@ ELEMENTS = (
     option("--element", "kind (tensed where --elements is given)", choices=KINDS),
 )
 FORM = (switch("--json", "print the table as JSON"), switch("--csv", "print the table as CSV"))
+DRIVE = ("--drive", "coordinate@position [m], such as z@0.5, or end:0:z", drive)
+RESPONSE = repeated("--response", "as --drive", point)
 OUTPUT = (option("--plot", "write a figure", type=Path, metavar="FILE"), OptionGroup(FORM))
 
 

@@ -16,22 +16,21 @@ from ..motion.request import METHODS
 from ..scene.scene import Scene
 from ..study.accuracy import accuracy_cost
 from ..study.effect import effect_cost
-from .options import Command, OptionGroup, compiled, option, refuse, repeated, show, switch
-from .text import (
-    FORCES,
-    drive,
-    force,
-    force_words,
-    load_at,
-    point,
-    spaced,
-    whole_numbers,
-    words,
+from . import text
+from .options import (
+    DRIVE,
+    RESPONSE,
+    Command,
+    OptionGroup,
+    compiled,
+    option,
+    refuse,
+    repeated,
+    show,
+    switch,
 )
 
-LINES = ("--frequency", "start:stop:lines or a comma list [Hz]", spaced("Hz"))
-DRIVE = ("--drive", "coordinate@position [m], such as z@0.5, or end:0:z", drive)
-RESPONSE = repeated("--response", "as --drive", point)
+LINES = ("--frequency", "start:stop:lines or a comma list [Hz]", text.spaced("Hz"))
 CARRYING = option(
     "--modes", "with transverse motion, the lowest (%(default)s)", type=int, default=4
 )
@@ -120,9 +119,11 @@ ACCURACY = Command(
     QUESTION,
     f"Time and error of every element and solver, {EITHER}",
     (
-        option("--elements", "of chains, comma list (powers of two from 8 to 4096)", whole_numbers),
-        option("--element", "kinds (%(default)s)", words, default="rigid,tensed,continuous"),
-        option("--solver", "comma list (%(default)s)", words, default="sweep,lapack"),
+        option(
+            "--elements", "of chains, comma list (powers of two from 8 to 4096)", text.whole_numbers
+        ),
+        option("--element", "kinds (%(default)s)", text.words, default="rigid,tensed,continuous"),
+        option("--solver", "comma list (%(default)s)", text.words, default="sweep,lapack"),
     ),
 )
 
@@ -151,8 +152,8 @@ def _transient(options: argparse.Namespace) -> None:
         )
     history = compiled(options).transient(
         time,
-        drive=[drive(text, "--drive") for text in options.drive] or None,
-        force=[force(text, time) for text in options.force] or None,
+        drive=[text.drive(one, "--drive") for one in options.drive] or None,
+        force=[text.force(one, time) for one in options.force] or None,
         response=options.response,
         quantity=options.quantity,
         start=dict(options.start) or None,
@@ -169,7 +170,7 @@ TRANSIENT = Command(
     _transient,
     "motion over time",
     (
-        option("--time", "start:stop:count or a comma list [s]", spaced("s"), required=True),
+        option("--time", "start:stop:count or a comma list [s]", text.spaced("s"), required=True),
         option(
             "--drive",
             "coordinate@position [m], such as z@0.5, or an end that is moved, such as end:0:z; "
@@ -179,18 +180,18 @@ TRANSIENT = Command(
         ),
         option(
             "--force",
-            " or ".join(f"{kind}:{force_words(kind)}" for kind in FORCES)
+            " or ".join(f"{kind}:{text.force_words(kind)}" for kind in text.FORCES)
             + " [N, N s, Hz, rad, s], or a CSV file whose last column is the force, a line for "
             "each of the times; one for each --drive",
             action="append",
             default=[],
         ),
-        repeated("--response", "coordinate@position [m]", point),
+        repeated("--response", "coordinate@position [m]", text.point),
         option("--quantity", "of responses (%(default)s)", choices=MOTIONS, default="displacement"),
         repeated(
             "--start",
             "load that is let go [N, N m], such as z@0.5=10",
-            load_at,
+            text.load_at,
             default=[],
             metavar="POINT=LOAD",
         ),
@@ -223,8 +224,8 @@ STABILITY = Command(
     _stability,
     "frequencies and amplitudes of the tension at which motion grows",
     (
-        option("--frequency", f"{OF_TENSION} [Hz]", spaced("Hz"), required=True),
-        option("--amplitude", f"{OF_TENSION} [N]", spaced("N"), required=True),
+        option("--frequency", f"{OF_TENSION} [Hz]", text.spaced("Hz"), required=True),
+        option("--amplitude", f"{OF_TENSION} [N]", text.spaced("N"), required=True),
         CARRYING,
         PROGRESS,
     ),
