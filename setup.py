@@ -83,8 +83,8 @@ settings = lapacke()
 settings["include_dirs"] = ["csrc", numpy.get_include(), *settings["include_dirs"]]
 core = Extension(
     "ropedyn._core",
-    sources=sorted(str(f.relative_to(HERE)) for f in (HERE / "csrc").glob("*.c")),
-    depends=sorted(str(f.relative_to(HERE)) for f in (HERE / "csrc").glob("*.h")),
+    sources=sorted(str(f.relative_to(HERE)) for f in (HERE / "csrc").rglob("*.c")),
+    depends=sorted(str(f.relative_to(HERE)) for f in (HERE / "csrc").rglob("*.h")),
     define_macros=[
         ("NPY_TARGET_VERSION", "NPY_1_23_API_VERSION"),
         ("NPY_NO_DEPRECATED_API", "NPY_1_7_API_VERSION"),

@@ -1,4 +1,4 @@
-"""The C core over NumPy arrays; see csrc."""
+"""The C core over NumPy arrays; see csrc/glue."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -28,7 +28,7 @@ CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 
 
 class Chain(NamedTuple):
-    """A chain as the core takes it; see csrc/chain.h.
+    """A chain as the core takes it; see csrc/chain/chain.h.
 
     Nodes with the same term and the same element on their right are a stretch; the last node is
     one alone.
@@ -68,8 +68,8 @@ class Chain(NamedTuple):
     sag: Real | None = None
     """(distinct,) weight per length over tension [1/m]; None without gravity."""
     attached_kind: NDArray[np.int32] | None = None
-    """(attached,) kinds of the structures that nodes carry, see csrc/attached.h; None where there
-    are none, as the rest of them."""
+    """(attached,) kinds of the structures that nodes carry, see csrc/chain/attached.h; None where
+    there are none, as the rest of them."""
     attached_term: NDArray[np.int32] | None = None
     """(attached,) node term that carries it."""
     attached_row: Real | None = None

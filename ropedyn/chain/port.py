@@ -22,7 +22,7 @@ Point = tuple[str, float]
 
 
 class Ports(NamedTuple):
-    """Points as the core takes them; see csrc/ports.h."""
+    """Points as the core takes them; see csrc/chain/ports.h."""
 
     node: NDArray[np.int32]
     """(points,) left node."""

@@ -68,7 +68,7 @@ def first_left_end(chain: Chain, factor: Complex) -> LeftEnd:
 
 
 def _is_strut(chain: Chain) -> Flags:
-    """Whether each distinct element is one: see csrc/sweep_kernel.h, sweep_is_strut."""
+    """Whether each distinct element is one: see csrc/sweep/kernel/kernel.h, sweep_is_strut."""
     if chain.kind != KINDS.index("rigid") or COORDINATES.index("beta") not in chain.coordinate:
         return np.zeros(len(chain.length), dtype=np.bool_)
     return -chain.tension * chain.flexibility[:, BENDING, BENDING] * chain.length**2 > 1

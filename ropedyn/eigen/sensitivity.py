@@ -34,7 +34,9 @@ class Shapes:
     model: Compiled  # of continuous spans one with elements below their own resonance
     eigenvalue: Real  # (k,) [rad^2/s^2]
     shape: Real  # (k, nodes, width)
-    motion: Real  # (k, attached) of the structures that nodes carry, as y in csrc/attached.h [m]
+    motion: (
+        Real  # (k, attached) of the structures that nodes carry, as y in csrc/chain/attached.h [m]
+    )
     # the modes in order; rounding cannot tell those of one cluster apart
     clusters: tuple[Index, ...]
     # (parts + 1,) the nodes between the parts of the rope that were asked for
@@ -54,11 +56,11 @@ class Slopes:
     """How the form Pi of each shape changes with the numbers of each stretch."""
 
     eigenvalue: Real  # (m,) of each shape
-    # see csrc/sensitivity.h
+    # see csrc/energy/sensitivity.h
     element: Real  # (m, stretches - 1, 9 + width)
     jump: Real  # (m, stretches - 1, width)
     node: Real  # (m, stretches, width, width)
-    # see csrc/attached.h
+    # see csrc/chain/attached.h
     stiffer: Real  # (m, attached)
     heavier: Real  # (m, attached)
     foot: Real  # (m, attached, 2, width)

@@ -5,7 +5,7 @@ Along a span y = (u, f), f the force of the right part on the left, obeys
     u' = Phi u + S f,   f' = q u - Phi^T f,      that is  y' = J H y,   H = | -q   Phi^T |
                                                                             | Phi  S     |
 
-(see csrc/rate_matrix.h) with S the section flexibility over its complex factor, and 1/T for z
+(see csrc/span/rate_matrix.h) with S the section flexibility over its complex factor, and 1/T for z
 without bending; q = inertia, drag and, for beta, tension times their factors.
 """
 

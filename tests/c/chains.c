@@ -1,8 +1,10 @@
 /* Chains for tests: a uniform rope from a recipe, every array of its own exact size. */
 #include "chains.h"
 
-#include "assemble.h"
-#include "element.h"
+#include "assembled/assemble.h"
+#include "chain/elements.h"
+#include "element/element.h"
+#include "element/stiffness.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,9 +2,9 @@
 #ifndef CHAINS_H
 #define CHAINS_H
 
-#include "chain.h"
-#include "section.h"
-#include "workspace.h"
+#include "base/workspace.h"
+#include "chain/chain.h"
+#include "element/section.h"
 
 /* What the nodes of a chain carry: term 0 the left end, 1 the inner nodes, 2 the right end, and
    from there `more` free copies of term 1 for the test to change. */

@@ -2,8 +2,8 @@
 #ifndef LINE_H
 #define LINE_H
 
-#include "runs.h"
-#include "sweep.h"
+#include "chain/runs.h"
+#include "sweep/sweep.h"
 
 #include <complex.h>
 

@@ -1,5 +1,5 @@
 /* Assembly of a chain against its elements and closed forms. */
-#include "assemble.h"
+#include "assembled/assemble.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,11 +1,11 @@
 /* Structures that nodes carry: Krylov's functions, feet on both sides of their poles, held counts. */
-#include "attached.h"
+#include "chain/attached.h"
 
-#include "certify.h"
+#include "base/krylov.h"
 #include "check.h"
-#include "count.h"
-#include "krylov.h"
-#include "sweep.h"
+#include "modes/certify/certify.h"
+#include "modes/count/count.h"
+#include "sweep/sweep.h"
 #include "walked.h"
 
 #include <string.h>

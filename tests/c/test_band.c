@@ -1,9 +1,9 @@
 /* Band storage against dense assembly over the free coordinates. */
-#include "band.h"
+#include "assembled/band.h"
 
+#include "assembled/system.h"
 #include "chains.h"
 #include "check.h"
-#include "system.h"
 
 static const struct rd_section section = {8.5e5, 0.1485, 54.626, 120, 0.3};
 

@@ -1,5 +1,5 @@
 /* A chain as a rigid body: its centre and its moment, from stretches as from single nodes. */
-#include "body.h"
+#include "chain/body.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,9 +1,9 @@
 /* The lowest modes, certified, against dense matrices and closed forms. */
-#include "certify.h"
+#include "modes/certify/certify.h"
 
-#include "assemble.h"
+#include "assembled/assemble.h"
 #include "check.h"
-#include "count.h"
+#include "modes/count/count.h"
 #include "walked.h"
 
 #include <string.h>

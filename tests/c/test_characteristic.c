@@ -1,7 +1,7 @@
 /* The characteristic function against closed forms. */
 #include "chains.h"
-#include "characteristic.h"
 #include "check.h"
+#include "sweep/characteristic.h"
 
 #include <complex.h>
 #include <string.h>

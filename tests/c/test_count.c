@@ -1,5 +1,5 @@
 /* Counts of eigenvalues against the inertia of the dense matrices and against closed forms. */
-#include "count.h"
+#include "modes/count/count.h"
 
 #include "check.h"
 #include "walked.h"

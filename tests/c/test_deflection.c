@@ -1,5 +1,5 @@
 /* Static deflection against textbook beams and strings. */
-#include "deflection.h"
+#include "assembled/deflection.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,5 +1,5 @@
 /* Small dense matrices against known ones. */
-#include "dense.h"
+#include "base/dense.h"
 
 #include "check.h"
 

@@ -1,10 +1,12 @@
 /* Elements: triples, stiffness, shapes and local flexibility against closed forms. */
-#include "element.h"
-#include "triple.h"
+#include "element/element.h"
+#include "element/triple.h"
 
+#include "base/dense.h"
+#include "chain/elements.h"
 #include "chains.h"
 #include "check.h"
-#include "dense.h"
+#include "element/stiffness.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Energies of shapes against closed forms; strain and kinetic energy of a mode agree. */
-#include "energy.h"
+#include "energy/energy.h"
 
-#include "assemble.h"
+#include "assembled/assemble.h"
 #include "chains.h"
 #include "check.h"
 

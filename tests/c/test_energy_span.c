@@ -1,5 +1,5 @@
 /* Energies of continuous spans against the integrals of their waves. */
-#include "energy.h"
+#include "energy/energy.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,5 +1,5 @@
 /* Frequency response against closed forms, reciprocity, and exact resonances. */
-#include "frf.h"
+#include "assembled/frf.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,5 +1,5 @@
 /* Implicit time steps against closed forms. */
-#include "march_run.h"
+#include "march/run.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,6 +1,6 @@
 /* The mixed form: closed forms, hinges, its estimate of rounding, and what it refuses. */
-#include "mixed_deflection.h"
-#include "mixed_frf.h"
+#include "mixed/deflection.h"
+#include "mixed/frf.h"
 
 #include "check.h"
 #include "line.h"

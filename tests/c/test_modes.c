@@ -1,5 +1,5 @@
 /* Natural frequencies and shapes against closed forms, at every kind of edge. */
-#include "modes.h"
+#include "assembled/modes.h"
 
 #include "chains.h"
 #include "check.h"
@@ -283,7 +283,7 @@ static void beam_chain_has_its_exact_discrete_frequencies(void)
     }
 }
 
-/* modes.h promises 2e-11 of f1 at 64 elements: 4e-11 of its square */
+/* assembled/modes.h promises 2e-11 of f1 at 64 elements: 4e-11 of its square */
 static void sixty_four_elements_keep_eleven_digits(void)
 {
     static const double golden[] = {80953.673541263911, 614704.73181502181, 2359875.8479322378,
@@ -291,7 +291,7 @@ static void sixty_four_elements_keep_eleven_digits(void)
     const struct recipe recipe = beam(64, 0, "zb");
     struct solved solved;
     CHECK_INT(solve(&solved, rope_make(&recipe), 5, 0, 1e5, 64), RD_OK);
-    CHECK_REL(solved.eigenvalue[0], golden[0], 4e-11, "promised in modes.h");
+    CHECK_REL(solved.eigenvalue[0], golden[0], 4e-11, "promised in assembled/modes.h");
     for (size_t k = 0; k < 5; k++)
         CHECK_ABS(solved.eigenvalue[k], golden[k], solved.rounding[k], estimate);
     solved_free(&solved);

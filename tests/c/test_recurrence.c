@@ -1,5 +1,5 @@
 /* Modes under straight lines: changes whose states are known numbers. */
-#include "recurrence.h"
+#include "base/recurrence.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* Motions of the whole chain that nothing resists. */
-#include "rigid.h"
+#include "modes/certify/rigid.h"
 
-#include "assemble.h"
+#include "assembled/assemble.h"
 #include "check.h"
 #include "walked.h"
 

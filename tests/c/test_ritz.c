@@ -1,5 +1,5 @@
 /* Rayleigh-Ritz in the space of a few vectors. */
-#include "ritz.h"
+#include "modes/certify/ritz.h"
 
 #include "check.h"
 

@@ -1,7 +1,7 @@
 /* The section flexibility against closed forms. */
-#include "section.h"
+#include "element/section.h"
 
-#include "chain.h"
+#include "chain/chain.h"
 #include "check.h"
 
 /* the study's wire rope */

@@ -1,9 +1,11 @@
 /* Slopes of the forms of elements against differences of high order of the forms themselves. */
-#include "sensitivity.h"
+#include "energy/sensitivity.h"
 
+#include "base/dense.h"
+#include "chain/elements.h"
 #include "chains.h"
 #include "check.h"
-#include "dense.h"
+#include "element/stiffness.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* Shape functions against closed forms in long double, both sides of where the series ends. */
 #include "check.h"
-#include "shape.h"
+#include "element/shape.h"
 
 #include <complex.h>
 

@@ -1,5 +1,5 @@
 /* How a continuous span is divided: its wavenumber, its halvings and the terms of its series. */
-#include "span.h"
+#include "span/span.h"
 
 #include "check.h"
 

@@ -1,10 +1,11 @@
 /* The transfer of a strongly compressed element against the matrix of the same element. */
-#include "strut.h"
+#include "element/strut.h"
 
+#include "base/dense.h"
 #include "check.h"
-#include "dense.h"
-#include "section.h"
-#include "triple.h"
+#include "element/section.h"
+#include "element/stiffness.h"
+#include "element/triple.h"
 
 #include <string.h>
 

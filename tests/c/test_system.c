@@ -1,5 +1,5 @@
 /* A chain made ready: its arrays, its ports, and what happens when memory is short. */
-#include "system.h"
+#include "assembled/system.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,6 +1,6 @@
 /* Eight threads look for the modes of one chain and get the same bits. */
-#include "certify.h"
 #include "check.h"
+#include "modes/certify/certify.h"
 #include "walked.h"
 
 #include <pthread.h>

@@ -1,9 +1,9 @@
 /* The triples of continuous elements against their waves in closed form. */
-#include "transfer.h"
+#include "sweep/kernel/transfer.h"
 
 #include "check.h"
-#include "section.h"
-#include "triple.h"
+#include "element/section.h"
+#include "element/triple.h"
 
 #include <string.h>
 
@@ -379,8 +379,9 @@ static void element_at_rest_is_the_tensed_one(const char *coordinates, double te
         }
 }
 
-/* Bending alone is summed by four series of its own (beam_slice.h), beside twist by the general one,
-   which must agree with it; axial motion and twist, unless they are coupled, do not see it. */
+/* Bending alone is summed by four series of its own (span/beam_slice.h), beside twist by the
+   general one, which must agree with it; axial motion and twist, unless they are coupled, do not
+   see it. */
 static void bending_is_the_same_alone_and_beside_twist(void)
 {
     static const double lambdas[] = {-1e4, 0, 1, 1e3, 3e4};

@@ -1,8 +1,10 @@
 /* A chain prepared for walking: its legs, its triples and its memory. */
-#include "walk.h"
+#include "modes/walk/walk.h"
 
+#include "chain/elements.h"
 #include "check.h"
-#include "element.h"
+#include "element/element.h"
+#include "element/stiffness.h"
 #include "walked.h"
 
 #include <string.h>

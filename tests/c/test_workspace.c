@@ -1,5 +1,5 @@
 /* The workspace: what it hands out, and what it refuses. */
-#include "workspace.h"
+#include "base/workspace.h"
 
 #include "chains.h"
 #include "check.h"

@@ -1,8 +1,8 @@
 /* A chain prepared for walking in memory of exactly its size, and what its dense matrices say. */
 #include "walked.h"
 
-#include "assemble.h"
-#include "lapack.h"
+#include "assembled/assemble.h"
+#include "base/lapack.h"
 
 #include <math.h>
 #include <stdio.h>

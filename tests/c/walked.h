@@ -3,7 +3,7 @@
 #define WALKED_H
 
 #include "chains.h"
-#include "walk.h"
+#include "modes/walk/walk.h"
 
 struct walked {
     struct rd_walk walk;

@@ -1,8 +1,8 @@
 """Eigenvalues of a compiled chain by counting in many digits, with nothing of the core.
 
-The triple of each distinct element follows the formulas of csrc/triple.h in mpmath; K - lambda M
-is eliminated node by node and the negative pivots are counted (Sylvester). The numbers of the
-compiled chain are taken as exact.
+The triple of each distinct element follows the formulas of csrc/element/triple.h in mpmath;
+K - lambda M is eliminated node by node and the negative pivots are counted (Sylvester). The numbers
+of the compiled chain are taken as exact.
 """
 
 from decimal import Context, Decimal, localcontext
@@ -22,7 +22,7 @@ CHANNEL = {X: AXIAL, Z: BENDING, ALPHA: TORSION, BETA: BENDING}
 
 
 def shape_functions(kind, theta):
-    """Return tau, P0, P1, P2 of csrc/triple.h for theta = T S_bb l^2."""
+    """Return tau, P0, P1, P2 of csrc/element/triple.h for theta = T S_bb l^2."""
     if kind == DIFFERENCE:
         return mpf(0), mpf(1), mpf(1) / 2, mpf(1) / 3
     if theta == 0:

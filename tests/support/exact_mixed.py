@@ -9,7 +9,7 @@ CHANNEL = {0: 0, 1: 2, 2: 1, 3: 2}
 
 
 def triple(chain, e, section, tension):
-    """(F, G, Q) by the formulas of csrc/triple.h."""
+    """(F, G, Q) by the formulas of csrc/element/triple.h."""
     c = [int(k) for k in chain.coordinate]
     w, h = len(c), mpf(chain.length[e])
     S = [[mpf(s) / section for s in row] for row in chain.flexibility[e].tolist()]

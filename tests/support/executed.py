@@ -33,11 +33,12 @@ def build(folder):
     objects = folder / "objects"
     objects.mkdir()
     include = (np.get_include(), lapacke.get_include_dir(), sysconfig.get_paths()["include"])
-    flags = ["-std=c17", "-O0", "--coverage", "-fPIC", "-w", *(f"-I{path}" for path in include)]
+    flags = ["-std=c17", "-O0", "--coverage", "-fPIC", "-w", "-Icsrc"]
+    flags += [f"-I{path}" for path in include]
 
     def compile_one(source):
-        made = str(objects / f"{source.stem}.o")
         name = str(source.relative_to(folder))
+        made = str(objects / Path(name).with_suffix(".o").as_posix().replace("/", "."))
         subprocess.run(["gcc", *flags, "-c", name, "-o", made], cwd=folder, check=True)
         return made
 
@@ -68,10 +69,10 @@ def lines_of(scene, folder, objects):
     command = ["gcov", "--json-format", "--stdout", *files]
     report = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
     return {
-        (Path(source["file"]).name, line["line_number"])
+        (source["file"], line["line_number"])
         for unit in report.stdout.splitlines()
         for source in json.loads(unit)["files"]
-        if source["file"].startswith("csrc")
+        if source["file"].startswith("csrc/")
         for line in source["lines"]
         if line["count"] > 0
     }

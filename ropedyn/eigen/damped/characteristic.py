@@ -73,7 +73,7 @@ def horizon(chain: Chain, rates: Rates) -> float:
 
 @dataclass
 class Characteristic:
-    """An analytic function that vanishes at the eigenvalues; see csrc/characteristic.h."""
+    """An analytic function that vanishes at the eigenvalues; see csrc/sweep/characteristic.h."""
 
     chain: Chain  # one component, between nodes that nothing moves
     rates: Rates  # its factors

@@ -95,7 +95,7 @@ def winding(function: Characteristic, radius: float) -> Winding | None:
 def turning(chain: Chain, radius: float) -> int:
     """Return how many radians structures alone turn the function by on a half circle, and more."""
     # as many times pi as they have modes there with their feet held: a resonator one, a broken wire
-    # x/pi where x^4 = m radius^2/k (csrc/attached.h)
+    # x/pi where x^4 = m radius^2/k (csrc/chain/attached.h)
     if chain.attached_value is None:
         return 0
     mass, spring = chain.attached_value[:, :2].T

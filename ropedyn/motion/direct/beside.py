@@ -17,7 +17,7 @@ RIGID = KINDS.index("rigid")
 
 
 class Beside(NamedTuple):
-    """What acts beside the chain; see csrc/march.h."""
+    """What acts beside the chain; see csrc/march/form/march.h."""
 
     rate: Real  # (distinct,) damping of each element's own stiffness [s]
     spring_rate: float  # Damping of node springs [s]

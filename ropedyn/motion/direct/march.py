@@ -31,7 +31,7 @@ System = tuple[Chain, Beside, Laws, NDArray[np.uint8], float, float, State]
 
 def stage_of(spectral_radius: float) -> float:
     """Return g of the scheme that multiplies infinitely fast motion by rho in each step."""
-    # (1 - rho) g^2 - 2 g + 1/2 = 0, see csrc/march.h; 1/4 for rho = 1
+    # (1 - rho) g^2 - 2 g + 1/2 = 0, see csrc/march/form/march.h; 1/4 for rho = 1
     return 1 / (2 * (1 + math.sqrt((1 + spectral_radius) / 2)))
 
 

@@ -19,7 +19,7 @@ KINDS = ("power", "stop", "call")  # In the core's order.
 
 
 class Laws(NamedTuple):
-    """Laws of single points as the core takes them; see csrc/march_law.h."""
+    """Laws of single points as the core takes them; see csrc/march/form/law.h."""
 
     node: NDArray[np.int32]
     row: Real

@@ -12,7 +12,7 @@ NOTHING: Mapping[str, float] = MappingProxyType({})
 
 
 class Attached(NamedTuple):
-    """A structure condensed to its foot at a node; see csrc/attached.h."""
+    """A structure condensed to its foot at a node; see csrc/chain/attached.h."""
 
     kind: str  # in `chain.ATTACHED`
     displacement: Mapping[str, float]  # of the foot per motion of the node

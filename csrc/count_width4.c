@@ -1,4 +1,0 @@
-/* The count for chains of width 4. */
-#define RD_WAVE_WIDTH 4
-#define WIDTH(name) rd_##name##_4
-#include "count_width.h"

@@ -1,0 +1,118 @@
+/* The extension module ropedyn._core: its table of entry points and its state. */
+#define PY_GLUE_IMPORTS_ARRAY
+#include "glue/glue.h"
+
+#include "base/lapack.h"
+
+static PyMethodDef methods[] = {
+    {"section", py_section, METH_VARARGS, "section(axial, torsion, bending, coupling, slope)"},
+    {"invert", py_invert, METH_VARARGS, "invert(matrix): inverse, positive definite only"},
+    {"triples", py_triples, METH_VARARGS, "triples(chain) -> F, G, Q"},
+    {"shape", py_shape, METH_VARARGS, "shape(chain, node, s) -> (width, 2, width)"},
+    {"local", py_local, METH_VARARGS, "local(chain, node, s, p) -> (width, width)"},
+    {"assemble", py_assemble, METH_VARARGS,
+     "assemble(chain) -> elastic, its coupling, string, its coupling, springs, mass, dashpots"},
+    {"deflection", py_deflection, METH_VARARGS,
+     "deflection(chain, force) -> displacement, reciprocal condition"},
+    {"modes", py_modes, METH_VARARGS,
+     "modes(chain, wanted, below, scale) -> (eigenvalue, rounding, shape), finite"},
+    {"frf", py_frf, METH_VARARGS,
+     "frf(chain, factor, drives, responses) -> value, rounding, frequencies solved"},
+    {"count", py_count, METH_VARARGS, "count(chain, lambda) -> counts"},
+    {"certify", py_certify, METH_VARARGS,
+     "certify(chain, wanted, upper, shaped) -> lambda, error, certified, shape, motion, found, "
+     "sweeps, redone"},
+    {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
+    {"sweep", py_sweep, METH_VARARGS,
+     "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},
+    {"characteristic", py_characteristic, METH_VARARGS,
+     "characteristic(chain, factor, bound) -> value, magnitude, steps"},
+    {"mixed", py_mixed, METH_VARARGS,
+     "mixed(chain, factor, drives, responses) -> value, error, frequencies solved"},
+    {"mixed_deflection", py_mixed_deflection, METH_VARARGS,
+     "mixed_deflection(chain, force) -> displacement, force on the right ends of elements"},
+    {"triple", py_triple, METH_VARARGS, "triple(chain, element, factor) -> F, G, Q"},
+    {"energy", py_energy, METH_VARARGS,
+     "energy(chain, shape, eigenvalue) -> strain, kinetic, dragged"},
+    {"carried", py_carried, METH_VARARGS,
+     "carried(chain, shape, motion, eigenvalue) -> (k, 3) strain, kinetic, lost"},
+    {"carried_slopes", py_carried_slopes, METH_VARARGS,
+     "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the "
+     "foot"},
+    {"recurrence", py_recurrence, METH_VARARGS,
+     "recurrence(change, seen, length, force, state) -> value, state"},
+    {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (width, f)"},
+    {"sensitivity", py_sensitivity, METH_VARARGS,
+     "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},
+    {"march_factor", py_march_factor, METH_VARARGS,
+     "march_factor(chain, beside, law, theta, extra) -> plan"},
+    {"march", py_march, METH_VARARGS,
+     "march(chain, beside, law, plan, g, h, state, drive, force, moved, speed, extra, response, "
+     "energies, refined) -> read, energy, taken, steps made, residual"},
+    {"march_stage", py_march_stage, METH_VARARGS,
+     "march_stage(chain, beside, law, plan, g, h, state, stage, drive, force, moved, speed) -> "
+     "increments of the laws' points, per force, where they were"},
+    {"march_laws", py_march_laws, METH_VARARGS,
+     "march_laws(law, theta, increment, compliance, start, force) -> force, residual"},
+    {"march_finish", py_march_finish, METH_VARARGS,
+     "march_finish(chain, beside, law, plan, g, h, state, stage, force)"},
+    {NULL, NULL, 0, NULL},
+};
+
+static int execute(PyObject *module)
+{
+    struct py_state *state = PyModule_GetState(module);
+    import_array1(-1);
+    if (openblas_set_num_threads != NULL)
+        openblas_set_num_threads(1);
+    PyObject *errors = PyImport_ImportModule("ropedyn.base.errors");
+    if (errors == NULL)
+        return -1;
+    state->scene_error = PyObject_GetAttrString(errors, "SceneError");
+    state->solve_error = PyObject_GetAttrString(errors, "SolveError");
+    Py_DECREF(errors);
+    return state->scene_error == NULL || state->solve_error == NULL ? -1 : 0;
+}
+
+static int traverse(PyObject *module, visitproc visit, void *arg)
+{
+    struct py_state *state = PyModule_GetState(module);
+    Py_VISIT(state->scene_error);
+    Py_VISIT(state->solve_error);
+    return 0;
+}
+
+static int clear(PyObject *module)
+{
+    struct py_state *state = PyModule_GetState(module);
+    Py_CLEAR(state->scene_error);
+    Py_CLEAR(state->solve_error);
+    return 0;
+}
+
+static PyModuleDef_Slot slots[] = {
+    {Py_mod_exec, (void *)execute},
+#ifdef Py_mod_multiple_interpreters
+    {Py_mod_multiple_interpreters, Py_MOD_MULTIPLE_INTERPRETERS_NOT_SUPPORTED},
+#endif
+#ifdef Py_mod_gil
+    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#endif
+    {0, NULL},
+};
+
+static struct PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT,
+    .m_name = "ropedyn._core",
+    .m_doc = "The C core of ropedyn over NumPy arrays.",
+    .m_size = sizeof(struct py_state),
+    .m_methods = methods,
+    .m_slots = slots,
+    .m_traverse = traverse,
+    .m_clear = clear,
+};
+
+PyMODINIT_FUNC PyInit__core(void)
+{
+    return PyModuleDef_Init(&definition);
+}

@@ -1,0 +1,76 @@
+/* Frequency response by the sweep, and what it costs. */
+#include "glue/factors.h"
+#include "glue/response.h"
+
+#include "sweep/sweep.h"
+
+PyObject *py_steps(PyObject *module, PyObject *arguments)
+{
+    (void)module;
+    struct py_chain parsed = {0};
+    PyArrayObject *factor = NULL;
+    PyObject *object[2], *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1))
+        return NULL;
+    if (py_chain_view(object[0], &parsed) < 0)
+        goto done;
+    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
+    if (factor == NULL)
+        goto done;
+    const struct rd_factors factors = py_factors_of(factor);
+    size_t most = 0;
+    for (size_t i = 0; i < factors.count; i++) {
+        const struct sweep_extent extent = rd_sweep_extent(&factors, i);
+        const size_t steps = rd_sweep_steps(&parsed.chain, &extent);
+        most = steps > most ? steps : most;
+    }
+    result = PyLong_FromSize_t(most);
+done:
+    Py_XDECREF(factor);
+    py_chain_release(&parsed);
+    return result;
+}
+
+/* the index of the frequency that has no answer, or the count of all; -1 and an exception */
+static npy_intp solve(PyObject *module, const struct py_response *response)
+{
+    const struct rd_chain *chain = &response->parsed.chain;
+    const struct rd_ports *drives = &response->drives.ports;
+    const struct rd_ports *responses = &response->responses.ports;
+    const struct rd_factors factors = py_factors_of(response->factor);
+    double *value = PyArray_DATA((PyArrayObject *)response->value);
+    double *error = PyArray_DATA((PyArrayObject *)response->error);
+    struct rd_workspace workspace = {0};
+    size_t failed = 0;
+    npy_intp solved = -1;
+    enum rd_status status =
+        rd_frf_sweep(chain, &factors, drives, responses, &workspace, NULL, NULL, &failed);
+    if (py_workspace_allocate(&workspace) < 0)
+        goto done;
+    Py_BEGIN_ALLOW_THREADS
+    status = rd_frf_sweep(chain, &factors, drives, responses, &workspace, value, error, &failed);
+    Py_END_ALLOW_THREADS
+    if (status == RD_OK)
+        solved = response->count;
+    else if (status == RD_SINGULAR)
+        solved = (npy_intp)failed;
+    else
+        py_raise(module, status);
+done:
+    PyMem_RawFree(workspace.base);
+    return solved;
+}
+
+PyObject *py_sweep(PyObject *module, PyObject *arguments)
+{
+    struct py_response response = {0};
+    PyObject *result = NULL;
+    if (py_response_parse(arguments, PY_FREQUENCY_LAST, &response) < 0)
+        goto done;
+    const npy_intp solved = solve(module, &response);
+    if (solved >= 0)
+        result = Py_BuildValue("OOn", response.value, response.error, (Py_ssize_t)solved);
+done:
+    py_response_release(&response);
+    return result;
+}

@@ -1,0 +1,66 @@
+/* Inverse iteration on a walk: the right width. */
+#include "modes/refine/refine.h"
+
+#include <stdint.h>
+
+enum { ALIGNMENT = 8 * RD_LANES };
+
+static lanes *take_lanes(struct rd_workspace *workspace, size_t count)
+{
+    char *at = rd_take(workspace, count * sizeof(lanes) + ALIGNMENT, 1);
+    if (at == NULL)
+        return NULL;
+    return (lanes *)(void *)(at + (ALIGNMENT - (uintptr_t)at % ALIGNMENT) % ALIGNMENT);
+}
+
+void rd_refine_take(const struct rd_walk *walk, size_t steps, size_t pieces,
+                    struct rd_workspace *workspace, struct rd_refine *refine)
+{
+    const size_t w = walk->chain->width;
+    *refine = (struct rd_refine){.walk = walk, .capacity = steps, .pieces = pieces};
+    refine->step = rd_take(workspace, steps, sizeof *refine->step);
+    refine->piece = take_lanes(workspace, pieces * 6 * w * w);
+    refine->receptance = take_lanes(workspace, steps * w * (w + 3));
+    refine->u = take_lanes(workspace, (steps + 1) * w);
+    refine->f = take_lanes(workspace, steps * w);
+    refine->y = take_lanes(workspace, walk->chain->attached);
+    refine->next = take_lanes(workspace, walk->chain->attached);
+}
+
+enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda)
+{
+    enum rd_status (*const of[])(struct rd_refine *, const double *) = {rd_plan_1, rd_plan_2,
+                                                                        rd_plan_3, rd_plan_4};
+    return of[refine->walk->chain->width - 1](refine, lambda);
+}
+
+void rd_refine_iterate(struct rd_refine *refine, const double *lambda, unsigned begin)
+{
+    void (*const of[])(struct rd_refine *, const double *, unsigned) = {rd_iterate_1, rd_iterate_2,
+                                                                        rd_iterate_3, rd_iterate_4};
+    of[refine->walk->chain->width - 1](refine, lambda, begin);
+}
+
+void rd_refine_quotient(struct rd_refine *refine, const double *lambda,
+                        struct rd_quotient *quotient)
+{
+    void (*const of[])(struct rd_refine *, const double *, struct rd_quotient *) = {
+        rd_quotient_1, rd_quotient_2, rd_quotient_3, rd_quotient_4};
+    of[refine->walk->chain->width - 1](refine, lambda, quotient);
+}
+
+void rd_refine_gram(struct rd_refine *refine, const double *lambda, double *A, double *M)
+{
+    void (*const of[])(struct rd_refine *, const double *, double *,
+                       double *) = {rd_gram_1, rd_gram_2, rd_gram_3, rd_gram_4};
+    of[refine->walk->chain->width - 1](refine, lambda, A, M);
+}
+
+void rd_refine_shape(struct rd_refine *refine, const double *lambda, int lane, double *u, double *y)
+{
+    void (*const of[])(struct rd_refine *, const double *, int,
+                       double *) = {rd_shape_1, rd_shape_2, rd_shape_3, rd_shape_4};
+    of[refine->walk->chain->width - 1](refine, lambda, lane, u);
+    for (size_t k = 0; k < refine->walk->chain->attached; k++)
+        y[k] = refine->y[k][lane];
+}

@@ -1,0 +1,197 @@
+/* Across the chain: runs by pieces, the rest element by element. */
+#include "sweep/cross.h"
+#include "span/span.h"
+#include "sweep/plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/* at a free end nothing is behind the walk: U = I */
+void rd_sweep_begin(struct sweep *s)
+{
+    const size_t w = s->chain->width;
+    for (size_t i = 0, p = 0; i < w; i++)
+        for (size_t j = i; j < w; j++, p++)
+            s->state.U[p] = c_real(i == j ? 1.0 : 0.0);
+    memset(s->state.A, 0, sizeof s->state.A);
+    memset(s->rows, 0, 2 * s->carried * w * sizeof *s->rows);
+    s->state.stretch = 0;
+    s->state.absorbed = 0;
+    s->state.rows = 0;
+    s->state.E = s->state.E_all = s->rows;
+}
+
+/* the term of a node, near to which the walk stands */
+static size_t term_at(struct sweep *s, size_t node)
+{
+    s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
+    return (size_t)s->chain->term[s->state.stretch];
+}
+
+void rd_sweep_absorb(struct sweep *s, int way, size_t node)
+{
+    if (!s->state.absorbed)
+        s->kernel->absorb(&s->walk[way], term_at(s, node), &s->state);
+}
+
+/* a node term that half a turn about z changes makes the pieces differ with the direction */
+static int turns(const struct sweep *s, int32_t term)
+{
+    const size_t w = s->chain->width, at = (size_t)term * w * w;
+    int any = 0;
+    if (term == RD_NO_TERM)
+        return 0;
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++)
+            if (s->way[1].sign[i] * s->way[1].sign[j] < 0.0)
+                any |= s->chain->mass[at + i * w + j] != 0.0 ||
+                       s->chain->stiffness[at + i * w + j] != 0.0 ||
+                       (s->chain->damping && s->chain->damping[at + i * w + j] != 0.0);
+    return any;
+}
+
+/* pieces of 1, 2, 4, .. first pieces of a run, joined by doubling; those that it is crossed by are
+   the largest and the binary digits of the rest */
+static void make_table(struct sweep *s, const struct rd_run *run, int way,
+                       const struct sweep_pieces *pieces)
+{
+    const size_t levels = pieces->level + 1, rest = pieces->count & (((size_t)1 << levels) - 1);
+    struct sweep_table *table = &s->tabled;
+    way = turns(s, run->term) ? way : 0;
+    if (table->levels == levels && table->element == run->element && table->term == run->term &&
+        table->way == way && table->rest == rest)
+        return;
+    cv *one = s->triple, *two = s->triple + s->coefs;
+    const size_t e = (size_t)run->element;
+    if (s->chain->inertia)
+        s->kernel->make_slice(s->chain, &s->block, e, pieces->halvings,
+                              rd_span_terms(pieces->radians), one);
+    else
+        s->kernel->make_element(s->chain, &s->block, e, one);
+    for (size_t k = 0; k < levels; k++) {
+        if (k + 1 == levels || rest >> k & 1)
+            s->kernel->make_coefficients(one, s->table + k * s->coefs);
+        if (k + 1 < levels)
+            s->kernel->join(s->chain, &s->way[way], run->term, one, one, two);
+        cv *swap = one;
+        one = two;
+        two = swap;
+    }
+    *table = (struct sweep_table){levels, rest, run->element, run->term, way};
+}
+
+/* the node term at the near end of the first piece may differ from the run's */
+static void first_piece(struct sweep *s, int way, const cv *piece, size_t node)
+{
+    const size_t term = term_at(s, node);
+    rd_sweep_absorb(s, way, node);
+    if (!way && (s->trait[term] & RD_HINGED))
+        s->kernel->open(&s->walk[way], term, &s->state);
+    s->kernel->walk_pieces(&s->walk[way], piece, -1, 1, &s->state);
+    s->state.absorbed = 0;
+}
+
+static void cross_each(struct sweep *s, int way, size_t node, size_t count)
+{
+    if (count == 0)
+        return;
+    s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
+    if (s->planar && s->state.rows == 0)
+        s->kernel->walk_plain(&s->walk[way], node, count, &s->state);
+    else
+        s->kernel->walk(&s->walk[way], node, count, &s->state);
+    s->state.absorbed = 0;
+    s->steps += (double)count;
+}
+
+/* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
+static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
+{
+    struct sweep_pieces all =
+        rd_sweep_pieces(s->chain, run, count, rd_sweep_waves(s->chain, run, s->extent));
+    if (s->chain->inertia) {
+        /* terms for the shortest waves: more than a lane needs change none of its bits */
+        const struct sweep_waves shortest = rd_sweep_waves(s->chain, run, &s->most);
+        all.radians = ldexp(s->chain->length[run->element] * shortest.all, -all.halvings);
+    }
+    if (all.level == 0 && !s->chain->inertia) {
+        cross_each(s, way, node, count);
+        return;
+    }
+    make_table(s, run, way, &all);
+    int begun = 0;
+    for (size_t left = all.count, top = all.level; left > 0; top--) {
+        size_t pieces = left >> top;
+        left -= pieces << top;
+        s->steps += (double)pieces * (double)pieces;
+        if (pieces == 0)
+            continue;
+        const cv *piece = s->table + top * s->coefs;
+        if (!begun) {
+            first_piece(s, way, piece, node);
+            begun = 1;
+            pieces--;
+        }
+        s->kernel->walk_pieces(&s->walk[way], piece, run->term, pieces, &s->state);
+    }
+    const size_t end = term_at(s, way ? node - count : node + count);
+    if (way && (s->trait[end] & RD_HINGED))
+        s->kernel->open(&s->walk[way], end, &s->state);
+}
+
+/* A heavy node lies between two stretches: rows lose most digits there. */
+static void accompany(struct sweep *s)
+{
+    const size_t w = s->chain->width;
+    for (size_t r = 0; r < s->state.rows; r += 2)
+        sweep_accompany(s->state.E + r * w, (int)w, s->state.E + (r + 1) * w);
+}
+
+/* from node a to a later node b, runs by pieces and the rest element by element; r is the first
+   run that ends behind a */
+void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
+{
+    while (a < b) {
+        while (*r < s->runs.count && s->runs.run[*r].last <= a)
+            ++*r;
+        const struct rd_run *run = *r < s->runs.count ? s->runs.run + *r : NULL;
+        const size_t until = !run || run->first > b ? b : run->first;
+        if (a < until) {
+            cross_each(s, 0, a, until - a);
+            a = until;
+        } else {
+            const size_t end = run->last < b ? run->last : b;
+            if (end - a >= s->runs.least)
+                cross_run(s, run, 0, a, end - a);
+            else
+                cross_each(s, 0, a, end - a);
+            a = end;
+        }
+        accompany(s);
+    }
+}
+
+/* the same from b back to an earlier node a; *r - 1 is the last run that begins before b */
+void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
+{
+    while (a < b) {
+        while (*r > 0 && s->runs.run[*r - 1].first >= b)
+            --*r;
+        const struct rd_run *run = *r > 0 ? s->runs.run + *r - 1 : NULL;
+        const size_t until = !run || run->last < a ? a : run->last;
+        if (until < b) {
+            cross_each(s, 1, b, b - until);
+            b = until;
+        } else {
+            const size_t end = run->first > a ? run->first : a;
+            if (b - end >= s->runs.least)
+                cross_run(s, run, 1, b, b - end);
+            else
+                cross_each(s, 1, b, b - end);
+            b = end;
+        }
+        accompany(s);
+    }
+}

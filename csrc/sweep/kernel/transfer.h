@@ -1,0 +1,22 @@
+/* The triples of a whole continuous element, at several lambda or sections side by side. */
+#ifndef RD_TRANSFER_H
+#define RD_TRANSFER_H
+
+#include "chain/chain.h"
+#include "span/rate_matrix.h"
+
+#include <complex.h>
+
+/* An element's u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a, each (RD_LANES, width, width). */
+struct rd_transfer {
+    double _Complex F[RD_LANES][RD_WIDTH_MAX * RD_WIDTH_MAX];
+    double _Complex G[RD_LANES][RD_WIDTH_MAX * RD_WIDTH_MAX];
+    double _Complex Q[RD_LANES][RD_WIDTH_MAX * RD_WIDTH_MAX];
+};
+
+/* Joined from halves; the element must be shorter than its first resonance as a cantilever, which
+   the joints would meet. */
+void rd_transfer_fill(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate,
+                      struct rd_transfer *transfer);
+
+#endif

@@ -1,0 +1,88 @@
+/* Which frequencies go side by side. */
+#include "sweep/order.h"
+
+#include "span/span.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+/* |inertia|^2 */
+static double key(const struct rd_factors *factors, size_t i)
+{
+    const double *x = factors->inertia + 2 * i;
+    return x[0] * x[0] + x[1] * x[1];
+}
+
+/* Shell's sort: no memory, one pass where the frequencies are in order already */
+void rd_sweep_order(const struct rd_factors *factors, size_t *order)
+{
+    const size_t count = factors->count;
+    for (size_t i = 0; i < count; i++)
+        order[i] = i;
+    size_t gap = 1;
+    while (gap < count / 3)
+        gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3)
+        for (size_t i = gap; i < count; i++) {
+            const size_t moved = order[i];
+            const double size = key(factors, moved);
+            size_t j = i;
+            for (; j >= gap && key(factors, order[j - gap]) > size; j -= gap)
+                order[j] = order[j - gap];
+            order[j] = moved;
+        }
+}
+
+/* whether the waves of two continuous runs are the same */
+static bool is_same_rope(const struct rd_chain *chain, int32_t a, int32_t b)
+{
+    const size_t w = chain->width, i = (size_t)a, j = (size_t)b;
+    const double *S = chain->flexibility, *p = chain->inertia, *drag = chain->drag;
+    return chain->tension[i] == chain->tension[j] &&
+           memcmp(S + 9 * i, S + 9 * j, 9 * sizeof *S) == 0 &&
+           memcmp(p + w * i, p + w * j, w * sizeof *p) == 0 &&
+           (!drag || memcmp(drag + w * i, drag + w * j, w * sizeof *drag) == 0) &&
+           (!chain->sag || chain->sag[i] == chain->sag[j]);
+}
+
+/* how many of the frequencies cross a run by as many pieces as the first does, 0 where those are more
+   than are walked */
+static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
+                    const struct sweep_waves *waves, size_t count)
+{
+    const size_t n = run->last - run->first;
+    const struct sweep_pieces first = rd_sweep_pieces(chain, run, n, waves[0]);
+    if (chain->inertia && first.count >> first.level > RD_PIECES_MOST)
+        return 0;
+    for (size_t i = 1; i < count; i++) {
+        const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, waves[i]);
+        if (own.level != first.level || own.halvings != first.halvings)
+            return i;
+    }
+    return count;
+}
+
+size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *runs,
+                           const struct rd_factors *factors, const size_t *order, size_t first,
+                           size_t *index, struct sweep_extent *extent)
+{
+    size_t used = factors->count - first < RD_LANES ? factors->count - first : RD_LANES;
+    for (size_t lane = 0; lane < used; lane++)
+        extent[lane] = rd_sweep_extent(factors, order[first + lane]);
+    struct sweep_waves waves[RD_LANES];
+    for (size_t r = 0; r < runs->count && used > 0; r++) {
+        const struct rd_run *run = runs->run + r;
+        const bool known =
+            r > 0 && chain->inertia && is_same_rope(chain, run[-1].element, run->element);
+        for (size_t lane = 0; lane < used && !known; lane++)
+            waves[lane] = rd_sweep_waves(chain, run, extent + lane);
+        used = alike(chain, run, waves, used);
+    }
+    if (used == 0)
+        return 0;
+    for (size_t lane = 0; lane < RD_LANES; lane++)
+        index[lane] = order[first + (lane < used ? lane : used - 1)];
+    for (size_t lane = used; lane < RD_LANES; lane++)
+        extent[lane] = extent[used - 1];
+    return used;
+}

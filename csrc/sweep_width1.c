@@ -1,3 +1,0 @@
-/* The sweep's kernel for width 1. */
-#define RD_WIDTH 1
-#include "sweep_width.h"

@@ -1,3 +1,0 @@
-/* The sweep's kernel for width 2. */
-#define RD_WIDTH 2
-#include "sweep_width.h"

@@ -1,3 +1,0 @@
-/* The sweep's kernel for width 3. */
-#define RD_WIDTH 3
-#include "sweep_width.h"

@@ -1,3 +1,0 @@
-/* The sweep's kernel for width 4. */
-#define RD_WIDTH 4
-#include "sweep_width.h"
