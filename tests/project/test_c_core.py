@@ -1,6 +1,7 @@
-"""The core without Python: its C tests, built with warnings as errors and asserts on."""
+"""The core without Python: its C tests, with warnings as errors and asserts on, and its walls."""
 
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 RUN = Path(__file__).parent.parent / "c" / "run"
+WALLS = RUN.parent / "walls.py"
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
@@ -17,3 +19,31 @@ def test_c_tests_pass():
     run = subprocess.run([str(RUN)], env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
     assert " 0 failed" in run.stdout
+
+
+def test_includes_of_the_core_keep_to_its_floors():
+    run = subprocess.run([sys.executable, str(WALLS)], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+
+
+def test_include_of_a_higher_floor_and_a_circle_are_complained_of(tmp_path):
+    walls = runpy.run_path(str(WALLS))
+    made = {
+        "base/dense.h": "",
+        "base/dense.c": '#include "base/dense.h"\n#include "sweep/plan.h"\n',
+        "sweep/plan.h": '#include "base/dense.h"\n#include "plan.h"\n',
+        "march/plan.h": "",
+        "march/plan.c": '#include "march/plan.h"\n#include "march/run.h"\n',
+        "march/run.h": '#include "march/plan.h"\n',
+        "elsewhere/new.c": "",
+    }
+    for name, text in made.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    assert walls["complaints"](tmp_path) == [
+        'base/dense.c: "sweep/plan.h" lies above it, in sweep',
+        "elsewhere/new.c: its folder is missing in FLOORS of tests/c/walls.py",
+        'sweep/plan.h: "plan.h" is no file of csrc; includes name their folder',
+        "a circle of includes: base/dense -> sweep/plan -> base/dense",
+        "a circle of includes: march/plan -> march/run -> march/plan",
+    ]
