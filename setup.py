@@ -3,12 +3,15 @@
 import os
 import shutil
 import subprocess
+import sys
+import zlib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from setuptools.modified import newer_group
 
 HERE = Path(__file__).parent
 SYSTEM_LAPACKE = os.environ.get("ROPEDYN_SYSTEM_LAPACKE") == "1"
@@ -47,16 +50,26 @@ class BuildExt(build_ext):
     """Builds the extension on all cores and copies the LAPACKE it links with beside it."""
 
     def build_extension(self, ext):
-        """Compile the sources side by side; setuptools alone takes them one by one."""
+        """Compile side by side what has changed; setuptools takes all sources, one by one."""
         compile_one = self.compiler.compile
+        flags = [numpy.__version__, *self.compiler.compiler_so, *COMPILE]
+        if getattr(self, "editable_mode", False):  # whose own folder is gone after each build
+            self.build_temp = str(HERE / "build" / f"temp.{sys.implementation.cache_tag}")
+        self.build_temp += f"-{zlib.crc32(repr(flags).encode()):08x}"
+
+        def compile_stale(source, *arguments, **keywords):
+            (made,) = self.compiler.object_filenames([source], output_dir=self.build_temp)
+            if self.force or newer_group([source, *ext.depends], made):
+                compile_one([source], *arguments, **keywords)
+            return made
 
         def compile_all(sources, *arguments, **keywords):
             with ThreadPoolExecutor(os.cpu_count()) as executor:
                 parts = [
-                    executor.submit(compile_one, [source], *arguments, **keywords)
+                    executor.submit(compile_stale, source, *arguments, **keywords)
                     for source in sources
                 ]
-                return [name for part in parts for name in part.result()]
+                return [part.result() for part in parts]
 
         self.compiler.compile = compile_all
         super().build_extension(ext)
