@@ -1,14 +1,21 @@
-/* What gcc may spend for speed. Builds that are not optimised, sanitizers and RD_ONE_COPY, which the
-   C tests set, are to be compiled soon: the code is the same, and so are its bits. */
+/* What the compiler may spend for speed. Builds that are not optimised, sanitizers and RD_ONE_COPY,
+   which the C tests set, are to be compiled soon: the code is the same, and so are its bits. */
 #ifndef RD_FAST_H
 #define RD_FAST_H
 
 #include <stdint.h> /* __GLIBC__ is known only after a header of the library */
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&                           \
-    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__) && !defined(RD_ONE_COPY)
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__) &&    \
+    !defined(RD_ONE_COPY)
+#define RD_INLINE static inline __attribute__((always_inline))
+#if defined(__GNUC__) && !defined(__clang__)
 #define RD_FAST 1
+#endif
 #else
+#define RD_INLINE static inline
+#endif
+
+#ifndef RD_FAST
 #define RD_FAST 0
 #endif
 

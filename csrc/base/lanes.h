@@ -6,8 +6,6 @@
 
 enum { RD_LANES = 8 };
 
-#define RD_INLINE static inline __attribute__((always_inline))
-
 typedef double lanes __attribute__((vector_size(8 * RD_LANES)));
 typedef long long lane_mask __attribute__((vector_size(8 * RD_LANES)));
 

@@ -15,7 +15,7 @@ enum { K_(W) = RD_WIDTH, K_(SYM) = RD_WIDTH * (RD_WIDTH + 1) / 2, K_(FULL) = RD_
 #define W K_(W)
 #define SYM K_(SYM)
 #define FULL K_(FULL)
-#if RD_WIDTH < 4
+#if RD_WIDTH < 4 && RD_FAST
 #define UNROLL _Pragma("GCC unroll 4")
 #else
 #define UNROLL _Pragma("GCC unroll 1")
