@@ -1,8 +1,6 @@
 """Only the effects a scene calls for: what is not asked for is not there and not computed."""
 
-import os
 import shutil
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -151,9 +149,7 @@ def test_code_of_an_effect_runs_only_where_a_scene_has_it(tmp_path):
     objects = build(tmp_path)
     scenes = {"BARE": "BARE"} | {e: f"with_only({e!r})" for e in ALONE}
     scenes |= {f"no {name}": f"full().without{e!r}" for name, e in MECHANISMS.items()}
-    with ThreadPoolExecutor(os.cpu_count()) as executor:
-        found = executor.map(lambda scene: lines_of(scene, tmp_path, objects), scenes.values())
-        lines = dict(zip(scenes, found))
+    lines = dict(zip(scenes, lines_of(scenes.values(), tmp_path, objects)))
     for name, served in MECHANISMS.items():
         # what no scene runs that has another effect alone
         needed = {need for effect in served for need in NEEDED.get(effect, ())}
