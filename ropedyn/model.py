@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from .base import check
 from .base.progress import Progress
-from .chain.compile import compile_scene
 from .chain.compiled import Compiled, refuse_nonlinear
 from .chain.port import Point
 from .eigen.damped.damped import solve_damped
@@ -100,10 +99,10 @@ class Model(Compiled):
             All below this frequency [Hz]; instead of `number`.
         solver : {"sweep", "lapack"}
             ``"sweep"``: isolated by counts, refined by inverse iteration along the chain, nothing
-            assembled: right to the last digits whatever n, and certified (see csrc/modes/certify/certified.h);
+            assembled: right to the last digits whatever n, and certified (csrc/modes/certify);
             clusters of eight modes and more within a relative 1e-8 are refused. ``"lapack"``:
             assembles the matrices and reduces them to a dense symmetric problem (see
-            csrc/assembled/modes.h). The assembled stiffness loses digits as n^4: of the first frequency of
+            csrc/assembled). The assembled stiffness loses digits as n^4: of the first frequency of
             a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
             grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
             of a minute for so many, does not stop for Ctrl-C.
@@ -211,11 +210,11 @@ class Model(Compiled):
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration per force.
         solver : {"sweep", "lapack", "band"}
-            ``"sweep"``: along the chain in scattering form (see csrc/sweep/sweep.h), right to nearly the
-            last digits whatever n. ``"lapack"``: complex band LU of the assembled dynamic
-            stiffness; loses digits with n as `modes` does. ``"band"``: complex band LU of the mixed
-            form (see csrc/mixed/mixed.h); its error grows as n at most, it shares no step with the sweep,
-            and it takes hundreds of times as long.
+            ``"sweep"``: along the chain in scattering form (see csrc/sweep/sweep.h), right to
+            nearly the last digits whatever n. ``"lapack"``: complex band LU of the assembled
+            dynamic stiffness; loses digits with n as `modes` does. ``"band"``: complex band LU of
+            the mixed form (see csrc/mixed/mixed.h); its error grows as n at most, it shares no step
+            with the sweep, and it takes hundreds of times as long.
         threads : int, optional
             Of sweep and band: frequencies are shared out over so many threads; the environment
             variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
@@ -350,7 +349,7 @@ class Model(Compiled):
             ``"modal"``: linear scenes, the sum over modes, complex ones where damping is not
             proportional, each integrated exactly, with the static motion of those left out.
             ``"direct"``: chains, linear or not, an implicit scheme of second order, unconditionally
-            stable, along the chain (see csrc/march/form/march.h). ``"auto"``: modal where it can be.
+            stable, along the chain (csrc/march/form/march.h). ``"auto"``: modal where it can be.
         modes : int, optional
             Of each component, that the modal method sums; where left out all of a chain of at most
             1000 unknowns, else those below eight times what force and times resolve, from 64 to
@@ -591,14 +590,6 @@ class Model(Compiled):
         return march_steadily(asked) if asked.direct else superpose_steadily(asked)
 
 
-def compile_model(
-    scene: Scene, *, elements: Any, element: str | None, tolerance: Any, below: Any
-) -> Model:
+def compile_model(scene: Scene, **how: Any) -> Model:
     """Compile a scene; see `Scene.compile`."""
-    if tolerance is None and below is None:
-        compiled = compile_scene(scene, elements=elements, element=element)
-    else:
-        compiled = compile_within(
-            scene, tolerance=tolerance, below=below, elements=elements, element=element
-        )
-    return Model(**vars(compiled))
+    return Model(**vars(compile_within(scene, **how)))

@@ -34,7 +34,7 @@ class ComponentModes:
     shape: Real | None
     certified: bool  # whether none is missing
     work: Work  # what it took
-    # (k, attached) of the structures that the component's nodes carry, as y in csrc/chain/attached.h [m]
+    # (k, attached) of the structures that nodes carry, as y in csrc/chain/attached.h [m]
     motion: Real | None = None
 
 

@@ -31,7 +31,9 @@ Component = tuple[str, ...]
 def compile_within(
     scene: Scene, *, tolerance: Any, below: Any, elements: Any, element: str | None
 ) -> Compiled:
-    """Compile a scene to the smallest chain within a tolerance; see `Scene.compile`."""
+    """Compile a scene, to the smallest chain within a tolerance if given; see `Scene.compile`."""
+    if tolerance is None and below is None:
+        return compile_scene(scene, elements=elements, element=element)
     if tolerance is None or below is None:
         raise SceneError(
             f"give both tolerance and below or none, got tolerance={check.shown(tolerance)} and "
