@@ -31,6 +31,19 @@ LAID = rd.Rope(
     polar_inertia=1e-6,
 )
 """A rope with every coordinate, all of them coupled, with stiffness and inertia in each."""
+EVERYTHING = rd.Scene(
+    LAID.replace(length=1.3),
+    tension=300.0,
+    ends=(rd.End(beta="free", spring={"beta": 5.0}), rd.End(z="free", spring={"z": 2e3})),
+    parts=[
+        rd.PointMass(0.4, 0.02, rotary_inertia=1e-5, polar_inertia=1e-7),
+        rd.Spring(0.7, 500.0),
+        rd.Hinge(0.9, stiffness=20.0),
+        rd.Hinge(0.9, stiffness=30.0),
+        rd.Support(1.1),
+    ],
+)
+"""Every coordinate moves, and what stands on the rope is held, springs back, weighs and bends."""
 
 
 def slow(*values):

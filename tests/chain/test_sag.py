@@ -11,7 +11,7 @@ from exact_chain import error_over_condition, omega_of, relative
 from exact_span import Continuum, coupled
 from mpmath import mpf
 from random_scene import log_uniform
-from test_continuous_modes import is_counted, worst_error
+from spans import is_counted, worst_error
 
 import ropedyn as rd
 

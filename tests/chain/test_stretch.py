@@ -12,8 +12,7 @@ from exact_roots import continuum
 from exact_shapes import Mode
 from mpmath import mpf
 from random_scene import stretched_scene
-from test_continuous_frf import BOUND, errors
-from test_continuous_modes import RELATIVE, is_counted, solved, worst_error
+from spans import BOUND, RELATIVE, errors, is_counted, solved, worst_error
 
 import ropedyn as rd
 

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from test_uff import function
+from dataset58 import function
 
 import ropedyn as rd
 from ropedyn.cli.command import main

@@ -11,7 +11,8 @@ from conftest import EPS
 from exact_roots import continuum
 from exact_scene import places
 from exact_shapes import Mode
-from test_continuous_modes import SCENES, SPANS
+from spans import SCENES
+from test_continuous_modes import SPANS
 
 import ropedyn as rd
 

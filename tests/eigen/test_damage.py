@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from conftest import LAID
-from test_sensitivity import DOUBLE, EVERYTHING, MODELS
+from conftest import EVERYTHING, LAID
+from test_sensitivity import DOUBLE, MODELS
 
 import ropedyn as rd
 

@@ -7,7 +7,7 @@ import re
 import mpmath
 import numpy as np
 import pytest
-from conftest import LAID
+from conftest import EVERYTHING
 from mpmath import mpf
 
 import ropedyn as rd
@@ -161,18 +161,6 @@ def test_tensed_cantilever_changes_as_its_characteristic_equation(tension, claim
 QUOTIENT = 1e-10
 """Relative error of the difference quotients, see `difference`."""
 
-EVERYTHING = rd.Scene(
-    LAID.replace(length=LENGTH),
-    tension=TENSION,
-    ends=(rd.End(beta="free", spring={"beta": 5.0}), rd.End(z="free", spring={"z": 2e3})),
-    parts=[
-        rd.PointMass(0.4, 0.02, rotary_inertia=1e-5, polar_inertia=1e-7),
-        rd.Spring(0.7, 500.0),
-        rd.Hinge(0.9, stiffness=20.0),
-        rd.Hinge(0.9, stiffness=30.0),
-        rd.Support(1.1),
-    ],
-)
 STRING = rd.Scene(
     rd.Rope(LENGTH, DENSITY, torsional_stiffness=0.4, polar_inertia=3e-6),
     tension=TENSION,

@@ -12,14 +12,10 @@ from exact_chain import DIGITS, condition, omega_of, relative
 from exact_roots import continuum
 from exact_span import Law
 from random_scene import random_spans
-from test_continuous_modes import SCENES, UNIT, WHOLE
+from spans import BOUND, ENOUGH, SCENES, UNIT, WHOLE, errors
 
 import ropedyn as rd
 
-BOUND = 1e-12
-"""Of the error over the condition of the answer."""
-ENOUGH = 2e-14
-"""An error below this is taken as it is: its condition, 1 at least, costs the reference most."""
 EXACT = "mpmath, 60 digits: tests/support/exact_span.py"
 BEAM = rd.Rope(LENGTH, MASS / LENGTH, bending_stiffness=BENDING)
 ENDS = list(itertools.product(("clamped", "pinned", "free"), repeat=2))
@@ -28,24 +24,6 @@ DAMPINGS = {
     "rayleigh": rd.RayleighDamping(2.0, 1e-5),
     "sum": (rd.RayleighDamping(2.0, 1e-5), rd.StiffnessDamping(1e-5)),
 }
-
-
-def errors(scene, f, drive, responses=None, *, enough=ENOUGH):
-    """Errors of responses over their condition; `rounding_error` must bound each."""
-    responses = responses or [drive]
-    frf = scene.compile().frf(f, drive=drive, response=responses)
-    assert (frf.mesh_error == 0).all()
-    exact = continuum(scene, drive[0])
-    with mpmath.workdps(DIGITS):
-        values = exact.receptance(omega_of(f), drive, responses)
-        found = []
-        for k, (response, h) in enumerate(zip(responses, values)):
-            error = relative(frf.value[k, 0], h)
-            assert error <= frf.rounding_error[k, 0]
-            if error > enough:
-                error /= condition(exact, omega_of(f), drive, response)
-            found.append(error)
-    return found
 
 
 # beams -------------------------------------------------------------------------------------------

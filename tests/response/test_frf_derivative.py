@@ -5,8 +5,8 @@ import functools
 import mpmath
 import numpy as np
 import pytest
+from conftest import EVERYTHING
 from mpmath import mpc, mpf
-from test_sensitivity import EVERYTHING
 
 import ropedyn as rd
 from ropedyn.response.ridders import frf_difference
