@@ -22,7 +22,7 @@ from bad import (
     PEAKS,
     ZERO,
     add,
-    cases,
+    arguments,
     refuses,
     scene,
     without,
@@ -285,9 +285,9 @@ row("load", "path", rd.load, NOT_A_PATH)
 row("Answer.save", "path", PEAKS.save, NOT_A_PATH)
 
 
-@pytest.mark.parametrize(("call", "argument", "value", "error"), cases(ARGUMENTS))
-def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
-    refuses(call, argument, value, error)
+@pytest.mark.parametrize(("argument", "call", "wrong_types", "wrong_values"), arguments(ARGUMENTS))
+def test_what_has_no_meaning_is_refused_by_name(argument, call, wrong_types, wrong_values):
+    refuses(argument, call, wrong_types, wrong_values)
 
 
 # signatures: what Python itself refuses, by the argument's name

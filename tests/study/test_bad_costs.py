@@ -17,7 +17,7 @@ from bad import (
     NOT_FINITE,
     ZERO,
     add,
-    cases,
+    arguments,
     refuses,
     rope,
     scene,
@@ -162,9 +162,9 @@ row(
 )
 
 
-@pytest.mark.parametrize(("call", "argument", "value", "error"), cases(ARGUMENTS))
-def test_what_has_no_meaning_is_refused_by_name(call, argument, value, error):
-    refuses(call, argument, value, error)
+@pytest.mark.parametrize(("argument", "call", "wrong_types", "wrong_values"), arguments(ARGUMENTS))
+def test_what_has_no_meaning_is_refused_by_name(argument, call, wrong_types, wrong_values):
+    refuses(argument, call, wrong_types, wrong_values)
 
 
 # signatures: what Python itself refuses, by the argument's name

@@ -105,24 +105,37 @@ def add(table, what, argument, call, wrong_types, wrong_values=None):
     table.append((what, argument, call, wrong_types, wrong_values or {}))
 
 
-def cases(table):
-    return [
-        pytest.param(call, argument, value, error, id=f"{what}-{argument}-{name}".replace(" ", "_"))
-        for what, argument, call, wrong_types, wrong_values in table
+def arguments(table):
+    """Return a parameter of a test for each argument: all that it refuses."""
+    return [pytest.param(*row[1:], id=f"{row[0]}-{row[1]}".replace(" ", "_")) for row in table]
+
+
+def refuses(argument, call, wrong_types, wrong_values):
+    """Each message names the argument, what must hold, and what was given."""
+    complaints = [
+        f"{name}: {complaint}"
         for values, error in ((wrong_types, TypeError), (wrong_values, rd.SceneError))
         for name, value in values.items()
+        if (complaint := complaint_about(argument, call, value, error))
     ]
+    assert not complaints, "\n".join(complaints)
 
 
-def refuses(call, argument, value, error):
-    """The message names the argument, what must hold, and what was given."""
-    with pytest.raises((rd.SceneError, TypeError)) as caught:
+def complaint_about(argument, call, value, error):
+    """What is wrong with how a value is refused, or None."""
+    try:
         call(value)
-    message = str(caught.value)
-    assert isinstance(caught.value, error), message
-    assert argument in message, message
-    assert "must" in message, message
-    assert any(text in message for text in descriptions(value)), message
+    except Exception as caught:
+        message = str(caught)
+        if not isinstance(caught, error):
+            return f"raises {caught!r}, not {error.__name__}"
+    else:
+        return "is accepted"
+    if argument not in message or "must" not in message:
+        return f"does not say what of {argument} must hold: {message}"
+    if not any(text in message for text in descriptions(value)):
+        return f"does not say what was given: {message}"
+    return None
 
 
 def descriptions(value):
