@@ -6,8 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import stored
 from claims import claim  # noqa: F401 - a fixture
 from hypothesis import settings
+from validation import Recorder
 
 import ropedyn as rd
 
@@ -16,6 +18,14 @@ settings.register_profile("ropedyn", max_examples=40, deadline=None, derandomize
 settings.register_profile("search", max_examples=1500, deadline=None)
 settings.load_profile("ropedyn")
 
+LONGEST = (
+    "test_c_tests_pass",
+    "test_code_of_an_effect_runs_only",
+    *(f"test_notebook_runs[{name}]" for name in ("accuracy", "time", "effects")),
+    "test_notebook_runs",
+    "test_figures_are_drawn",
+)
+"""Names of tests of seconds, the longest first."""
 EPS = float(np.finfo(float).eps)
 LENGTH, BENDING, MASS = 1.35, 54.626, 0.13725
 """Of the beam in the reference files [m, N m^2, kg]."""
@@ -44,6 +54,52 @@ EVERYTHING = rd.Scene(
     ],
 )
 """Every coordinate moves, and what stands on the rope is held, springs back, weighs and bends."""
+
+
+def pytest_configure(config):
+    config.pluginmanager.register(Recorder(), "claims")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config, items):
+    """Let every worker begin with its share of the longest tests: it is given an even part."""
+    workers = getattr(config, "workerinput", {"workercount": 1})["workercount"]
+    long = sorted((item for item in items if rank(item) is not None), key=rank)
+    rest = [item for item in items if rank(item) is None]
+    dealt, left = [], len(items)
+    for k in range(workers):
+        part = left // (workers - k)
+        left -= part
+        own = long[k::workers]
+        dealt += own + rest[: part - len(own)]
+        del rest[: part - len(own)]
+    if len(dealt) == len(items):
+        items[:] = dealt
+
+
+def rank(item):
+    """Place among the longest tests, or None."""
+    return next((k for k, name in enumerate(LONGEST) if name in item.name), None)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Tell stored references whether the test is of a large sample."""
+    stored.SESSION.large = item.get_closest_marker("slow") is not None
+
+
+def pytest_sessionfinish(session):
+    """Write the references that were computed, or hand them to the process that does."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["references"] = stored.SESSION.used
+    elif stored.SESSION.used:
+        stored.write(whole=not session.config.invocation_params.args)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """Take the references of a worker."""
+    stored.merge(getattr(node, "workeroutput", {}).get("references", {}))
 
 
 def slow(*values):

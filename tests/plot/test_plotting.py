@@ -22,6 +22,7 @@ def model():
     return rd.Scene(rope, tension=100.0, damping=rd.StiffnessDamping(1e-4)).compile(elements=16)
 
 
+@pytest.fixture(scope="module")
 def answers(model):
     frf = model.frf(np.linspace(1, 200, 400), drive=("z", 0.3), response=[("z", 0.5)])
     return {
@@ -53,17 +54,17 @@ def answers(model):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_plot_returns_labelled_axes(model, name):
-    answer, xlabel, ylabel = answers(model)[name]
+def test_plot_returns_labelled_axes(answers, name):
+    answer, xlabel, ylabel = answers[name]
     ax = answer.plot()
     assert (ax.get_xlabel(), ax.get_ylabel()) == (xlabel, ylabel)
     assert ax.get_title()
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_plot_draws_into_given_axes(model, name):
+def test_plot_draws_into_given_axes(answers, name):
     ax = Figure().subplots()
-    assert answers(model)[name][0].plot(ax) is ax
+    assert answers[name][0].plot(ax) is ax
     assert ax.lines or ax.collections or ax.patches
 
 

@@ -2,12 +2,16 @@
 
 import subprocess
 import sys
-from pathlib import Path
+
+from validation import PAGE, ROOT, differences
 
 
-def test_validation_page_is_up_to_date():
-    script = Path(__file__).parent.parent / "validation.py"
-    run = subprocess.run(
-        [sys.executable, script, "--check"], capture_output=True, text=True, check=False
-    )
-    assert run.returncode == 0, run.stderr
+def test_validation_page_is_up_to_date(request):
+    if str(ROOT / "tests") in (str(ROOT / each) for each in request.config.args):
+        # this run has collected every claim
+        claims = request.config.pluginmanager.get_plugin("claims")
+        assert list(differences(claims, PAGE.read_text(encoding="utf-8"))) == []
+    else:
+        check = [sys.executable, ROOT / "tests" / "validation.py", "--check"]
+        run = subprocess.run(check, capture_output=True, text=True, check=False)
+        assert run.returncode == 0, run.stderr

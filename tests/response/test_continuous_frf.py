@@ -12,7 +12,7 @@ from exact_chain import DIGITS, condition, omega_of, relative
 from exact_roots import continuum
 from exact_span import Law
 from random_scene import random_spans
-from spans import BOUND, ENOUGH, SCENES, UNIT, WHOLE, errors
+from spans import BOUND, SCENES, UNIT, WHOLE, errors
 
 import ropedyn as rd
 
@@ -263,9 +263,7 @@ def sample():
                 continue
             (h,) = exact.receptance(omega_of(f), drive, [response])
             error = relative(frf.value[0, 0], h)
-            hard = 1.0
-            if error > ENOUGH:
-                hard = condition(exact, omega_of(f), drive, response)
+            hard = condition(exact, omega_of(f), drive, response)
         found.append((seed, error, frf.rounding_error[0, 0], hard, drive == response))
     return found
 

@@ -1,5 +1,6 @@
 """The loss of digits of the assembled path, which exists, and that it is known to the answers."""
 
+import functools
 import math
 import re
 
@@ -49,6 +50,7 @@ def clamped_frequency(elements, near):
         return float(mpmath.sqrt(lam * unit) / (2 * mpmath.pi))
 
 
+@functools.cache
 def digits_lost(elements):
     """Relative error of f1 of the clamped chain, the worst of three neighbouring numbers."""
     worst = 0.0

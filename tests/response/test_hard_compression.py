@@ -1,13 +1,13 @@
 """Responses of ropes under compression, to 1e-12 of the chain's own critical load and beyond."""
 
 import math
-from functools import cache
 
 import mpmath
 import pytest
 from conftest import slow
 from exact_chain import Exact, error_over_condition, omega_of
 from mpmath import mpf
+from stored import stored
 from test_hard_resonances import secant
 
 import ropedyn as rd
@@ -22,7 +22,7 @@ def pushed(element, n, load):
     return rd.Scene(ROPE, tension=-load).compile(elements=n, element=element)
 
 
-@cache
+@stored
 def critical_load(element, n):
     """Load at which the chain itself loses its stiffness [N]: a zero of 1/h at rest.
 
@@ -54,7 +54,7 @@ def test_response_next_to_and_beyond_the_critical_load(share, n, element, claim)
     model = pushed(element, n, float(critical_load(element, n) * mpf(share)))
     claim(
         max(
-            error_over_condition(model, f, ("z", n // 2), enough=2e-15, digits=40)[0]
+            error_over_condition(model, f, ("z", n // 2), digits=40)[0]
             for f in (0.0, 0.01, 5.0, 300.0)
         )
     )
@@ -108,9 +108,7 @@ def test_element_next_to_its_own_critical_load_keeps_its_digits(
     worst = 0.0
     for f in (0.0, 1.0, 50.0, 500.0):
         for response in (("z", node), other):
-            error, covered = error_over_condition(
-                model, f, ("z", node), response, enough=2e-15, digits=40
-            )
+            error, covered = error_over_condition(model, f, ("z", node), response, digits=40)
             assert covered <= 1, "rounding_error is no bound"
             worst = max(worst, error)
     claim(worst)

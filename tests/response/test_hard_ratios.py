@@ -31,7 +31,7 @@ RATIOS = {
 def worst(model, nodes, coordinates=("z", "beta"), frequencies=FREQUENCIES):
     """Largest error / condition of drive points."""
     return max(
-        error_over_condition(model, f, (c, node), enough=2e-15)[0]
+        error_over_condition(model, f, (c, node))[0]
         for f in frequencies
         for node in nodes
         for c in coordinates

@@ -19,6 +19,7 @@ from exact_scene import (
     standing,
 )
 from mpmath import mpf
+from stored import stored
 
 import ropedyn as rd
 
@@ -271,6 +272,7 @@ class Exact:
                             beside[node - 1][m][k] = mpf(0)
         return diagonal, beside, masks
 
+    @stored
     def receptance(self, omega, drive, responses):
         """Displacements at (coordinate, node) per unit force at (coordinate, node)."""
         D, beside, masks = self.assembled(omega)
@@ -302,6 +304,7 @@ def omega_of(f):
     return 2 * mpmath.pi * mpf(f)
 
 
+@stored
 def response(exact, f, drive, at):
     """The response at (coordinate, node) per unit force at (coordinate, node); f in Hz.
 
@@ -324,14 +327,17 @@ def relative(value, exact):
     return float(abs(mpmath.mpmathify(complex(value)) / exact - 1))
 
 
+@stored
 def condition(exact, omega, drive, response):
     """1 + the sum of |d ln h/d ln p| over p: section, tension, springs, inertia, dashpots.
 
     What a relative change of 1 in each of the parts of the dynamic stiffness does to the
-    answer h, to first order, by differences of 1e-20.
+    answer h, to first order, by differences of 1e-20. What does not move at all has none: 1.
     """
     step = mpf(10) ** -20
     (h,) = exact.receptance(omega, drive, [response])
+    if h == 0:
+        return 1.0
     total = mpf(1)
     for part in range(4 + dragged(exact.scene)):
         nudge = tuple(1 + step * (k == part) for k in range(5))
@@ -340,7 +346,7 @@ def condition(exact, omega, drive, response):
     return float(total)
 
 
-def error_over_condition(model, f, drive, response=None, *, enough=0.0, digits=DIGITS):
+def error_over_condition(model, f, drive, response=None, *, digits=DIGITS):
     """Error of a response of the sweep over the condition of the answer.
 
     Parameters
@@ -350,8 +356,6 @@ def error_over_condition(model, f, drive, response=None, *, enough=0.0, digits=D
         [Hz].
     drive, response : (coordinate, node)
         The response is the driven coordinate unless one is given.
-    enough : float
-        An error below this is returned itself: its condition, 1 at least, costs the most.
     digits : int
         Of the reference.
 
@@ -376,6 +380,4 @@ def error_over_condition(model, f, drive, response=None, *, enough=0.0, digits=D
         (h,) = exact.receptance(omega_of(f), drive, [response])
         error = relative(frf.value[0, 0], h)
         covered = error / frf.rounding_error[0, 0] if error else 0.0
-        if error > enough:
-            error /= condition(exact, omega_of(f), drive, response)
-    return error, covered
+        return error / condition(exact, omega_of(f), drive, response), covered

@@ -5,11 +5,13 @@ on the real axis; its zeros are the eigenvalues, as often as they are repeated.
 """
 
 import dataclasses
+from math import log10
 
 import mpmath
 from exact_chain import DIGITS
 from exact_span import Continuum, coupled
 from mpmath import mpf
+from stored import stored
 
 KNOWN = mpf(10) ** -30
 """Relative: what an eigenvalue is known to."""
@@ -30,14 +32,24 @@ def eigenvalue(exact, near, within=1e-6):
         not change its sign within 1e-30 of where it leads.
     """
     with mpmath.workdps(DIGITS):
-        near = mpf(near)
-        value = _secant(exact.determinant, near, near * (1 + mpf(10) ** -12))
-        if abs(value / near - 1) > within:
+        value = _zero(exact, rounded(near, within))
+        if abs(value / mpf(near) - 1) > within:
             raise ValueError(f"the eigenvalue next to {float(near)!r} is at {float(value)!r}")
-        low, high = (exact.determinant(value * (1 + side * KNOWN)) for side in (-1, 1))
-        if not low * high < 0:
-            raise ValueError(f"there is no simple eigenvalue within 1e-30 of {float(value)!r}")
         return value
+
+
+def rounded(near, within):
+    """Return a double to a tenth of what it is right to: the same on any machine."""
+    return near if isinstance(near, mpf) else mpf(mpmath.nstr(mpf(near), 1 + round(-log10(within))))
+
+
+@stored
+def _zero(exact, near):
+    value = _secant(exact.determinant, near, near * (1 + mpf(10) ** -12))
+    low, high = (exact.determinant(value * (1 + side * KNOWN)) for side in (-1, 1))
+    if not low * high < 0:
+        raise ValueError(f"there is no simple eigenvalue within 1e-30 of {float(value)!r}")
+    return value
 
 
 def _secant(function, a, b, steps=40):
@@ -53,10 +65,11 @@ def _secant(function, a, b, steps=40):
 def frequency(exact, near, within=1e-6):
     """Return the natural frequency next to a good one [Hz], as `eigenvalue` does."""
     with mpmath.workdps(DIGITS):
-        square = (2 * mpmath.pi * mpf(near)) ** 2
+        square = (2 * mpmath.pi * rounded(near, within)) ** 2
         return mpmath.sqrt(eigenvalue(exact, square, within)) / (2 * mpmath.pi)
 
 
+@stored
 def sensitivity(exact, value):
     """Return |lambda| + the sum of |d lambda/d ln p| over p = section, tension, springs.
 
@@ -84,7 +97,12 @@ def cluster(exact, near, within=1e-3, points=32):
     sums of powers into the polynomial that has the eigenvalues as zeros.
     """
     with mpmath.workdps(DIGITS):
-        near = mpf(near)
+        return _cluster(exact, rounded(near, within / 10), within, points)
+
+
+@stored
+def _cluster(exact, near, within, points):
+    with mpmath.workdps(DIGITS):
         radius = abs(near) * within
         angle = [2 * mpmath.pi * j / points for j in range(points)]
         value = [exact.determinant(near + radius * mpmath.expj(a)) for a in angle]
@@ -136,8 +154,13 @@ def count(exact, low, high, arcs=16):
     Along the upper half of the circle over them the determinant turns by pi for each zero. It is
     followed with a few digits, arc by arc, each halved until neither half turns it by a radian.
     """
+    return _count(exact, rounded(low, 1e-3), rounded(high, 1e-3), arcs)
+
+
+@stored
+def _count(exact, low, high, arcs):
     with mpmath.workdps(15):
-        centre, radius = (mpf(low) + mpf(high)) / 2, (mpf(high) - mpf(low)) / 2
+        centre, radius = (low + high) / 2, (high - low) / 2
 
         def value(at):
             return exact.determinant(centre + radius * mpmath.expjpi(at))

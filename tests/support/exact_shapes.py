@@ -5,13 +5,15 @@ the force stands where the mode does not move.
 """
 
 import dataclasses
+import functools
 import itertools
 
 import mpmath
 import numpy as np
 from exact_scene import CHANNEL, inertia_of, parts_at, places, rope_at, section_of, standing
-from exact_span import FORCE, Law, backward
+from exact_span import FORCE, Continuum, Law, backward
 from mpmath import mpf
+from stored import stored
 
 DIGITS = 90
 NEAR = mpf(1) + mpf(10) ** -30
@@ -20,30 +22,36 @@ INTERVALS, COARSE = 256, 16
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
 
 
+@dataclasses.dataclass
 class Mode:
-    """Motion and forces of an undamped mode.
+    """Motion and forces of an undamped mode of a `Continuum`."""
 
-    Attributes
-    ----------
-    stations : list of float
-        [m].
-    along : dict of ndarray, shape (spans, INTERVALS + 1)
-        By coordinate and by force.
-    """
+    exact: Continuum
+    eigenvalue: mpf
 
-    def __init__(self, exact, eigenvalue):
-        scene, c = exact.scene, exact.coordinates
-        self.exact = exact
-        self.stations = sorted({0.0, scene.rope.length, *places(scene)})
+    @functools.cached_property
+    def stations(self):
+        """Where spans meet [m]."""
+        scene = self.exact.scene
+        return sorted({0.0, scene.rope.length, *places(scene)})
+
+    @functools.cached_property
+    def middles(self):
+        """Places inside the spans [m]."""
+        return [(a + b) / 2 for a, b in itertools.pairwise(self.stations)]
+
+    @functools.cached_property
+    def along(self):
+        """By coordinate and by force: arrays of shape (spans, INTERVALS + 1)."""
+        scene, c = self.exact.scene, self.exact.coordinates
         force = {k: f for f, k in FORCE.items()}
         names = [*c, *(force[k] for k in c)]
         with mpmath.workdps(DIGITS):
-            ends = self._right_ends(names, eigenvalue)
-            self.middles = [(a + b) / 2 for a, b in itertools.pairwise(self.stations)]
-            laws = [Law(scene, c, 1, 1, -eigenvalue, at=at) for at in self.middles]
+            ends = self._right_ends(names, self.eigenvalue)
+            laws = [Law(scene, c, 1, 1, -self.eigenvalue, at=at) for at in self.middles]
             lengths = [mpf(b) - mpf(a) for a, b in itertools.pairwise(self.stations)]
             spans = [_carried(*span) for span in zip(laws, lengths, ends)]
-        self.along = {
+        return {
             name: np.array([[float(y[k]) for y in span] for span in spans])
             for k, name in enumerate(names)
         }
@@ -68,13 +76,19 @@ class Mode:
         -------
         ndarray, shape (places, coordinates)
         """
+        return np.array(self._shape(points))
+
+    @stored
+    def _shape(self, points):
         return self._drawn(points) / self._largest(points)
 
+    @stored
     def modal_mass(self, points):
         """Of the shape at so many intervals [kg, kg m^2]."""
         _, kinetic = self._stored()
         return sum(kinetic.values()) / self._largest(points) ** 2
 
+    @stored
     def energy(self):
         """Fractions of strain energy by what stores it, and of kinetic energy by coordinate."""
         return {k: v / sum(kind.values()) for kind in self._stored() for k, v in kind.items()}

@@ -36,6 +36,7 @@ from exact_scene import (
     standing,
 )
 from mpmath import mpf
+from stored import stored
 
 import ropedyn as rd
 
@@ -149,6 +150,7 @@ class Continuum:
     nudge: tuple[mpf, ...] = (mpf(1),) * 5
     """Times section, tension, springs, inertia, dashpots: what the condition of an answer asks."""
 
+    @stored
     def receptance(self, omega, drive, responses):
         """Motion, or internal force, at points (name, x) per unit force at (coordinate, x)."""
         with mpmath.extradps(GUARD):

@@ -4,6 +4,8 @@ Eigenvalues omega^2 [rad^2/s^2] at the present mpmath precision; numbers of a ro
 exact.
 """
 
+import itertools
+
 import mpmath
 from mpmath import mpf
 
@@ -54,12 +56,13 @@ class RigidChain:
         self.tau, self.kappa = T * a**2 / B, J / (m * a**2)
         self.meet = {"clamped": self._clamped, "free": self._free}[ends]
 
-    def crossings(self, low, high):
-        """Return how many of the two determinants change their sign between two eigenvalues."""
-        return sum(
-            mpmath.sign(self.determinant(low, odd)) != mpmath.sign(self.determinant(high, odd))
-            for odd in (False, True)
-        )
+    def crossings(self, eigenvalues):
+        """Return how many of the two determinants change their sign between each and the next."""
+        signs = [
+            [mpmath.sign(self.determinant(value, odd)) for odd in (False, True)]
+            for value in eigenvalues
+        ]
+        return [sum(a != b for a, b in zip(*pair)) for pair in itertools.pairwise(signs)]
 
     def determinant(self, eigenvalue, odd):
         """Return the real determinant of the symmetric or antisymmetric waves at the end."""

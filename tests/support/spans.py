@@ -15,8 +15,6 @@ RELATIVE = 1e-13
 stations."""
 BOUND = 1e-12
 """Of the error over the condition of the answer."""
-ENOUGH = 2e-14
-"""An error below this is taken as it is: its condition, 1 at least, costs the reference most."""
 UNIT = BENDING / LENGTH**2
 LAID = rd.Rope(
     1.2,
@@ -115,7 +113,7 @@ def is_counted(scene, modes, coordinate="z"):
     return exact_roots.count(exact, low, high) == len(found) - 1
 
 
-def errors(scene, f, drive, responses=None, *, enough=ENOUGH):
+def errors(scene, f, drive, responses=None):
     """Errors of responses over their condition; `rounding_error` must bound each."""
     responses = responses or [drive]
     frf = scene.compile().frf(f, drive=drive, response=responses)
@@ -127,7 +125,5 @@ def errors(scene, f, drive, responses=None, *, enough=ENOUGH):
         for k, (response, h) in enumerate(zip(responses, values)):
             error = relative(frf.value[k, 0], h)
             assert error <= frf.rounding_error[k, 0]
-            if error > enough:
-                error /= condition(exact, omega_of(f), drive, response)
-            found.append(error)
+            found.append(error / condition(exact, omega_of(f), drive, response))
     return found
