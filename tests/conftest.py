@@ -2,6 +2,8 @@
 
 import json
 import math
+import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,10 @@ from hypothesis import settings
 from validation import Recorder
 
 import ropedyn as rd
+
+# the tests start Python some sixty times: let it compile once what each of them imports
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # the same examples in every run; a slow machine is no failure
 settings.register_profile("ropedyn", max_examples=40, deadline=None, derandomize=True)
