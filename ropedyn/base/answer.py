@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from . import check
+from . import check, extra
 from .atomic import replacing
 from .drawing import draw
 from .errors import SceneError
@@ -106,6 +107,10 @@ class Frozen:
 
     def __post_init__(self) -> None:
         freeze(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return a copy of what is kept: a thread may compute more while it is pickled."""
+        return dict(vars(self))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -204,10 +209,6 @@ class Answer(Frozen):
         >>> dataset["frequency"].dims, dataset["frequency"].attrs["units"]
         (('mode',), 'Hz')
         """
-        import json
-
-        from .extra import xarray
-
         variables: dict[str, Any] = {}
         attributes: dict[str, Any] = {KIND: type(self).__name__}
         for item, value in leaves(self):
@@ -223,7 +224,7 @@ class Answer(Frozen):
             else:
                 # a leading axis that was not asked for is not there
                 variables[item.name] = (names[len(names) - np.ndim(value) :], value, unit)
-        return xarray().Dataset(variables, attrs=attributes)
+        return extra.xarray().Dataset(variables, attrs=attributes)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the answer as a netCDF file, whole or not at all.
@@ -251,10 +252,8 @@ class Answer(Frozen):
         ...     rd.load(Path(folder, "modes.nc")).frequency.round(9)
         array([25., 50.])
         """
-        from .extra import netcdf
-
         check.path(path)
-        netcdf()
+        extra.netcdf()
         dataset = self.to_xarray()
         # netCDF knows no complex numbers: real and imaginary parts along a last axis
         for name in [n for n, v in dataset.data_vars.items() if np.iscomplexobj(v)]:
@@ -303,10 +302,8 @@ def load(path: str | os.PathLike[str]) -> Answer:
     ...     type(rd.load(Path(folder, "modes.nc"))).__name__
     'Modes'
     """
-    from .extra import netcdf
-
     file = check.path(path)
-    xarray = netcdf()
+    xarray = extra.netcdf()
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
     try:
@@ -341,8 +338,6 @@ def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
 
 
 def _rebuilt(kind: type[Any], dataset: Any) -> Any:
-    import json
-
     arguments: dict[str, Any] = {}
     for item in fields(kind):
         if "transient" in item.metadata:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import csv
+import html
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import check
+from . import check, extra
 from .errors import SceneError
 
 if TYPE_CHECKING:
@@ -90,8 +93,6 @@ class Table:
         return "\n".join([self.title, lines[0], rule, *lines[1:]])
 
     def _repr_html_(self) -> str:
-        import html
-
         head = "".join(f"<th>{html.escape(c)}</th>" for c in self.columns)
         body = "".join(
             "<tr>" + "".join(f"<td>{html.escape(_text(v))}</td>" for v in row) + "</tr>"
@@ -112,9 +113,6 @@ class Table:
         thin,0.1
         thick,0.25
         """
-        import csv
-        import io
-
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(self.columns)
@@ -148,9 +146,7 @@ class Table:
         >>> list(table.to_dataframe()["rope"])
         ['thin', 'thick']
         """
-        from .extra import pandas
-
-        return pandas().DataFrame(list(self.rows), columns=list(self.columns))
+        return extra.pandas().DataFrame(list(self.rows), columns=list(self.columns))
 
 
 def numbers(values: np.ndarray[Any, Any]) -> tuple[float | None, ...]:
