@@ -6,6 +6,7 @@ from typing import Any
 
 from ..base import check
 from ..base.errors import SceneError
+from ..scene.end import end_of
 from ..scene.parts.broken_wire import BrokenWire
 from .compiled import Compiled
 from .port import Point
@@ -39,8 +40,6 @@ def points(
 
 def _end(model: Compiled, given: Any, name: str) -> Any:
     """Return an end that is moved: it must hold the coordinate."""
-    from ..scene.end import end_of
-
     _, number, coordinate = found = check.end(given, name, model.coordinates)
     if coordinate not in end_of(model.scene.ends[number]).term().held:
         raise SceneError(
