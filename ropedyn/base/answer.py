@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-KIND = "ropedyn"
-"""Attribute of a file that says which answer it holds."""
+KIND = "ropedyn"  # Attribute of a file that says which answer it holds.
 PREFIX = "ropedyn_"
 """Attributes that hold fields begin so: netCDF gives some names, as "coordinates", a meaning."""
 
@@ -98,8 +97,7 @@ def freeze(thing: Any) -> None:
                 array.flags.writeable = False
 
 
-TRANSIENT = {"transient": True}
-"""Metadata of a field that no file keeps: it has a default."""
+TRANSIENT = {"transient": True}  # Metadata of a field that no file keeps: it has a default.
 
 
 class Frozen:

@@ -18,14 +18,11 @@ from .unit import END, OF_FORCE, WIRE, is_quantity, magnitude
 COORDINATES = ("x", "z", "alpha", "beta")
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
 
-NEAR = 1e-9
-"""Positions closer than this part of the length are one node."""
+NEAR = 1e-9  # Positions closer than this part of the length are one node.
 
-MOST_WIRES = 1_000_000
-"""A scene that is not known yet may have so many broken wires."""
+MOST_WIRES = 1_000_000  # A scene that is not known yet may have so many broken wires.
 
-HIGHEST = 1e150
-"""Frequencies [Hz] are at most this, so that their squares do not overflow."""
+HIGHEST = 1e150  # Frequencies [Hz] are at most this, so that their squares do not overflow.
 
 SIGNS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "any": ("", lambda value: True),

@@ -38,14 +38,10 @@ def in_turns(
 class Times(NamedTuple):
     """Processor times of ways to an answer, each shape (ways,) [s]; NaN where there is none."""
 
-    compile_seconds: Real
-    """Median of what compiles."""
-    lower_quartile: Real
-    """Of what asks."""
-    seconds: Real
-    """Median of the same."""
-    upper_quartile: Real
-    """Of the same."""
+    compile_seconds: Real  # median of what compiles
+    lower_quartile: Real  # of what asks
+    seconds: Real  # median of the same
+    upper_quartile: Real  # of the same
 
 
 def timed(
@@ -60,8 +56,7 @@ def timed(
     return Times(np.array([np.median(each) for each in compiled]), lower, median, upper)
 
 
-_NEVER = (np.array([np.nan]), np.array([np.nan]))
-"""Times of what has no answer."""
+_NEVER = (np.array([np.nan]), np.array([np.nan]))  # What has no answer has these times.
 
 
 def _seconds(call: Callable[[], Any]) -> float:

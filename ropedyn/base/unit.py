@@ -22,10 +22,8 @@ QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """How often each kind of response differentiates the displacement."""
 MOTIONS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """How often each kind of motion differentiates the displacement."""
-WIRE = "wire"
-"""A response of this name is the tip of a broken wire, by its number among them."""
-END = "end"
-"""A drive of this name is the motion of an end, by its number."""
+WIRE = "wire"  # A response of this name is the tip of a broken wire, by its number among them.
+END = "end"  # A drive of this name is the motion of an end, by its number.
 
 
 def place(point: tuple[Any, ...]) -> str:

@@ -12,16 +12,14 @@ from numpy.typing import NDArray
 from ..base.array import Flags, Index, Real
 from ..base.check import COORDINATES
 
-KINDS = ("difference", "rigid", "tensed", "continuous")
-"""Kinds of element, in the core's order."""
+KINDS = ("difference", "rigid", "tensed", "continuous")  # Kinds of element, in the core's order.
 
 TENSED, CONTINUOUS = KINDS.index("tensed"), KINDS.index("continuous")
 
 ATTACHED = ("resonator", "broken wire")
 """Kinds of structure that a node carries, in the core's order."""
 
-CARRIED = {kind: f"{kind} mass" for kind in ATTACHED}
-"""Names of the kinetic energy of each."""
+CARRIED = {kind: f"{kind} mass" for kind in ATTACHED}  # Names of the kinetic energy of each.
 
 CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
 """Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
@@ -35,26 +33,16 @@ class Chain(NamedTuple):
     """
 
     kind: int
-    coordinate: NDArray[np.int32]
-    """(width,) numbers of the coordinates."""
-    length: Real
-    """(distinct,) [m]."""
-    tension: Real
-    """(distinct,) [N]."""
-    flexibility: Real
-    """(distinct, 3, 3) of the section: axial, torsion, bending."""
-    first: NDArray[np.int32]
-    """(stretches,) first node, increasing from 0 to the last node."""
-    element: NDArray[np.int32]
-    """(stretches - 1,) which distinct element stands right of each node."""
-    mass: Real
-    """(terms, width, width)."""
-    stiffness: Real
-    """(terms, width, width)."""
-    held: NDArray[np.uint8]
-    """(terms, width)."""
-    term: NDArray[np.int32]
-    """(stretches,) which node term."""
+    coordinate: NDArray[np.int32]  # (width,) numbers of the coordinates
+    length: Real  # (distinct,) [m]
+    tension: Real  # (distinct,) [N]
+    flexibility: Real  # (distinct, 3, 3) of the section: axial, torsion, bending
+    first: NDArray[np.int32]  # (stretches,) first node, increasing from 0 to the last node
+    element: NDArray[np.int32]  # (stretches - 1,) which distinct element stands right of each node
+    mass: Real  # (terms, width, width)
+    stiffness: Real  # (terms, width, width)
+    held: NDArray[np.uint8]  # (terms, width)
+    term: NDArray[np.int32]  # (stretches,) which node term
     hinge: Real | None = None
     """(terms, width) compliance between the node and the element on its right, infinite where
     free; None where nothing is hinged."""
@@ -70,12 +58,10 @@ class Chain(NamedTuple):
     attached_kind: NDArray[np.int32] | None = None
     """(attached,) kinds of the structures that nodes carry, see csrc/chain/attached.h; None where
     there are none, as the rest of them."""
-    attached_term: NDArray[np.int32] | None = None
-    """(attached,) node term that carries it."""
+    attached_term: NDArray[np.int32] | None = None  # (attached,) node term that carries it
     attached_row: Real | None = None
     """(attached, 2, width) displacement and rotation of its foot per motion of the node."""
-    attached_value: Real | None = None
-    """(attached, 4) its numbers, its damping last."""
+    attached_value: Real | None = None  # (attached, 4) its numbers, its damping last
 
     @property
     def nodes(self) -> int:

@@ -33,11 +33,9 @@ INERTIA = {
 }
 """Property of the rope that is the inertia per length of each coordinate."""
 
-ROUNDING = 4 * np.finfo(float).eps
-"""Positions are known to so much of the rope's length."""
+ROUNDING = 4 * np.finfo(float).eps  # Positions are known to so much of the rope's length.
 
-MOST_RADIANS = 1e10
-"""Of the boundary layers of a stiff string, L sqrt(T/B), in a continuous span."""
+MOST_RADIANS = 1e10  # A continuous span has boundary layers, L sqrt(T/B), of at most this.
 
 
 def compile_scene(
@@ -166,16 +164,11 @@ def _positions(stations: Real, counts: Index) -> Real:
 class Elements(NamedTuple):
     """The distinct elements in the order they come in."""
 
-    length: Real
-    """(distinct,) [m]."""
-    flexibility: Real
-    """(distinct, 3, 3) of the section."""
-    inertia: Real
-    """(distinct, width) per length [kg/m, kg m]."""
-    which: NDArray[np.int32]
-    """(spans,) which of them each span has."""
-    sag: Real | None
-    """(distinct,) weight per length over tension [1/m], None without gravity."""
+    length: Real  # (distinct,) [m]
+    flexibility: Real  # (distinct, 3, 3) of the section
+    inertia: Real  # (distinct, width) per length [kg/m, kg m]
+    which: NDArray[np.int32]  # (spans,) which of them each span has
+    sag: Real | None  # (distinct,) weight per length over tension [1/m], None without gravity
 
 
 def _distinct(

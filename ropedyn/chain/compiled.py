@@ -23,14 +23,11 @@ if TYPE_CHECKING:
     import scipy.sparse as sp
 
 
-EXACT = ("tensed", "continuous")
-"""Elements that can be cut anywhere."""
+EXACT = ("tensed", "continuous")  # Elements that can be cut anywhere.
 
-MOST_STEPS = 10_000_000
-"""A walk over continuous spans has at most so many steps."""
+MOST_STEPS = 10_000_000  # A walk over continuous spans has at most so many steps.
 
-MOST_POINTS = 1_000_000
-"""An answer is given at so many parts of a continuous element at most."""
+MOST_POINTS = 1_000_000  # An answer is given at so many parts of a continuous element at most.
 
 
 class Triples(NamedTuple):

@@ -15,8 +15,7 @@ from ..base.errors import SolveError
 from ..base.unit import END, OF_FORCE
 from .chain import Chain
 
-MOST_PIECES = 1000
-"""That a compressed element is cut into."""
+MOST_PIECES = 1000  # That a compressed element is cut into.
 
 Point = tuple[str, float]
 
@@ -24,10 +23,8 @@ Point = tuple[str, float]
 class Ports(NamedTuple):
     """Points as the core takes them; see csrc/chain/ports.h."""
 
-    node: NDArray[np.int32]
-    """(points,) left node."""
-    row: Real
-    """(points, 2, width) displacement per displacement of the nodes."""
+    node: NDArray[np.int32]  # (points,) left node
+    row: Real  # (points, 2, width) displacement per displacement of the nodes
     force: Real | None
     """(points, width) share of the internal force at the right end of the element, or None."""
 

@@ -45,7 +45,7 @@ from .compiled import Compiled
 _Any = TypeVar("_Any")
 
 STEP = 2.0**-100
-"""Of an imaginary step: its square is nothing beside 1, so that derivatives are exact."""
+"""The square of this imaginary step is nothing beside 1: derivatives are exact."""
 
 ENTRIES = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])
 """Rows and columns of the entries of the section in the core's order: aa, tt, bb, at, ab, tb."""
@@ -58,11 +58,9 @@ STIFFNESS = {
 }
 """d/dp of the section's stiffness about its own axes (axial, torsion, bending)."""
 
-SECTION = STIFFNESS.keys() | {"lay_slope"}
-"""Properties of a rope that its section depends on."""
+SECTION = STIFFNESS.keys() | {"lay_slope"}  # Properties of a rope that its section depends on.
 
-GRAVITY = ("g", "inclination")
-"""Numbers of gravity."""
+GRAVITY = ("g", "inclination")  # Numbers of gravity.
 
 DENSITIES = tuple(dict.fromkeys(INERTIA.values()))
 """Properties of a rope that are inertia per length."""

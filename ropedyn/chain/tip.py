@@ -20,10 +20,8 @@ from .port import Point, locate
 class Tip(NamedTuple):
     """A tip: what is asked in its place."""
 
-    structure: int
-    """Of the model's chain."""
-    root: list[Point]
-    """The coordinates that move its root."""
+    structure: int  # of the model's chain
+    root: list[Point]  # the coordinates that move its root
 
 
 def is_tip(point: Point) -> bool:

@@ -28,8 +28,7 @@ FORCES: dict[str, tuple[type[Description], tuple[str, ...]]] = {
 }
 """Each kind of force, and its numbers in the order in which they follow the word."""
 
-ORDERS = {"auto": "auto", "search": None}
-"""Orders that are words."""
+ORDERS = {"auto": "auto", "search": None}  # Orders that are words.
 
 
 def words(text: str, option: str) -> list[str]:

@@ -20,10 +20,8 @@ from .curves import Curves
 from .files.formats import read
 
 ROWS = "response and frequency"
-AROUND = 41
-"""Lines that the median of the differences goes over: narrow peaks are few of them."""
-LEAST = 12
-"""Lines below which nothing is said."""
+AROUND = 41  # Lines that the median of the differences goes over: narrow peaks are few of them.
+LEAST = 12  # Lines below which nothing is said.
 
 
 @dataclass(frozen=True, eq=False)

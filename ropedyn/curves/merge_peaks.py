@@ -12,8 +12,7 @@ from ..base.errors import SceneError
 from .curves import Curves
 from .resonance import Resonances
 
-APART = 3.0
-"""Peaks that differ by less than so many standard uncertainties are one."""
+APART = 3.0  # Peaks that differ by less than so many standard uncertainties are one.
 
 
 class Merged(NamedTuple):

@@ -8,8 +8,7 @@ from typing import NamedTuple
 from ..base.errors import SceneError
 from ..base.unit import END, FORCE_UNIT, OF_FORCE, QUANTITIES, UNIT
 
-STANDARD_GRAVITY = 9.80665
-"""[m/s^2]"""
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
 SIZE = {
     "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048},
     "rad": {"rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "deg": math.pi / 180},
@@ -17,8 +16,7 @@ SIZE = {
     "N m": {"N.m": 1.0, "Nm": 1.0, "mN.m": 1e-3, "kN.m": 1e3},
 }
 """Units of each dimension in SI; the pound is 0.45359237 kg (1959)."""
-RATES = ("", "/s", "/s2")
-"""How often something is differentiated."""
+RATES = ("", "/s", "/s2")  # How often something is differentiated.
 EXAMPLES = '"m/N", "mm/s/N", "m/s^2/N", "g/N", "rad/(N m)"'
 
 
@@ -42,8 +40,7 @@ def _table() -> dict[str, Unit]:
     return rated | aliases | {"g": gravity, "gn": gravity}
 
 
-KNOWN = _table()
-"""Units that `side` knows, with their rates."""
+KNOWN = _table()  # Units that `side` knows, with their rates.
 
 
 def side(text: str) -> Unit | None:

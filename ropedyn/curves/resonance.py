@@ -15,13 +15,11 @@ from ..signal import one_mode
 
 LEVEL = 0.4
 """Lines as high as this part of a peak, and not below, are fitted: 2.3 half widths to each side."""
-SIDE = 4
-"""Lines to each side that are fitted at least, unless another peak is near."""
+SIDE = 4  # Lines to each side that are fitted at least, unless another peak is near.
 STANDING = 8.0
 """Prominence of a measured peak in standard deviations of the noise at least: what noise alone
 shows among a million lines."""
-GAIN = 50.0
-"""What a pole explains at least and a smooth curve does not, in variances of the noise."""
+GAIN = 50.0  # What a pole explains at least and a smooth curve does not, in variances of the noise.
 NEGATIVE = -3.0
 """Damping ratio of a measured peak in its standard errors at least: what rests does not grow."""
 

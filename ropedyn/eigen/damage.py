@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 
 STIFFNESSES = ("bending_stiffness", "torsional_stiffness", "axial_stiffness")
-COUPLED = 1e-9
-"""Less between two modes than this part of their own changes is rounding."""
+COUPLED = 1e-9  # Less between two modes than this part of their own changes is rounding.
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 SECTIONS = 9
 """An element has so many slopes (section, tension, length, sag) before those of its inertia."""
-SAG = 8
-"""Number of the slope of the sag among those of an element."""
+SAG = 8  # Number of the slope of the sag among those of an element.
 NOTHING = 1e-12
 """Less than this part of the largest change that a shape of its size could make is rounding."""
 

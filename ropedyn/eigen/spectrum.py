@@ -214,8 +214,7 @@ def _scale(model: Compiled, component: tuple[str, ...]) -> float:
     return float(np.clip(min(orders, default=1.0), 1e-200, 1e200))
 
 
-SOLVERS = {"sweep": _sweep, "lapack": _lapack}
-"""What finds the lowest modes of one component."""
+SOLVERS = {"sweep": _sweep, "lapack": _lapack}  # What finds the lowest modes of one component.
 
 
 def in_hertz(eigenvalue: Real) -> Real:

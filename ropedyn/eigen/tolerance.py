@@ -19,10 +19,9 @@ from ..chain.mesh_choice import Choice
 from ..scene.scene import Scene
 from .spectrum import count_component, distance, eigenvalue_of, in_hertz, spectrum
 
-NEAR = 0.05
-"""The chain that is chosen has so much more elements than one that fails, or one more."""
+NEAR = 0.05  # The chain that is chosen has so much more elements than one that fails, or one more.
 FARTHEST = 16
-"""Times as many elements as the last chain that failed: a small one predicts no better."""
+"""The next chain has at most so many times the elements of one that failed."""
 SECANTS = 4
 """Interpolations between a chain that fails and one that does not, before they are halved."""
 Component = tuple[str, ...]

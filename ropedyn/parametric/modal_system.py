@@ -19,13 +19,11 @@ from ..response.modal_sum import numbered_ratios
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having
 from ..signal.contour import clusters
 
-SLOPE_OF_TENSION = 6
-"""The slope by the tension is this one of an element, see `_core.sensitivity`."""
+SLOPE_OF_TENSION = 6  # The slope by the tension is this one of an element, see `_core.sensitivity`.
 GAUSS = 12
 """So many points in each piece of a span shorter than its waves integrate products of two shapes to
 rounding."""
-ROUNDING = 1e-12
-"""Couplings below this part of the largest that two modes can have are rounding."""
+ROUNDING = 1e-12  # Couplings below this part of the largest that two modes can have are rounding.
 RESONATOR = ATTACHED.index("resonator")
 
 

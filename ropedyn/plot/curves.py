@@ -20,8 +20,7 @@ from .figure import amplitudes, light_grid, plots
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LABELS = 32
-"""Height of the names of tongues [pt]."""
+LABELS = 32  # Height of the names of tongues [pt].
 
 
 @plots(Curves)

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 PAIR, ALONE = "C2", "C3"
 """Colours of peaks with a partner and without."""
-PHASES = (-180, -90, 0, 90, 180)
-"""Ticks of a phase [deg]."""
+PHASES = (-180, -90, 0, 90, 180)  # Ticks of a phase [deg].
 
 
 @plots(Comparison)

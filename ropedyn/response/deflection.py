@@ -113,10 +113,8 @@ def solve_static(
     )
 
 
-POINTS = 64
-"""A deflection is given at so many parts of each continuous span."""
-BLOCK = 4096
-"""One sweep reports the motion of so many nodes."""
+POINTS = 64  # A deflection is given at so many parts of each continuous span.
+BLOCK = 4096  # One sweep reports the motion of so many nodes.
 
 
 def _sweep(

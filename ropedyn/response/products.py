@@ -21,8 +21,7 @@ from .hamiltonian import Span, generator, hamiltonian
 from .harmonic import solve_harmonic
 from .span_waves import SpanWaves, rule
 
-MOST = 1 << 21
-"""So many numbers of a field are held at once."""
+MOST = 1 << 21  # So many numbers of a field are held at once.
 
 
 class Products(NamedTuple):

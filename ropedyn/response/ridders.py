@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 WIDEST, SHRINK, LEVELS = 0.02, 4.0, 12
 """The first step over the size of the number, by what it shrinks, and how often at most."""
-SETTLED = 1e-6
-"""An error estimated below this part of the largest derivative may be rounding."""
+SETTLED = 1e-6  # An error estimated below this part of the largest derivative may be rounding.
 
 
 def frf_difference(

@@ -17,8 +17,7 @@ from ..chain.reaction import at_start, first_left_end, tellers
 from ..scene import damping
 from .question import Question
 
-LANES = 16
-"""Frequencies that the sweep solves side by side."""
+LANES = 16  # Frequencies that the sweep solves side by side.
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 

@@ -11,18 +11,13 @@ import numpy as np
 from ..base.array import Complex, Flags, Index, Real
 from .hamiltonian import generator
 
-LONG = 0.5
-"""Below so many radians of every wave on a stretch their sum cancels."""
+LONG = 0.5  # Below so many radians of every wave on a stretch their sum cancels.
 APART = 1e3
 """Waves whose shapes, each coordinate in its unit, have a condition beyond this are one."""
-LEAST = 1e-12
-"""Shapes that are apart have a determinant above this."""
-SMALL = 0.1
-"""Below so many radians exp(s) - 1 is a series."""
-DEEP = 40.0
-"""What decays as exp(-s) is nothing beyond: 4e-18."""
-PANEL = 128
-"""One panel of Gauss points spans so many radians."""
+LEAST = 1e-12  # Shapes that are apart have a determinant above this.
+SMALL = 0.1  # Below so many radians exp(s) - 1 is a series.
+DEEP = 40.0  # What decays as exp(-s) is nothing beyond: 4e-18.
+PANEL = 128  # One panel of Gauss points spans so many radians.
 
 
 @dataclass(frozen=True, eq=False)

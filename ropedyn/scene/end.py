@@ -14,8 +14,7 @@ from .parts.part import Dashpot, PointMass, Spring
 STANDING = {"spring": Spring.kind, "dashpot": Dashpot.kind, "mass": PointMass.kind}
 """What can stand at an end, and the effect it is."""
 
-HELD_OR_FREE = ("held", "free")
-"""What an end can do to a coordinate."""
+HELD_OR_FREE = ("held", "free")  # What an end can do to a coordinate.
 
 
 class End(Description):

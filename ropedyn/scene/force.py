@@ -342,8 +342,7 @@ def is_sampled(force: Force) -> bool:
     return isinstance(force, Samples)
 
 
-KINDS = (Sine, Chirp, Step, Impulse)
-"""What users give beside arrays."""
+KINDS = (Sine, Chirp, Step, Impulse)  # What users give beside arrays.
 
 
 def forces(given: object, name: str, time: Real, unit: str = ANY) -> Force:

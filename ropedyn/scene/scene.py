@@ -54,8 +54,7 @@ _PROPERTIES = {
 }
 """What a rope never had that never had one of these effects."""
 
-_WEIGHTLESS = {"tension", "stretch", Gravity.kind}
-"""Without one of these effects there is no sag."""
+_WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
 
 
 def _checked_tension(tension: Any) -> float | Tension:

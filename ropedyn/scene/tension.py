@@ -57,10 +57,8 @@ class Tension(Description):
     ('tension', 'pulsating tension')
     """
 
-    pulsating: ClassVar[str] = "pulsating tension"
-    """Name of the effect."""
-    growing: ClassVar[str] = "mean stretching"
-    """Name of the effect."""
+    pulsating: ClassVar[str] = "pulsating tension"  # name of the effect
+    growing: ClassVar[str] = "mean stretching"  # name of the effect
 
     mean: float = number("N")
     _: KW_ONLY

@@ -22,12 +22,9 @@ Function = Callable[[Complex], Complex]
 """Takes points, shape (n,), and returns values, shape (..., n)."""
 ALONE, TOGETHER = 8, 32
 """Points of a circle around one pole, and around several."""
-RADIUS = 1 / 50
-"""Radius of a circle over the distance to the next pole: 50^-8 of that is seen."""
-ALIKE = 1e-5
-"""Poles that differ by this share are in one circle."""
-MOST = 1 << 21
-"""So many numbers are computed at a time."""
+RADIUS = 1 / 50  # Radius of a circle over the distance to the next pole: 50^-8 of that is seen.
+ALIKE = 1e-5  # Poles that differ by this share are in one circle.
+MOST = 1 << 21  # So many numbers are computed at a time.
 
 
 class Circles(NamedTuple):

@@ -12,8 +12,7 @@ from ..base.unit import QUANTITIES
 
 BROAD = 3.0
 """Half widths of a peak, damping ratio times frequency, on each side that a mode is fitted to."""
-FEWEST = 3
-"""So many lines at least are fitted: a mode and what all others add are two numbers."""
+FEWEST = 3  # So many lines at least are fitted: a mode and what all others add are two numbers.
 
 
 def residues(

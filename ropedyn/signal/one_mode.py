@@ -10,20 +10,13 @@ from ..base.array import Complex, Real
 
 POWERS = np.arange(3)
 """Powers of the numerator: a mode as accelerance has a square, so has a constant beside it."""
-UNKNOWN = 2 + 2 * len(POWERS)
-"""Pole and numerator are so many real unknowns."""
-LEAST = UNKNOWN // 2 + 2
-"""So few lines, each with two numbers, can be fitted."""
-STEPS = 20
-"""Gauss and Newton take so many steps at most."""
-SETTLED = 1e-10
-"""A step of the pole in half widths of the window after which there is none."""
-FARTHEST = 1.0
-"""The pole is no farther from the middle of the window, in its half widths."""
-WIDEST = 4.0
-"""A peak is no wider, in half widths of the window."""
-QUIETEST = 1e-3
-"""Noise of a line in that of the loudest at least, where it is said to have none."""
+UNKNOWN = 2 + 2 * len(POWERS)  # Pole and numerator are so many real unknowns.
+LEAST = UNKNOWN // 2 + 2  # So few lines, each with two numbers, can be fitted.
+STEPS = 20  # Gauss and Newton take so many steps at most.
+SETTLED = 1e-10  # A step of the pole in half widths of the window after which there is none.
+FARTHEST = 1.0  # The pole is no farther from the middle of the window, in its half widths.
+WIDEST = 4.0  # A peak is no wider, in half widths of the window.
+QUIETEST = 1e-3  # Noise of a line in that of the loudest at least, where it is said to have none.
 
 
 class OneMode(NamedTuple):

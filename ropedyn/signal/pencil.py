@@ -15,18 +15,12 @@ import numpy as np
 
 from ..base.array import Complex, Real
 
-MOST = 12
-"""So many modes at most are fitted together."""
-ROWS = 150
-"""The matrix whose column space tells the rates has so many rows at most."""
-PARTS = (1, 2, 4, 8)
-"""Modes are estimated from the first of so many parts of the record."""
-LEAST = 16
-"""A part has so many samples at least."""
-ROUNDS = 30
-"""Modes are refined in so many rounds at most."""
-EXACT = 1e-26
-"""Share of the energy that is left, at most, where more modes would fit rounding."""
+MOST = 12  # So many modes at most are fitted together.
+ROWS = 150  # The matrix whose column space tells the rates has so many rows at most.
+PARTS = (1, 2, 4, 8)  # Modes are estimated from the first of so many parts of the record.
+LEAST = 16  # A part has so many samples at least.
+ROUNDS = 30  # Modes are refined in so many rounds at most.
+EXACT = 1e-26  # Where less than this share of the energy is left, more modes would fit rounding.
 
 
 class DecayingModes(NamedTuple):

@@ -24,14 +24,11 @@ NODES = (15, 2411)
 UNITS = 164
 FRF, COHERENCE = 4, 6
 """Types of functions."""
-FREQUENCY = 18
-"""The type of an abscissa over frequency."""
+FREQUENCY = 18  # The type of an abscissa over frequency.
 MOTION = {8: 0, 11: 1, 12: 2}
 """How often the displacement is differentiated in each type of ordinate."""
-FORCE = (13, 9)
-"""Types of what a motion is divided by: excitation and reaction force."""
-UNSAID = (0, 1)
-"""Types of anything: unknown and general."""
+FORCE = (13, 9)  # Types of what a motion is divided by: excitation and reaction force.
+UNSAID = (0, 1)  # Types of anything: unknown and general.
 DIRECTIONS = ("scalar", "X", "Y", "Z", "RX", "RY", "RZ")
 """Directions by their codes without sign; R is rotation."""
 OWN = re.compile(r"ropedyn (?P<r>[a-z]+) (?P<rx>\S+) per (?P<d>[a-z]+) (?P<dx>\S+)$")
@@ -40,10 +37,8 @@ AVERAGES = re.compile(r"ropedyn averages (\S+)$")
 """The fifth line of a function that was written here."""
 MARK = re.compile(rb"(?=    -1(?:[\r\n]|\Z| {74}.))", re.DOTALL)
 """A line that opens or closes a dataset; the one pyuff looks for."""
-IEEE = 2
-"""Floating point format of a binary dataset 58."""
-LONGEST_LINE = 6
-"""The last line of a dataset may be filled up with so many numbers."""
+IEEE = 2  # Floating point format of a binary dataset 58.
+LONGEST_LINE = 6  # The last line of a dataset may be filled up with so many numbers.
 Fields = dict[str, Any]
 
 
@@ -202,8 +197,7 @@ def _state_bytes(file: Path, sizes: Sequence[int]) -> None:
 # --- responses as datasets ----------------------------------------------------------------------
 
 
-EVEN = 1e-13
-"""Frequencies nearer than this relative distance differ by rounding of start + k step."""
+EVEN = 1e-13  # Frequencies nearer than this relative distance differ by rounding of start + k step.
 CODE = {"x": 1, "z": 3, "alpha": 4, "beta": -5}
 """Directions: x along the rope and z of a right-handed system, where dz/dx turns against +Y."""
 

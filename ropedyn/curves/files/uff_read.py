@@ -188,8 +188,7 @@ def _averages(lines: Sequence[Located]) -> float | None:
 # --- nodes and directions as points of a rope ---------------------------------------------------
 
 
-AXES = ("X", "Y", "Z")
-"""Axes along which the nodes of a file may be."""
+AXES = ("X", "Y", "Z")  # Axes along which the nodes of a file may be.
 
 
 class Located(NamedTuple):

@@ -12,8 +12,7 @@ from ...base.array import Complex, Real
 from ...chain.chain import ATTACHED, Chain
 from ...scene.damping import DASHPOT, INERTIA
 
-LEAST = 12
-"""The curvature of a wire whose waves are long has so many polynomials."""
+LEAST = 12  # The curvature of a wire whose waves are long has so many polynomials.
 MOST = 120
 """Polynomials of forty half waves; energies of shorter waves are those of smoother motion."""
 WIRE = ATTACHED.index("broken wire")

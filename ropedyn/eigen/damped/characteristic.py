@@ -13,8 +13,7 @@ from ...base.check import COORDINATES
 from ...chain.chain import Chain
 from ...scene.damping import INERTIA, SECTION, TENSION, Damping
 
-ROUNDING = 4.0
-"""Rounding of a value of the function, in units of eps sqrt(steps)."""
+ROUNDING = 4.0  # Rounding of a value of the function, in units of eps sqrt(steps).
 
 
 @dataclass(frozen=True)

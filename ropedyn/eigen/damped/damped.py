@@ -32,8 +32,7 @@ from .damped_roots import Damped, damped_roots
 from .modal_rates import solve_modal
 from .residue import motions
 
-MORE = 4
-"""A search passes so many undamped modes for each one asked for before it gives up."""
+MORE = 4  # A search passes so many undamped modes for each one asked for before it gives up.
 DOUBLINGS = 40
 """Beyond them the radius doubles so often: dashpots on light nodes have rates far above all."""
 Between = tuple[tuple[str, ...], int, int]

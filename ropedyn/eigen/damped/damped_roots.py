@@ -16,10 +16,8 @@ from .proportional import Proportional, proportional
 from .roots import Roots, find_roots
 from .winding import winding
 
-MARGIN = 0.98
-"""Motion is told apart up to this part of the horizon."""
-NUDGES = (1.0, 1.004, 1.01, 1.03, 1.07)
-"""A circle on which a root lies grows by these factors."""
+MARGIN = 0.98  # Motion is told apart up to this part of the horizon.
+NUDGES = (1.0, 1.004, 1.01, 1.03, 1.07)  # A circle on which a root lies grows by these factors.
 
 
 @dataclass(frozen=True)

@@ -13,16 +13,13 @@ from ...signal.contour import clusters
 from .characteristic import Rates
 from .damped_roots import Damped
 
-SAMPLES = 8
-"""The circle around a rate has so many points."""
+SAMPLES = 8  # The circle around a rate has so many points.
 CIRCLE = 0.02
 """Radius of a circle in distances to the next rate: what lies outside shows as CIRCLE^SAMPLES."""
 ALIKE = 1e3
 """Rates nearer to each other than so many times their errors have their residues together."""
-MOST_NUMBERS = 1 << 20
-"""So many numbers of the response are computed at a time."""
-PLACES = 16
-"""The rope is pushed at so many places, to find where a mode moves."""
+MOST_NUMBERS = 1 << 20  # So many numbers of the response are computed at a time.
+PLACES = 16  # The rope is pushed at so many places, to find where a mode moves.
 GOLDEN = 0.6180339887498949
 """Multiples of the golden ratio, without whole turns, are spread evenly."""
 

@@ -10,31 +10,23 @@ from ...base.array import Complex, Real
 from .characteristic import Characteristic
 from .winding import Winding
 
-MOST_STEPS = 30
-"""The simultaneous iteration takes so many steps at most."""
-CLOSE = 1e-7
-"""A step of this part of the mean distance of roots ends the iteration."""
-MOST_TRIES = 6
-"""Where roots are missing the iteration begins anew so often at most."""
-MOST_MOMENTS = 6
-"""So many missing roots at most have their places guessed from moments."""
-SAMPLES = 16
-"""The circle around a cluster has so many points for each root in it."""
+MOST_STEPS = 30  # The simultaneous iteration takes so many steps at most.
+CLOSE = 1e-7  # A step of this part of the mean distance of roots ends the iteration.
+MOST_TRIES = 6  # Where roots are missing the iteration begins anew so often at most.
+MOST_MOMENTS = 6  # So many missing roots at most have their places guessed from moments.
+SAMPLES = 16  # The circle around a cluster has so many points for each root in it.
 CIRCLE = 0.03
 """Radius of a circle in distances to the next root: what lies outside shows as powers of it."""
-NOISE = 8.0
-"""Noise of roots in units of the last quarter of a series, where nothing else is left."""
+NOISE = 8.0  # Noise of roots in units of the last quarter of a series, where nothing else is left.
 CENTERED = 0.05
 """The mean of the roots lies within this part of the radius from the middle of a circle."""
-INNER = 0.7
-"""Each root lies within this part of the radius from the middle of a circle."""
+INNER = 0.7  # Each root lies within this part of the radius from the middle of a circle.
 MOST_CIRCLES = 4
 APART = (1e-6, 1e-4, 1e-2)
 """Roots nearer than this part of the distance to others are a cluster, in one try after another."""
 TOGETHER = 0.1
-"""Times that part of the mean distance of roots: those that are nearer are one in any case."""
-REAL = 1e-6
-"""An imaginary part below this part of the mean distance of roots may be rounding."""
+"""Roots nearer than this part of their mean distance are one in any case."""
+REAL = 1e-6  # An imaginary part below this part of the mean distance of roots may be rounding.
 
 
 @dataclass(frozen=True)

@@ -11,15 +11,11 @@ from ...base.array import Complex, Real
 from ...chain.chain import Chain
 from .characteristic import Characteristic
 
-FIRST = 16
-"""A half circle begins with so many arcs at least."""
+FIRST = 16  # A half circle begins with so many arcs at least.
 MOST_HALVINGS = 40
-MOST_ARCS = 10_000
-"""More arcs at a time are those that rounding makes."""
-LARGEST = 0.8
-"""A change of the logarithm along half an arc is believed below this."""
-CLEAR = 1e3
-"""A value so many times its rounding has a known argument."""
+MOST_ARCS = 10_000  # More arcs at a time are those that rounding makes.
+LARGEST = 0.8  # A change of the logarithm along half an arc is believed below this.
+CLEAR = 1e3  # A value so many times its rounding has a known argument.
 
 
 @dataclass(frozen=True)

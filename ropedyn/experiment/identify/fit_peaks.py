@@ -27,7 +27,7 @@ from .solution import Solution, solve
 LEAST = 0.1  # A number falls to no less than this part of itself in a step.
 NEAR = 0.1  # Smaller relative changes need no further step.
 STEPS = 8  # At most so many steps are taken.
-SETTLED = 0.9  # Of the sum of squares before: what falls on without changing it much goes too far.
+SETTLED = 0.9  # A step that leaves more than this share of the sum of squares goes too far.
 # What fell until frequencies hardly feel it goes back to where they do, at most to its guess.
 UNFELT, BACK = 1e-4, 1e-2
 

@@ -21,7 +21,13 @@ from .march import stage_of
 from .run import Passage
 from .steps import march_given, march_within
 
-ENERGIES = ("kinetic", "strain", "input", "dissipated", "laws")  # In the order of a passage.
+ENERGIES = (
+    "kinetic",
+    "strain",
+    "input",
+    "dissipated",
+    "laws",
+)  # They are in the order of a passage.
 STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an answer.
 
 

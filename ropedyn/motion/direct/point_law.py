@@ -15,7 +15,7 @@ from ...chain.port import locate, ports
 from ...scene.parts.node import Law
 from ...scene.parts.part import standing
 
-KINDS = ("power", "stop", "call")  # In the core's order.
+KINDS = ("power", "stop", "call")  # The laws are in the core's order.
 
 
 class Laws(NamedTuple):

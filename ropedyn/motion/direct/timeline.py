@@ -10,8 +10,7 @@ import numpy as np
 
 from ...base.array import Flags, Index, Real
 
-ROUNDING = 16 * np.finfo(float).eps
-"""Times closer than this part of the last one are one time."""
+ROUNDING = 16 * np.finfo(float).eps  # Times closer than this part of the last one are one time.
 
 
 class Block(NamedTuple):

@@ -35,8 +35,7 @@ class StaticTest(Answer):
 
     stiffness_name: ClassVar[str]
     symbol: ClassVar[str]
-    names: ClassVar[tuple[str, str]]
-    """The parameters that are load and reading."""
+    names: ClassVar[tuple[str, str]]  # the parameters that are load and reading
     zero: float | None
     reading_std: float | None
 

@@ -12,8 +12,7 @@ from ...base.errors import SceneError
 from ...base.parameter import number
 from .node import Attached, AttachedRate, NodeRate, NodeTerm, Part
 
-FIRST_ROOT = 1.8751040687119611
-"""The first root of 1 + cos x cosh x = 0: of a cantilever."""
+FIRST_ROOT = 1.8751040687119611  # The first root of 1 + cos x cosh x = 0: of a cantilever.
 
 
 class BrokenWire(Part):

@@ -26,8 +26,7 @@ class RopeChange(NamedTuple):
     polar_inertia: float = 0.0  # [kg m]
 
 
-FACTORS = slice(0, 3)
-"""A change begins with its factors; the rest of it is added."""
+FACTORS = slice(0, 3)  # A change begins with its factors; the rest of it is added.
 
 FACTOR = {
     "bending_stiffness": "bending",
@@ -197,8 +196,7 @@ class LocalChange(_Between):
 
 
 Stretch = AddedMass | LocalChange
-KINDS = (AddedMass, LocalChange)
-"""Every kind of part that changes the rope over a stretch."""
+KINDS = (AddedMass, LocalChange)  # Every kind of part that changes the rope over a stretch.
 
 
 def changes(stretches: Sequence[Stretch], stations: Real) -> Real:
