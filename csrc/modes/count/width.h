@@ -1,4 +1,6 @@
-/* The count of one width: included once for each RD_WAVE_WIDTH, with WIDTH(name) its own name. */
+/* The count of one width: included once for each RD_WAVE_WIDTH. */
+#include "modes/walk/width.h"
+
 #include "modes/count/count.h"
 #include "modes/walk/piece.h"
 #include "modes/walk/wave.h"

@@ -1,4 +1,3 @@
 /* The count for chains of width 4. */
 #define RD_WAVE_WIDTH 4
-#define WIDTH(name) rd_##name##_4
 #include "modes/count/width.h"

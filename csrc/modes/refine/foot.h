@@ -36,16 +36,8 @@ RD_INLINE lanes foot_pull(const struct rd_refine *r, size_t k, const struct foot
 /* x = U v and 1/(e - i w v^T x) */
 RD_INLINE cv foot_reach(const struct left *left, const struct foot *foot, cv *x)
 {
-    cv h = c_make(l_fill(0), l_fill(0));
-    for (int i = 0; i < W; i++) {
-        x[i] = c_make(l_fill(0), l_fill(0));
-        for (int j = 0; j < W; j++)
-            x[i] = c_add(x[i], c_scale_lanes(left->U[i][j], foot->v[j]));
-        h = c_add(h, c_scale_lanes(x[i], foot->v[i]));
-    }
-    const cv d = c_make(foot->e + foot->w * h.im, -foot->w * h.re);
-    const lanes size = 1 / c_size(d);
-    return c_scale_lanes(c_invert(c_scale_lanes(d, size)), size);
+    const cv h = along(left->U, foot->v, x);
+    return invert_any(c_make(foot->e + foot->w * h.im, -foot->w * h.re));
 }
 
 RD_INLINE cv foot_along(const struct foot *foot, const cv *g)

@@ -11,6 +11,8 @@
 
        U <- U + x x^T i w/(e - i w h),  g <- g + x i w (load + v^T g)/(e - i w h)
        y = (load + v^T (U s + g))/(e - i w h) with the old U, g and the new s;  s_old = s + i w v y */
+#include "modes/walk/width.h"
+
 #include "modes/refine/end.h"
 #include "modes/refine/foot.h"
 #include "modes/refine/quotient.h"

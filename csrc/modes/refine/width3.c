@@ -1,4 +1,3 @@
 /* Inverse iteration for chains of width 3. */
 #define RD_WAVE_WIDTH 3
-#define WIDTH(name) rd_##name##_3
 #include "modes/refine/width.h"

@@ -6,6 +6,7 @@
 #include "base/real_lanes.h"
 #include "chain/attached.h"
 #include "modes/walk/walk.h"
+#include "modes/walk/width.h"
 
 /* rd_foot (chain/attached.h), v by the motion of the node, and d/dlambda of each */
 struct foot {

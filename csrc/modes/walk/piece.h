@@ -12,14 +12,12 @@
 
 #include "base/complex_step.h"
 #include "base/real_lanes.h"
+#include "modes/walk/foot.h"
 #include "modes/walk/walk.h"
+#include "modes/walk/width.h"
+#include "span/slice.h"
 
 #include <math.h>
-
-#define W RD_WAVE_WIDTH
-
-#include "modes/walk/foot.h"
-#include "span/slice.h"
 
 #define PIVOT_LIMIT 0.4
 

@@ -11,10 +11,9 @@
 #define RD_WAVE_H
 
 #include "base/real_lanes.h"
+#include "modes/walk/width.h"
 
 #include <stddef.h>
-
-#define W RD_WAVE_WIDTH
 
 /* of a stretch: less is left to the transfer */
 #define DECAYED 0.25
@@ -70,6 +69,26 @@ RD_INLINE void change(struct wave *wave, cv x, const cv *y)
     }
 }
 
+/* y = M v; v^T M v */
+RD_INLINE cv along(const cv M[W][W], const lanes *v, cv *y)
+{
+    cv sum = c_make(l_fill(0), l_fill(0));
+    for (int i = 0; i < W; i++) {
+        y[i] = c_make(l_fill(0), l_fill(0));
+        for (int j = 0; j < W; j++)
+            y[i] = c_add(y[i], c_scale_lanes(M[i][j], v[j]));
+        sum = c_add(sum, c_scale_lanes(y[i], v[i]));
+    }
+    return sum;
+}
+
+/* 1/d, also where |d|^2 would overflow or vanish */
+RD_INLINE cv invert_any(cv d)
+{
+    const lanes size = 1 / c_size(d);
+    return c_scale_lanes(c_invert(c_scale_lanes(d, size)), size);
+}
+
 /* A spring q at coordinate j: p = 1 + i q U_jj, x = i q/p, y = U e_j. Re U >= 0. */
 RD_INLINE void add_spring(struct wave *wave, int j, lanes q)
 {
@@ -103,18 +122,14 @@ RD_INLINE void add_pair(struct wave *wave, int j, int k, lanes q)
    or -1: its column is U e_own/p without cancellation. */
 RD_INLINE void add_pole(struct wave *wave, const lanes *v, int own, lanes w, lanes e)
 {
-    cv y[W], h = c_make(l_fill(0), l_fill(0)), column[W];
-    for (int i = 0; i < W; i++) {
-        y[i] = c_make(l_fill(0), l_fill(0));
-        for (int j = 0; j < W; j++)
-            y[i] = c_add(y[i], c_scale_lanes(wave->U[i][j], v[j]));
-        h = c_add(h, c_scale_lanes(y[i], v[i]));
+    cv y[W], column[W];
+    const cv h = along(wave->U, v, y);
+    for (int i = 0; i < W; i++)
         column[i] = own < 0 ? y[i] : wave->U[i][own];
-    }
     const cv d = c_make(e + w * h.im, -w * not_negative(h.re));
     const lanes size = 1 / c_size(d), up = l_select(e > 0.0, size, -size);
     turn(wave, c_scale_lanes(d, up), w * up <= 0.0);
-    const cv inverse = c_scale_lanes(c_invert(c_scale_lanes(d, size)), size);
+    const cv inverse = invert_any(d);
     change(wave, c_turn(inverse, -w), y);
     for (int i = 0; own >= 0 && i < W; i++)
         wave->U[i][own] = wave->U[own][i] = c_mul(column[i], c_scale_lanes(inverse, e));
@@ -139,13 +154,8 @@ RD_INLINE void hold(struct wave *wave, int j)
    Re Y >= 0. */
 RD_INLINE void add_compliance(struct wave *wave, const lanes *v, lanes g)
 {
-    cv y[W], s = c_make(l_fill(0), l_fill(0));
-    for (int i = 0; i < W; i++) {
-        y[i] = c_make(l_fill(0), l_fill(0));
-        for (int j = 0; j < W; j++)
-            y[i] = c_add(y[i], c_scale_lanes(wave->Y[i][j], v[j]));
-        s = c_add(s, c_scale_lanes(y[i], v[i]));
-    }
+    cv y[W];
+    const cv s = along(wave->Y, v, y);
     const cv p = c_make(1 + g * s.im, -g * not_negative(s.re));
     turn(wave, p, g < 0);
     change(wave, c_turn(c_invert(p), g), y);

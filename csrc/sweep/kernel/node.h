@@ -44,9 +44,40 @@ static RD_CLONES void K_(hold_all)(const struct rd_chain *chain, size_t t,
         }
 }
 
+/* U <- U + s y y^T of y = U v. Where v has the one coordinate `own`, its row is U_own left, without
+   the difference that a heavy mass would leave of it. */
+RD_INLINE void K_(add_square)(const cv *y, int own, cv left, cv s, cv *U, lanes *A)
+{
+    cv kept[W];
+    KEEP for (int j = 0; own >= 0 && j < W; j++)
+        kept[j] = c_mul(U[at(own, j)], left);
+    UNROLL for (int i = 0; i < W; i++) {
+        const cv sy = c_mul(s, y[i]);
+        UNROLL for (int j = i; j < W; j++)
+            U[at(i, j)] = c_add(U[at(i, j)], c_mul(sy, y[j]));
+    }
+    KEEP for (int j = 0; own >= 0 && j < W; j++)
+        U[at(own, j)] = kept[j];
+    /* what is left of its rounding */
+    KEEP for (int j = 0; own >= 0 && j < W; j++)
+        A[at(own, j)] *= c_size(j == own ? c_mul(left, left) : left);
+}
+
+/* The same of row r of E, which becomes E + Ev y^T; most: of its rounding per size of Ev. */
+RD_INLINE void K_(add_to_row)(const cv *y, int own, cv left, cv Ev, lanes most, size_t r, cv *E)
+{
+    cv *row = E + r * W;
+    const cv kept = own < 0 ? c_zero() : c_mul(row[own], left);
+    if (r % 2 == 0)
+        sweep_disturb(c_size(Ev) * most, W, row + W);
+    UNROLL for (int i = 0; i < W; i++)
+        row[i] = c_add(row[i], c_mul(Ev, y[i]));
+    if (own >= 0)
+        row[own] = kept;
+}
+
 /* A rank-one node term c v v^T: U <- U + U v (i c/(1 - i c v^T U v)) v^T U, E likewise. Stable
-   for any c: it tends to holding v^T u. Where v has the one coordinate `own`, its row is
-   U_own/(1 - i c v^T U v), without the difference that a heavy mass would leave of it. */
+   for any c: it tends to holding v^T u. */
 RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, lanes *A, cv *E, size_t rows)
 {
     cv Uv[W], q = c_zero();
@@ -65,31 +96,12 @@ RD_INLINE void K_(absorb_one)(const lanes *v, int own, cv c, cv *U, lanes *A, cv
     const cv s = c_mul(ic, left);
     most *= sweep_most(U, SYM);
     KEEP for (size_t r = 0; r < rows; r++) {
-        const cv kept = own < 0 ? c_zero() : c_mul(E[r * W + (size_t)own], left);
         cv Ev = c_zero();
         UNROLL for (int i = 0; i < W; i++)
             Ev = c_add(Ev, c_scale_lanes(E[r * W + (size_t)i], v[i]));
-        Ev = c_mul(Ev, s);
-        if (r % 2 == 0)
-            sweep_disturb(c_size(Ev) * most, W, E + (r + 1) * W);
-        UNROLL for (int i = 0; i < W; i++)
-            E[r * W + (size_t)i] = c_add(E[r * W + (size_t)i], c_mul(Ev, Uv[i]));
-        if (own >= 0)
-            E[r * W + (size_t)own] = kept;
+        K_(add_to_row)(Uv, own, left, c_mul(Ev, s), most, r, E);
     }
-    cv kept[W];
-    KEEP for (int j = 0; own >= 0 && j < W; j++)
-        kept[j] = c_mul(U[at(own, j)], left);
-    UNROLL for (int i = 0; i < W; i++) {
-        const cv sU = c_mul(s, Uv[i]);
-        UNROLL for (int j = i; j < W; j++)
-            U[at(i, j)] = c_add(U[at(i, j)], c_mul(sU, Uv[j]));
-    }
-    KEEP for (int j = 0; own >= 0 && j < W; j++)
-        U[at(own, j)] = kept[j];
-    /* what is left of its rounding */
-    KEEP for (int j = 0; own >= 0 && j < W; j++)
-        A[at(own, j)] *= c_size(j == own ? c_mul(left, left) : left);
+    K_(add_square)(Uv, own, left, s, U, A);
 }
 
 /* the only coordinate of a row, or -1 */
@@ -219,31 +231,12 @@ static RD_CLONES void K_(absorb_foot)(const struct sweep_walk *s, const struct s
     const cv left = c_mul(foot->gap, d), t = c_neg(c_mul(iw, d));
     most *= sweep_most(state->U, SYM);
     KEEP for (size_t r = 0; r < state->rows; r++) {
-        cv *row = state->E + r * W;
-        const cv kept = own < 0 ? c_zero() : c_mul(row[own], left);
         cv Ev = c_zero();
         KEEP for (int i = 0; i < W; i++)
-            Ev = c_add(Ev, c_mul(row[i], v[i]));
-        Ev = c_mul(Ev, t);
-        if (r % 2 == 0)
-            sweep_disturb(c_size(Ev) * most, W, row + W);
-        KEEP for (int i = 0; i < W; i++)
-            row[i] = c_add(row[i], c_mul(Ev, Uv[i]));
-        if (own >= 0)
-            row[own] = kept;
+            Ev = c_add(Ev, c_mul(state->E[r * W + (size_t)i], v[i]));
+        K_(add_to_row)(Uv, own, left, c_mul(Ev, t), most, r, state->E);
     }
-    cv kept[W];
-    KEEP for (int j = 0; own >= 0 && j < W; j++)
-        kept[j] = c_mul(state->U[at(own, j)], left);
-    KEEP for (int i = 0; i < W; i++) {
-        const cv tU = c_mul(t, Uv[i]);
-        KEEP for (int j = i; j < W; j++)
-            state->U[at(i, j)] = c_add(state->U[at(i, j)], c_mul(tU, Uv[j]));
-    }
-    KEEP for (int j = 0; own >= 0 && j < W; j++) {
-        state->U[at(own, j)] = kept[j];
-        state->A[at(own, j)] *= c_size(j == own ? c_mul(left, left) : left);
-    }
+    K_(add_square)(Uv, own, left, t, state->U, state->A);
 }
 
 /* the structures that node term t carries: what is regular of them, then their poles */
