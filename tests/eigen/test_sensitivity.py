@@ -211,7 +211,7 @@ def difference(model, path, number, step=1e-3):
     for k, weight in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60)):
         for sign in (1, -1):
             other = changed(scene, path, size + sign * k * step * size)
-            there = divided(other, model.element, stations_of(other), counts)
+            there = rd.Model(**vars(divided(other, model.element, stations_of(other), counts)))
             total = total + sign * weight * there.modes(number).eigenvalue
     return total / (step * size)
 
