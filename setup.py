@@ -53,8 +53,9 @@ class BuildExt(build_ext):
         """Compile side by side what has changed; setuptools takes all sources, one by one."""
         compile_one = self.compiler.compile
         flags = [numpy.__version__, *self.compiler.compiler_so, *COMPILE]
-        if getattr(self, "editable_mode", False):  # whose own folder is gone after each build
-            self.build_temp = str(HERE / "build" / f"temp.{sys.implementation.cache_tag}")
+        if self.editable_mode:  # whose own folder is gone after each build
+            tag = f"temp.{self.plat_name}-{sys.implementation.cache_tag}"
+            self.build_temp = str(HERE / "build" / tag)
         self.build_temp += f"-{zlib.crc32(repr(flags).encode()):08x}"
 
         def compile_stale(source, *arguments, **keywords):
@@ -77,7 +78,7 @@ class BuildExt(build_ext):
     def run(self):
         """Build, then put a fresh copy of the library and its licence into ropedyn/_libs."""
         super().run()
-        inplace = self.inplace or getattr(self, "editable_mode", False)
+        inplace = self.inplace or self.editable_mode
         libraries = (HERE if inplace else Path(self.build_lib)) / "ropedyn" / "_libs"
         shutil.rmtree(libraries, ignore_errors=True)
         if SYSTEM_LAPACKE:
