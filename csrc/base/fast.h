@@ -19,6 +19,14 @@
 #define RD_FAST 0
 #endif
 
+/* how often the loop that follows is unrolled */
+#ifdef __OPTIMIZE__
+#define RD_PRAGMA(text) _Pragma(#text)
+#define RD_UNROLL(n) RD_PRAGMA(GCC unroll n)
+#else
+#define RD_UNROLL(n)
+#endif
+
 /* one copy of a function per instruction set, chosen when the library is loaded */
 #if RD_FAST && defined(__x86_64__) && defined(__GLIBC__)
 #define RD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))

@@ -1,5 +1,6 @@
 /* The kernels of a march for the width RD_WIDTH: included by one source file per width. */
 
+#include "base/fast.h"
 #include "march/kernel/kernel.h"
 
 #include <math.h>
@@ -8,7 +9,7 @@
 #define NAME(verb, w) NAME_(verb, w)
 
 enum { W = RD_WIDTH, WW = W * W };
-#define UNROLL _Pragma("GCC unroll 16")
+#define UNROLL RD_UNROLL(16)
 
 /* y = M x and y = M^T x */
 static inline void times(const double *restrict M, const double *restrict x, double *restrict y)

@@ -16,11 +16,11 @@ enum { K_(W) = RD_WIDTH, K_(SYM) = RD_WIDTH * (RD_WIDTH + 1) / 2, K_(FULL) = RD_
 #define SYM K_(SYM)
 #define FULL K_(FULL)
 #if RD_WIDTH < 4 && RD_FAST
-#define UNROLL _Pragma("GCC unroll 4")
+#define UNROLL RD_UNROLL(4)
 #else
-#define UNROLL _Pragma("GCC unroll 1")
+#define UNROLL RD_UNROLL(1)
 #endif
-#define KEEP _Pragma("GCC unroll 1")
+#define KEEP RD_UNROLL(1)
 
 /* place of (i, j) in a packed symmetric matrix */
 RD_INLINE int K_(at)(int i, int j)
