@@ -11,7 +11,7 @@ import numpy as np
 from ...base.array import Index, Integer, Real
 from ...base.errors import RopedynError, SolveError
 
-# Takes parameters, shape (p,), and how many modes; see `order_search.search`.
+# Takes parameters (p,) and how many modes; returns frequencies (m,) [Hz] and their slopes (m, p).
 Calculated = Callable[[Real, int], tuple[Real, Real]]
 STEP = 10.0  # Neighbours on the grid are a factor of this apart.
 # Half a step from a point of the grid Rayleigh's quotients are off by this share (1.1 % at most for
