@@ -1,5 +1,6 @@
 """The house: folders that know those below them, rooms that a newcomer can live in."""
 
+import ast
 import statistics
 import subprocess
 import sys
@@ -76,3 +77,12 @@ def test_modules_fit_a_reader():
     rooms = [n for name, n in length.items() if not name.endswith(("__init__.py", "__main__.py"))]
     assert 120 <= statistics.median(rooms) <= 250
     assert sum(length.values()) <= MOST_IN_ALL
+
+
+def test_a_class_name_stands_for_one_thing():
+    places = {}
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
