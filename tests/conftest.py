@@ -1,5 +1,6 @@
 """Helpers of the tests: reference numbers and matrices for reading."""
 
+import gc
 import json
 import math
 import os
@@ -154,3 +155,10 @@ def dense(model):
 def free(model):
     """Return which coordinates can move, shape (nodes, coordinates)."""
     return model.chain.held[model.chain.term_of] == 0
+
+
+def pytest_collection_finish(session):
+    """Spare the garbage collector what was collected, which lives as long as the run."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
