@@ -22,6 +22,7 @@ COMPILE = ([] if "CFLAGS" in os.environ else ["-O2", "-fno-gcse"]) + [
     "-std=c17",
     "-fvisibility=hidden",
     "-ffp-contract=off",
+    "-fno-math-errno",  # so that roots of lanes are taken at once
     "-Wno-psabi",  # vector types never cross a function of the extension's interface
 ]
 

@@ -114,3 +114,9 @@ def march_finish(
     force: _Real,
     /,
 ) -> None: ...
+def closed_modes(
+    kind: str, values: _Real, fixed: _Real, column: _Integers, number: int, sloped: bool, /
+) -> tuple[_Real, _Real, _Real | None, NDArray[np.bool_]]: ...
+def closed_count(
+    kind: str, values: _Real, fixed: _Real, column: _Integers, omega: float, /
+) -> NDArray[np.int64]: ...

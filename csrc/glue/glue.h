@@ -99,5 +99,7 @@ PyObject *py_march(PyObject *module, PyObject *arguments);
 PyObject *py_march_stage(PyObject *module, PyObject *arguments);
 PyObject *py_march_laws(PyObject *module, PyObject *arguments);
 PyObject *py_march_finish(PyObject *module, PyObject *arguments);
+PyObject *py_closed_modes(PyObject *module, PyObject *arguments);
+PyObject *py_closed_count(PyObject *module, PyObject *arguments);
 
 #endif

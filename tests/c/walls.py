@@ -7,6 +7,7 @@ from pathlib import Path
 
 FLOORS = [
     "base",
+    "closed",
     "element",
     "chain",
     "span",
