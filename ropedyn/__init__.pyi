@@ -17,6 +17,9 @@ from .experiment.identify.identify import identify
 from .experiment.identify.response_fit import ResponseFit
 from .experiment.plan.plan import Plan
 from .experiment.plan.planning import plan_measurement
+from .family.family import Family
+from .family.frf import FamilyFRF
+from .family.modes import FamilyModes
 from .model import Model
 from .motion.history import History
 from .parametric.floquet import Floquet
@@ -70,6 +73,9 @@ __all__ = [
     "Deflection",
     "EffectCost",
     "End",
+    "Family",
+    "FamilyFRF",
+    "FamilyModes",
     "Fit",
     "Fits",
     "Floquet",

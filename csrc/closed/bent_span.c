@@ -10,10 +10,10 @@ struct bent {
     lane_mask valid; /* the numbers have a meaning */
 };
 
-RD_INLINE struct bent bent_ropes(const struct rd_ropes *ropes, size_t first, size_t last)
+RD_INLINE struct bent bent_ropes(const struct rd_ropes *ropes, const struct lane_places *at)
 {
     struct bent rope;
-    rope_lanes(ropes, first, last, RD_BENT_NUMBERS, rope.number);
+    rope_lanes(ropes, at, RD_BENT_NUMBERS, rope.number);
     const lanes L = rope.number[RD_BENT_LENGTH], mu = rope.number[RD_BENT_INERTIA];
     const lanes B = rope.number[RD_BENT_STIFFNESS], per = L / B;
     rope.ends.p = rope.number[RD_BENT_TENSION] * L * per;
@@ -66,22 +66,20 @@ RD_INLINE lanes bent_slopes(const struct bent *rope, const struct span_phase *f,
     return 3.0 * l_abs(p * by_p) + size;
 }
 
-/* of mode n: from y where `start` is above 0, else from K = (n + 1/4) pi; the K of a mode is never
-   above that of clamped ends, (n + 1) pi */
-RD_INLINE lanes bent_root(const struct bent *rope, lanes start, double n, lane_mask odd,
-                          lane_mask *near)
+/* Of mode n, from K = (n + 1/4) pi; the K of a mode is never above that of clamped ends,
+   (n + 1) pi. */
+RD_INLINE lanes bent_root(const struct bent *rope, lanes n, lane_mask odd, lane_mask *near)
 {
     const lanes less = l_select(rope->ends.p < 0.0, rope->ends.p, l_fill(0));
-    const double most = (n + 1.0) * PI, about = (n + 0.25) * PI;
+    const lanes most = (n + 1.0) * PI, about = (n + 0.25) * PI;
     const lanes room = most * most + less, guess = about * about + less;
     lanes low = l_fill(0), high = l_root(l_select(room > 0.0, room, l_fill(0))) * (1 + 1e-15);
     lanes y = l_select(guess > 0.0, l_root(l_select(guess > 0.0, guess, l_fill(0))), 0.5 * high);
-    y = l_select((start > 0.0) & (start < high), start, y);
     lane_mask open = rope->valid & (high > 0.0) & (y > 0.0);
     *near = (lane_mask){0};
     for (int step = 0; step < STEPS && any(open); step++) {
         const struct span_phase f = span_phase(&rope->ends, y, odd, 1);
-        const lanes beyond = phase_beyond(&f, odd, l_fill(n));
+        const lanes beyond = phase_beyond(&f, odd, n);
         const lanes of_y = y * (f.of_K / f.K + f.of_A / f.A);
         low = l_select(open & (beyond < 0.0), y, low);
         high = l_select(open & (beyond >= 0.0), y, high);
@@ -98,53 +96,52 @@ RD_INLINE lanes bent_root(const struct bent *rope, lanes start, double n, lane_m
 }
 
 /* of which modes the index is shown: Phi_n < n pi at y (1 - wide), > n pi at y (1 + wide) */
-RD_INLINE lane_mask bent_index(const struct bent *rope, lanes y, lanes wide, lanes noise, double n,
+RD_INLINE lane_mask bent_index(const struct bent *rope, lanes y, lanes wide, lanes noise, lanes n,
                                lane_mask odd)
 {
     const struct span_phase below = span_phase(&rope->ends, y * (1.0 - wide), odd, 0);
     const struct span_phase above = span_phase(&rope->ends, y * (1.0 + wide), odd, 0);
-    return (below.delta > 0.0) & (above.delta > 0.0) &
-           (phase_beyond(&below, odd, l_fill(n)) < -noise) &
-           (phase_beyond(&above, odd, l_fill(n)) > noise);
+    return (below.delta > 0.0) & (above.delta > 0.0) & (phase_beyond(&below, odd, n) < -noise) &
+           (phase_beyond(&above, odd, n) > noise);
 }
 
-RD_INLINE void bent_modes_of_lanes(const struct rd_ropes *ropes, size_t first, size_t last,
-                                   const struct rd_closed_modes *modes)
+RD_INLINE void bent_modes_at(const struct rd_ropes *ropes, const struct lane_places *at,
+                             const struct bent *of, const struct rd_closed_modes *modes)
 {
-    const struct bent rope = bent_ropes(ropes, first, last);
-    lane_mask certified = rope.valid;
-    lanes start = l_fill(0);
-    for (size_t mode = 0; mode < modes->number; mode++) {
-        const double n = (double)(mode + 1);
-        const lane_mask odd = (lane_mask){0} - (long long)(~mode & 1);
-        lane_mask near;
-        lanes y = bent_root(&rope, start, n, odd, &near), slope[RD_BENT_NUMBERS];
-        const struct span_phase f = span_phase(&rope.ends, y, odd, 1);
-        const lanes of_y = y * (f.of_K / f.K + f.of_A / f.A);
-        const lanes step = phase_beyond(&f, odd, l_fill(n)) / of_y;
-        y -= step;
-        /* of y, relative */
-        const lanes noise = ROUNDING * f.noise;
-        const lanes moved = noise / (y * of_y) + ROUNDING + 1e8 * (step / y) * (step / y);
-        const lanes stiff = y * y + l_abs(rope.ends.p);
-        const lanes given = bent_slopes(&rope, &f, y, of_y, slope);
-        const lanes error = (1.0 + y * y / stiff) * moved + ROUNDING * (given + 4.0);
-        const lanes wide = l_most(l_fill(2e-13), 4.0 * moved);
-        certified &= near & (error < CERTAIN) & (of_y > 0.0) & (f.delta > 0.0) &
-                     bent_index(&rope, y, wide, noise, n, odd);
-        keep_mode(ropes, first, last, RD_BENT_NUMBERS, modes, mode, rope.scale * y * l_root(stiff),
-                  error, slope);
-        start = y + PI / of_y;
+    const struct bent rope = *of;
+    lane_mask odd, near;
+    const lanes n = mode_lanes(at, &odd);
+    lanes y = bent_root(&rope, n, odd, &near), slope[RD_BENT_NUMBERS];
+    const struct span_phase f = span_phase(&rope.ends, y, odd, 1);
+    const lanes of_y = y * (f.of_K / f.K + f.of_A / f.A);
+    const lanes step = phase_beyond(&f, odd, n) / of_y;
+    y -= step;
+    /* of y, relative */
+    const lanes noise = ROUNDING * f.noise;
+    const lanes moved = noise / (y * of_y) + ROUNDING + 1e8 * (step / y) * (step / y);
+    const lanes stiff = y * y + l_abs(rope.ends.p);
+    const lanes given = bent_slopes(&rope, &f, y, of_y, slope);
+    const lanes error = (1.0 + y * y / stiff) * moved + ROUNDING * (given + 4.0);
+    const lanes wide = l_most(l_fill(2e-13), 4.0 * moved);
+    const lane_mask certified = rope.valid & near & (error < CERTAIN) & (of_y > 0.0) &
+                                (f.delta > 0.0) & bent_index(&rope, y, wide, noise, n, odd);
+    keep_modes(ropes, at, RD_BENT_NUMBERS, modes, rope.scale * y * l_root(stiff), error, certified,
+               slope);
+}
+
+RD_CLONES static void bent_modes(const struct rd_ropes *ropes, size_t first, size_t last,
+                                 const struct rd_closed_modes *modes)
+{
+    for (; first < last; first += RD_LANES) {
+        const size_t rows = last - first < RD_LANES ? last - first : RD_LANES;
+        struct bent rope;
+        for (size_t start = 0; start < rows * modes->number; start += RD_LANES) {
+            const struct lane_places at = lane_places(first, rows, modes->number, start);
+            if (start == 0 || rows < RD_LANES)
+                rope = bent_ropes(ropes, &at);
+            bent_modes_at(ropes, &at, &rope, modes);
+        }
     }
-    for (size_t i = 0; i < RD_LANES && first + i < last; i++)
-        modes->certified[first + i] = certified[i] != 0;
-}
-
-RD_CLONES void rd_bent_modes(const struct rd_ropes *ropes, size_t first, size_t last,
-                             const struct rd_closed_modes *modes)
-{
-    for (; first < last; first += RD_LANES)
-        bent_modes_of_lanes(ropes, first, last, modes);
 }
 
 /* modes below y of odd or even n */
@@ -156,18 +153,33 @@ RD_INLINE lanes bent_count_of(const struct bent *rope, lanes y, lane_mask odd, l
     return whole_turns(0.5 * (turns + l_select(odd, l_fill(1), l_fill(0))), slack, certain);
 }
 
-RD_CLONES void rd_bent_count(const struct rd_ropes *ropes, size_t first, size_t last, double omega,
-                             int64_t *count)
+RD_CLONES static void bent_count(const struct rd_ropes *ropes, size_t first, size_t last,
+                                 double omega, int64_t *count)
 {
     for (; first < last; first += RD_LANES) {
-        const struct bent rope = bent_ropes(ropes, first, last);
+        const size_t rows = last - first < RD_LANES ? last - first : RD_LANES;
+        const struct lane_places at = lane_places(first, rows, 1, 0);
+        const struct bent rope = bent_ropes(ropes, &at);
         const lanes p = 0.5 * l_abs(rope.ends.p), W = omega / rope.scale;
         /* K A = W */
         const lanes y = W / l_root(p + l_root(p * p + W * W));
         lane_mask certain = rope.valid & (y > 0.0);
         const lanes odd = bent_count_of(&rope, y, (lane_mask){0} - 1, &certain);
         const lanes all = odd + bent_count_of(&rope, y, (lane_mask){0}, &certain);
-        for (size_t i = 0; i < RD_LANES && first + i < last; i++)
+        for (size_t i = 0; i < rows; i++)
             count[first + i] = certain[i] ? (int64_t)all[i] : -1;
     }
+}
+
+/* copies are chosen behind these: a copied function would be seen outside the library */
+void rd_bent_modes(const struct rd_ropes *ropes, size_t first, size_t last,
+                   const struct rd_closed_modes *modes)
+{
+    bent_modes(ropes, first, last, modes);
+}
+
+void rd_bent_count(const struct rd_ropes *ropes, size_t first, size_t last, double omega,
+                   int64_t *count)
+{
+    bent_count(ropes, first, last, omega, count);
 }

@@ -103,14 +103,15 @@ RD_INLINE lane_mask projected(lanes x, lanes *x1, lanes *x2)
     return stiff;
 }
 
-/* e^-x - 1 for x >= 0, and e^-x beside it; x = k ln 2 - r, |r| <= ln(2)/2, e^r - 1 by its series */
+/* e^-x - 1 for x >= 0, and e^-x beside it; x = k ln 2 - r, |r| <= ln(2)/2, e^r - 1 by its series.
+   Beyond x = 100 it stays what it is there: products of it are normal numbers, which are fast. */
 RD_INLINE lanes l_expm1_of_minus(lanes x, lanes *e)
 {
     static const double Q[] = {0x1.0000000000000p-1,  0x1.5555555555555p-3,  0x1.5555555555555p-5,
                                0x1.1111111111111p-7,  0x1.6c16c16c16c17p-10, 0x1.a01a01a01a01ap-13,
                                0x1.a01a01a01a01ap-16, 0x1.71de3a556c734p-19, 0x1.27e4fb7789f5cp-22,
                                0x1.ae64567f544e4p-26, 0x1.1eed8eff8d898p-29, 0x1.6124613a86d09p-33};
-    const lanes y = -l_least(x, l_fill(700));
+    const lanes y = -l_least(x, l_fill(100));
     const lanes shift = l_fill(0x1.8p52), bits = y * 0x1.71547652b82fep+0 + shift;
     const lanes k = bits - shift;
     const lanes r = (y - k * 0x1.62e42feep-1) - k * 0x1.a39ef35793c76p-33;

@@ -23,10 +23,10 @@ struct plain_phase {
     lanes of_K;
 };
 
-RD_INLINE struct plain plain_ropes(const struct rd_ropes *ropes, size_t first, size_t last)
+RD_INLINE struct plain plain_ropes(const struct rd_ropes *ropes, const struct lane_places *at)
 {
     struct plain rope;
-    rope_lanes(ropes, first, last, RD_PLAIN_NUMBERS, rope.number);
+    rope_lanes(ropes, at, RD_PLAIN_NUMBERS, rope.number);
     const lanes L = rope.number[RD_PLAIN_LENGTH], m = rope.number[RD_PLAIN_INERTIA];
     const lanes D = rope.number[RD_PLAIN_STIFFNESS];
     rope.scale = l_root(D / m) / L;
@@ -53,14 +53,14 @@ RD_INLINE struct plain_phase plain_phase(const struct plain *rope, lanes K)
     return f;
 }
 
-RD_INLINE lanes plain_beyond(const struct plain_phase *f, lanes K, double n)
+RD_INLINE lanes plain_beyond(const struct plain_phase *f, lanes K, lanes n)
 {
     return l_less_angle(K, (struct turned){f->ends.eighths + 4.0 * n, f->ends.rest});
 }
 
-RD_INLINE lanes plain_root(const struct plain *rope, double n, lane_mask *near)
+RD_INLINE lanes plain_root(const struct plain *rope, lanes n, lane_mask *near)
 {
-    lanes low = l_fill(0), high = l_fill(n * PI * (1 + 1e-15)), K = l_fill((n - 0.25) * PI);
+    lanes low = l_fill(0), high = n * (PI * (1 + 1e-15)), K = (n - 0.25) * PI;
     lane_mask open = rope->valid;
     *near = (lane_mask){0};
     for (int step = 0; step < STEPS && any(open); step++) {
@@ -102,55 +102,68 @@ RD_INLINE lanes plain_slopes(const struct plain *rope, lanes K, lanes of_K, lane
     return size;
 }
 
-RD_INLINE lane_mask plain_index(const struct plain *rope, lanes K, lanes wide, lanes noise,
-                                double n)
+RD_INLINE lane_mask plain_index(const struct plain *rope, lanes K, lanes wide, lanes noise, lanes n)
 {
     const lanes low = K * (1.0 - wide), high = K * (1.0 + wide);
     const struct plain_phase below = plain_phase(rope, low), above = plain_phase(rope, high);
     return (plain_beyond(&below, low, n) < -noise) & (plain_beyond(&above, high, n) > noise);
 }
 
-RD_INLINE void plain_modes_of_lanes(const struct rd_ropes *ropes, size_t first, size_t last,
-                                    const struct rd_closed_modes *modes)
-{
-    const struct plain rope = plain_ropes(ropes, first, last);
-    lane_mask certified = rope.valid;
-    for (size_t mode = 0; mode < modes->number; mode++) {
-        const double n = (double)(mode + 1);
-        lane_mask near;
-        lanes K = plain_root(&rope, n, &near), slope[RD_PLAIN_NUMBERS];
-        const struct plain_phase f = plain_phase(&rope, K);
-        const lanes step = plain_beyond(&f, K, n) / f.of_K, noise = l_fill(4 * ROUNDING);
-        K -= step;
-        const lanes moved = noise / (K * f.of_K) + ROUNDING + 1e8 * (step / K) * (step / K);
-        const lanes given = plain_slopes(&rope, K, f.of_K, slope);
-        const lanes error = moved + ROUNDING * (given + 3.0);
-        certified &= near & (error < CERTAIN) & (f.of_K > 0.0) &
-                     plain_index(&rope, K, l_most(l_fill(2e-13), 4.0 * moved), noise, n);
-        keep_mode(ropes, first, last, RD_PLAIN_NUMBERS, modes, mode, rope.scale * K, error, slope);
-    }
-    for (size_t i = 0; i < RD_LANES && first + i < last; i++)
-        modes->certified[first + i] = certified[i] != 0;
-}
-
-RD_CLONES void rd_plain_modes(const struct rd_ropes *ropes, size_t first, size_t last,
+RD_INLINE void plain_modes_at(const struct rd_ropes *ropes, const struct lane_places *at,
                               const struct rd_closed_modes *modes)
 {
-    for (; first < last; first += RD_LANES)
-        plain_modes_of_lanes(ropes, first, last, modes);
+    const struct plain rope = plain_ropes(ropes, at);
+    lane_mask odd, near;
+    const lanes n = mode_lanes(at, &odd);
+    lanes K = plain_root(&rope, n, &near), slope[RD_PLAIN_NUMBERS];
+    const struct plain_phase f = plain_phase(&rope, K);
+    const lanes step = plain_beyond(&f, K, n) / f.of_K, noise = l_fill(4 * ROUNDING);
+    K -= step;
+    const lanes moved = noise / (K * f.of_K) + ROUNDING + 1e8 * (step / K) * (step / K);
+    const lanes error = moved + ROUNDING * (plain_slopes(&rope, K, f.of_K, slope) + 3.0);
+    const lane_mask certified = rope.valid & near & (error < CERTAIN) & (f.of_K > 0.0) &
+                                plain_index(&rope, K, l_most(l_fill(2e-13), 4.0 * moved), noise, n);
+    keep_modes(ropes, at, RD_PLAIN_NUMBERS, modes, rope.scale * K, error, certified, slope);
 }
 
-RD_CLONES void rd_plain_count(const struct rd_ropes *ropes, size_t first, size_t last, double omega,
-                              int64_t *count)
+RD_CLONES static void plain_modes(const struct rd_ropes *ropes, size_t first, size_t last,
+                                  const struct rd_closed_modes *modes)
 {
     for (; first < last; first += RD_LANES) {
-        const struct plain rope = plain_ropes(ropes, first, last);
+        const size_t rows = last - first < RD_LANES ? last - first : RD_LANES;
+        for (size_t start = 0; start < rows * modes->number; start += RD_LANES) {
+            const struct lane_places at = lane_places(first, rows, modes->number, start);
+            plain_modes_at(ropes, &at, modes);
+        }
+    }
+}
+
+RD_CLONES static void plain_count(const struct rd_ropes *ropes, size_t first, size_t last,
+                                  double omega, int64_t *count)
+{
+    for (; first < last; first += RD_LANES) {
+        const size_t rows = last - first < RD_LANES ? last - first : RD_LANES;
+        const struct lane_places at = lane_places(first, rows, 1, 0);
+        const struct plain rope = plain_ropes(ropes, &at);
         const lanes K = omega / rope.scale;
         const struct plain_phase f = plain_phase(&rope, K);
         lane_mask certain = rope.valid & (K > 0.0);
         const lanes slack = 4.0 + K * l_abs(f.of_K);
-        const lanes below = whole_turns(plain_beyond(&f, K, 0) / PI, slack, &certain);
-        for (size_t i = 0; i < RD_LANES && first + i < last; i++)
+        const lanes below = whole_turns(plain_beyond(&f, K, l_fill(0)) / PI, slack, &certain);
+        for (size_t i = 0; i < rows; i++)
             count[first + i] = certain[i] ? (int64_t)below[i] : -1;
     }
+}
+
+/* copies are chosen behind these: a copied function would be seen outside the library */
+void rd_plain_modes(const struct rd_ropes *ropes, size_t first, size_t last,
+                    const struct rd_closed_modes *modes)
+{
+    plain_modes(ropes, first, last, modes);
+}
+
+void rd_plain_count(const struct rd_ropes *ropes, size_t first, size_t last, double omega,
+                    int64_t *count)
+{
+    plain_count(ropes, first, last, omega, count);
 }

@@ -29,34 +29,69 @@ RD_INLINE lanes whole_turns(lanes x, lanes slack, lane_mask *certain)
     return l_select(whole > 0.0, whole, l_fill(0));
 }
 
-/* the rows from `first`; lanes beyond `last` repeat its last row */
-RD_INLINE void rope_lanes(const struct rd_ropes *ropes, size_t first, size_t last, int numbers,
+/* which rope, and for modes which mode, a lane works on; lanes beyond the last repeat it */
+struct lane_places {
+    size_t row[RD_LANES], mode[RD_LANES];
+    size_t used;
+};
+
+/* The places from `start` on of the modes of a few rows, mode by mode: lanes are ropes where there are
+   enough of them, and else modes too. */
+RD_INLINE struct lane_places lane_places(size_t first, size_t rows, size_t modes, size_t start)
+{
+    struct lane_places at;
+    const size_t all = rows * modes;
+    at.used = all - start < RD_LANES ? all - start : RD_LANES;
+    for (size_t i = 0; i < RD_LANES; i++) {
+        const size_t place = start + (i < at.used ? i : at.used - 1);
+        at.row[i] = first + place % rows;
+        at.mode[i] = place / rows;
+    }
+    return at;
+}
+
+RD_INLINE void rope_lanes(const struct rd_ropes *ropes, const struct lane_places *at, int numbers,
                           lanes *number)
 {
     for (int j = 0; j < numbers; j++) {
+        const int32_t column = ropes->column[j];
         double x[RD_LANES];
-        for (size_t i = 0; i < RD_LANES; i++) {
-            const size_t row = first + i < last ? first + i : last - 1;
-            const int32_t column = ropes->column[j];
-            x[i] =
-                column < 0 ? ropes->fixed[j] : ropes->values[row * ropes->columns + (size_t)column];
-        }
+        for (size_t i = 0; i < RD_LANES; i++)
+            x[i] = column < 0 ? ropes->fixed[j]
+                              : ropes->values[at->row[i] * ropes->columns + (size_t)column];
         __builtin_memcpy(number + j, x, sizeof x);
     }
 }
 
-/* `slope` may be NULL, or by number */
-RD_INLINE void keep_mode(const struct rd_ropes *ropes, size_t first, size_t last, int numbers,
-                         const struct rd_closed_modes *modes, size_t mode, lanes omega, lanes error,
-                         const lanes *slope)
+/* numbers of modes from 1, and where they are odd */
+RD_INLINE lanes mode_lanes(const struct lane_places *at, lane_mask *odd)
 {
-    for (size_t i = 0; i < RD_LANES && first + i < last; i++) {
-        const size_t at = (first + i) * modes->number + mode;
-        modes->omega[at] = omega[i];
-        modes->error[at] = error[i];
+    double n[RD_LANES];
+    long long is_odd[RD_LANES];
+    for (size_t i = 0; i < RD_LANES; i++) {
+        n[i] = (double)(at->mode[i] + 1);
+        is_odd[i] = at->mode[i] % 2 == 0 ? -1 : 0;
+    }
+    lanes number;
+    __builtin_memcpy(&number, n, sizeof n);
+    __builtin_memcpy(odd, is_odd, sizeof is_odd);
+    return number;
+}
+
+RD_INLINE void keep_modes(const struct rd_ropes *ropes, const struct lane_places *at, int numbers,
+                          const struct rd_closed_modes *modes, lanes omega, lanes error,
+                          lane_mask certified, const lanes *slope)
+{
+    for (size_t i = 0; i < at->used; i++) {
+        const size_t place = at->row[i] * modes->number + at->mode[i];
+        modes->omega[place] = omega[i];
+        modes->error[place] = error[i];
+        if (at->mode[i] == 0)
+            modes->certified[at->row[i]] = 1;
+        modes->certified[at->row[i]] &= certified[i] != 0;
         for (int j = 0; j < numbers && modes->slope; j++)
             if (ropes->column[j] >= 0)
-                modes->slope[at * ropes->columns + (size_t)ropes->column[j]] = slope[j][i];
+                modes->slope[place * ropes->columns + (size_t)ropes->column[j]] = slope[j][i];
     }
 }
 

@@ -10,6 +10,8 @@ from ..base.unit import place
 from ..curves.curves import Curves, named_curves
 from ..curves.peaks import Peaks
 from ..curves.resonance import Resonances
+from ..family.frf import FamilyFRF
+from ..family.modes import FamilyModes
 from ..motion.history import History
 from ..parametric.floquet import Floquet
 from ..parametric.stability import StabilityMap
@@ -31,6 +33,26 @@ def plot_curves(curves: Curves, ax: Axes) -> None:
             ax.semilogy(curves.frequency, np.abs(curve), label=name)
     ax.set_title(f"frequency response, driven in {', '.join(map(place, curves.drive))}")
     amplitudes(ax, curves.quantity)
+
+
+@plots(FamilyFRF)
+def plot_family_frf(found: FamilyFRF, ax: Axes) -> None:
+    """Plot the first response of every row over frequency on a logarithmic scale."""
+    for row in found.value.reshape(len(found.value), -1, len(found.frequency))[:, 0]:
+        ax.semilogy(found.frequency, np.abs(row), linewidth=0.8)
+    ax.set(xlabel="frequency [Hz]", ylabel=f"{found.quantity}, amplitude")
+    light_grid(ax)
+
+
+@plots(FamilyModes)
+def plot_family_modes(found: FamilyModes, ax: Axes) -> None:
+    """Plot every mode over the rows."""
+    for k, frequency in enumerate(found.frequency.T, start=1):
+        ax.plot(frequency, ".-", label=k)
+    ax.set(xlabel="row", ylabel="frequency [Hz]")
+    if ax.lines:
+        ax.legend(title="mode", fontsize="small")
+    light_grid(ax)
 
 
 @plots(Spectrum)

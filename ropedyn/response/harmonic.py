@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -27,7 +26,7 @@ from ..scene.scene import Scene
 from .frf import FRF, MeshOfResponse
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import moves_ends
-from .question import Question, Solver
+from .question import Question, Solver, workers_of
 from .solvers import SOLVERS
 
 
@@ -45,7 +44,7 @@ def solve_harmonic(
     solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
-    workers = _workers(threads)
+    workers = workers_of(threads)
     check.one_of(quantity, "quantity", QUANTITIES)
     f = check.frequencies(frequency)
     drives, several = points(model, drive, "drive", forces=False, ends=True)
@@ -125,17 +124,6 @@ def _line_by_line(question: Question, solver: Solver) -> Summed:
     """Solve at each frequency, with the damping that acts at it."""
     value, error = solver(question)
     return Summed(value, error, np.zeros(error.shape), len(question.frequency))
-
-
-def _workers(threads: int | None) -> int:
-    if threads is not None:
-        return check.count(threads, "threads", most=1024)
-    text = os.environ.get("ROPEDYN_THREADS", "")
-    if not text:
-        return os.cpu_count() or 1
-    if not text.isdecimal():
-        raise SceneError(f"ROPEDYN_THREADS must be a whole number from 1 to 1024, got {text!r}")
-    return check.count(int(text), "ROPEDYN_THREADS", most=1024)
 
 
 def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:

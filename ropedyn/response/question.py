@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from .. import _core
+from ..base import check
 from ..base.array import Complex, Flags, Real
 from ..base.computed import computed
 from ..base.errors import SceneError
@@ -89,3 +91,15 @@ class Question:
 
 Solver = Callable[[Question], tuple[Complex, Real]]
 """What answers it: motion per force, (drives, responses, f), with estimated errors."""
+
+
+def workers_of(threads: int | None) -> int:
+    """Return how many threads share the work: as given, as the environment says, or all cores."""
+    if threads is not None:
+        return check.count(threads, "threads", most=1024)
+    text = os.environ.get("ROPEDYN_THREADS", "")
+    if not text:
+        return os.cpu_count() or 1
+    if not text.isdecimal():
+        raise SceneError(f"ROPEDYN_THREADS must be a whole number from 1 to 1024, got {text!r}")
+    return check.count(int(text), "ROPEDYN_THREADS", most=1024)

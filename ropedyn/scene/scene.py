@@ -26,6 +26,7 @@ from .stations import stations_at
 from .tension import Tension
 
 if TYPE_CHECKING:
+    from ..family.family import Family
     from ..model import Model
 
 EFFECTS = (
@@ -465,6 +466,39 @@ NodeForce, Stop, AddedMass, LocalChange
         return compile_model(
             self, elements=elements, element=element, tolerance=tolerance, below=below
         )
+
+    def family(self, paths: Iterable[str]) -> Family:
+        """Compile a family: ropes like this one that differ in a few numbers.
+
+        Parameters
+        ----------
+        paths : sequence of str
+            The numbers that differ: ``"tension"``, a property of the rope as
+            ``"bending_stiffness"`` or ``"length"``, of a part as ``"parts[0].mass"``, of an end as
+            ``"ends[0].spring.beta"``, and what else has a number in the scene. Springs of the ends
+            exist whatever the scene says: 0 is free, infinite held.
+
+        Returns
+        -------
+        Family
+
+        Raises
+        ------
+        TypeError
+            If a path is not a string.
+        SceneError
+            If the scene has no number at a path, or one is given twice.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> family = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).family(["tension"])
+        >>> family.modes([[1000.0], [4000.0]], 2).frequency.round(9).tolist()
+        [[25.0, 50.0], [50.0, 100.0]]
+        """
+        from ..family.family import compile_family
+
+        return compile_family(self, paths)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the scene as TOML, whole or not at all.

@@ -53,6 +53,14 @@ STEPPED = (
     np.ones((2, 8)),
 )
 
+# two strings of other tension, held
+STRINGS = (
+    "plain",
+    np.array([[10.0], [40.0]]),
+    np.array([1.0, 0.1, 0.0, math.inf, math.inf]),
+    np.array([-1, -1, 0, -1, -1], np.int32),
+)
+
 # of a march: what acts beside CHAIN, two laws, half a midpoint step of 1 ms, a node that moves
 PER_ELEMENT = np.full(len(CHAIN.length), 1e-3)
 BESIDE = (PER_ELEMENT, 1e-3, 100 * PER_ELEMENT, PER_ELEMENT, 1.0, 0.1)
@@ -193,6 +201,8 @@ OTHERS = {
         LAW_NUMBERS, 1e-3, np.ones(2), MATRIX, np.zeros(2), np.zeros(2)
     ),
     "recurrence": lambda _: _core.recurrence(*STEPPED),
+    "closed_modes": lambda _: _core.closed_modes(*STRINGS, 2, True),
+    "closed_count": lambda _: _core.closed_count(*STRINGS, 30.0),
 }
 
 

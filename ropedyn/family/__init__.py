@@ -1,0 +1,1 @@
+"""Many ropes that differ in a few numbers."""

@@ -1,0 +1,64 @@
+"""Rows of a family that are compiled and solved one by one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..base.array import Complex, Real
+from ..chain.compile import compile_scene
+from ..chain.compiled import refuse_nonlinear
+from ..eigen.eigen import solve_modes
+from ..eigen.modes import Modes
+from ..eigen.spectrum import count_modes
+from ..response.harmonic import solve_harmonic
+from .template import SPRING, Template
+
+
+def modes_of_row(template: Template, number: int, derivative: bool, row: Real) -> tuple[Any, ...]:
+    """Find the modes of a row."""
+    model = compile_scene(template.at(row))
+    refuse_nonlinear(model)
+    modes = solve_modes(model, number, below=None, solver="sweep")
+    answer = modes.frequency, modes.eigenvalue, modes.rounding_error, modes.certified
+    return (*answer, _derivatives(template, modes, row)) if derivative else answer
+
+
+def _derivatives(template: Template, modes: Modes, row: Real) -> Real:
+    """Return those of the frequencies, shape (k, p)."""
+    slopes = [_eigenvalue_slope(path, modes, x) for path, x in zip(template.paths, row)]
+    slope = np.stack(slopes, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = slope / (8 * np.pi**2 * modes.frequency[:, None])
+    slope[modes.eigenvalue < 0] = 0.0
+    slope[modes.eigenvalue == 0] = np.nan
+    return slope
+
+
+def _eigenvalue_slope(path: str, modes: Modes, value: float) -> Real:
+    found = SPRING.fullmatch(path)
+    if found is None:
+        return modes.derivative(path, of="eigenvalue")
+    if np.isinf(value) or found[2] not in modes.coordinates:
+        return np.zeros(len(modes.frequency))
+    # d lambda/dk = u^2/m at the end, whether a spring is there or not
+    moved = modes.shape[:, -int(found[1]), modes.coordinates.index(found[2])]
+    return moved * moved / modes.modal_mass
+
+
+def count_of_row(template: Template, below: float, row: Real) -> tuple[int]:
+    """Count the modes of a row."""
+    model = compile_scene(template.at(row))
+    refuse_nonlinear(model)
+    return (count_modes(model, below),)
+
+
+def frf_of_row(
+    template: Template, frequency: Real, asked: dict[str, Any], row: Real
+) -> tuple[Complex, Real]:
+    """Compute the response of a row."""
+    model = compile_scene(template.at(row))
+    refuse_nonlinear(model)
+    found = solve_harmonic(model, frequency, threads=1, **asked)
+    return found.value, found.rounding_error

@@ -1,0 +1,318 @@
+"""Families: many ropes that differ in a few numbers, solved side by side."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..base import check
+from ..base.answer import Cost
+from ..base.array import Integer, Real
+from ..base.errors import SceneError
+from ..base.progress import Progress
+from ..chain.compile import compile_scene
+from ..chain.place import observed, points
+from ..eigen.spectrum import eigenvalue_of
+from ..response.question import workers_of
+from ..scene.scene import Scene
+from .alone import count_of_row, frf_of_row, modes_of_row
+from .closed import ClosedSpan, Spans, closed_counts, closed_modes, closed_spans, in_core
+from .frf import FamilyFRF
+from .modes import FamilyModes
+from .rows import Answered, Means, Shared, one_by_one
+from .template import Template, template
+
+ROWS, ROWS_ALONE = 1024, 8
+"""Rows that are sent together: in closed form, and one by one."""
+
+MOST_MODES = 100_000
+"""Of a row."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """Many ropes that differ in a few numbers; plain data that pickles. Made by `Scene.family`.
+
+    Attributes
+    ----------
+    scene : Scene
+        What all other numbers are taken from.
+    paths : tuple of str
+        The numbers that differ, in the order of the columns of values.
+    spans : tuple
+        Components that have a closed form; empty where rows are solved one by one.
+
+    Examples
+    --------
+    >>> import ropedyn as rd
+    >>> rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54)
+    >>> family = rd.Scene(rope, tension=2830.0).family(["tension", "ends[0].spring.beta"])
+    >>> family.modes([[2830.0, 0.0], [2830.0, float("inf")]], 1).frequency.round(2).tolist()
+    [[62.96], [64.09]]
+    """
+
+    scene: Scene
+    paths: tuple[str, ...]
+    spans: tuple[ClosedSpan, ...]
+
+    @cached_property
+    def _template(self) -> Template:
+        return Template(self.scene, self.paths)
+
+    @cached_property
+    def _in_core(self) -> Spans:
+        return in_core(self.spans)
+
+    def modes(
+        self,
+        values: ArrayLike,
+        number: int,
+        *,
+        derivative: bool = False,
+        threads: int | None = None,
+        executor: Executor | None = None,
+        progress: Progress = None,
+    ) -> FamilyModes:
+        """Find the lowest natural frequencies of each rope.
+
+        Parameters
+        ----------
+        values : array_like, shape (m, p)
+            A row for each rope, in the order of `paths`. Springs at ends may be 0 (free), infinite
+            (held) and of either sign.
+        number : int
+            How many frequencies of each.
+        derivative : bool
+            Also the derivatives of the frequencies by the numbers.
+        threads : int, optional
+            That share the rows; the environment variable ROPEDYN_THREADS or all cores where left
+            out. The bits of a row depend neither on it nor on the other rows.
+        executor : concurrent.futures.Executor, optional
+            That shares the rows instead, as `sweep` takes it; rows it lost have failed.
+        progress : None, True or callable
+            True prints the share of rows that are done to stderr, a callable takes it.
+
+        Returns
+        -------
+        FamilyModes
+            Rows that have no meaning, or no answer, are NaN and named in `FamilyModes.failed`.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If values are NaN or not as many to a row as there are paths, or the number is not
+            positive.
+
+        Notes
+        -----
+        Uniform ropes without parts, lay and sag are solved in closed form, in microseconds each
+        (see csrc/closed/span_phase.h); what that does not certify, such as rigid motion or motion
+        that grows, and all other scenes are compiled and solved row by row.
+
+        Examples
+        --------
+        A string has f = sqrt(T/mu)/2 L:
+
+        >>> import ropedyn as rd
+        >>> family = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).family(["tension", "length"])
+        >>> found = family.modes([[1000.0, 2.0], [4000.0, 4.0]], 1, derivative=True)
+        >>> found.frequency.round(9).tolist(), found.derivative.round(9).tolist()
+        ([[25.0], [25.0]], [[[0.0125, -12.5]], [[0.003125, -6.25]]])
+        """
+        check.count(number, "number", most=MOST_MODES)
+        check.instance(derivative, "derivative", bool, "True or False")
+        rows = self._checked(values)
+        shape, p = (len(rows), number), len(self.paths)
+        blank: list[np.ndarray[Any, Any]] = [np.full(shape, np.nan) for _ in range(3)]
+        blank.append(np.zeros(len(rows), dtype=bool))
+        if derivative:
+            blank.append(np.full((*shape, p), np.nan))
+        start = time.perf_counter()
+        stages = self._stages(
+            partial(closed_modes, self._in_core, number, derivative),
+            partial(modes_of_row, self._template, number, derivative),
+        )
+        shared = Shared(rows, workers_of(threads), executor, progress)
+        reasons, answered = shared.fill(blank, stages)
+        frequency, eigenvalue, error, certified = blank[:4]
+        return FamilyModes(
+            paths=self.paths,
+            reasons=reasons,
+            cost=_cost(time.perf_counter() - start, answered, len(rows)),
+            frequency=frequency,
+            eigenvalue=eigenvalue,
+            growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
+            rounding_error=error,
+            certified=certified,
+            derivative=blank[4] if derivative else None,
+        )
+
+    def count(
+        self,
+        values: ArrayLike,
+        *,
+        below: float,
+        threads: int | None = None,
+        executor: Executor | None = None,
+        progress: Progress = None,
+    ) -> Integer:
+        """Count the natural frequencies of each rope below a limit.
+
+        Parameters
+        ----------
+        values : array_like, shape (m, p)
+            As `modes` takes them.
+        below : float
+            [Hz].
+        threads, executor, progress
+            As `modes` takes them.
+
+        Returns
+        -------
+        ndarray of int, shape (m,)
+            Motion that grows is counted too; -1 where a row has no meaning.
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `modes` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> family = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).family(["tension"])
+        >>> family.count([[1000.0], [4000.0]], below=60.0).tolist()
+        [2, 1]
+        """
+        limit = eigenvalue_of(below)
+        rows = self._checked(values)
+        blank = [np.full(len(rows), -1, dtype=np.int64)]
+        stages = self._stages(
+            partial(closed_counts, self._in_core, float(np.sqrt(limit))),
+            partial(count_of_row, self._template, below),
+        )
+        Shared(rows, workers_of(threads), executor, progress).fill(blank, stages)
+        return blank[0]
+
+    def frf(
+        self,
+        values: ArrayLike,
+        frequency: ArrayLike,
+        *,
+        drive: Any,
+        response: Any = None,
+        quantity: str = "receptance",
+        threads: int | None = None,
+        executor: Executor | None = None,
+        progress: Progress = None,
+    ) -> FamilyFRF:
+        """Compute the frequency response of each rope.
+
+        Parameters
+        ----------
+        values : array_like, shape (m, p)
+            As `modes` takes them.
+        frequency, drive, response, quantity
+            As `Model.frf` takes them.
+        threads, executor, progress
+            As `modes` takes them.
+
+        Returns
+        -------
+        FamilyFRF
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `modes` and `Model.frf` do.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> family = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).family(["tension"])
+        >>> family.frf([[1000.0]], [0.0, 10.0], drive=("z", 1.0)).value.shape
+        (1, 1, 2)
+        """
+        f = check.frequencies(frequency)
+        asked = {"drive": drive, "response": response, "quantity": quantity}
+        rows = self._checked(values)
+        # what is asked is refused before anything runs, and its shape is known
+        model = compile_scene(self.scene)
+        drives, several = points(model, drive, "drive", forces=False, ends=True)
+        watched = len(observed(model, response, drives))
+        shape = (len(rows), *((len(drives),) if several else ()), watched, len(f))
+        blank = [np.full(shape, np.nan + 0j), np.full(shape, np.nan)]
+        start = time.perf_counter()
+        stages = self._stages(None, partial(frf_of_row, self._template, f, asked))
+        reasons, _ = Shared(rows, workers_of(threads), executor, progress).fill(blank, stages)
+        cost = _cost(time.perf_counter() - start, [0], len(rows))
+        return FamilyFRF(self.paths, reasons, cost, quantity, f, *blank)
+
+    def scene_of(self, values: ArrayLike) -> Scene:
+        """Return the scene of one rope.
+
+        Parameters
+        ----------
+        values : array_like, shape (p,)
+            In the order of `paths`.
+
+        Raises
+        ------
+        SceneError
+            If the values have no meaning.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=2.0))
+        >>> scene.family(["ends[1].spring.z"]).scene_of([5.0]).ends[1].spring
+        {'z': 5.0}
+        """
+        row = self._checked(np.asarray(values)[np.newaxis])[0]
+        return self._template.at(row)
+
+    def _stages(
+        self, closed: Callable[[Real], Answered] | None, alone: Callable[[Real], tuple[Any, ...]]
+    ) -> list[Means]:
+        """Return the ways to solve rows: in closed form where there is one, then one by one."""
+        last = Means(partial(one_by_one, alone), ROWS_ALONE)
+        return [Means(closed, ROWS), last] if closed and self.spans else [last]
+
+    def _checked(self, values: ArrayLike) -> Real:
+        p = len(self.paths)
+        what = f"values must be numbers of shape (ropes, {p}), a column for each path"
+        try:
+            rows = np.asarray(values)
+        except ValueError as error:
+            raise SceneError(f"{what}, got {check.shown(values)}") from error
+        if rows.size == 0 and rows.ndim < 2:
+            rows = np.empty((0, p))
+        if rows.dtype.kind not in "iuf":
+            raise TypeError(f"{what}, got {check.shown(values)}")
+        if rows.ndim != 2 or rows.shape[1] != p:
+            raise SceneError(f"{what}, got shape {rows.shape}")
+        rows = np.ascontiguousarray(rows, dtype=np.float64)
+        if np.isnan(rows).any():
+            row, column = np.argwhere(np.isnan(rows))[0]
+            raise SceneError(f"values[{row}, {column}] ({self.paths[column]}) must not be NaN")
+        return rows
+
+
+def _cost(seconds: float, answered: Sequence[int], rows: int) -> Cost:
+    closed = answered[0] if len(answered) > 1 else 0
+    return Cost(seconds, f"{closed} of {rows} rows in closed form", elements=0, unknowns=0)
+
+
+def compile_family(scene: Scene, paths: Iterable[str]) -> Family:
+    """Compile a scene and the numbers that differ; see `Scene.family`."""
+    known = template(scene, paths)
+    return Family(scene, known.paths, closed_spans(scene, known.paths))

@@ -1,0 +1,76 @@
+"""A scene some of whose numbers differ from row to row."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..base import check
+from ..base.array import Real
+from ..base.errors import SceneError
+from ..scene.end import End, end_of
+from ..scene.path import value_at, with_values
+from ..scene.scene import Scene
+
+SPRING = re.compile(r"ends\[([01])\]\.spring\.(x|z|alpha|beta)")
+
+
+class Template(NamedTuple):
+    """A scene, and the paths of the numbers that differ."""
+
+    scene: Scene
+    paths: tuple[str, ...]
+
+    def at(self, row: Real) -> Scene:
+        """Return the scene of a row."""
+        plain = {p: float(x) for p, x in zip(self.paths, row) if not SPRING.fullmatch(p)}
+        scene = with_values(self.scene, plain)
+        for path, stiffness in zip(self.paths, row):
+            if found := SPRING.fullmatch(path):
+                ends = list(scene.ends)
+                at = int(found[1])
+                ends[at] = _sprung(end_of(ends[at]), found[2], float(stiffness), path)
+                scene = scene.replace(ends=tuple(ends))
+        return scene
+
+
+def template(scene: Scene, paths: Iterable[str]) -> Template:
+    """Check that paths lead to numbers of a scene, each once."""
+    if isinstance(paths, str):
+        raise TypeError(f'paths must be a list such as ["tension"], got {paths!r}')
+    named = tuple(_known(scene, path) for path in paths)
+    if not named:
+        raise SceneError("paths must name at least one number, got none")
+    twice = [path for k, path in enumerate(named) if path in named[:k]]
+    if twice:
+        raise SceneError(f"paths must differ, got {twice[0]!r} twice")
+    return Template(scene, named)
+
+
+def _known(scene: Scene, path: str) -> str:
+    """Check that a path leads to a number, and return it by its shortest name."""
+    check.instance(path, "path", str, 'a string such as "tension"')
+    if found := SPRING.fullmatch(path):
+        if found[2] not in scene.coordinates:
+            raise SceneError(
+                f"path {path!r} must be of a coordinate the scene has "
+                f"({', '.join(scene.coordinates)})"
+            )
+        return path
+    value_at(scene, path)
+    return "tension" if path == "tension.mean" else path
+
+
+def _sprung(end: End, coordinate: str, stiffness: float, path: str) -> End:
+    """Return an end with a spring of 0 (free), infinite (held) or other stiffness."""
+    if stiffness == -np.inf:
+        raise SceneError(f"{path} must be a finite number or inf, got -inf")
+    springs = {c: k for c, k in end.spring.items() if c != coordinate}
+    if stiffness not in (0, np.inf):
+        springs[coordinate] = stiffness
+    change: dict[str, Any] = {coordinate: "held" if stiffness == np.inf else "free"}
+    return replace(end, spring=springs, **change)
