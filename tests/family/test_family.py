@@ -425,7 +425,7 @@ def test_the_answer_is_kept_in_files(tmp_path):
     frf = family.frf([[1.0, 1.0]], [1.0, 2.0], drive=("z", 0.5))
     frf.save(tmp_path / "frf.nc")
     np.testing.assert_array_equal(rd.load(tmp_path / "frf.nc").value, frf.value)
-    assert frf.plot().get_ylabel() == "receptance"
+    assert frf.plot().get_ylabel() == "receptance, amplitude"
 
 
 # --- the glue -------------------------------------------------------------------------------------
