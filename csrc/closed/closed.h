@@ -1,8 +1,7 @@
 /* Many uniform ropes at once, in closed form: lanes are ropes.
 
-   A rope is a list of numbers (enum rd_bent or rd_plain): those of row i are
-
-       number[j] = column[j] < 0 ? fixed[j] : values[i][column[j]]
+   A rope is a row of numbers (enum rd_bent or rd_plain). They follow from a few values by a matrix that
+   is the same in all rows, so that slopes by the values are those by the numbers times it.
 
    Springs at the ends are 0 (free), of either sign, or infinite (held). Bits of a row do not depend on
    what stands in the others. */
@@ -36,10 +35,9 @@ enum rd_plain {
 };
 
 struct rd_ropes {
-    size_t columns;
-    const double *values;  /* rows x columns */
-    const double *fixed;   /* per number */
-    const int32_t *column; /* per number */
+    const double *number;   /* rows x numbers */
+    size_t values;          /* that numbers follow from */
+    const double *jacobian; /* numbers x values; NULL where no slopes are asked for */
 };
 
 /* modes of a row, 1 to number by index, k = row number + mode - 1 */
@@ -47,7 +45,7 @@ struct rd_closed_modes {
     size_t number;
     double *omega; /* rows x number [rad/s] */
     double *error; /* rows x number: how far rounding may have moved it, relative */
-    double *slope; /* rows x number x columns: d ln omega by what is in the column; or NULL */
+    double *slope; /* rows x number x values: d ln omega by each value; or NULL */
     uint8_t
         *certified; /* rows: every mode was found, at its index, positive, and within the error */
 };

@@ -54,11 +54,9 @@ RD_INLINE void rope_lanes(const struct rd_ropes *ropes, const struct lane_places
                           lanes *number)
 {
     for (int j = 0; j < numbers; j++) {
-        const int32_t column = ropes->column[j];
         double x[RD_LANES];
         for (size_t i = 0; i < RD_LANES; i++)
-            x[i] = column < 0 ? ropes->fixed[j]
-                              : ropes->values[at->row[i] * ropes->columns + (size_t)column];
+            x[i] = ropes->number[at->row[i] * (size_t)numbers + (size_t)j];
         __builtin_memcpy(number + j, x, sizeof x);
     }
 }
@@ -89,9 +87,16 @@ RD_INLINE void keep_modes(const struct rd_ropes *ropes, const struct lane_places
         if (at->mode[i] == 0)
             modes->certified[at->row[i]] = 1;
         modes->certified[at->row[i]] &= certified[i] != 0;
-        for (int j = 0; j < numbers && modes->slope; j++)
-            if (ropes->column[j] >= 0)
-                modes->slope[place * ropes->columns + (size_t)ropes->column[j]] = slope[j][i];
+    }
+    for (size_t c = 0; c < ropes->values && modes->slope; c++) {
+        lanes sum = l_fill(0);
+        for (size_t j = 0; j < (size_t)numbers; j++) {
+            const double per = ropes->jacobian[j * ropes->values + c];
+            if (per != 0)
+                sum += per * slope[j];
+        }
+        for (size_t i = 0; i < at->used; i++)
+            modes->slope[(at->row[i] * modes->number + at->mode[i]) * ropes->values + c] = sum[i];
     }
 }
 

@@ -20,12 +20,11 @@ struct py_ropes {
     const struct kind *kind;
     struct rd_ropes ropes;
     size_t rows;
-    PyArrayObject *values, *fixed, *column;
+    PyArrayObject *number, *jacobian; /* the last is NULL where None is given */
 };
 
 /* 0, or -1 and an exception; to be released in both cases */
-static int parse(const char *name, PyObject *values, PyObject *fixed, PyObject *column,
-                 struct py_ropes *parsed)
+static int parse(const char *name, PyObject *number, PyObject *jacobian, struct py_ropes *parsed)
 {
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(name, kinds[i].name) == 0)
@@ -35,29 +34,25 @@ static int parse(const char *name, PyObject *values, PyObject *fixed, PyObject *
         return -1;
     }
     const npy_intp numbers = parsed->kind->numbers;
-    parsed->values = py_array(values, NPY_FLOAT64, 2, (npy_intp[]){-1, -1}, "values");
-    parsed->fixed = parsed->values ? py_array(fixed, NPY_FLOAT64, 1, &numbers, "fixed") : NULL;
-    parsed->column = parsed->fixed ? py_array(column, NPY_INT32, 1, &numbers, "column") : NULL;
-    if (parsed->column == NULL)
+    parsed->number = py_array(number, NPY_FLOAT64, 2, (npy_intp[]){-1, numbers}, "number");
+    if (parsed->number == NULL)
         return -1;
-    const npy_intp columns = PyArray_DIM(parsed->values, 1);
-    parsed->rows = (size_t)PyArray_DIM(parsed->values, 0);
-    parsed->ropes = (struct rd_ropes){(size_t)columns, PyArray_DATA(parsed->values),
-                                      PyArray_DATA(parsed->fixed), PyArray_DATA(parsed->column)};
-    for (npy_intp j = 0; j < numbers; j++)
-        if (parsed->ropes.column[j] >= columns) {
-            PyErr_Format(PyExc_ValueError, "column must be less than %zd, got %d",
-                         (Py_ssize_t)columns, (int)parsed->ropes.column[j]);
-            return -1;
-        }
+    parsed->rows = (size_t)PyArray_DIM(parsed->number, 0);
+    parsed->ropes.number = PyArray_DATA(parsed->number);
+    if (jacobian == Py_None)
+        return 0;
+    parsed->jacobian = py_array(jacobian, NPY_FLOAT64, 2, (npy_intp[]){numbers, -1}, "jacobian");
+    if (parsed->jacobian == NULL)
+        return -1;
+    parsed->ropes.values = (size_t)PyArray_DIM(parsed->jacobian, 1);
+    parsed->ropes.jacobian = PyArray_DATA(parsed->jacobian);
     return 0;
 }
 
 static void release(struct py_ropes *parsed)
 {
-    Py_XDECREF(parsed->values);
-    Py_XDECREF(parsed->fixed);
-    Py_XDECREF(parsed->column);
+    Py_XDECREF(parsed->number);
+    Py_XDECREF(parsed->jacobian);
 }
 
 PyObject *py_closed_modes(PyObject *module, PyObject *arguments)
@@ -65,33 +60,31 @@ PyObject *py_closed_modes(PyObject *module, PyObject *arguments)
     struct py_ropes parsed = {0};
     const char *kind;
     Py_ssize_t number;
-    int sloped;
-    PyObject *object[3], *omega = NULL, *error = NULL, *slope = NULL, *certified = NULL;
+    PyObject *object[2], *omega = NULL, *error = NULL, *slope = NULL, *certified = NULL;
     PyObject *result = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(arguments, "sOOOnp", &kind, object, object + 1, object + 2, &number,
-                          &sloped))
+    if (!PyArg_ParseTuple(arguments, "sOOn", &kind, object, object + 1, &number))
         return NULL;
-    if (parse(kind, object[0], object[1], object[2], &parsed) < 0)
+    if (parse(kind, object[0], object[1], &parsed) < 0)
         goto done;
     if (number < 1) {
-        PyErr_Format(PyExc_ValueError, "number must be at least 1, got %zd", number);
+        PyErr_Format(PyExc_ValueError, "modes must be at least 1, got %zd", number);
         goto done;
     }
-    const npy_intp shape[] = {(npy_intp)parsed.rows, number, (npy_intp)parsed.ropes.columns};
+    const npy_intp shape[] = {(npy_intp)parsed.rows, number, (npy_intp)parsed.ropes.values};
     omega = py_new(NPY_FLOAT64, 2, shape);
     error = omega ? py_new(NPY_FLOAT64, 2, shape) : NULL;
     certified = error ? py_new(NPY_BOOL, 1, shape) : NULL;
     if (certified == NULL)
         goto done;
-    slope = sloped ? PyArray_ZEROS(3, shape, NPY_FLOAT64, 0) : Py_NewRef(Py_None);
+    slope = parsed.jacobian ? py_new(NPY_FLOAT64, 3, shape) : Py_NewRef(Py_None);
     if (slope == NULL)
         goto done;
     const struct rd_closed_modes modes = {
         .number = (size_t)number,
         .omega = PyArray_DATA((PyArrayObject *)omega),
         .error = PyArray_DATA((PyArrayObject *)error),
-        .slope = sloped ? PyArray_DATA((PyArrayObject *)slope) : NULL,
+        .slope = parsed.jacobian ? PyArray_DATA((PyArrayObject *)slope) : NULL,
         .certified = PyArray_DATA((PyArrayObject *)certified),
     };
     Py_BEGIN_ALLOW_THREADS
@@ -112,11 +105,11 @@ PyObject *py_closed_count(PyObject *module, PyObject *arguments)
     struct py_ropes parsed = {0};
     const char *kind;
     double omega;
-    PyObject *object[3], *count = NULL;
+    PyObject *object, *count = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(arguments, "sOOOd", &kind, object, object + 1, object + 2, &omega))
+    if (!PyArg_ParseTuple(arguments, "sOd", &kind, &object, &omega))
         return NULL;
-    if (parse(kind, object[0], object[1], object[2], &parsed) < 0)
+    if (parse(kind, object, Py_None, &parsed) < 0)
         goto done;
     count = py_new(NPY_INT64, 1, (npy_intp[]){(npy_intp)parsed.rows});
     if (count == NULL)

@@ -57,9 +57,9 @@ static PyMethodDef methods[] = {
     {"march_finish", py_march_finish, METH_VARARGS,
      "march_finish(chain, beside, law, plan, g, h, state, stage, force)"},
     {"closed_modes", py_closed_modes, METH_VARARGS,
-     "closed_modes(kind, values, fixed, column, number, sloped) -> omega, error, slope, certified"},
+     "closed_modes(kind, number, jacobian, modes) -> omega, error, slope, certified"},
     {"closed_count", py_closed_count, METH_VARARGS,
-     "closed_count(kind, values, fixed, column, omega) -> counts, -1 where not certain"},
+     "closed_count(kind, number, omega) -> counts, -1 where not certain"},
     {NULL, NULL, 0, NULL},
 };
 

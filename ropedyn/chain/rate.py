@@ -205,7 +205,7 @@ class Rate:
         span, station, inside = places.span, places.station, places.inside
         section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
         element = np.column_stack([section, self.tension, self.length, self._sag(places)])
-        inertia = self._inertia(places)
+        inertia = self.inertia(places)
         diagonal = np.arange(self.mass.shape[1])
         node = np.zeros((len(station), *2 * self.mass.shape[1:]))
         node[:, diagonal, diagonal] = np.where(inside[:, None], 0.0, self.stiffness[station])
@@ -240,7 +240,7 @@ class Rate:
         density = self.rope.get("linear_density", np.zeros(len(places.counts)))
         return density * places.pull + places.linear_density * self.pull
 
-    def _inertia(self, places: Places) -> Real:
+    def inertia(self, places: Places) -> Real:
         """Return the derivative of the inertia per length of each span."""
         inertia = np.zeros((len(places.counts), self.mass.shape[1]))
         for name in self.rope.keys() & set(DENSITIES):

@@ -17,6 +17,7 @@ from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import CHANNELS, Chain
 from ..chain.compiled import MOST_STEPS, Compiled
+from .closed import closed_count, closed_eigenvalues
 
 LARGEST_DENSE = 8_000
 """Unknowns above which the dense matrix of the assembled solver, 8 n^2 bytes, is refused."""
@@ -69,7 +70,9 @@ def count_component(model: Compiled, component: tuple[str, ...], limit: float) -
 
 def _count(chain: Chain, limit: float) -> int:
     """Count the eigenvalues of a component below a limit."""
-    return int(_core.count(chain, np.array([min(limit, HIGHEST)]))[0])
+    limit = min(limit, HIGHEST)
+    found = closed_count(chain, limit)
+    return int(_core.count(chain, np.array([limit]))[0]) if found is None else found
 
 
 def merged(found: Sequence[ComponentModes], number: int | None) -> tuple[Real, Real, Index]:
@@ -142,20 +145,22 @@ def _sweep(
 
 def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> ComponentModes:
     """Find the lowest modes of a chain between ends that nothing moves, or all below a limit."""
+    if not shaped and (found := closed_eigenvalues(chain, number, limit)):
+        return ComponentModes(*found, None, True, Work())
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
-    eigenvalue, error, certified, shape, motion, found, sweeps, redone = _in_threads(
+    eigenvalue, error, certified, shape, motion, most, sweeps, redone = _in_threads(
         _core.certify, max(chain.nodes, 100 * wanted), chain, wanted, _upper(limit), shaped
     )
-    if not np.isfinite(eigenvalue[:found]).all() or not np.isfinite(error[:found]).all():
+    if not np.isfinite(eigenvalue[:most]).all() or not np.isfinite(error[:most]).all():
         raise SolveError("the numbers of the modes overflow: check the units")
     return ComponentModes(
-        eigenvalue[:found],
-        error[:found],
-        shape[:found] if shaped else None,
-        bool((certified[:found] == 1).all()),
+        eigenvalue[:most],
+        error[:most],
+        shape[:most] if shaped else None,
+        bool((certified[:most] == 1).all()),
         Work(sweeps, redone=redone),
-        motion[:found] if shaped else None,
+        motion[:most] if shaped else None,
     )
 
 

@@ -1,99 +1,112 @@
-"""What of a rope has a closed form, and its rows in the core."""
+"""What of a family has a closed form, and its rows in the core."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .. import _core
-from ..base.array import Real
-from ..scene.end import end_of
-from ..scene.path import value_at
-from ..scene.scene import Scene
-from ..scene.tension import Tension
+from ..base.array import Flags, Real
+from ..base.errors import RopedynError
+from ..chain.compile import compile_scene
+from ..chain.compiled import Compiled, refuse_nonlinear
+from ..chain.rate import Places, rates_of
+from ..chain.spans import rates_of_spans, spans_of
+from ..eigen.closed import ClosedModes, ClosedSpans, closed_form
 from .rows import Answered
+from .template import SPRING, Template
 
-Column = NDArray[np.int32]
-"""Where numbers stand in a row, -1 where they are fixed."""
-
-_BENT = ("length", "linear_density", "tension", "bending_stiffness")
-_STRING = ("length", "linear_density", "tension")
-_TWISTED = ("length", "polar_inertia", "torsional_stiffness")
-_STRETCHED = ("length", "linear_density", "axial_stiffness")
-"""Numbers of what has a closed form, before those of its springs, in the order of the core."""
+PROBE = 2.0**-10
+"""By so much of themselves values are changed to see whether numbers follow from them linearly."""
 
 
-class ClosedSpan(NamedTuple):
-    """A component of the rope that has a closed form, its numbers as the core takes them."""
+class Component(NamedTuple):
+    """A component in closed form whose numbers are linear in the values of a row."""
 
-    kind: str
-    fixed: tuple[float, ...]
-    """Numbers, where no column has them."""
-    column: tuple[int, ...]
-    """Where they stand in a row of values, -1 where nowhere."""
+    form: ClosedSpans
+    fixed: Real  # (numbers,) what they are where all values are 0
+    jacobian: Real  # (numbers, values)
+
+    def numbers(self, rows: Real) -> Real:
+        """Return the numbers of each row, shape (rows, numbers)."""
+        found = np.tile(self.fixed, (len(rows), 1))
+        for j, c in zip(*np.nonzero(self.jacobian)):
+            # an infinite value of another number must not be multiplied by 0
+            found[:, j] += self.jacobian[j, c] * rows[:, c]
+        return found
+
+    def modes(self, rows: Real, number: int, *, sloped: bool) -> ClosedModes:
+        """Find the lowest modes of each row."""
+        return self.form.modes(self.numbers(rows), number, self.jacobian if sloped else None)
 
 
-Spans = tuple[tuple[str, Real, Column], ...]
-"""Spans as the core takes them."""
-
-
-def in_core(spans: Sequence[ClosedSpan]) -> Spans:
-    """Return spans as the core takes them."""
-    return tuple((one.kind, np.array(one.fixed), np.array(one.column, np.int32)) for one in spans)
-
-
-def closed_spans(scene: Scene, paths: tuple[str, ...]) -> tuple[ClosedSpan, ...]:
-    """Return the components in closed form, nothing where one has none."""
-    rope, tension, ends = scene.rope, scene.tension, [end_of(end) for end in scene.ends]
-    stretching = isinstance(tension, Tension) and tension.stretching
-    coupled = bool(rope.lay_coupling or rope.lay_slope or rope.rotary_inertia)
-    if scene.parts or scene.gravity or stretching or coupled or any(end.mass for end in ends):
+def components_of(template: Template) -> tuple[Component, ...]:
+    """Return what moves in closed form: nothing where some does not, or a path does not act."""
+    row = template.row
+    probe = row + PROBE * np.arange(1, len(row) + 1) * row
+    try:
+        here, there = (_linearised(template, one) for one in (row, probe))
+    except RopedynError:
         return ()
-    if rope.torsional_stiffness is not None and not rope.polar_inertia:
+    if here is None or there is None or len(here) != len(there):
         return ()
-    spans = []
-    if rope.bending_stiffness is not None:
-        spans.append(_span(scene, paths, "bent", _BENT, ("z", "beta")))
-    elif scene.mean_tension or "tension" in paths:
-        spans.append(_span(scene, paths, "plain", _STRING, ("z",)))
-    if rope.torsional_stiffness is not None:
-        spans.append(_span(scene, paths, "plain", _TWISTED, ("alpha",)))
-    if rope.axial_stiffness is not None:
-        spans.append(_span(scene, paths, "plain", _STRETCHED, ("x",)))
-    used = {column for span in spans for column in span.column}
-    return tuple(spans) if used >= set(range(len(paths))) else ()
+    for one, other in zip(here, there):
+        if one.form.kind != other.form.kind or not np.array_equal(one.jacobian, other.jacobian):
+            return ()
+    acting = np.any([one.jacobian.any(axis=0) for one in here], axis=0)
+    return here if acting.all() else ()
 
 
-def _span(
-    scene: Scene,
-    paths: tuple[str, ...],
-    kind: str,
-    names: tuple[str, ...],
-    coordinates: tuple[str, ...],
-) -> ClosedSpan:
-    fixed = [value_at(scene, name) for name in names]
-    where = list(names)
-    for at, end in enumerate(map(end_of, scene.ends)):
-        for c in coordinates:
-            fixed.append(np.inf if end.holds(c) else end.spring.get(c, 0.0))
-            where.append(f"ends[{at}].spring.{c}")
-    column = [paths.index(path) if path in paths else -1 for path in where]
-    return ClosedSpan(kind, tuple(fixed), tuple(column))
+def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
+    """Return the components at a row, None where one has no closed form."""
+    model = compile_scene(template.at(row))
+    refuse_nonlinear(model)
+    places = Places(model)
+    rates = rates_of(places)
+    found = []
+    for names in model.components:
+        chain = model.chain.undamped.only(names)
+        spans = spans_of(chain)
+        if spans is None or len(chain.spans) > 1:
+            return None
+        columns = []
+        for path in template.paths:
+            if end := SPRING.fullmatch(path):
+                columns.append(_of_spring(model, names, int(end[1]), end[2]))
+            elif path in rates:
+                columns.append(rates_of_spans(rates[path](), places, names))
+            else:
+                return None
+        jacobian = np.stack(columns, axis=1)
+        number = spans.number
+        for j, c in zip(*np.nonzero(jacobian)):
+            number[j] = 0.0 if np.isinf(row[c]) else number[j] - jacobian[j, c] * row[c]
+        varied: Flags = np.any(jacobian, axis=1)
+        form = closed_form(spans, varied)
+        if form is None:
+            return None
+        found.append(Component(form, number, jacobian))
+    return tuple(found)
 
 
-def closed_modes(spans: Spans, number: int, derivative: bool, rows: Real) -> Answered:
+def _of_spring(model: Compiled, names: Sequence[str], end: int, coordinate: str) -> Real:
+    """Return how fast numbers change with a spring at an end, whether there is one or not."""
+    spans, width = len(model.x) - 1, len(names)
+    rate = np.zeros((spans + 1, 2 * width))
+    if coordinate in names:
+        rate[-end, width + names.index(coordinate)] = 1.0
+    return np.append(np.zeros(spans * (4 if width == 2 else 3)), rate)
+
+
+def closed_modes(
+    components: Sequence[Component], number: int, derivative: bool, rows: Real
+) -> Answered:
     """Find the modes of the rows that are certified."""
-    found = [_core.closed_modes(k, rows, f, c, number, derivative) for k, f, c in spans]
-    certified = found[0][3]
-    if len(found) > 1:
-        certified = np.logical_and.reduce([one[3] for one in found])
+    found = [one.modes(rows, number, sloped=derivative) for one in components]
+    omega, error, slope = _lowest(found, number)
+    certified = np.logical_and.reduce([one.certified for one in found])
     at = np.flatnonzero(certified)
-    omega, error, slope, _ = found[0]
-    if len(found) > 1:
-        omega, error, slope = _lowest(found, number)
     if len(at) < len(rows):
         omega, error, slope = omega[at], error[at], None if slope is None else slope[at]
     frequency = omega / (2 * np.pi)
@@ -102,19 +115,22 @@ def closed_modes(spans: Spans, number: int, derivative: bool, rows: Real) -> Ans
     return Answered(at, answer if slope is None else (*answer, slope * frequency[..., None]), {})
 
 
-def _lowest(found: Sequence[tuple[Any, ...]], number: int) -> tuple[Real, Real, Real | None]:
+def _lowest(found: Sequence[ClosedModes], number: int) -> tuple[Real, Real, Real | None]:
     """Return the lowest frequencies of several components, and what goes with them."""
+    if len(found) == 1:
+        return found[0][:3]
     omega, error = (np.concatenate([one[k] for one in found], axis=1) for k in (0, 1))
     order = np.argsort(omega, axis=1, kind="stable")[:, :number]
     omega, error = (np.take_along_axis(one, order, axis=1) for one in (omega, error))
-    if found[0][2] is None:
+    slopes = [one.slope for one in found if one.slope is not None]
+    if not slopes:
         return omega, error, None
-    slope = np.concatenate([one[2] for one in found], axis=1)
+    slope = np.concatenate(slopes, axis=1)
     return omega, error, np.take_along_axis(slope, order[..., None], axis=1)
 
 
-def closed_counts(spans: Spans, omega: float, rows: Real) -> Answered:
+def closed_counts(components: Sequence[Component], omega: float, rows: Real) -> Answered:
     """Count the modes of the rows where that is certain."""
-    counts = np.array([_core.closed_count(k, rows, f, c, omega) for k, f, c in spans])
+    counts = np.array([one.form.counts(one.numbers(rows), omega) for one in components])
     at = np.flatnonzero((counts >= 0).all(axis=0))
     return Answered(at, (counts.sum(axis=0)[at],), {})

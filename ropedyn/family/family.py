@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Integer, Real
+from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.progress import Progress
 from ..chain.compile import compile_scene
@@ -23,7 +24,7 @@ from ..eigen.spectrum import eigenvalue_of
 from ..response.question import workers_of
 from ..scene.scene import Scene
 from .alone import count_of_row, frf_of_row, modes_of_row
-from .closed import ClosedSpan, Spans, closed_counts, closed_modes, closed_spans, in_core
+from .closed import Component, closed_counts, closed_modes, components_of
 from .frf import FamilyFRF
 from .modes import FamilyModes
 from .rows import Answered, Means, Shared, one_by_one
@@ -46,8 +47,6 @@ class Family:
         What all other numbers are taken from.
     paths : tuple of str
         The numbers that differ, in the order of the columns of values.
-    spans : tuple
-        Components that have a closed form; empty where rows are solved one by one.
 
     Examples
     --------
@@ -60,15 +59,14 @@ class Family:
 
     scene: Scene
     paths: tuple[str, ...]
-    spans: tuple[ClosedSpan, ...]
 
-    @cached_property
+    @computed
     def _template(self) -> Template:
         return Template(self.scene, self.paths)
 
-    @cached_property
-    def _in_core(self) -> Spans:
-        return in_core(self.spans)
+    @computed
+    def _closed(self) -> tuple[Component, ...]:
+        return components_of(self._template)
 
     def modes(
         self,
@@ -138,7 +136,7 @@ class Family:
             blank.append(np.full((*shape, p), np.nan))
         start = time.perf_counter()
         stages = self._stages(
-            partial(closed_modes, self._in_core, number, derivative),
+            partial(closed_modes, self._closed, number, derivative),
             partial(modes_of_row, self._template, number, derivative),
         )
         shared = Shared(rows, workers_of(threads), executor, progress)
@@ -197,7 +195,7 @@ class Family:
         rows = self._checked(values)
         blank = [np.full(len(rows), -1, dtype=np.int64)]
         stages = self._stages(
-            partial(closed_counts, self._in_core, float(np.sqrt(limit))),
+            partial(closed_counts, self._closed, float(np.sqrt(limit))),
             partial(count_of_row, self._template, below),
         )
         Shared(rows, workers_of(threads), executor, progress).fill(blank, stages)
@@ -285,7 +283,7 @@ class Family:
     ) -> list[Means]:
         """Return the ways to solve rows: in closed form where there is one, then one by one."""
         last = Means(partial(one_by_one, alone), ROWS_ALONE)
-        return [Means(closed, ROWS), last] if closed and self.spans else [last]
+        return [Means(closed, ROWS), last] if closed and self._closed else [last]
 
     def _checked(self, values: ArrayLike) -> Real:
         p = len(self.paths)
@@ -315,4 +313,4 @@ def _cost(seconds: float, answered: Sequence[int], rows: int) -> Cost:
 def compile_family(scene: Scene, paths: Iterable[str]) -> Family:
     """Compile a scene and the numbers that differ; see `Scene.family`."""
     known = template(scene, paths)
-    return Family(scene, known.paths, closed_spans(scene, known.paths))
+    return Family(scene, known.paths)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from dataclasses import replace
@@ -24,6 +25,18 @@ class Template(NamedTuple):
 
     scene: Scene
     paths: tuple[str, ...]
+
+    @property
+    def row(self) -> Real:
+        """The values of the scene, in the order of the paths."""
+        return np.array([self._value(path) for path in self.paths])
+
+    def _value(self, path: str) -> float:
+        found = SPRING.fullmatch(path)
+        if found is None:
+            return value_at(self.scene, path)
+        end = end_of(self.scene.ends[int(found[1])])
+        return math.inf if end.holds(found[2]) else end.spring.get(found[2], 0.0)
 
     def at(self, row: Real) -> Scene:
         """Return the scene of a row."""

@@ -14,12 +14,14 @@ struct found {
     uint8_t certified[ROWS];
 };
 
-static const double NOTHING[RD_BENT_NUMBERS];
-static const int32_t EACH[] = {0, 1, 2, 3, 4, 5, 6, 7};
-
-static struct rd_ropes ropes_of(const double *values, size_t columns)
+/* ropes whose values are their numbers */
+static struct rd_ropes ropes_of(const double *number, size_t numbers)
 {
-    return (struct rd_ropes){columns, values, NOTHING, EACH};
+    static double same[RD_BENT_NUMBERS * RD_BENT_NUMBERS];
+    memset(same, 0, sizeof same);
+    for (size_t j = 0; j < numbers; j++)
+        same[j * numbers + j] = 1;
+    return (struct rd_ropes){number, numbers, same};
 }
 
 /* MOST modes of bent spans */
@@ -220,27 +222,27 @@ static void rows_keep_their_bits_in_any_company(void)
     }
 }
 
-/* what no column gives is fixed, slopes are by the columns */
-static void numbers_come_from_columns_or_are_fixed(void)
+/* d/dv = sum of d/d number times d number/dv, in the order of the numbers */
+static void slopes_are_by_what_numbers_follow_from(void)
 {
-    const double fixed[] = {2, 3, 100, 5, INFINITY, INFINITY, INFINITY, 0};
-    const double values[] = {7, 50, 7, 60};
-    const int32_t column[] = {-1, -1, 1, -1, -1, -1, -1, -1};
-    const struct rd_ropes ropes = {2, values, fixed, column};
-    double omega[2], error[2], slope[4] = {9, 9, 9, 9};
-    uint8_t certified[2];
-    rd_bent_modes(&ropes, 0, 2, &(struct rd_closed_modes){1, omega, error, slope, certified});
-    double beam[RD_BENT_NUMBERS];
-    memcpy(beam, fixed, sizeof beam);
-    beam[RD_BENT_TENSION] = 60;
+    const double beam[] = {2, 3, 60, 5, INFINITY, INFINITY, INFINITY, 0};
+    double jacobian[RD_BENT_NUMBERS][2] = {0};
+    jacobian[RD_BENT_TENSION][1] = 1;
+    jacobian[RD_BENT_INERTIA][1] = -2;
+    const struct rd_ropes ropes = {beam, 2, jacobian[0]};
+    double omega, error, slope[2] = {9, 9};
+    uint8_t certified;
+    rd_bent_modes(&ropes, 0, 1, &(struct rd_closed_modes){1, &omega, &error, slope, &certified});
     struct found found;
     solve(beam, 1, &found);
-    CHECK_EXACT(omega[1], found.omega[0][0]);
-    CHECK_EXACT(slope[3], found.slope[0][0][RD_BENT_TENSION]);
-    CHECK_EXACT(slope[2], 9);
+    CHECK_EXACT(omega, found.omega[0][0]);
+    CHECK_EXACT(slope[0], 0);
+    const double *by = found.slope[0][0];
+    CHECK_EXACT(slope[1], -2 * by[RD_BENT_INERTIA] + by[RD_BENT_TENSION]);
     /* without slopes the frequencies are the same */
-    rd_bent_modes(&ropes, 0, 2, &(struct rd_closed_modes){1, omega, error, NULL, certified});
-    CHECK_EXACT(omega[1], found.omega[0][0]);
+    const struct rd_ropes alone = {beam, 0, NULL};
+    rd_bent_modes(&alone, 0, 1, &(struct rd_closed_modes){1, &omega, &error, NULL, &certified});
+    CHECK_EXACT(omega, found.omega[0][0]);
 }
 
 /* K tan K = sigma for one held and one sprung end; strings between held and free ends by their names */
@@ -250,7 +252,7 @@ static void strings_and_rods_have_their_roots(void)
         {2, 3, 12, INFINITY, INFINITY}, {2, 3, 12, INFINITY, 0},   {2, 3, 12, 0, 6.0},
         {2, 3, 12, INFINITY, -3},       {2, 3, 12, INFINITY, -12},
     };
-    const struct rd_ropes ropes = {RD_PLAIN_NUMBERS, rope[0], NOTHING, EACH};
+    const struct rd_ropes ropes = ropes_of(rope[0], RD_PLAIN_NUMBERS);
     double omega[10], error[10], slope[10 * RD_PLAIN_NUMBERS];
     uint8_t certified[5];
     int64_t count[5];
@@ -280,7 +282,7 @@ int main(void)
     counts_step_at_each_mode();
     slopes_are_those_of_frequencies();
     rows_keep_their_bits_in_any_company();
-    numbers_come_from_columns_or_are_fixed();
+    slopes_are_by_what_numbers_follow_from();
     strings_and_rods_have_their_roots();
     return check_report("test_closed");
 }

@@ -11,6 +11,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 import numpy as np
 import pytest
 from exact_span_count import exact_span_count
+from general_path import general_path
 
 import ropedyn as rd
 from ropedyn import _core
@@ -19,7 +20,6 @@ EPS = np.finfo(float).eps
 INF = float("inf")
 SPRINGS = [f"ends[{end}].spring.{c}" for end in (0, 1) for c in ("z", "beta")]
 PATHS = ["length", "linear_density", "tension", "bending_stiffness", *SPRINGS]
-NOTHING, EACH = np.zeros(8), np.arange(8, dtype=np.int32)
 BEAM = rd.Scene(rd.Rope(1.0, 1.0, bending_stiffness=1.0), tension=1.0)
 
 
@@ -56,10 +56,14 @@ def compare_with_general_path(seed, count, number=4, below=None):
     assert found.certified.all()
     for k, row in enumerate(values):
         model = family.scene_of(row).compile()
-        modes = model.modes(number)
+        with general_path():
+            modes, count = model.modes(number), model.count(below=limit)
         allowed = 4 * (modes.rounding_error + found.rounding_error[k])
         assert (np.abs(modes.frequency - found.frequency[k]) <= allowed).all(), row
-        assert counted[k] == model.count(below=limit), row
+        assert counted[k] == count, row
+        # the model of one rope answers as the family does
+        assert model.count(below=limit) == count, row
+        np.testing.assert_array_equal(model.modes(number).frequency, found.frequency[k])
     return closed
 
 
@@ -87,13 +91,13 @@ def check_index_and_error(seed, count, spread):
             off = 1.5 * error[k, n]
             assert exact_span_count(omega[k, n] * (1 - off), span) <= n, span
             assert exact_span_count(omega[k, n] * (1 + off), span) > n, span
-        counted = _core.closed_count("bent", span[None], NOTHING, EACH, float(limits[k]))[0]
+        counted = _core.closed_count("bent", span[None], float(limits[k]))[0]
         assert counted in (-1, exact_span_count(float(limits[k]), span)), span
     return int(certified.sum())
 
 
 def closed_modes(values, number):
-    return _core.closed_modes("bent", values, NOTHING, EACH, number, False)
+    return _core.closed_modes("bent", values, None, number)
 
 
 def test_index_and_error_of_random_spans_are_right():
@@ -169,11 +173,11 @@ def test_all_components_of_a_rope_take_part():
     found = family.modes(values, 12, derivative=True)
     assert found.cost.method.startswith("2 of 2")
     for k, row in enumerate(values):
-        modes = family.scene_of(row).compile().modes(12)
+        with general_path():
+            model = family.scene_of(row).compile()
+            modes, count = model.modes(12), model.count(below=40.0)
         np.testing.assert_allclose(found.frequency[k], modes.frequency, rtol=1e-13)
-        assert family.count(values, below=40.0)[k] == family.scene_of(row).compile().count(
-            below=40.0
-        )
+        assert family.count(values, below=40.0)[k] == count
     modes = scene.compile().modes(12)
     for column, path in enumerate(paths):
         slope = modes.derivative(path)
@@ -187,7 +191,8 @@ def test_strings_are_those_of_the_general_path():
     values = list(itertools.product([500.0, 2000.0], [INF, 0.0, 300.0, -100.0], [INF, 80.0]))
     found = family.modes(values, 3)
     for k, row in enumerate(values):
-        modes = family.scene_of(row).compile().modes(3)
+        with general_path():
+            modes = family.scene_of(row).compile().modes(3)
         np.testing.assert_allclose(found.frequency[k], modes.frequency, rtol=1e-12, atol=1e-9)
         np.testing.assert_allclose(found.growth[k], modes.growth, rtol=1e-9)
 
@@ -431,23 +436,25 @@ def test_the_answer_is_kept_in_files(tmp_path):
 # --- the glue -------------------------------------------------------------------------------------
 
 
-def closed(kind="plain", values=((1.0,),), fixed=(1, 1, 1, INF, INF), column=(0, -1, -1, -1, -1)):
-    numbers = np.array(values, dtype=float), np.array(fixed, dtype=float)
-    return kind, *numbers, np.array(column, dtype=np.int32)
+def closed(kind="plain", number=((1, 1, 1, INF, INF),), jacobian=((1,), (0,), (0,), (0,), (0,))):
+    return kind, np.array(number, dtype=float), np.array(jacobian, dtype=float)
 
 
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
         ({"kind": "wavy"}, "kind"),
-        ({"fixed": (1.0,)}, "fixed"),
-        ({"column": (0,)}, "column"),
-        ({"column": (1, -1, -1, -1, -1)}, "column must be less than 1, got 1"),
+        ({"number": ((1.0,),)}, "number must have 5 entries along axis 1, got 1"),
+        ({"number": (1.0,)}, "depth"),
+        ({"jacobian": ((1.0,),)}, "jacobian must have 5 entries along axis 0, got 1"),
     ],
 )
 def test_the_core_names_what_it_is_not_given(changes, says):
-    for ask, more in ((_core.closed_modes, (1, True)), (_core.closed_count, (1.0,))):
+    given = closed(**changes)
+    with pytest.raises((ValueError, TypeError), match=says):
+        _core.closed_modes(*given, 1)
+    if "jacobian" not in changes:
         with pytest.raises((ValueError, TypeError), match=says):
-            ask(*closed(**changes), *more)
-    with pytest.raises(ValueError, match="number"):
-        _core.closed_modes(*closed(), 0, True)
+            _core.closed_count(*given[:2], 1.0)
+    with pytest.raises(ValueError, match="modes must be at least 1, got 0"):
+        _core.closed_modes(*closed(), 0)

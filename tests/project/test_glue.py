@@ -56,9 +56,7 @@ STEPPED = (
 # two strings of other tension, held
 STRINGS = (
     "plain",
-    np.array([[10.0], [40.0]]),
-    np.array([1.0, 0.1, 0.0, math.inf, math.inf]),
-    np.array([-1, -1, 0, -1, -1], np.int32),
+    np.array([[1.0, 0.1, 10.0, math.inf, math.inf], [1.0, 0.1, 40.0, math.inf, math.inf]]),
 )
 
 # of a march: what acts beside CHAIN, two laws, half a midpoint step of 1 ms, a node that moves
@@ -201,7 +199,7 @@ OTHERS = {
         LAW_NUMBERS, 1e-3, np.ones(2), MATRIX, np.zeros(2), np.zeros(2)
     ),
     "recurrence": lambda _: _core.recurrence(*STEPPED),
-    "closed_modes": lambda _: _core.closed_modes(*STRINGS, 2, True),
+    "closed_modes": lambda _: _core.closed_modes(*STRINGS, np.eye(5), 2),
     "closed_count": lambda _: _core.closed_count(*STRINGS, 30.0),
 }
 

@@ -1,0 +1,78 @@
+"""Modes and counts of spans in closed form, a row of numbers each; see csrc/closed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+from ..base.array import Flags, Index, Integer, Real
+from ..chain.chain import Chain
+from ..chain.spans import Spans, spans_of
+
+ALONE = {4: ("bent", [0, 1, 2, 3, 6, 7, 10, 11]), 3: ("plain", [0, 1, 2, 4, 6])}
+"""By the numbers of a span: what the core calls one between springs, and which numbers it takes."""
+
+
+class ClosedModes(NamedTuple):
+    """Of each row its lowest modes; wrong ones may stand where a row is not certified."""
+
+    omega: Real  # (rows, k) [rad/s]
+    error: Real  # (rows, k) relative, that rounding causes
+    slope: Real | None  # (rows, k, values) d ln omega by each value, where asked for
+    certified: Flags  # (rows,)
+
+
+class ClosedSpans(NamedTuple):
+    """Spans of one form, whatever their numbers."""
+
+    kind: str  # as the core calls it
+    taken: Index  # which numbers it takes
+
+    def modes(self, number: Real, modes: int, jacobian: Real | None = None) -> ClosedModes:
+        """Find the lowest modes of each row of numbers, and slopes by what numbers follow from."""
+        of = None if jacobian is None else jacobian[self.taken]
+        return ClosedModes(*_core.closed_modes(self.kind, number[:, self.taken], of, modes))
+
+    def counts(self, number: Real, omega: float) -> Integer:
+        """Count the eigenvalues below omega^2 of each row of numbers, -1 where not certain."""
+        return _core.closed_count(self.kind, number[:, self.taken], omega)
+
+
+def closed_form(spans: Spans, varied: Flags | None = None) -> ClosedSpans | None:
+    """Return the closed form of spans some of whose numbers vary, None where there is none."""
+    inertia = spans.station[:, : spans.station.shape[1] // 2] != 0
+    if len(spans.span) > 1 or spans.hinged.any() or inertia.any():
+        return None
+    kind, taken = ALONE[spans.span.shape[1]]
+    if varied is not None and np.delete(varied, taken).any():
+        return None
+    return ClosedSpans(kind, np.array(taken))
+
+
+def closed_eigenvalues(chain: Chain, number: int | None, limit: float) -> tuple[Real, Real] | None:
+    """Return the lowest eigenvalues of a chain and their errors, None where not certified."""
+    spans = spans_of(chain)
+    form = None if spans is None else closed_form(spans)
+    if spans is None or form is None:
+        return None
+    row = spans.number[np.newaxis]
+    wanted = int(form.counts(row, np.sqrt(limit))[0]) if number is None else number
+    if wanted < 1:
+        return None if wanted else (np.zeros(0), np.zeros(0))
+    found = form.modes(row, wanted)
+    if not found.certified[0]:
+        return None
+    eigenvalue = found.omega[0] ** 2
+    return eigenvalue, eigenvalue * (2 * found.error[0] + np.finfo(float).eps)
+
+
+def closed_count(chain: Chain, limit: float) -> int | None:
+    """Count the eigenvalues of a chain below a limit, None where that is not certain."""
+    spans = spans_of(chain)
+    form = None if spans is None else closed_form(spans)
+    if spans is None or form is None:
+        return None
+    count = int(form.counts(spans.number[np.newaxis], np.sqrt(limit))[0])
+    return None if count < 0 else count
