@@ -9,10 +9,11 @@ import numpy as np
 
 from ..base.array import Flags, Real
 from ..base.errors import RopedynError
+from ..chain.chain import Chain
 from ..chain.compile import compile_scene
 from ..chain.compiled import Compiled, refuse_nonlinear
 from ..chain.rate import Places, rates_of
-from ..chain.spans import rates_of_spans, spans_of
+from ..chain.spans import Spans, rates_of_spans, spans_of
 from ..eigen.closed import ClosedModes, ClosedSpans, closed_form
 from .rows import Answered
 from .template import SPRING, Template
@@ -24,6 +25,8 @@ PROBE = 2.0**-10
 class Component(NamedTuple):
     """A component in closed form whose numbers are linear in the values of a row."""
 
+    chain: Chain  # of the scene, damping included
+    spans: Spans  # of the scene
     form: ClosedSpans
     fixed: Real  # (numbers,) what they are where all values are 0
     jacobian: Real  # (numbers, values)
@@ -35,6 +38,19 @@ class Component(NamedTuple):
             # an infinite value of another number must not be multiplied by 0
             found[:, j] += self.jacobian[j, c] * rows[:, c]
         return found
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """What moves in it."""
+        return self.spans.coordinates
+
+    def parted(self, numbers: Real) -> tuple[Real, Real]:
+        """Return rows of numbers as those of spans and of stations, a matrix each."""
+        spans, stations = np.split(numbers, [self.spans.span.size], axis=1)
+        return (
+            spans.reshape(-1, *self.spans.span.shape),
+            stations.reshape(-1, *self.spans.station.shape),
+        )
 
     def modes(self, rows: Real, number: int, *, sloped: bool) -> ClosedModes:
         """Find the lowest modes of each row."""
@@ -66,8 +82,8 @@ def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
     rates = rates_of(places)
     found = []
     for names in model.components:
-        chain = model.chain.undamped.only(names)
-        spans = spans_of(chain)
+        chain = model.chain.only(names)
+        spans = spans_of(chain.undamped)
         if spans is None or len(chain.spans) > 1:
             return None
         columns = []
@@ -86,7 +102,7 @@ def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
         form = closed_form(spans, varied)
         if form is None:
             return None
-        found.append(Component(form, number, jacobian))
+        found.append(Component(chain, spans, form, number, jacobian))
     return tuple(found)
 
 

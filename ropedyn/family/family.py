@@ -18,6 +18,7 @@ from ..base.array import Integer, Real
 from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.progress import Progress
+from ..base.unit import QUANTITIES
 from ..chain.compile import compile_scene
 from ..chain.place import observed, points
 from ..eigen.spectrum import eigenvalue_of
@@ -26,6 +27,7 @@ from ..scene.scene import Scene
 from .alone import count_of_row, frf_of_row, modes_of_row
 from .closed import Component, closed_counts, closed_modes, components_of
 from .frf import FamilyFRF
+from .harmonic import asked_of_rows, closed_frf
 from .modes import FamilyModes
 from .rows import Answered, Means, Shared, one_by_one
 from .template import Template, template
@@ -246,13 +248,19 @@ class Family:
         # what is asked is refused before anything runs, and its shape is known
         model = compile_scene(self.scene)
         drives, several = points(model, drive, "drive", forces=False, ends=True)
-        watched = len(observed(model, response, drives))
-        shape = (len(rows), *((len(drives),) if several else ()), watched, len(f))
+        watched = observed(model, response, drives)
+        check.one_of(quantity, "quantity", QUANTITIES)
+        shape = (len(rows), *((len(drives),) if several else ()), len(watched), len(f))
         blank = [np.full(shape, np.nan + 0j), np.full(shape, np.nan)]
         start = time.perf_counter()
-        stages = self._stages(None, partial(frf_of_row, self._template, f, asked))
-        reasons, _ = Shared(rows, workers_of(threads), executor, progress).fill(blank, stages)
-        cost = _cost(time.perf_counter() - start, [0], len(rows))
+        swept = asked_of_rows(model, f, drives, watched, quantity, several=several)
+        stages = self._stages(
+            partial(closed_frf, self._closed, swept) if swept else None,
+            partial(frf_of_row, self._template, f, asked),
+        )
+        shared = Shared(rows, workers_of(threads), executor, progress)
+        reasons, answered = shared.fill(blank, stages)
+        cost = _cost(time.perf_counter() - start, answered, len(rows))
         return FamilyFRF(self.paths, reasons, cost, quantity, f, *blank)
 
     def scene_of(self, values: ArrayLike) -> Scene:

@@ -22,7 +22,7 @@ SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 
 
-def _relative(value: Complex, error: Real) -> Real:
+def relative(value: Complex, error: Real) -> Real:
     """Return the relative error: 0 where both are 0, infinite where only the value is."""
     # below the smallest normal number digits vanish however small the error is
     size = np.abs(value)
@@ -73,7 +73,7 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
     _hold(question, value, error)
     _add_local(question, value)
-    return value, _relative(value, error)
+    return value, relative(value, error)
 
 
 def _in_slices(

@@ -346,6 +346,47 @@ def test_responses_are_those_of_the_general_path():
         family.frf([[4.0, 2.0]], f, drive=("z", 7.0))
 
 
+DAMPED = {
+    "nothing": (),
+    "drag": rd.ViscousDamping(0.3),
+    "strain": (rd.StiffnessDamping(1e-4), rd.LossFactor(0.01)),
+    "both": (rd.RayleighDamping(mass=0.2, stiffness=1e-5), rd.LossFactor(0.02)),
+}
+
+
+@pytest.mark.parametrize("damping", DAMPED.values(), ids=DAMPED)
+def test_responses_of_rows_are_those_of_their_models(damping):
+    rope = rd.Rope(1.0, 1.0, bending_stiffness=1.0, torsional_stiffness=0.5, polar_inertia=1e-3)
+    scene = rd.Scene(rope, tension=20.0, damping=damping)
+    family = scene.family(["length", "tension", "ends[0].spring.beta", "ends[1].spring.z"])
+    rng = np.random.default_rng(8)
+    values = np.column_stack(
+        [
+            rng.choice([0.4, 0.6, 1.0, 3.0], 24),
+            rng.uniform(-2.0, 60.0, 24),
+            rng.choice([0.0, 3.0, INF], 24),
+            rng.choice([0.0, 50.0, INF], 24),
+        ]
+    )
+    f = np.linspace(0.0, 9.0, 23)
+    asked = {
+        "drive": [("z", 0.35), ("beta", 0.6), ("alpha", 0.1)],
+        "response": [("z", 0.6), ("z", 0.0), ("alpha", 0.35), ("beta", 0.4)],
+        "quantity": "mobility",
+    }
+    values[:2, 0] = 0.6  # a point at the end, which is held or not
+    found = family.frf(values, f, **asked)
+    assert set(found.failed) == set(np.flatnonzero(values[:, 0] < 0.6))
+    closed = int(found.cost.method.split()[0])
+    assert closed > 10
+    for k in np.flatnonzero(values[:, 0] >= 0.6):
+        frf = family.scene_of(values[k]).compile().frf(f, **asked)
+        scale = np.abs(frf.value).max(axis=-1, keepdims=True)
+        # both within their own errors, of roundings of where nodes stand
+        off = np.abs(found.value[k] - frf.value)
+        assert (off <= 4e-13 * scale + 4 * frf.rounding_error * np.abs(frf.value)).all()
+
+
 class Losing(Executor):
     """Loses every second chunk."""
 

@@ -50,7 +50,7 @@ class Plan(Answer):
     damage : str
         What damage was asked for; empty for none.
     shift : ndarray, shape (k,), or None
-        What that changes of each frequency [Hz].
+        What that changes of each frequency [Hz]; 0 where that is less than rounding.
 
     Examples
     --------

@@ -296,6 +296,9 @@ def _shift(
     scene: Scene, part: DamageKind, target: TargetModes, coordinates: tuple[str, str]
 ) -> Real:
     """Return what a part changes of the frequencies: modes that are seen keep their order."""
+    # 0 where that is less than rounding
     model = scene.replace(parts=(*scene.parts, part)).compile()
     damaged = target_modes(model, int(target.rank.max()) + 1, coordinates)
-    return np.asarray(damaged.frequency[target.rank] - target.frequency)
+    shift = damaged.frequency[target.rank] - target.frequency
+    rounding = damaged.rounding[target.rank] + target.rounding
+    return np.where(np.abs(shift) > rounding, shift, 0.0)

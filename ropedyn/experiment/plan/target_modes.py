@@ -23,6 +23,7 @@ class TargetModes(NamedTuple):
     mode: Integer  # (k,) their numbers, from 1
     rank: Index  # (k,) their numbers among those that can be seen, from 0
     frequency: Real  # (k,) as in `Plan`
+    rounding: Real  # (k,) of the frequencies [Hz]
     damping_ratio: Real  # (k,) as in `Plan`
     separation: Real  # (k,) as in `Plan`
     highest_peak: Real  # (k,) the largest that |phi(x_d) phi(x_r)|/(2 zeta m omega^2) can be
@@ -54,6 +55,7 @@ def target_modes(model: Model, asked: Any, coordinates: tuple[str, str]) -> Targ
         mode=chosen + 1,
         rank=rank,
         frequency=f,
+        rounding=found.rounding_error[chosen],
         damping_ratio=ratio,
         separation=_separation(found.frequency[seen])[rank],
         highest_peak=peak / (2 * np.pi * f) ** 2,
