@@ -101,5 +101,6 @@ PyObject *py_march_laws(PyObject *module, PyObject *arguments);
 PyObject *py_march_finish(PyObject *module, PyObject *arguments);
 PyObject *py_closed_modes(PyObject *module, PyObject *arguments);
 PyObject *py_closed_count(PyObject *module, PyObject *arguments);
+PyObject *py_closed_response(PyObject *module, PyObject *arguments);
 
 #endif

@@ -60,6 +60,8 @@ static PyMethodDef methods[] = {
      "closed_modes(kind, number, jacobian, modes) -> omega, error, slope, certified"},
     {"closed_count", py_closed_count, METH_VARARGS,
      "closed_count(kind, number, omega) -> counts, -1 where not certain"},
+    {"closed_response", py_closed_response, METH_VARARGS,
+     "closed_response(number, factor, drag, drive, response) -> value, error, certain"},
     {NULL, NULL, 0, NULL},
 };
 

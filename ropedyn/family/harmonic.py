@@ -15,6 +15,7 @@ from ..base.unit import QUANTITIES
 from ..chain.chain import CHANNELS, CONTINUOUS, Chain
 from ..chain.compiled import Compiled
 from ..chain.port import Point, Ports
+from ..response.closed import closed_response
 from ..response.solvers import SWEEP_SLICE, relative
 from ..scene import damping
 from .closed import Component
@@ -86,19 +87,40 @@ def _answers(
     component: Component, asked: Asked, drives: Sequence[int], responses: Sequence[int], rows: Real
 ) -> list[tuple[Complex, Real] | None]:
     """Return value and relative error of each row, None where another way has to be gone."""
+    pushing, heard = [asked.drives[k] for k in drives], [asked.responses[k] for k in responses]
+    number, factor = component.numbers(rows), asked.factor
+    points = pushing, heard
+    closed = closed_response(component.form, component.chain, number, factor, points)
     found: list[tuple[Complex, Real] | None] = [None] * len(rows)
-    at = [asked.drives[k] for k in drives] + [asked.responses[k] for k in responses]
-    for which, cut, chains in _chains(component, np.array([p[1] for p in at]), rows):
+    left: Flags = np.ones((len(rows), factor.shape[1]), dtype=np.bool_)
+    if closed is not None:
+        left = ~closed.certain
+        found = list(zip(closed.value, closed.error))
+    rest, at = np.flatnonzero(left.any(axis=1)), pushing + heard
+    for which, cut, chains in _chains(component, np.array([p[1] for p in at]), rows[rest]):
         ports = _ports(component, cut, at)
         pushed, watched = (Ports(ports.node[s], ports.row[s], None) for s in _parts(len(drives)))
         column = [component.coordinates.index(p[0]) for p in at]
-        for k, chain in zip(which.tolist(), chains):
-            found[k] = _response(chain, asked.factor, pushed, watched)
+        for k, chain in zip(rest[which].tolist(), chains):
+            lines = np.ascontiguousarray(factor[:, left[k]])
             held = chain.held[cut.node, column] != 0
-            if (answer := found[k]) is not None:
+            answer = _response(chain, lines, pushed, watched)
+            if answer is not None:
                 for array in answer:
                     array[held[: len(drives)]] = array[:, held[len(drives) :]] = 0
-    return found
+                left[k], found[k] = _joined(found[k], left[k], answer)
+    return [None if some.any() else one for one, some in zip(found, left)]
+
+
+def _joined(
+    known: tuple[Complex, Real] | None, lines: Flags, answer: tuple[Complex, Real]
+) -> tuple[bool, tuple[Complex, Real]]:
+    """Put the answers of some lines among those that are known; nothing is left."""
+    if known is None:
+        return False, answer
+    for whole, part in zip(known, answer):
+        whole[..., lines] = part
+    return False, known
 
 
 def _parts(drives: int) -> tuple[slice, slice]:
@@ -155,7 +177,7 @@ def _chains(
     near = np.abs(x[:, None, :] - points[:, None]) <= NEAR * x[:, -1, None, None]
     left = (x[:, None, :] < points[:, None]).sum(axis=2)
     place = np.where(near.any(axis=2), near.argmax(axis=2), -left)
-    sound = (length > 0).all(axis=1) & np.isfinite(number[:, : spans[0].size]).all(axis=1)
+    sound = (length > 0).all(axis=1) & np.isfinite(spans).all(axis=(1, 2))
     sound &= (place > -x.shape[1]).all(axis=1) & (spans[:, :, 1:] > 0).all(axis=(1, 2))
     sound &= ~np.isneginf(stations).any(axis=(1, 2))
     patterns, which = np.unique(place, axis=0, return_inverse=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..chain.compiled import EXACT, MOST_STEPS
 from ..chain.port import Point, Ports, is_force, local, locate, moving, ports
 from ..chain.reaction import at_start, first_left_end, tellers
 from ..scene import damping
+from .closed import closed_lines
 from .question import Question
 
 LANES = 16  # Frequencies that the sweep solves side by side.
@@ -32,6 +34,20 @@ def relative(value: Complex, error: Real) -> Real:
 
 
 def _sweep(question: Question) -> tuple[Complex, Real]:
+    """Take what is certain in closed form, and walk along the chain for the other lines."""
+    model, drives, responses = question.model, question.drives, question.responses
+    found = closed_lines(model.chain.only(question.component), question.factor, drives, responses)
+    if found is None:
+        return _walk(question)
+    value, error, left = found.value[0], found.error[0], ~found.certain[0]
+    if left.any():
+        factor = np.ascontiguousarray(question.factor[:, left])
+        rest = replace(question, frequency=question.frequency[left], factor=factor)
+        value[..., left], error[..., left] = _walk(rest)
+    return value, error
+
+
+def _walk(question: Question) -> tuple[Complex, Real]:
     chain, _ = question.cut
     steps = _core.steps(chain, question.fastest)
     if steps > max(MOST_STEPS, chain.nodes):

@@ -201,6 +201,13 @@ OTHERS = {
     "recurrence": lambda _: _core.recurrence(*STEPPED),
     "closed_modes": lambda _: _core.closed_modes(*STRINGS, np.eye(5), 2),
     "closed_count": lambda _: _core.closed_count(*STRINGS, 30.0),
+    "closed_response": lambda _: _core.closed_response(
+        np.array([[1.0, 0.1, 10.0, 1.0, math.inf, math.inf, math.inf, 0.0]]),
+        np.array([[1], [1], [1], [-1e4], [1e2j]], dtype=complex),
+        0.1,
+        np.array([0.4]),
+        np.array([0.6]),
+    ),
 }
 
 

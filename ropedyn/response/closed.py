@@ -1,0 +1,61 @@
+"""Responses of spans in closed form; see csrc/closed/response.h."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import _core
+from ..base.array import Complex, Flags, Real
+from ..base.check import NEAR
+from ..chain.chain import Chain
+from ..chain.port import Point
+from ..chain.spans import spans_of
+from ..eigen.closed import ClosedSpans, closed_form
+
+
+class Lines(NamedTuple):
+    """Responses of rows, where they are certain."""
+
+    value: Complex  # (rows, drives, responses, f)
+    error: Real  # relative, as value
+    certain: Flags  # (rows, f)
+
+
+def closed_response(
+    form: ClosedSpans,
+    chain: Chain,
+    number: Real,
+    factor: Complex,
+    points: tuple[Sequence[Point], Sequence[Point]],
+) -> Lines | None:
+    """Compute the responses of rows of numbers, None where what is asked has no closed form.
+
+    Of `chain` only the damping counts, which all rows have; `points` are the drives and responses.
+    """
+    asked = [*points[0], *points[1]]
+    if form.kind != "bent" or chain.damping is not None or any(p[0] != "z" for p in asked):
+        return None
+    drag = 0.0 if chain.drag is None else float(chain.drag[0, 0])
+    own = number[:, form.taken]
+    at = [np.array([p[1] for p in some]) for some in points]
+    found = Lines(*_core.closed_response(own, factor, drag, *at))
+    # at an end that is held the answer is 0, and beside the rope none
+    length = own[:, :1]
+    x = np.concatenate(at)
+    inside: Any = ((x > NEAR * length) & (x < length - NEAR * length)).all(axis=1, keepdims=True)
+    return found._replace(certain=found.certain & inside)
+
+
+def closed_lines(
+    chain: Chain, factor: Complex, drives: Sequence[Point], responses: Sequence[Point]
+) -> Lines | None:
+    """Compute the responses of a chain, None where it or what is asked has no closed form."""
+    spans = spans_of(chain.undamped)
+    form = None if spans is None else closed_form(spans)
+    if spans is None or form is None:
+        return None
+    points = drives, responses
+    return closed_response(form, chain, spans.number[np.newaxis], factor, points)
