@@ -37,9 +37,16 @@ def steps(chain: Chain, factor: _Complex, /) -> int: ...
 def sweep(
     chain: Chain, factor: _Complex, drives: _Ports, responses: _Ports, /
 ) -> tuple[_Complex, _Real, int]: ...
-def characteristic(
-    chain: Chain, factor: _Complex, bound: _Complex, /
-) -> tuple[_Complex, _Real, int]: ...
+def damped(
+    chain: Chain,
+    constant: _Complex,
+    linear: _Complex,
+    radius: float,
+    edge: float,
+    horizon: float,
+    guess: _Complex,
+    /,
+) -> tuple[_Complex, _Real, int, float, int, bool, int]: ...
 def mixed(
     chain: Chain, factor: _Complex, drives: _Ports, responses: _Ports, /
 ) -> tuple[_Complex, _Real, int]: ...

@@ -13,9 +13,6 @@ struct rd_blocks {
     double *coupling; /* (nodes - 1, width, width): rows of node i, columns of node i + 1 */
 };
 
-/* dynamic stiffness = section elastic + tension string + spring springs + inertia mass + rate dashpots */
-enum rd_part { RD_ELASTIC, RD_STRING, RD_SPRINGS, RD_MASS, RD_DASHPOTS, RD_PARTS };
-
 struct rd_assembly {
     size_t nodes;
     size_t width;

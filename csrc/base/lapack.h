@@ -21,6 +21,7 @@
 #define LAPACKE_dtbtrs_work scipy_LAPACKE_dtbtrs_work
 #define LAPACKE_zgbtrf_work scipy_LAPACKE_zgbtrf_work
 #define LAPACKE_zgbtrs_work scipy_LAPACKE_zgbtrs_work
+#define LAPACKE_zhseqr_work scipy_LAPACKE_zhseqr_work
 #define openblas_set_num_threads scipy_openblas_set_num_threads
 #endif
 

@@ -14,6 +14,7 @@ enum rd_status {
     RD_FAST_GROWTH,           /* motion grows by more than an implicit step resolves */
     RD_SPREAD_INERTIA, /* a structure has inertia along its length, which cannot be marched */
     RD_SHORT_WAVES,    /* a span has more pieces shorter than its waves than are walked */
+    RD_INTERRUPTED,    /* the caller asked to stop */
 };
 
 #endif

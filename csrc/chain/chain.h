@@ -10,6 +10,9 @@
 /* structures that nodes carry, condensed to their foot: see chain/attached.h */
 enum rd_attached_kind { RD_RESONATOR, RD_WIRE, RD_ATTACHED_KINDS };
 
+/* dynamic stiffness = section elastic + tension string + spring springs + inertia mass + rate dashpots */
+enum rd_part { RD_ELASTIC, RD_STRING, RD_SPRINGS, RD_MASS, RD_DASHPOTS, RD_PARTS };
+
 enum { RD_ATTACHED_VALUES = 4 }; /* numbers of one */
 
 enum { RD_NO_TERM = -1 }; /* where nothing stands: between continuous pieces, right of a hinge */

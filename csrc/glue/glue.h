@@ -85,7 +85,7 @@ PyObject *py_sensitivity(PyObject *module, PyObject *arguments);
 PyObject *py_count(PyObject *module, PyObject *arguments);
 PyObject *py_certify(PyObject *module, PyObject *arguments);
 PyObject *py_steps(PyObject *module, PyObject *arguments);
-PyObject *py_characteristic(PyObject *module, PyObject *arguments);
+PyObject *py_damped(PyObject *module, PyObject *arguments);
 PyObject *py_sweep(PyObject *module, PyObject *arguments);
 PyObject *py_triple(PyObject *module, PyObject *arguments);
 PyObject *py_mixed(PyObject *module, PyObject *arguments);

@@ -25,8 +25,10 @@ static PyMethodDef methods[] = {
     {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
     {"sweep", py_sweep, METH_VARARGS,
      "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},
-    {"characteristic", py_characteristic, METH_VARARGS,
-     "characteristic(chain, factor, bound) -> value, magnitude, steps"},
+    {"damped", py_damped, METH_VARARGS,
+     "damped(chain, constant, linear, radius, edge, horizon, guess) -> value, error, count, "
+     "radius, "
+     "mirror, certified, sweeps"},
     {"mixed", py_mixed, METH_VARARGS,
      "mixed(chain, factor, drives, responses) -> value, error, frequencies solved"},
     {"mixed_deflection", py_mixed_deflection, METH_VARARGS,

@@ -8,8 +8,8 @@
 #include "span/span.h"
 #include "sweep/foot.h"
 
+#include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -29,7 +29,7 @@ struct motions {
     struct product product;
 };
 
-struct characteristic {
+struct rd_characteristic {
     const struct rd_chain *chain;
     const struct sweep_kernel *kernel;
     struct rd_runs runs;
@@ -286,7 +286,7 @@ static RD_CLONES void vanish(size_t w, size_t e, cv (*X)[W], cv (*Y)[W], struct 
 /* --- the chain ------------------------------------------------------------------------------- */
 
 /* structures that a node carries */
-static void carry(struct characteristic *c, size_t term)
+static void carry(struct rd_characteristic *c, size_t term)
 {
     const struct rd_chain *chain = c->chain;
     struct motions *m = &c->motions;
@@ -309,7 +309,7 @@ static void carry(struct characteristic *c, size_t term)
 }
 
 /* V <- V + N U */
-static void load(struct characteristic *c, size_t term)
+static void load(struct rd_characteristic *c, size_t term)
 {
     const struct rd_chain *chain = c->chain;
     const struct sweep_way *way = c->way;
@@ -328,7 +328,7 @@ static void load(struct characteristic *c, size_t term)
 }
 
 /* hinges, springs as they are: U <- U + h e e^T V */
-static void open(struct characteristic *c, size_t term)
+static void open(struct rd_characteristic *c, size_t term)
 {
     const struct rd_chain *chain = c->chain;
     struct motions *m = &c->motions;
@@ -349,7 +349,7 @@ static void open(struct characteristic *c, size_t term)
 }
 
 /* what stands at a node that the walk leaves */
-static void leave(struct characteristic *c, size_t term)
+static void leave(struct rd_characteristic *c, size_t term)
 {
     const size_t w = c->chain->width;
     for (size_t e = 0; e < w; e++)
@@ -363,20 +363,20 @@ static void leave(struct characteristic *c, size_t term)
         open(c, term);
 }
 
-static size_t term_at(struct characteristic *c, size_t node)
+static size_t term_at(struct rd_characteristic *c, size_t node)
 {
     c->stretch = rd_stretch_of(c->chain, node, c->stretch);
     return (size_t)c->chain->term[c->stretch];
 }
 
-static void step(struct characteristic *c, const cv *triple)
+static void step(struct rd_characteristic *c, const cv *triple)
 {
     cross(c->chain->width, triple, 0, NULL, &c->motions);
     c->steps++;
 }
 
 /* a rigid strut: the element without tension, and a string of T/l beside it */
-static void cross_strut(struct characteristic *c, size_t e)
+static void cross_strut(struct rd_characteristic *c, size_t e)
 {
     const struct rd_chain *chain = c->chain;
     const double untensed = 0.0;
@@ -396,7 +396,7 @@ static void cross_strut(struct characteristic *c, size_t e)
 }
 
 /* node by node */
-static void walk(struct characteristic *c, size_t node, size_t end)
+static void walk(struct rd_characteristic *c, size_t node, size_t end)
 {
     cv triple[PACKED];
     int32_t made = -1;
@@ -416,7 +416,7 @@ static void walk(struct characteristic *c, size_t node, size_t end)
 
 /* A run by pieces that are joined by doubling: on the way up those that the binary digits of their
    number leave over. */
-static enum rd_status cross_run(struct characteristic *c, const struct rd_run *run)
+static enum rd_status cross_run(struct rd_characteristic *c, const struct rd_run *run)
 {
     const struct rd_chain *chain = c->chain;
     const size_t count = run->last - run->first, e = (size_t)run->element;
@@ -454,7 +454,7 @@ static enum rd_status cross_run(struct characteristic *c, const struct rd_run *r
 }
 
 /* det of the conditions at the right end: u = 0 where held, else f = 0 */
-static void finish(struct characteristic *c)
+static void finish(struct rd_characteristic *c)
 {
     const size_t w = c->chain->width, term = term_at(c, c->chain->nodes - 1);
     struct motions *m = &c->motions;
@@ -474,7 +474,7 @@ static void finish(struct characteristic *c)
         c->value = c_mul(c->value, r[k]);
 }
 
-static enum rd_status walk_all(struct characteristic *c)
+static enum rd_status walk_all(struct rd_characteristic *c)
 {
     const size_t w = c->chain->width, last = c->chain->nodes - 1;
     c->motions.product = (struct product){.value = c_real(1.0)};
@@ -502,7 +502,7 @@ static enum rd_status walk_all(struct characteristic *c)
 }
 
 /* value = value phase(product), magnitude = log |product z^power| */
-static void answer(const struct characteristic *c, size_t lane, double *value, double *magnitude)
+static void answer(const struct rd_characteristic *c, size_t lane, double *value, double *magnitude)
 {
     const cv v = c->value, p = c->motions.product.value;
     const double size = hypot(p.re[lane], p.im[lane]);
@@ -516,39 +516,44 @@ static void answer(const struct characteristic *c, size_t lane, double *value, d
     *magnitude = log_size;
 }
 
-enum rd_status rd_characteristic(const struct rd_chain *chain, const struct rd_factors *factors,
-                                 const struct rd_factors *bound, struct rd_workspace *workspace,
-                                 double *value, double *magnitude, size_t *steps)
+struct rd_characteristic *rd_characteristic_take(const struct rd_chain *chain,
+                                                 const struct rd_factors *bound,
+                                                 struct rd_workspace *workspace)
 {
+    struct rd_characteristic *c = rd_take_aligned(workspace, 1, sizeof *c, sizeof(lanes));
     struct rd_run *run = rd_take(workspace, rd_runs_capacity(chain), sizeof *run);
     struct sweep_foot *foot =
         rd_take_aligned(workspace, chain->attached, sizeof *foot, sizeof(lanes));
     if (!rd_workspace_fits(workspace))
-        return RD_NO_MEMORY;
-    struct characteristic c = {
-        .chain = chain,
-        .kernel = kernels[chain->width - 1],
-        .bound = rd_sweep_extent(bound, 0),
-        .foot = foot,
-    };
-    rd_runs_find(chain, run, &c.runs);
-    *steps = 0;
-    for (size_t first = 0; first < factors->count; first += RD_LANES) {
-        size_t index[RD_LANES];
-        struct sweep_extent extent[RD_LANES];
-        for (size_t lane = 0; lane < RD_LANES; lane++) {
-            const size_t i = first + lane;
-            index[lane] = i < factors->count ? i : factors->count - 1;
-            extent[lane] = rd_sweep_extent(factors, index[lane]);
-        }
-        rd_sweep_scale(chain, &c.runs, factors, index, extent, &c.block, c.way);
-        rd_sweep_feet(chain, &c.block, foot);
-        const enum rd_status status = walk_all(&c);
-        if (status != RD_OK)
-            return status;
-        for (size_t i = first; i < factors->count && i < first + RD_LANES; i++)
-            answer(&c, i - first, value + 2 * i, magnitude + i);
-        *steps = c.steps;
+        return NULL;
+    c->chain = chain;
+    c->kernel = kernels[chain->width - 1];
+    c->bound = rd_sweep_extent(bound, 0);
+    c->foot = foot;
+    c->steps = 0;
+    rd_runs_find(chain, run, &c->runs);
+    return c;
+}
+
+enum rd_status rd_characteristic_at(struct rd_characteristic *c, const struct rd_factors *factors,
+                                    double *value, double *magnitude)
+{
+    size_t index[RD_LANES];
+    struct sweep_extent extent[RD_LANES];
+    assert(factors->count > 0 && factors->count <= RD_LANES);
+    for (size_t lane = 0; lane < RD_LANES; lane++) {
+        index[lane] = lane < factors->count ? lane : factors->count - 1;
+        extent[lane] = rd_sweep_extent(factors, index[lane]);
     }
-    return RD_OK;
+    rd_sweep_scale(c->chain, &c->runs, factors, index, extent, &c->block, c->way);
+    rd_sweep_feet(c->chain, &c->block, c->foot);
+    const enum rd_status status = walk_all(c);
+    for (size_t i = 0; status == RD_OK && i < factors->count; i++)
+        answer(c, i, value + 2 * i, magnitude + i);
+    return status;
+}
+
+size_t rd_characteristic_steps(const struct rd_characteristic *c)
+{
+    return c->steps;
 }

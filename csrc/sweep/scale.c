@@ -21,6 +21,11 @@ static void wavenumbers(double B, double T, double q, double *k2, double *a2)
     }
 }
 
+static const double PI = 3.14159265358979323846;
+
+/* a piece has so many at most, below the first resonance of a cantilever */
+static const double RADIANS = 1.2;
+
 static double size_of(const double *factor)
 {
     if (factor[1] == 0.0)
@@ -255,22 +260,42 @@ struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct r
         pieces.radians = whole / (double)((size_t)1 << pieces.halvings);
         length /= (double)((size_t)1 << pieces.halvings);
     }
-    while (((size_t)2 << pieces.level) <= pieces.count && 2.0 * length * waves.propagating <= 1.2) {
+    while (((size_t)2 << pieces.level) <= pieces.count &&
+           2.0 * length * waves.propagating <= RADIANS) {
         pieces.level++;
         length *= 2.0;
     }
     return pieces;
 }
 
+/* stretch k as a run of its own */
+static struct rd_run run_of(const struct rd_chain *chain, size_t k)
+{
+    return (struct rd_run){.element = chain->element[k],
+                           .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
+}
+
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
 {
     size_t steps = 1;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
-        const struct rd_run run = {.element = chain->element[k],
-                                   .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
+        const struct rd_run run = run_of(chain, k);
         const struct sweep_pieces pieces = rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k),
                                                            rd_sweep_waves(chain, &run, extent));
         steps += (pieces.count >> pieces.level) + 2 * pieces.level;
     }
     return steps;
+}
+
+double rd_sweep_turning(const struct rd_chain *chain, const struct sweep_extent *extent)
+{
+    double radians = RADIANS;
+    for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        const struct rd_run run = run_of(chain, k);
+        const double nodes = (double)rd_stretch_nodes(chain, k), length = chain->length[run.element];
+        const double waves = nodes * length * run_wavenumber(chain, &run, extent);
+        /* lumps let no waves pass that are shorter than they are apart */
+        radians += chain->inertia ? waves + PI : fmin(waves, nodes * PI);
+    }
+    return radians;
 }

@@ -55,4 +55,8 @@ struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct r
 /* steps of a walk through all of the chain, runs by pieces */
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent);
 
+/* How far the waves of one coordinate turn from end to end, and more [rad]: what stands between
+   continuous elements turns them by half a wave. */
+double rd_sweep_turning(const struct rd_chain *chain, const struct sweep_extent *extent);
+
 #endif

@@ -27,14 +27,19 @@ static enum rd_status ask_less(const struct rd_chain *chain, const double comple
         memcpy(dashpot + 2 * i, s + i, sizeof *s);
     }
     const double square[2] = {reach * reach, 0}, line[2] = {reach, 0};
-    const struct rd_factors factors = {count, one, one, one, inertia, dashpot};
     const struct rd_factors bound = {1, one, one, one, square, line};
     struct rd_workspace space = {0};
-    double *value = (double *)answer->value;
-    rd_characteristic(chain, &factors, &bound, &space, value, answer->magnitude, &answer->steps);
+    CHECK(rd_characteristic_take(chain, &bound, &space) == NULL);
     space = exact_workspace(space.used - less);
-    const enum rd_status status = rd_characteristic(chain, &factors, &bound, &space, value,
-                                                    answer->magnitude, &answer->steps);
+    struct rd_characteristic *of = rd_characteristic_take(chain, &bound, &space);
+    enum rd_status status = of ? RD_OK : RD_NO_MEMORY;
+    for (size_t i = 0; i < count && status == RD_OK; i += RD_LANES) {
+        const size_t some = count - i < RD_LANES ? count - i : RD_LANES;
+        const struct rd_factors factors = {some, one, one, one, inertia + 2 * i, dashpot + 2 * i};
+        status = rd_characteristic_at(of, &factors, (double *)(answer->value + i),
+                                      answer->magnitude + i);
+        answer->steps = rd_characteristic_steps(of);
+    }
     free(space.base);
     return status;
 }

@@ -13,6 +13,7 @@ FLOORS = [
     "span",
     "sweep/kernel",
     "sweep",
+    "damped",
     "modes/walk",
     "modes/count",
     "modes/refine",

@@ -234,23 +234,6 @@ def test_compressed_beam_with_dashpot_and_hinge_moves_or_grows_as_its_matrices_s
     assert (modes.damping_ratio == -1).any() == (tension == -60.0)
 
 
-def test_winding_counts_the_roots_of_a_string_however_many():
-    from ropedyn.eigen.damped.characteristic import Characteristic, Rates
-    from ropedyn.eigen.damped.winding import winding
-
-    chain = string().compile().chain
-    for waves in range(1, 140, 23):
-        radius = (waves + 0.37) * OMEGA
-        around = winding(Characteristic(chain, Rates.of(()), 1.4 * radius), radius)
-        assert around.count == 2 * waves
-        # all known but the highest pair: its sums of powers 0 and -2 (waves OMEGA/radius)^2
-        known = np.arange(1, waves) * 1j * OMEGA
-        moments = around.moments(np.concatenate([known, -known]), 2)
-        assert np.allclose(moments, [0, -2 * (waves * OMEGA / radius) ** 2], atol=0.1)
-    on = Characteristic(chain, Rates.of(()), 9 * OMEGA)
-    assert winding(on, 4 * OMEGA) is None
-
-
 def test_a_hundred_modes_between_two_dashpots_are_certified():
     modes = string(rd.Dashpot(0.3 * L, 3 * Z), rd.Dashpot(0.71 * L, 0.4 * Z)).compile()
     modes = modes.modes(100, damped=True)
@@ -370,14 +353,14 @@ def test_rayleigh_damping_is_closed_and_overdamps_the_first_mode():
 
 
 def test_closed_form_and_search_agree():
-    from ropedyn.eigen.damped.characteristic import Rates
-    from ropedyn.eigen.damped.damped_roots import _searched
+    from ropedyn.eigen.damped.rates import Rates
+    from ropedyn.eigen.damped.damped_roots import Undamped, _searched
 
     scene = beam(damping=rd.RayleighDamping(300.0, 1e-5))
     model = scene.compile()
     closed = model.modes(6, damped=True)
     radius = np.abs(closed.eigenvalue[-1]) * 1.01
-    searched = _searched(model.chain, Rates.of(scene.dampings), radius, 9e4)
+    searched = _searched(Undamped(model.chain), Rates.of(scene.dampings), radius, 9e4)
     error = searched.error[:6] + 2 * np.pi * closed.rounding_error
     assert searched.certified
     assert (np.abs(searched.value[:6] - closed.eigenvalue) <= error).all()

@@ -39,6 +39,8 @@ SPAN = SCENE.compile().chain  # continuous, 4 nodes, width 3
 FIELDS = tuple(f for f in CHAIN._fields[1:] if getattr(CHAIN, f) is not None)
 NODES, WIDTH = 9, 3
 FACTOR = np.array([[1, 1, 1, -1.0 + 0j, 1j], [1, 1, 1, -400.0, 20j]])
+CONSTANT = np.array([1, 1, 1, 0, 0], complex)
+SLOPE = np.array([1e-5, 0, 0, 0, 1], complex)
 PORT = (np.array([2], dtype=np.int32), np.ones((1, 2, WIDTH)))
 FORCE = np.ones((NODES, WIDTH))
 SHAPES = np.ones((2, NODES, WIDTH))
@@ -157,8 +159,8 @@ ENTRIES = {
     "certify": lambda chain: _core.certify(chain, 3, np.inf, True),
     "sweep": lambda chain: _core.sweep(chain, FACTOR.T.copy(), PORT, PORT),
     "steps": lambda chain: _core.steps(chain, FACTOR.T.copy()),
-    "characteristic": lambda chain: _core.characteristic(
-        chain, FACTOR.T.copy(), np.abs(FACTOR.T[:, 1:]).astype(complex)
+    "damped": lambda chain: _core.damped(
+        chain, CONSTANT, SLOPE, 30.0, np.inf, np.inf, np.array([20j, -20j])
     ),
     "mixed": lambda chain: _core.mixed(chain, FACTOR.T.copy(), PORT, PORT),
     "mixed_deflection": lambda chain: _core.mixed_deflection(chain, FORCE),
@@ -181,7 +183,7 @@ SPANS = {
     "certify": ENTRIES["certify"],
     "sweep": ENTRIES["sweep"],
     "steps": ENTRIES["steps"],
-    "characteristic": ENTRIES["characteristic"],
+    "damped": ENTRIES["damped"],
     "triple": ENTRIES["triple"],
     "tip": ENTRIES["tip"],
     "carried": lambda chain: _core.carried(chain, SHAPES[:, :4], MOTIONS, np.array([1e4, 1e6])),

@@ -26,10 +26,10 @@ from ..free_motion import MeshOfModes, Vectors
 from ..spectrum import lowest
 from ..vectors import UNSEEN, fractions, largest, points_for, within
 from .attached_energy import AttachedEnergy
-from .characteristic import Rates
 from .damped_modes import DampedModes
-from .damped_roots import Damped, damped_roots
+from .damped_roots import Damped, Undamped, damped_roots
 from .modal_rates import solve_modal
+from .rates import Rates
 from .residue import motions
 
 MORE = 4  # A search passes so many undamped modes for each one asked for before it gives up.
@@ -107,16 +107,18 @@ def _find(
 ) -> DampedRates:
     """Find the rates of some components, those of the least modulus first."""
     parts = [(c, *span) for c in components for span in model.chain.only(c).spans]
+    undamped = [Undamped(model.chain.only(c).between(*span)) for c, *span in parts]
     if number is None:
-        return _below(model, parts, limit)
-    omega = _undamped(model, parts, MORE * number + 4)
-    most = len(omega) + (0 if model.element == "continuous" else DOUBLINGS)
+        return _below(model, parts, undamped, limit)
+    omega = _lowest(undamped, number + 2)
     at, radius = number, 0.0
     while True:
         radius = max(_between(omega, at), 1.2 * radius)
-        answer = _below(model, parts, radius)
+        answer = _below(model, parts, undamped, radius)
         if len(answer.value) >= number:
             return answer.first(number)
+        omega = _lowest(undamped, MORE * number + 4)
+        most = len(omega) + (0 if model.element == "continuous" else DOUBLINGS)
         if at >= most or math.isinf(answer.radius):
             raise SolveError(
                 f"number must be at most {len(answer.value)}, the damped modes "
@@ -125,13 +127,10 @@ def _find(
         at += number - len(answer.value)
 
 
-def _undamped(model: Compiled, parts: list[Between], number: int) -> Real:
+def _lowest(undamped: list[Undamped], number: int) -> Real:
     """Return the lowest undamped frequencies [rad/s]."""
-    found = [
-        lowest(model.chain.undamped.only(c).between(first, last), number, math.inf, shaped=False)
-        for c, first, last in parts
-    ]
-    return np.sort(np.sqrt(np.abs(np.concatenate([one.eigenvalue for one in found]))))[:number]
+    eigenvalue = np.concatenate([one.lowest(number).eigenvalue for one in undamped])
+    return np.sort(np.sqrt(np.abs(eigenvalue)))[:number]
 
 
 def _between(omega: Real, at: int) -> float:
@@ -145,8 +144,17 @@ def _where(radius: float) -> str:
     return "there are" if math.isinf(radius) else f"below {radius / (2 * math.pi):.6g} Hz"
 
 
-def _below(model: Compiled, parts: list[Between], limit: float) -> DampedRates:
-    found = [_solve(model, part, limit) for part in parts]
+def _below(
+    model: Compiled, parts: list[Between], undamped: list[Undamped], limit: float
+) -> DampedRates:
+    """Find all rates of a modulus below a limit."""
+    rates = Rates.of(model.scene.dampings)
+    found = []
+    for (component, _, _), own in zip(parts, undamped):
+        try:
+            found.append(damped_roots(own, rates, limit))
+        except SolveError as refusal:
+            raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
     radius = min(part.radius for part in found)
     value = np.concatenate([part.value for part in found])
     error = np.concatenate([part.error for part in found])
@@ -155,15 +163,6 @@ def _below(model: Compiled, parts: list[Between], limit: float) -> DampedRates:
     order = np.argsort(np.abs(value), kind="stable")
     order = order[np.abs(value[order]) < min(radius, limit)]
     return DampedRates(parts, found, value[order], error[order], which[order], at[order], radius)
-
-
-def _solve(model: Compiled, part: Between, limit: float) -> Damped:
-    component, first, last = part
-    chain = model.chain.only(component).between(first, last)
-    try:
-        return damped_roots(chain, Rates.of(model.scene.dampings), limit)
-    except SolveError as refusal:
-        raise SolveError(f"({', '.join(component)}): {refusal}") from refusal
 
 
 def _vectors(model: Compiled, answer: DampedRates, points: int) -> Vectors[np.complex128]:

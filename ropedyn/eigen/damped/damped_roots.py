@@ -3,21 +3,44 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ... import _core
 from ...base.array import Complex, Index, Real
 from ...base.errors import SolveError
 from ...chain.chain import Chain
-from ..spectrum import lowest
-from .characteristic import Characteristic, Rates, elastic, horizon
+from ..spectrum import ComponentModes, lowest
 from .proportional import Proportional, proportional
-from .roots import Roots, find_roots
-from .winding import winding
+from .rates import Rates, elastic, horizon
 
 MARGIN = 0.98  # Motion is told apart up to this part of the horizon.
-NUDGES = (1.0, 1.004, 1.01, 1.03, 1.07)  # A circle on which a root lies grows by these factors.
+NO_MIRROR, CONJUGATE, OPPOSITE = range(3)  # Where roots have another one, in the core's order.
+
+
+class Undamped:
+    """The lowest modes of a chain without its damping, kept for who asks for fewer."""
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain  # as it is damped
+        self.asked = 0
+        self.found: ComponentModes | None = None
+
+    def lowest(self, number: int) -> ComponentModes:
+        """Return so many at least, as far as there are."""
+        if self.found is None or self.asked < number:
+            self.asked = number
+            self.found = lowest(self.chain.undamped, number, math.inf, shaped=False)
+        return self.found
+
+    def below(self, limit: float) -> ComponentModes:
+        """Return all eigenvalues below a limit [rad^2/s^2]."""
+        known = self.found
+        if known is None or not (known.eigenvalue[-1:] > limit).any():
+            return lowest(self.chain.undamped, None, limit, shaped=False)
+        inside = known.eigenvalue < limit
+        return replace(known, eigenvalue=known.eigenvalue[inside], error=known.error[inside])
 
 
 @dataclass(frozen=True)
@@ -37,27 +60,34 @@ class Damped:
     mode: Index | None = None
 
 
-def damped_roots(chain: Chain, rates: Rates, radius: float) -> Damped:
+def damped_roots(undamped: Undamped, rates: Rates, radius: float) -> Damped:
     """Find all rates of a chain of a modulus below some radius."""
+    chain = undamped.chain
     edge = MARGIN * horizon(chain, rates)
     closed = proportional(chain, rates)
     if closed is not None and (radius < edge or chain.finite is not None):
-        return _closed(chain, rates, closed, radius, edge)
+        return _closed(undamped, rates, closed, radius, edge)
     if not radius < edge:
         raise SolveError(
             f"damped modes can be told apart below {edge / (2 * math.pi):.6g} Hz: at the decay "
             f"rate {edge / MARGIN:.6g} 1/s, where damping cancels stiffness, infinitely many "
             "overdamped modes accumulate; ask for fewer modes or a lower frequency"
         )
-    return _searched(chain, rates, radius, edge)
+    return _searched(undamped, rates, radius, edge)
 
 
-def _closed(chain: Chain, rates: Rates, closed: Proportional, radius: float, edge: float) -> Damped:
+def _closed(
+    undamped: Undamped, rates: Rates, closed: Proportional, radius: float, edge: float
+) -> Damped:
     """Two rates of each undamped mode; beyond the edge the highest modes may have the lowest."""
+    chain = undamped.chain
     if radius < edge:
-        found = lowest(chain.undamped, None, closed.highest(radius), shaped=False)
+        # solved by itself, so that they are the modes without damping to the last bit
+        inside = undamped.below(closed.highest(radius))
+        found = lowest(chain.undamped, len(inside.eigenvalue), math.inf, shaped=False)
     else:
-        found = lowest(chain.undamped, chain.finite, math.inf, shaped=False)
+        assert chain.finite is not None
+        found = undamped.lowest(chain.finite)
     eigenvalue = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
     whole = 2 * len(eigenvalue) == most_roots(chain.undamped, Rates.of(()))
     s = closed.rates(eigenvalue)
@@ -86,38 +116,36 @@ def _closed(chain: Chain, rates: Rates, closed: Proportional, radius: float, edg
     )
 
 
-def _searched(chain: Chain, rates: Rates, radius: float, edge: float) -> Damped:
-    undamped = lowest(chain.undamped, None, (1.1 * radius) ** 2, shaped=False)
-    omega = np.sqrt(np.abs(undamped.eigenvalue))
+def _searched(undamped: Undamped, rates: Rates, radius: float, edge: float) -> Damped:
+    """Search the plane; see csrc/damped/search.h."""
+    chain = undamped.chain
+    known = undamped.below((1.1 * radius) ** 2)
+    omega = np.sqrt(np.abs(known.eigenvalue))
     guess = np.stack([1j * omega, -1j * omega], axis=1).ravel()
-    sweeps = undamped.work.sweeps
-    for nudge in NUDGES:
-        wide = min(radius * nudge, edge)
-        function = Characteristic(chain, rates, min(1.5 * wide, (wide + edge / MARGIN) / 2))
-        around = winding(function, wide)
-        roots = None if around is None else find_roots(function, around, guess)
-        sweeps += function.sweeps
-        if around is not None and roots is not None and roots.certified:
-            still = int((np.abs(undamped.eigenvalue) <= undamped.error).sum())
-            value, error, nearby = _sorted(roots, around.paired, still)
-            whole = around.count == most_roots(chain, rates)
-            wide = math.inf if whole else wide
-            return Damped(rates, value, error, True, wide, sweeps, nearby)
-    raise SolveError(
-        f"damped modes below {radius / (2 * math.pi):.6g} Hz cannot be told from rounding: motion "
-        "decays there within a small part of a period, as before a dashpot that matches the rope's "
-        "impedance; ask for fewer modes or a lower frequency"
+    value, error, count, wide, mirror, certified, sweeps = _core.damped(
+        chain, rates.constant, rates.linear, radius, edge, edge / MARGIN, guess
     )
+    if not certified:
+        raise SolveError(
+            f"damped modes below {radius / (2 * math.pi):.6g} Hz cannot be told from rounding: "
+            "motion decays there within a small part of a period, as before a dashpot that matches "
+            "the rope's impedance; ask for fewer modes or a lower frequency"
+        )
+    still = int((np.abs(known.eigenvalue) <= known.error).sum())
+    value, error, nearby = _sorted(value, error, mirror, still)
+    wide = math.inf if count == most_roots(chain, rates) else wide
+    return Damped(rates, value, error, True, wide, sweeps + known.work.sweeps, nearby)
 
 
-def _sorted(roots: Roots, paired: bool, still: int) -> tuple[Complex, Real, Complex]:
+def _sorted(value: Complex, error: Real, mirror: int, still: int) -> tuple[Complex, Real, Complex]:
     """Return rates in order with their errors, and what lies beside; `still` meet no resistance."""
-    value, error = roots.value, roots.error
     # what rounding cannot tell from an axis is on it
     value = np.where(np.abs(value.real) <= error, 1j * value.imag, value)
     value = np.where(np.abs(value.imag) <= error, value.real + 0j, value)
-    kept = value.imag >= 0 if paired else (value.imag > 0) | (value == 0)
-    nearby = value[value.imag > 0].conj() if paired else value[~kept]
+    kept = value.imag >= 0 if mirror == CONJUGATE else (value.imag > 0) | (value == 0)
+    above = value[value.imag > 0]
+    images = {NO_MIRROR: above[:0], CONJUGATE: above.conj(), OPPOSITE: -above}
+    nearby = np.concatenate([images[mirror], value[~kept]])
     # a motion that nothing resists has the rate 0 twice where nothing damps it either
     kept[np.flatnonzero(value == 0)[still:]] = False
     index = np.flatnonzero(kept)

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...chain.chain import Chain
 from ...scene.damping import DASHPOT, INERTIA, SPRING
-from .characteristic import Rates, elastic
+from .rates import Rates, elastic
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from ...base.errors import SolveError
 from ...chain.chain import Chain
 from ...chain.port import Ports
 from ...signal.contour import clusters
-from .characteristic import Rates
 from .damped_roots import Damped
+from .rates import Rates
 
 SAMPLES = 8  # The circle around a rate has so many points.
 CIRCLE = 0.02

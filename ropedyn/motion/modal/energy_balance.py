@@ -25,8 +25,8 @@ import numpy as np
 
 from ...base.array import Index, Real
 from ...base.errors import SceneError
-from ...eigen.damped.characteristic import Rates
 from ...eigen.damped.proportional import proportional
+from ...eigen.damped.rates import Rates
 from ...response.moved_end import is_end
 from ...scene import damping
 from ...scene.force import Force, Sum

@@ -21,9 +21,9 @@ from ...chain import tip
 from ...chain.chain import Chain
 from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, moving
-from ...eigen.damped.characteristic import Rates, horizon
-from ...eigen.damped.damped_roots import damped_roots, most_roots
+from ...eigen.damped.damped_roots import Undamped, damped_roots, most_roots
 from ...eigen.damped.proportional import Proportional, proportional
+from ...eigen.damped.rates import Rates, horizon
 from ...eigen.spectrum import HIGHEST, count_component, spectrum
 from ...response.modal_sum import (
     LEAST,
@@ -306,11 +306,11 @@ def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _Dam
     radius = 1.5 * float(np.sqrt(np.abs(eigenvalue).max(initial=1.0)))
     if np.isfinite(beyond):
         radius = float(np.sqrt(np.abs(eigenvalue[-1])) + np.sqrt(beyond)) / 2
-    grows = not np.isfinite(beyond)
+    grows, undamped = not np.isfinite(beyond), [Undamped(span) for span in spans]
     for attempt in range(ATTEMPTS):
         radius = min(radius, edge)
         try:
-            found = [damped_roots(span, rates, radius) for span in spans]
+            found = [damped_roots(span, rates, radius) for span in undamped]
         except SolveError as refusal:
             if attempt == ATTEMPTS - 1:
                 raise SolveError(f"({', '.join(asked.component)}): {refusal}") from refusal
