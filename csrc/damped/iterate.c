@@ -134,16 +134,27 @@ static bool rests(const struct rd_iterate *it, enum rd_mirror mirror, size_t i)
 {
     if (it->step[i] <= CLOSE * it->spacing)
         return true;
-    double next =
-        mirror == RD_NO_MIRROR ? INFINITY : cabs(it->z[i] - rd_mirrored(mirror, it->z[i]));
+    double next = it->spacing;
+    if (mirror != RD_NO_MIRROR)
+        next = fmin(next, cabs(it->z[i] - rd_mirrored(mirror, it->z[i])));
     for (size_t j = 0; j < it->count; j++)
         if (j != i)
             next = fmin(next, cabs(it->z[i] - it->z[j]));
     return it->step[i] <= NEXT * next;
 }
 
-/* finds those of the active roots, or of all from the first one where none is, that do not rest; how
-   many they are */
+/* whether another root is where root j is */
+static bool is_taken(const struct rd_iterate *it, size_t j)
+{
+    for (size_t k = 0; k < it->count; k++)
+        if (k != j && cabs(it->z[k] - it->z[j]) <= SAME * it->spacing + it->step[k] + it->step[j])
+            return true;
+    return false;
+}
+
+/* Finds those of the active roots that do not rest; where all do, those of all from the first one, and
+   images that came where another root is: that is no mirror image, and they go on from between both.
+   How many they are. */
 static size_t wake(struct rd_iterate *it, enum rd_mirror mirror, size_t first, size_t active)
 {
     size_t left = 0;
@@ -152,9 +163,18 @@ static size_t wake(struct rd_iterate *it, enum rd_mirror mirror, size_t first, s
             it->active[left++] = it->active[k];
     if (left > 0)
         return left;
-    for (size_t i = first; i < it->count; i++)
-        if (it->twin[i] >= i && !rests(it, mirror, i))
+    for (size_t i = first; i < it->count; i++) {
+        const size_t j = it->twin[i];
+        if (j >= i && !rests(it, mirror, i)) {
             it->active[left++] = i;
+        } else if (j > i && is_taken(it, j)) {
+            it->z[j] = (it->z[i] + it->z[j]) / 2 + MEET * it->spacing;
+            it->step[j] = INFINITY;
+            it->twin[i] = i;
+            it->twin[j] = j;
+            it->active[left++] = j;
+        }
+    }
     return left;
 }
 
@@ -243,7 +263,7 @@ static size_t guess_missing(struct rd_iterate *it, const struct rd_winding *with
                             size_t missing)
 {
     double _Complex moment[MOST_MOMENTS];
-    if (known == 0 || missing > MOST_MOMENTS)
+    if (missing > MOST_MOMENTS)
         return 0;
     rd_winding_moments(within, known, it->at, missing, moment);
     if (rd_powers_invert(missing, moment, it->next) != RD_OK)

@@ -31,7 +31,7 @@ struct arrays {
 static enum rd_status take(const struct rd_search *search, double wide,
                            struct rd_workspace *workspace, struct arrays *a)
 {
-    const double reach = fmin(1.5 * wide, (wide + search->horizon) / 2);
+    const double reach = fmin(1.1 * wide, (wide + search->horizon) / 2);
     rd_function_take(search->chain, &search->damping, search->stop, reach, workspace, &a->function);
     rd_iterate_take(search->room, workspace, &a->iterate);
     rd_circle_take(search->room, workspace, &a->circle);

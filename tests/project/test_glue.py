@@ -1060,6 +1060,39 @@ def test_ctrl_c_stops_a_long_frf():
     assert waited < 1 + 5 * 130 * each
 
 
+@pytest.mark.skipif(
+    threading.current_thread() is not threading.main_thread(), reason="signals need it"
+)
+def test_ctrl_c_stops_a_long_search_for_damped_modes():
+    # every element another, so that each walk takes some 10 ms, and hundreds of rates
+    chain = long_model().chain
+    count = 20_000
+    chain = chain._replace(
+        length=np.full(count, 1e-4),
+        tension=np.full(count, chain.tension[0]),
+        flexibility=np.repeat(chain.flexibility[:1], count, axis=0),
+        element=np.arange(count, dtype=np.int32),
+        first=np.arange(count + 1, dtype=np.int32),
+        term=np.full(count + 1, chain.term[1], dtype=np.int32),
+    )
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        start = time.perf_counter()
+        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        with pytest.raises(KeyboardInterrupt):
+            _core.damped(chain, CONSTANT, SLOPE, 1e4, np.inf, np.inf, np.zeros(0, complex))
+        waited = time.perf_counter() - start - 0.2
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    # a look each 50 ms or walk; twenty times as long on a busy machine
+    assert waited < 1
+
+
 def test_an_exception_from_a_signal_handler_is_passed_on():
     class Alarm(Exception):
         pass

@@ -164,18 +164,15 @@ def most_roots(chain: Chain, rates: Rates) -> int | None:
     dashpots = _dashpots(chain)
     for term in np.flatnonzero(each):
         free = chain.held[term] == 0
-        mass = chain.mass[term][np.ix_(free, free)]
-        size, axis = np.linalg.eigh(mass)
+        mass = chain.mass[term][free][:, free]
+        size, axis = mass.diagonal(), np.eye(len(mass))
+        if np.count_nonzero(mass) > np.count_nonzero(size):
+            size, axis = np.linalg.eigh(mass)
         massless = axis[:, size == 0]
         count += 2 * int((size != 0).sum()) * int(each[term])
-        rest = massless.T @ dashpots[term][np.ix_(free, free)] @ massless
-        count += int(np.linalg.matrix_rank(rest)) * int(each[term]) if rest.size else 0
-    return count + 2 * _resonators(chain)
-
-
-def _resonators(chain: Chain) -> int:
-    terms = () if chain.attached_term is None else chain.attached_term
-    return int(np.isin(terms, chain.term).sum())
+        rest = massless.T @ dashpots[term][free][:, free] @ massless
+        count += int(np.linalg.matrix_rank(rest)) * int(each[term]) if rest.any() else 0
+    return count + 2 * int((chain.feet >= 0).sum())
 
 
 def _dashpots(chain: Chain) -> Real:
