@@ -138,11 +138,11 @@ def page(rows: list[Row]) -> str:
 clamped unless it says so; continuous spans, and a chain of {ELEMENTS} rigid elements.
 
 `model.modes({NUMBER}, damped=True)` finds rates, bounds of their errors and the certificate that
-none is missing; the first two scenes are in closed form, the others are searched in the plane. SciPy
-is given the companion pencil of the chain's M s^2 + C s + K: `eigs` sparse about 0 for twelve
-eigenvalues, `eig` dense for all of them; they know neither loss factors nor what is condensed to its
-foot. Medians of processor times of calls in turn; compiling and assembling are left out. "off" is
-the largest relative distance to the rates of the search.
+none is missing; the first two scenes are in closed form, the others are searched in the plane.
+SciPy is given the companion pencil of the chain's M s^2 + C s + K: `eigs` sparse about 0 for twelve
+eigenvalues, `eig` dense for all of them; they know neither loss factors nor what is condensed to
+its foot. Medians of processor times of calls in turn; compiling and assembling are left out. "off"
+is the largest relative distance to the rates of the search.
 
 {report.table(head, lines)}
 """

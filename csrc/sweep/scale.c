@@ -292,7 +292,8 @@ double rd_sweep_turning(const struct rd_chain *chain, const struct sweep_extent 
     double radians = RADIANS;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         const struct rd_run run = run_of(chain, k);
-        const double nodes = (double)rd_stretch_nodes(chain, k), length = chain->length[run.element];
+        const double nodes = (double)rd_stretch_nodes(chain, k),
+                     length = chain->length[run.element];
         const double waves = nodes * length * run_wavenumber(chain, &run, extent);
         /* lumps let no waves pass that are shorter than they are apart */
         radians += chain->inertia ? waves + PI : fmin(waves, nodes * PI);

@@ -353,8 +353,8 @@ def test_rayleigh_damping_is_closed_and_overdamps_the_first_mode():
 
 
 def test_closed_form_and_search_agree():
-    from ropedyn.eigen.damped.rates import Rates
     from ropedyn.eigen.damped.damped_roots import Undamped, _searched
+    from ropedyn.eigen.damped.rates import Rates
 
     scene = beam(damping=rd.RayleighDamping(300.0, 1e-5))
     model = scene.compile()
