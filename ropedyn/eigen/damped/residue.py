@@ -39,24 +39,23 @@ def motions(chain: Chain, damped: Damped, wanted: Index) -> Complex:
     probes = _ports(chain, _probes(chain))
     tried = _response(chain, rates, circle, probes, probes)
     driven: dict[tuple[int, ...], list[int]] = {}
+    inverse: list[Complex] = []
     for k, group in enumerate(groups):
         offset[k] **= 1 + (value[group] == 0).any()  # s^2 M of rigid motion
         seen = tried[:, :, k] * offset[k]
         residue, largest = seen.mean(axis=2), np.abs(seen).max(axis=2).diagonal()
-        driven.setdefault(_pivots(residue, largest, len(group)), []).append(k)
+        pushed = _pivots(residue, largest, len(group))
+        root = np.linalg.inv(_root(residue[np.ix_(pushed, pushed)]))
+        inverse.append(np.asarray(root[: len(group)], dtype=np.complex128))
+        driven.setdefault(pushed, []).append(k)
     for pushed, members in driven.items():
         drives = Ports(probes.node[list(pushed)], probes.row[list(pushed)], None)
-        near = _response(chain, rates, circle[members], drives, drives)
-        inverse = [
-            np.linalg.inv(_root((near[:, :, i] * offset[k]).mean(axis=2)))[: len(groups[k])]
-            for i, k in enumerate(members)
-        ]
         step = max(1, MOST_NUMBERS // (len(pushed) * len(members) * SAMPLES * motion.shape[2]))
         for first in range(0, chain.nodes, step):
             nodes = np.arange(first, min(first + step, chain.nodes))
             far = _response(chain, rates, circle[members], drives, _ports(chain, nodes))
             for i, k in enumerate(members):
-                phi = inverse[i] @ (far[:, :, i] * offset[k]).mean(axis=2)
+                phi = inverse[k] @ (far[:, :, i] * offset[k]).mean(axis=2)
                 motion[np.ix_(groups[k], nodes)] = phi.reshape(len(phi), len(nodes), -1)
     return motion[wanted]
 
