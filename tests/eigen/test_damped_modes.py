@@ -254,6 +254,36 @@ def test_two_dashpots_at_mirrored_places_keep_symmetric_and_antisymmetric_modes_
     assert mirrored.max() < 1e-9
 
 
+@pytest.mark.parametrize("number", [1, 2, 3])
+@pytest.mark.parametrize("c", [3.0, 4.5, 6.0, 10.0, 30.0])
+def test_an_overdamped_rate_beside_a_pair_is_found_from_a_pair_too_few(c, number):
+    # an odd number of rates, and guesses in pairs: images that meet a root are roots of their own
+    dashpots = [rd.Dashpot(0.45 * L, c * Z), rd.Dashpot(0.8 * L, 0.5 * c * Z)]
+    model = beam(*dashpots, damping=rd.ViscousDamping(20.0)).compile(elements=16, element="rigid")
+    modes, exact = model.modes(number, damped=True), quadratic(model)
+    assert modes.certified
+    assert np.allclose(modes.eigenvalue, exact[:number], rtol=1e-9, atol=0)  # n^4 eps of LAPACK
+
+
+def test_image_that_meets_a_root_is_a_root_of_its_own():
+    # three rates within the circle: a pair that the last guess alone finds, so that of the pair of
+    # guesses before it one goes where its image is, and the other has to find the overdamped one
+    rope = rd.Rope(12.378695825359959, 0.01705792170243113, bending_stiffness=28.41256263985497)
+    parts = [
+        rd.Dashpot(11.288729965739542, 22.609733249571693),
+        rd.Dashpot(5.15630733138573, 0.7584321680680105),
+        rd.Resonator(
+            6.2216392902850455, 0.1402241195309332, 57.6331968448355, damping_ratio=0.04186
+        ),
+        rd.Resonator(10.065880610757866, 0.0017541776988213612, 32.297610780552525),
+    ]
+    scene = rd.Scene(rope, tension=9207.218693066528, parts=parts, ends=("clamped", "free"))
+    modes = scene.compile().modes(1, damped=True)
+    assert modes.certified
+    assert modes.frequency == 0
+    assert modes.decay_rate > 0
+
+
 def critical(c):
     """One mass between two strings with a dashpot: m s^2 + c s + k = 0."""
     model = rd.Scene(rd.Rope(1.0, 2.0), tension=1.0, parts=[rd.Dashpot(0.5, c)])
