@@ -91,10 +91,12 @@ def axes(*names: str, unit: str = "", keyed: bool = False) -> dict[str, Any]:
 def freeze(thing: Any) -> None:
     """Make the arrays that something holds read-only; a pickle or a copy forgets that."""
     for value in vars(thing).values():
-        many = value.values() if isinstance(value, dict) else value
-        for array in many if isinstance(value, (dict, tuple, list)) else (value,):
-            if isinstance(array, np.ndarray):
-                array.flags.writeable = False
+        if isinstance(value, np.ndarray):
+            value.setflags(write=False)
+        elif isinstance(value, (tuple, list, dict)):
+            for array in value.values() if isinstance(value, dict) else value:
+                if isinstance(array, np.ndarray):
+                    array.setflags(write=False)
 
 
 TRANSIENT = {"transient": True}  # Metadata of a field that no file keeps: it has a default.

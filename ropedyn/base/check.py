@@ -82,7 +82,9 @@ def optional(value: Any, name: str, unit: str = "", *, sign: str = "any") -> flo
 def count(value: Any, name: str, *, least: int = 1, most: int) -> int:
     """Return a whole number between two bounds."""
     what = f"a whole number from {least} to {most}"
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Integral):
+    if type(value) is not int and (
+        isinstance(value, (bool, np.bool_)) or not isinstance(value, Integral)
+    ):
         raise TypeError(_expected(name, what, "", value))
     result = int(value)
     if not least <= result <= most:

@@ -60,9 +60,13 @@ class Lazy(Reader[Value]):
         return kept[self.name]
 
 
-def lazy(kind: type[Any]) -> Any:
-    """Declare a field that holds a dataclass of this kind: ``mesh: Lazy[Mesh] = lazy(Mesh)``."""
-    return field(default=Lazy(kind), repr=False, kw_only=True, metadata={"nested": kind})
+def lazy(kind: type[Any], axes: dict[str, Any] | None = None) -> Any:
+    """Declare a field that holds a dataclass of this kind: ``mesh: Lazy[Mesh] = lazy(Mesh)``.
+
+    With `axes` it holds an array, as a field of an answer with this metadata does.
+    """
+    metadata = {"nested": kind} if axes is None else axes
+    return field(default=Lazy(kind), repr=axes is not None, kw_only=True, metadata=metadata)
 
 
 class Read(Reader[Value]):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,18 +71,30 @@ class Chain(NamedTuple):
     @property
     def element_of(self) -> NDArray[np.int32]:
         """Which distinct element stands right of each node, shape (nodes - 1,)."""
-        return np.repeat(self.element, np.diff(self.first))
+        return self.element.repeat(self._sizes[:-1])
 
     @property
     def term_of(self) -> NDArray[np.int32]:
         """Which node term each node has, shape (nodes,)."""
-        return np.repeat(self.term, np.diff(self.first, append=self.nodes))
+        return self.term.repeat(self._sizes)
+
+    @property
+    def _sizes(self) -> Index:
+        """How many nodes each stretch has, shape (stretches,)."""
+        sizes = np.ones(len(self.first), dtype=np.intp)
+        sizes[:-1] = self.first[1:] - self.first[:-1]
+        return sizes
+
+    @property
+    def free_of(self) -> dict[str, int]:
+        """At how many nodes each coordinate can move."""
+        free = self._sizes @ (self.held == 0)[self.term]
+        return {COORDINATES[c]: n for c, n in zip(self.coordinate.tolist(), free.tolist())}
 
     @property
     def free(self) -> int:
         """How many coordinates can move."""
-        free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
-        return int(free_of_term[self.term] @ np.diff(self.first, append=self.nodes))
+        return sum(self.free_of.values())
 
     @property
     def finite(self) -> int | None:
@@ -95,6 +107,8 @@ class Chain(NamedTuple):
     @property
     def undamped(self) -> Chain:
         """The chain without what is in proportion to velocity."""
+        if self.damping is None and self.drag is None:
+            return self
         return self._replace(damping=None, drag=None)
 
     @property
@@ -138,51 +152,54 @@ class Chain(NamedTuple):
 
     def stretch(self, node: int) -> int:
         """Return the stretch that a node belongs to."""
-        return int(np.searchsorted(self.first, node, side="right")) - 1
+        return int(self.first.searchsorted(node, side="right")) - 1
 
     @property
     def spans(self) -> tuple[tuple[int, int], ...]:
         """First and last node of what lies between nodes where nothing can move."""
-        still: Flags = np.all(self.held, axis=1)[self.term]
-        still[[0, -1]] = False
+        still: Flags = np.logical_and.reduce(self.held, axis=1)[self.term]
         nodes = [
-            np.arange(self.first[k], self.first[k + 1], dtype=np.int64)
-            for k in np.flatnonzero(still)
+            node
+            for k in still[1:-1].nonzero()[0].tolist()
+            for node in range(self.first[k + 1], self.first[k + 2])
         ]
-        ends = np.concatenate([[0], *nodes, [self.nodes - 1]]).tolist()
-        return tuple(pairwise(ends))
+        return tuple(pairwise([0, *nodes, self.nodes - 1]))
 
     def between(self, first: int, last: int) -> Chain:
         """Return the chain of some of the nodes."""
         if (first, last) == (0, self.nodes - 1):
             return self
-        begin, end = self.stretch(first), self.stretch(last - 1)
-        nodes = np.append(np.maximum(self.first[begin : end + 1], first), last) - first
-        term = np.append(self.term[begin : end + 1], self.term[self.stretch(last)])
-        return self._replace(
-            first=nodes.astype(np.int32), element=self.element[begin : end + 1], term=term
+        begin, end, after = map(self.stretch, (first, last - 1, last))
+        nodes, term = (
+            np.concatenate([of[begin : end + 1], of[after : after + 1]])
+            for of in (self.first, self.term)
         )
+        nodes -= first
+        nodes[0], nodes[-1] = 0, last - first
+        return self._replace(first=nodes, element=self.element[begin : end + 1], term=term)
 
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
         wanted = [COORDINATES.index(c) for c in coordinates]
-        if wanted == self.coordinate.tolist():
+        own = self.coordinate.tolist()
+        if wanted == own:
             return self
-        kept = [int(np.flatnonzero(self.coordinate == c)[0]) for c in wanted]
-        square = np.ix_(range(len(self.mass)), kept, kept)
+        kept = np.array([own.index(c) for c in wanted])
 
-        def columns(array: Real | None) -> Real | None:
-            return None if array is None else np.ascontiguousarray(array[..., kept])
+        def columns(array: Any) -> Any:
+            return None if array is None else array.take(kept, axis=-1)
 
-        damping = None if self.damping is None else np.ascontiguousarray(self.damping[square])
+        def squares(array: Any) -> Any:
+            return None if array is None else array.take(kept, axis=-1).take(kept, axis=-2)
+
         return self._replace(
             coordinate=np.array(wanted, dtype=np.int32),
-            mass=np.ascontiguousarray(self.mass[square]),
-            stiffness=np.ascontiguousarray(self.stiffness[square]),
-            held=np.ascontiguousarray(self.held[:, kept]),
+            mass=squares(self.mass),
+            stiffness=squares(self.stiffness),
+            held=columns(self.held),
             hinge=_present(columns(self.hinge)),
             inertia=columns(self.inertia),
-            damping=_present(damping),
+            damping=_present(squares(self.damping)),
             drag=_present(columns(self.drag)),
             sag=self.sag if {"x", "z"} <= set(coordinates) else None,
             attached_row=columns(self.attached_row),
@@ -230,21 +247,21 @@ def components(chain: Chain, coordinates: Sequence[str]) -> tuple[tuple[str, ...
     an attached structure couples them, or sag does x and z; z and beta are one bending motion.
     """
     width = len(coordinates)
-    channel = [CHANNELS[c] for c in coordinates]
-    coupled = (chain.mass != 0).any(axis=0) | (chain.stiffness != 0).any(axis=0)
-    if chain.damping is not None:
-        coupled |= (chain.damping != 0).any(axis=0)
+    channel = np.array([CHANNELS[c] for c in coordinates])
+    coupled: Flags = np.logical_or.reduce(chain.flexibility)[channel[:, None], channel]
+    for of in (chain.mass, chain.stiffness, chain.damping):
+        if of is not None:
+            coupled |= np.logical_or.reduce(of)
     if chain.sag is not None:
         x, z = coordinates.index("x"), coordinates.index("z")
         coupled[x, z] = coupled[z, x] = True
     if chain.attached_row is not None:
         moved = (chain.attached_row != 0).any(axis=1)
         coupled |= (moved[:, :, None] & moved[:, None, :]).any(axis=0)
-    coupled |= (chain.flexibility != 0).any(axis=0)[np.ix_(channel, channel)]
     group = list(range(width))
-    for i in range(width):
-        for j in range(width):
-            if coupled[i, j]:
+    for i, row in enumerate(coupled.tolist()):
+        for j in range(i):
+            if row[j]:
                 group = [group[i] if g == group[j] else g for g in group]
     members = [tuple(c for c, g in zip(coordinates, group) if g == k) for k in range(width)]
     return tuple(sorted((m for m in members if m), key=lambda m: coordinates.index(m[0])))

@@ -50,8 +50,10 @@ def compile_scene(
     elif element != "continuous":
         raise SceneError(f"elements must be given, how many {element!r} ones, got None")
     stations = stations_of(scene)
-    spans = len(stations) - 1
-    counts = shares(np.diff(stations), spans if elements is None else elements)
+    if elements is None:
+        counts = np.ones(len(stations) - 1, dtype=np.intp)
+    else:
+        counts = shares(np.diff(stations), elements)
     return divided(scene, element, stations, counts)
 
 
@@ -72,7 +74,8 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
             'element must not be "difference" where there is bending and tension: the '
             "2015 study's kinematics has no geometric stiffness"
         )
-    if not (np.diff(stations) / counts > 0).all():
+    spans = stations[1:] - stations[:-1]
+    if not (spans / counts > 0).all():
         raise SceneError(
             f"elements must be longer than the smallest number, got {int(counts.sum())} on "
             f"{scene.rope.length!r} m"
@@ -80,20 +83,16 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
     local, rope = ropes(scene.rope, stretches(scene.parts), stations)
     if element == "continuous":
         _check_layers(scene, local)
-    elements = _distinct(scene, local, rope, np.diff(stations), counts)
-    chain = _chain(scene, kind, stations, counts, elements)
-    groups = components(chain, scene.coordinates)
-    for array in chain:
-        if isinstance(array, np.ndarray):
-            array.flags.writeable = False
+    chain = _chain(scene, kind, stations, counts, _distinct(scene, local, rope, spans, counts))
+    groups, free = components(chain, scene.coordinates), chain.free_of
     return Compiled(
         scene=scene,
         element=element,
         coordinates=scene.coordinates,
         components=groups,
-        x=_positions(stations, counts),
+        x=_positions(stations, spans, counts),
         chain=chain,
-        unknowns=tuple(chain.only(group).free for group in groups),
+        unknowns=tuple(sum(free[c] for c in group) for group in groups),
     )
 
 
@@ -151,14 +150,11 @@ def section(rope: Rope) -> Real:
     )
 
 
-def _positions(stations: Real, counts: Index) -> Real:
-    nodes, begins = np.append(counts, 1), np.append(0, np.cumsum(counts))
-    x = np.arange(begins[-1] + 1, dtype=np.float64)
-    x -= np.repeat(begins, nodes)
-    x *= np.repeat(np.append(np.diff(stations) / counts, 0.0), nodes)
-    x += np.repeat(stations, nodes)
-    x.flags.writeable = False
-    return x
+def _positions(stations: Real, spans: Real, counts: Index) -> Real:
+    along = np.arange(counts.sum()) - (counts.cumsum() - counts).repeat(counts)
+    x = along * (spans / counts).repeat(counts)
+    x += stations[:-1].repeat(counts)
+    return np.concatenate([x, stations[-1:]])
 
 
 class Elements(NamedTuple):
@@ -183,16 +179,19 @@ def _distinct(
     Lengths that differ by the rounding of positions are one, their mean.
     """
     each = spans / counts
-    order = np.argsort(each, kind="stable")
-    group = np.empty(len(each), dtype=np.intp)
-    group[order] = np.cumsum(np.diff(each[order], prepend=0.0) > ROUNDING * spans.sum())
-    length = (np.bincount(group, spans) / np.maximum(np.bincount(group, counts), 1))[group]
-    pair = group * len(local) + rope
-    _, first, pair = np.unique(pair, return_index=True, return_inverse=True)
-    which = np.argsort(np.argsort(first))[pair]
-    first = np.sort(first)
-    flexibility = np.stack([section(one) for one in local])
-    inertia = np.stack([inertia_of(scene, one) for one in local])
+    order = each.argsort(kind="stable")
+    rising = each[order]
+    group = np.zeros(len(each), dtype=np.intp)
+    group[order[1:]] = (rising[1:] - rising[:-1] > ROUNDING * spans.sum()).cumsum()
+    length = (np.bincount(group, spans) / np.bincount(group, counts))[group]
+    pairs = list(zip(group.tolist(), rope.tolist()))
+    begins: dict[tuple[int, int], int] = {}
+    for span, pair in enumerate(pairs):
+        begins.setdefault(pair, span)
+    number = {pair: k for k, pair in enumerate(begins)}
+    first = np.array(list(begins.values()))
+    flexibility = np.array([section(one) for one in local])
+    inertia = np.array([inertia_of(scene, one) for one in local])
     sag = None
     if scene.gravity is not None:
         # a rope that hangs is longer than its chord along x
@@ -203,7 +202,7 @@ def _distinct(
         length=length[first],
         flexibility=flexibility[rope[first]],
         inertia=inertia[rope[first]],
-        which=which.astype(np.int32),
+        which=np.array([number[pair] for pair in pairs], dtype=np.int32),
         sag=sag,
     )
 
@@ -217,23 +216,24 @@ def _chain(
 ) -> Chain:
     """Return the chain with so many equal elements between stations."""
     length, flexibility, inertia, which, _ = elements
+    # the nodes inside spans have a term for each distinct element, after those of stations
+    divided = counts > 1
+    is_inside = np.bincount(which[divided], minlength=len(length)) > 0
+    inside = is_inside.nonzero()[0]
     # a station is a stretch of its own, and so are the nodes of a span if there are any
     nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
     nodes[1::2] = counts - 1
     present = nodes > 0
-    inside, term_inside = np.unique(which[counts > 1], return_inverse=True)
     term = np.empty(len(nodes), dtype=np.int32)
     term[::2] = np.arange(len(stations))
-    term[1::2][counts > 1] = len(stations) + term_inside
-    first = (np.cumsum(nodes, dtype=np.int32) - nodes)[present]
-    element = np.repeat(which, 2)[present[:-1]]
-    term = term[present]
-    del nodes, present
+    term[1::2] = len(counts) + is_inside.cumsum()[which]
     is_lumped = kind != CONTINUOUS
-    along = np.tile(drag(scene.dampings) * dragged(scene), (len(length), 1))
+    along = np.empty((len(length), len(scene.coordinates)))
+    along[:] = drag(scene.dampings) * dragged(scene)
     mass = _at_nodes(lumped(kind, scene.coordinates, inertia, length), which, inside)
     damping = _at_nodes(_halves(kind, along, length), which, inside)
-    stiffness, held, hinge = _terms(scene, stations, mass, damping)
+    terms = list(standing_at(scene, stations))
+    stiffness, held, hinge = _terms(scene, terms, mass, damping)
     chain = Chain(
         kind=kind,
         coordinate=np.array(
@@ -242,24 +242,26 @@ def _chain(
         length=length,
         tension=np.full(len(length), scene.mean_tension),
         flexibility=flexibility,
-        first=first,
-        element=element,
+        first=(nodes.cumsum(dtype=np.int32) - nodes)[present],
+        element=which.repeat(2)[present[:-1]],
         mass=mass,
         stiffness=stiffness,
         held=held,
-        term=term,
+        term=term[present],
         hinge=hinge,
         inertia=None if is_lumped else inertia,
         damping=damping if damping.any() else None,
         drag=along if along.any() and not is_lumped else None,
         sag=elements.sag,
     )
-    return _with_attached(scene, stations, chain)
+    return _with_attached(scene, stations, terms, chain)
 
 
-def _with_attached(scene: Scene, stations: Real, chain: Chain) -> Chain:
+def _with_attached(
+    scene: Scene, stations: Real, terms: Iterable[tuple[int, NodeTerm]], chain: Chain
+) -> Chain:
     """Return the chain with the structures that its stations carry."""
-    carried = [(at, one) for at, _, one in carried_by(standing_at(scene, stations))]
+    carried = [(at, one) for at, _, one in carried_by(terms)]
     if not carried:
         return chain
     row = np.zeros((len(carried), 2, len(scene.coordinates)))
@@ -292,7 +294,7 @@ def carried_by(
 
 def _terms(
     scene: Scene,
-    stations: Real,
+    terms: Iterable[tuple[int, NodeTerm]],
     mass: Real,
     damping: Real,
 ) -> tuple[Real, NDArray[np.uint8], Real | None]:
@@ -302,27 +304,30 @@ def _terms(
     held = np.zeros((len(mass), width), dtype=np.uint8)
     hinge = None
     number = {c: k for k, c in enumerate(scene.coordinates)}
-    for station, term in standing_at(scene, stations):
+    for station, term in terms:
         given = ((term.mass, mass), (term.stiffness, stiffness), (term.damping, damping))
         for values, into in given:
             for coordinate, value in values.items():
                 if value != 0.0 and coordinate in number:
                     k = number[coordinate]
                     into[station, k, k] += value
-        for coordinate in set(term.held) & set(number):
-            held[station, number[coordinate]] = 1
+        for coordinate in term.held:
+            if coordinate in number:
+                held[station, number[coordinate]] = 1
         for coordinate, compliance in term.hinge.items():
             hinge = np.zeros((len(mass), width)) if hinge is None else hinge
             hinge[station, number[coordinate]] += compliance
     return stiffness, held, hinge
 
 
-def _at_nodes(given: Real, which: NDArray[np.int32], inside: NDArray[np.int32]) -> Real:
+def _at_nodes(given: Real, which: NDArray[np.int32], inside: Index) -> Real:
     """Return what stations get from the elements of spans beside them, then nodes inside spans."""
-    none = np.zeros((1, *given.shape[2:]))
-    to_left, to_right = np.moveaxis(given[which], 1, 0)
-    stations = np.concatenate([none, to_right]) + np.concatenate([to_left, none])
-    return np.concatenate([stations, given[inside].sum(axis=1)])
+    beside, stations = given[which], len(which) + 1
+    terms = np.zeros((stations + len(inside), *given.shape[2:]))
+    terms[1:stations] += beside[:, 1]
+    terms[: stations - 1] += beside[:, 0]
+    terms[stations:] = given[inside].sum(axis=1)
+    return terms
 
 
 def _halves(kind: int, along: NDArray[Any], length: NDArray[Any]) -> NDArray[Any]:
@@ -364,7 +369,7 @@ def lumped(
 def inertia_of(scene: Scene, rope: Rope) -> Real:
     """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
     own = [getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
-    return np.where(has_inertia(scene), own, 0.0)
+    return np.array(own) * has_inertia(scene)
 
 
 def has_inertia(scene: Scene) -> Flags:
@@ -384,5 +389,5 @@ def standing_at(scene: Scene, stations: Real) -> Iterator[tuple[int, NodeTerm]]:
     for station, end in zip((0, len(stations) - 1), map(end_of, scene.ends)):
         yield station, end.term()
     parts = standing(scene.parts)
-    for station, part in zip(nearest(stations, places(parts)), parts):
+    for station, part in zip(nearest(stations, places(parts)).tolist(), parts):
         yield station, part.term()

@@ -42,7 +42,7 @@ def moving(point: tuple[Any, ...]) -> str:
 
 def locate(x: Real, at: float) -> tuple[int, float | None]:
     """Return the node at a position and None, or the node left of it and the distance [m]."""
-    right = int(np.searchsorted(x, at))
+    right = int(x.searchsorted(at))
     margin = NEAR * float(x[-1])
     for node in (right, right - 1):
         if 0 <= node < len(x) and abs(x[node] - at) <= margin:

@@ -29,7 +29,9 @@ from .spectrum import (
     refuse_short_waves,
     spectrum,
 )
-from .vectors import later_vectors, later_within, points_for, solve_shapes, vectors_of, within
+from .vectors import later_vectors, later_within, places_within, solve_shapes, vectors_of
+
+MOST_MODES = 2**31 - 1  # So many can be asked for.
 
 
 def solve_modes(
@@ -61,15 +63,15 @@ def solve_modes(
     eigenvalue, error, order = merged(found, number)
     later: Callable[[], UndampedVectors] = partial(later_vectors, model, solver, number, limit)
     frequency = np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi)
-    which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
-    mesh: UndampedMesh | Callable[[], UndampedMesh]
-    mesh = partial(mesh_of_modes, model.scene, model.components, which, eigenvalue)
-    x = model.x
+    mesh: Callable[[], UndampedMesh]
+    x: Real | Callable[[], Real] = model.x
     if model.element == "continuous":
-        mesh = UndampedMesh(mesh_error=np.zeros_like(frequency), limit=frequency)
-        points = points or points_for(model, eigenvalue)
-        x = within(model.x, points)
+        mesh = partial(no_mesh, frequency)
+        x = partial(places_within, model, eigenvalue, points)
         later = partial(later_within, model, number, limit, eigenvalue, points)
+    else:
+        which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])
+        mesh = partial(mesh_of_modes, model.scene, model.components, which[order], eigenvalue)
     return Modes(
         coordinates=model.coordinates,
         certified=all(part.certified for part in found),
@@ -90,7 +92,7 @@ def check_asked(number: int | None, below: float | None) -> float:
     if (number is None) == (below is None):
         raise SceneError(f"give either number or below, got number={number!r} and below={below!r}")
     if number is not None:
-        check.count(number, "number", most=np.iinfo(np.int32).max)
+        check.count(number, "number", most=MOST_MODES)
     return math.inf if below is None else eigenvalue_of(below)
 
 
@@ -100,6 +102,11 @@ def _cost(model: Compiled, solver: str, seconds: float, found: Sequence[Componen
     return Cost(
         seconds, solver, len(model.x) - 1, model.size, work.sweeps, work.factorisations, share
     )
+
+
+def no_mesh(frequency: Real) -> UndampedMesh:
+    """Return what continuous spans say about themselves."""
+    return UndampedMesh(mesh_error=np.zeros_like(frequency), limit=frequency)
 
 
 def mesh_of_modes(

@@ -46,7 +46,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
     """Base of modes: what follows from shapes and from continuous spans is found when asked for."""
 
     coordinates: tuple[str, ...]
-    x: Real
+    x: Lazy[Real]
     vectors: Lazy[OfShapes]
     mesh: Lazy[OfMesh]
 

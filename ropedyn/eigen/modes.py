@@ -37,7 +37,7 @@ class UndampedMesh(MeshOfModes):
     limit: Real = field(metadata=axes("mode", unit="Hz"))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     """Natural frequencies and shapes of an undamped model, lowest first.
 
@@ -108,7 +108,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
 
     coordinates: tuple[str, ...]
     certified: bool
-    x: Real = field(metadata=axes("node", unit="m"))
+    x: Lazy[Real] = lazy(np.ndarray, axes("node", unit="m"))
     frequency: Real = field(metadata=axes("mode", unit="Hz"))
     eigenvalue: Real = field(metadata=axes("mode", unit="rad^2/s^2"))
     growth: Real = field(metadata=axes("mode", unit="1/s"))

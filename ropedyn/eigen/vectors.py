@@ -65,14 +65,23 @@ def points_for(model: Compiled, eigenvalue: Real) -> int:
     return min(max(32, 8 * pieces), MOST_POINTS)
 
 
+def places_within(model: Compiled, eigenvalue: Real, points: int | None) -> Real:
+    """Return where shapes of continuous spans are given."""
+    x = within(model.x, points or points_for(model, eigenvalue))
+    x.setflags(write=False)
+    return x
+
+
 def later_within(
-    model: Compiled, number: int | None, limit: float, eigenvalue: Real, points: int
+    model: Compiled, number: int | None, limit: float, eigenvalue: Real, points: int | None
 ) -> UndampedVectors:
     """Solve continuous spans once more, with shapes inside them."""
     # energies want elements below their own resonance, and a mode may have its nodes at all points,
     # so there may be more elements than points. A mode that the points show nothing of is as large
     # as its largest component elsewhere is 1
-    more = -(-points_for(model, eigenvalue) // points)
+    least = points_for(model, eigenvalue)
+    points = points or least
+    more = -(-least // points)
     vectors = later_vectors(finer(model, points * more), "sweep", number, limit)
     own = np.array([FAMILY[c] for c in model.coordinates])
     size = largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))

@@ -10,6 +10,7 @@ from dataclasses import KW_ONLY
 from typing import TYPE_CHECKING, Any
 
 from ..base import check
+from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.parameter import Description, given, instance
 from . import damping as _damping
@@ -276,7 +277,7 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         return self.tension.mean if isinstance(self.tension, Tension) else self.tension
 
-    @property
+    @computed
     def coordinates(self) -> tuple[str, ...]:
         """Coordinates of a node: z with bending or tension, beta with bending, and so on.
 
@@ -287,13 +288,14 @@ NodeForce, Stop, AddedMass, LocalChange
         ('z', 'beta')
         """
         rope = self.rope
+        bends = rope.bending_stiffness is not None
         present = {
             "x": rope.axial_stiffness is not None,
-            "z": rope.bending_stiffness is not None or self.mean_tension != 0,
+            "z": bends or self.mean_tension != 0,
             "alpha": rope.torsional_stiffness is not None,
-            "beta": rope.bending_stiffness is not None,
+            "beta": bends,
         }
-        return tuple(c for c in check.COORDINATES if present[c])
+        return tuple([c for c in check.COORDINATES if present[c]])
 
     @property
     def dampings(self) -> tuple[Damping, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -23,10 +23,10 @@ def stations_at(length: float, positions: Iterable[float]) -> Real:
     return np.array([*kept, length])
 
 
-def nearest(stations: Real, positions: Iterable[float]) -> Index:
+def nearest(stations: Real, positions: Sequence[float]) -> Index:
     """Return the number of the station next to each position."""
     between = (stations[1:] + stations[:-1]) / 2
-    return np.searchsorted(between, list(positions))
+    return between.searchsorted(positions)
 
 
 def shares(lengths: Real, elements: int) -> Index:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]):
     """Rates s of free motion Re(shape e^(s t)) of a damped model, those of the least |s| first.
 
@@ -89,7 +89,7 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     coordinates: tuple[str, ...]
     certified: bool
     searched: float
-    x: Real = field(metadata=axes("node", unit="m"))
+    x: Lazy[Real] = lazy(np.ndarray, axes("node", unit="m"))
     eigenvalue: Complex = field(metadata=axes("mode", unit="rad/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
     cost: Cost

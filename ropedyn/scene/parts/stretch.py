@@ -201,9 +201,10 @@ KINDS = (AddedMass, LocalChange)  # Every kind of part that changes the rope ove
 
 def changes(stretches: Sequence[Stretch], stations: Real) -> Real:
     """Return what all stretches do together, a `RopeChange` for each span between stations."""
-    change = np.tile(np.array(RopeChange()), (len(stations) - 1, 1))
-    starts = nearest(stations, (stretch.start for stretch in stretches))
-    stops = nearest(stations, (stretch.stop for stretch in stretches))
+    change = np.empty((len(stations) - 1, len(RopeChange._fields)))
+    change[:] = RopeChange()
+    starts = nearest(stations, [stretch.start for stretch in stretches])
+    stops = nearest(stations, [stretch.stop for stretch in stretches])
     with np.errstate(over="ignore", under="ignore"):
         for stretch, start, stop in zip(stretches, starts, stops):
             amount = np.array(stretch.change())
@@ -214,22 +215,26 @@ def changes(stretches: Sequence[Stretch], stations: Real) -> Real:
 
 def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[list[Rope], Index]:
     """Return the different ropes between stations, and which of them each span has."""
-    change = changes(stretches, stations)
-    distinct, first, which = np.unique(change, axis=0, return_index=True, return_inverse=True)
+    change = list(map(tuple, changes(stretches, stations).tolist()))
+    distinct = sorted(set(change))
     found = []
-    for row, span in zip(distinct.tolist(), first):
+    for row in distinct:
         try:
             found.append(_changed(rope, RopeChange(*row)))
         except SceneError as error:
+            span = change.index(row)
             raise SceneError(
                 f"parts must leave a rope between {stations[span]:g} m and "
                 f"{stations[span + 1]:g} m: {error}"
             ) from error
-    return found, which.reshape(-1)
+    number = {row: k for k, row in enumerate(distinct)}
+    return found, np.array([number[row] for row in change])
 
 
 def _changed(rope: Rope, change: RopeChange) -> Rope:
     """Return the rope with the change."""
+    if change == RopeChange():
+        return rope
     values = {}
     for name, factor in FACTOR.items():
         own, more = getattr(rope, name), getattr(change, name, 0.0)
