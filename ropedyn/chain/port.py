@@ -119,20 +119,23 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
     inside = sorted({at for at in positions if locate(x, at)[1] is not None})
     if not inside:
         return chain, x
-    left = np.searchsorted(x, inside) - 1
-    nodes = np.sort(np.concatenate([x, inside]))
+    left = x.searchsorted(inside) - 1
+    nodes = np.concatenate([x, inside])
+    nodes.sort()
     # stretches begin where they did, at both ends of an element that is cut, and at new nodes
-    old = np.unique(np.concatenate([chain.first, left, left + 1]))
-    stretch = np.searchsorted(chain.first, old, side="right") - 1
-    start = np.concatenate([old + np.searchsorted(left, old), left + 1 + np.arange(len(left))])
-    order = np.argsort(start)
+    old = np.concatenate([chain.first, left, left + 1])
+    old.sort()
+    old = old[np.concatenate([[True], old[1:] != old[:-1]])]
+    stretch = chain.first.searchsorted(old, side="right") - 1
+    start = np.concatenate([old + left.searchsorted(old), left + 1 + np.arange(len(left))])
+    order = start.argsort()
     new_term = np.full(len(left), len(chain.mass))
-    around = np.searchsorted(chain.first, left, side="right") - 1
+    around = chain.first.searchsorted(left, side="right") - 1
     term = np.concatenate([chain.term[stretch], new_term])[order]
-    element = np.append(chain.element, 0)[np.concatenate([stretch, around])][order]
+    element = np.concatenate([chain.element, [0]])[np.concatenate([stretch, around])][order]
     is_cut = np.zeros(len(old) + len(left), dtype=np.bool_)
-    is_cut[np.searchsorted(old, left)] = is_cut[len(old) :] = True
-    pieces = np.flatnonzero(is_cut[order])
+    is_cut[old.searchsorted(left)] = is_cut[len(old) :] = True
+    pieces = is_cut[order].nonzero()[0]
     first, source = start[order], element[pieces]
     element[pieces] = len(chain.length) + np.arange(len(pieces))
     width = chain.mass.shape[1]
@@ -140,7 +143,7 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
     closed = np.zeros((1, width))
     return chain._replace(
         length=np.concatenate([chain.length, nodes[first[pieces] + 1] - nodes[first[pieces]]]),
-        tension=np.append(chain.tension, chain.tension[source]),
+        tension=np.concatenate([chain.tension, chain.tension[source]]),
         flexibility=np.concatenate([chain.flexibility, chain.flexibility[source]]),
         first=first.astype(np.int32),
         element=element[:-1].astype(np.int32),

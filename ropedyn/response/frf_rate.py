@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 
 from ..base.array import Complex, Real
 from ..base.check import NEAR
-from ..base.computed import changed, computed
+from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.unit import END, QUANTITIES, WIRE
 from ..chain.compile import dragged
@@ -233,7 +233,4 @@ class FrequencyRates:
 
 def solve_frf(model: Compiled, frequency: ArrayLike, **asked: Any) -> FRF:
     """Compute the frequency response, and keep what its derivatives take; see `Model.frf`."""
-    frf = solve_harmonic(model, frequency, **asked)
-    return changed(
-        frf, solve_rates=partial(FrequencyRates, model, frf.frequency, frf.drive, frf.response)
-    )
+    return solve_harmonic(model, frequency, rates=FrequencyRates, **asked)

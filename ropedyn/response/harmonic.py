@@ -39,8 +39,10 @@ def solve_harmonic(
     quantity: str = "receptance",
     solver: str = "sweep",
     threads: int | None = None,
+    rates: Callable[..., Any] | None = None,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
+    # `rates` of model, frequency, drives and responses tell its derivatives
     solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
@@ -50,7 +52,7 @@ def solve_harmonic(
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     responses = observed(model, response, drives)
     asked = tip.spread(model, responses)
-    factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
+    factor = damping.factors(model.scene.dampings, 2 * np.pi * f).T
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
         refuse_other_damping(model, drives, responses)
@@ -87,6 +89,7 @@ def solve_harmonic(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh=mesh,
+        solve_rates=None if rates is None else partial(rates, model, f, drives, responses),
     )
 
 
@@ -111,7 +114,7 @@ def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Rec
         r = [k for k, point in enumerate(responses) if moving(point) in component]
         if not d or not r:
             continue
-        block = np.ix_(d, r)
+        block = (np.array(d)[:, None], r)
         pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
         got = answer(replace(whole, component=component, drives=pushed, responses=watched))
         value[block], error[block], truncation[block] = got.value, got.rounding, got.truncation
@@ -127,8 +130,9 @@ def _line_by_line(question: Question, solver: Solver) -> Summed:
 
 
 def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:
-    bad = ~np.isfinite(value).all(axis=(0, 1)) | np.isnan(error).any(axis=(0, 1))
-    if bad.any():
+    wrong = ~np.isfinite(value) | np.isnan(error)
+    if wrong.any():
+        bad = wrong.any(axis=(0, 1))
         first = float(frequency[bad][0])
         raise SolveError(f"the numbers overflow at the frequency {first!r} Hz: check the units")
 

@@ -46,7 +46,10 @@ class Question:
             or chain.drag is not None
             or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
         }
-        return (self.factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
+        complex_: Flags = np.zeros(self.factor.shape[1], dtype=np.bool_)
+        for part in (part for part in has if has[part]):
+            complex_ |= self.factor[part].imag != 0
+        return complex_
 
     @computed
     def cut(self) -> tuple[Chain, Real]:
@@ -78,8 +81,8 @@ class Question:
     def fastest(self) -> Complex:
         """The factors of the highest frequency, shape (5, 1), or none where there is none."""
         factor = self.factor
-        highest = [np.argmax(np.abs(factor[damping.INERTIA]))] if factor.size else []
-        return np.ascontiguousarray(factor[:, highest])
+        highest = [int(np.abs(factor[damping.INERTIA]).argmax())] if factor.size else []
+        return factor.take(highest, axis=1)
 
     def resonance(self, k: int) -> str:
         """Say that frequency k has no answer."""

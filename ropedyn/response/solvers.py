@@ -20,6 +20,7 @@ from .closed import closed_lines
 from .question import Question
 
 LANES = 16  # Frequencies that the sweep solves side by side.
+TINY = np.finfo(float).tiny  # The smallest normal number.
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
 
@@ -28,9 +29,9 @@ def relative(value: Complex, error: Real) -> Real:
     """Return the relative error: 0 where both are 0, infinite where only the value is."""
     # below the smallest normal number digits vanish however small the error is
     size = np.abs(value)
-    ratio = np.full(size.shape, np.inf)
-    np.divide(error + np.finfo(float).tiny, size, out=ratio, where=size > 0)
-    return np.where((size == 0) & (error == 0), 0.0, ratio)
+    ratio = np.where(error == 0, 0.0, np.inf)
+    np.divide(error + TINY, size, out=ratio, where=size > 0)
+    return ratio
 
 
 def _sweep(question: Question) -> tuple[Complex, Real]:

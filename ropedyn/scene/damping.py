@@ -239,15 +239,15 @@ KINDS = (StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDam
 
 def factors(dampings: Sequence[Damping], omega: NDArray[Any]) -> Complex:
     """Return the factors of a sum of dampings."""
-    total = np.ones((*omega.shape, len(PARTS)), dtype=np.complex128)
-    total[..., INERTIA] = -(omega**2)
-    total[..., DASHPOT] = 1j * omega
+    total = np.ones((len(PARTS), *omega.shape), dtype=np.complex128)
+    total[INERTIA] = -(omega**2)
+    total[DASHPOT] = turn = 1j * omega
     for term in (damping.term() for damping in dampings):
         for part, rate in term.rate.items():
-            total[..., part] += 1j * omega * rate
+            total[part] += turn * rate
         for part, loss in term.loss.items():
-            total[..., part] += 1j * loss
-    return total
+            total[part] += 1j * loss
+    return total.T
 
 
 def separable(dampings: Sequence[Damping]) -> bool:
@@ -278,4 +278,6 @@ def having(dampings: Sequence[Damping], *fields: str) -> tuple[Damping, ...]:
 
 def _adds(term: DampingTerm, field: str) -> bool:
     value = getattr(term, field)
-    return bool(np.any(tuple(value.values()) if isinstance(value, Mapping) else value))
+    if isinstance(value, Mapping):
+        return any(value.values())
+    return any(value) if isinstance(value, tuple) else bool(value)
