@@ -17,6 +17,18 @@ _State = tuple[_Real, _Real, _Real, _Real, _Real]
 def section(
     axial: float, torsion: float, bending: float, coupling: float, slope: float, /
 ) -> _Real: ...
+def divide(
+    station: _Real, elements: NDArray[np.int64], rope: NDArray[np.int64], rounding: float, /
+) -> tuple[
+    _Real,
+    NDArray[np.int64],
+    _Integers,
+    NDArray[np.int64],
+    _Integers,
+    _Integers,
+    _Integers,
+    _Real,
+]: ...
 def invert(matrix: _Real, /) -> _Real: ...
 def triples(chain: Chain, /) -> tuple[_Real, _Real, _Real]: ...
 def shape(chain: Chain, node: int, s: float, /) -> _Real: ...

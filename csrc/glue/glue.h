@@ -73,6 +73,7 @@ PyObject *py_new(int type, int dimensions, const npy_intp *shape);
 /* the entry points, one file each */
 PyObject *py_section(PyObject *module, PyObject *arguments);
 PyObject *py_invert(PyObject *module, PyObject *arguments);
+PyObject *py_divide(PyObject *module, PyObject *arguments);
 PyObject *py_triples(PyObject *module, PyObject *arguments);
 PyObject *py_shape(PyObject *module, PyObject *arguments);
 PyObject *py_local(PyObject *module, PyObject *arguments);

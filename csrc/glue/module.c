@@ -7,6 +7,9 @@
 static PyMethodDef methods[] = {
     {"section", py_section, METH_VARARGS, "section(axial, torsion, bending, coupling, slope)"},
     {"invert", py_invert, METH_VARARGS, "invert(matrix): inverse, positive definite only"},
+    {"divide", py_divide, METH_VARARGS,
+     "divide(station, elements, rope, rounding) -> length, span, which, within, first, element, "
+     "term, x"},
     {"triples", py_triples, METH_VARARGS, "triples(chain) -> F, G, Q"},
     {"shape", py_shape, METH_VARARGS, "shape(chain, node, s) -> (width, 2, width)"},
     {"local", py_local, METH_VARARGS, "local(chain, node, s, p) -> (width, width)"},

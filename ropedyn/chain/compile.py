@@ -83,14 +83,16 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
     local, rope = ropes(scene.rope, stretches(scene.parts), stations)
     if element == "continuous":
         _check_layers(scene, local)
-    chain = _chain(scene, kind, stations, counts, _distinct(scene, local, rope, spans, counts))
+    division = Division(*_core.divide(stations, counts, rope, ROUNDING * float(spans.sum())))
+    elements = _elements(scene, local, rope[division.span])
+    chain = _chain(scene, kind, stations, division, elements)
     groups, free = components(chain, scene.coordinates), chain.free_of
     return Compiled(
         scene=scene,
         element=element,
         coordinates=scene.coordinates,
         components=groups,
-        x=_positions(stations, spans, counts),
+        x=division.x,
         chain=chain,
         unknowns=tuple(sum(free[c] for c in group) for group in groups),
     )
@@ -150,46 +152,32 @@ def section(rope: Rope) -> Real:
     )
 
 
-def _positions(stations: Real, spans: Real, counts: Index) -> Real:
-    along = np.arange(counts.sum()) - (counts.cumsum() - counts).repeat(counts)
-    x = along * (spans / counts).repeat(counts)
-    x += stations[:-1].repeat(counts)
-    return np.concatenate([x, stations[-1:]])
+class Division(NamedTuple):
+    """Equal elements between stations, as the core tells them; see csrc/chain/division.h.
+
+    Those of one rope that differ by the rounding of positions are one, as long as their mean.
+    """
+
+    length: Real  # (distinct,) [m], in the order they come in
+    span: Index  # (distinct,) the first one that has each
+    which: NDArray[np.int32]  # (spans,) which of them each span has
+    within: Index  # those that have nodes inside spans, increasing
+    first: NDArray[np.int32]  # (stretches,) as in `Chain`
+    element: NDArray[np.int32]  # (stretches - 1,) as in `Chain`
+    term: NDArray[np.int32]  # (stretches,) stations first, then nodes inside spans by `within`
+    x: Real  # (nodes,) [m]
 
 
 class Elements(NamedTuple):
-    """The distinct elements in the order they come in."""
+    """What the distinct elements are made of."""
 
-    length: Real  # (distinct,) [m]
     flexibility: Real  # (distinct, 3, 3) of the section
     inertia: Real  # (distinct, width) per length [kg/m, kg m]
-    which: NDArray[np.int32]  # (spans,) which of them each span has
     sag: Real | None  # (distinct,) weight per length over tension [1/m], None without gravity
 
 
-def _distinct(
-    scene: Scene,
-    local: Sequence[Rope],
-    rope: Index,
-    spans: Real,
-    counts: Index,
-) -> Elements:
-    """Tell elements of spans apart by length and by which of the local ropes they are of.
-
-    Lengths that differ by the rounding of positions are one, their mean.
-    """
-    each = spans / counts
-    order = each.argsort(kind="stable")
-    rising = each[order]
-    group = np.zeros(len(each), dtype=np.intp)
-    group[order[1:]] = (rising[1:] - rising[:-1] > ROUNDING * spans.sum()).cumsum()
-    length = (np.bincount(group, spans) / np.bincount(group, counts))[group]
-    pairs = list(zip(group.tolist(), rope.tolist()))
-    begins: dict[tuple[int, int], int] = {}
-    for span, pair in enumerate(pairs):
-        begins.setdefault(pair, span)
-    number = {pair: k for k, pair in enumerate(begins)}
-    first = np.array(list(begins.values()))
+def _elements(scene: Scene, local: Sequence[Rope], rope: Index) -> Elements:
+    """Return what elements of so many different ropes are made of, by which of them each is of."""
     flexibility = np.array([section(one) for one in local])
     inertia = np.array([inertia_of(scene, one) for one in local])
     sag = None
@@ -197,41 +185,22 @@ def _distinct(
         # a rope that hangs is longer than its chord along x
         flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
         curvature = [scene.gravity.curvature(one, scene.mean_tension) for one in local]
-        sag = np.array(curvature)[rope[first]]
-    return Elements(
-        length=length[first],
-        flexibility=flexibility[rope[first]],
-        inertia=inertia[rope[first]],
-        which=np.array([number[pair] for pair in pairs], dtype=np.int32),
-        sag=sag,
-    )
+        sag = np.array(curvature)[rope]
+    return Elements(flexibility[rope], inertia[rope], sag)
 
 
 def _chain(
-    scene: Scene,
-    kind: int,
-    stations: Real,
-    counts: Index,
-    elements: Elements,
+    scene: Scene, kind: int, stations: Real, division: Division, elements: Elements
 ) -> Chain:
-    """Return the chain with so many equal elements between stations."""
-    length, flexibility, inertia, which, _ = elements
-    # the nodes inside spans have a term for each distinct element, after those of stations
-    divided = counts > 1
-    is_inside = np.bincount(which[divided], minlength=len(length)) > 0
-    inside = is_inside.nonzero()[0]
-    # a station is a stretch of its own, and so are the nodes of a span if there are any
-    nodes = np.ones(2 * len(counts) + 1, dtype=np.int32)
-    nodes[1::2] = counts - 1
-    present = nodes > 0
-    term = np.empty(len(nodes), dtype=np.int32)
-    term[::2] = np.arange(len(stations))
-    term[1::2] = len(counts) + is_inside.cumsum()[which]
-    is_lumped = kind != CONTINUOUS
-    along = np.empty((len(length), len(scene.coordinates)))
+    """Return the chain of these elements, with what stands at the stations."""
+    length, inertia, width = division.length, elements.inertia, len(scene.coordinates)
+    along = np.empty((len(length), width))
     along[:] = drag(scene.dampings) * dragged(scene)
-    mass = _at_nodes(lumped(kind, scene.coordinates, inertia, length), which, inside)
-    damping = _at_nodes(_halves(kind, along, length), which, inside)
+    size = (len(stations) + len(division.within), width, width)
+    mass, damping, is_lumped = np.zeros(size), np.zeros(size), kind != CONTINUOUS
+    if is_lumped:
+        _add_lumps(mass, lumped(kind, scene.coordinates, inertia, length), division)
+        _add_lumps(damping, _halves(kind, along, length), division)
     terms = list(standing_at(scene, stations))
     stiffness, held, hinge = _terms(scene, terms, mass, damping)
     chain = Chain(
@@ -241,13 +210,13 @@ def _chain(
         ),
         length=length,
         tension=np.full(len(length), scene.mean_tension),
-        flexibility=flexibility,
-        first=(nodes.cumsum(dtype=np.int32) - nodes)[present],
-        element=which.repeat(2)[present[:-1]],
+        flexibility=elements.flexibility,
+        first=division.first,
+        element=division.element,
         mass=mass,
         stiffness=stiffness,
         held=held,
-        term=term[present],
+        term=division.term,
         hinge=hinge,
         inertia=None if is_lumped else inertia,
         damping=damping if damping.any() else None,
@@ -320,14 +289,12 @@ def _terms(
     return stiffness, held, hinge
 
 
-def _at_nodes(given: Real, which: NDArray[np.int32], inside: Index) -> Real:
-    """Return what stations get from the elements of spans beside them, then nodes inside spans."""
-    beside, stations = given[which], len(which) + 1
-    terms = np.zeros((stations + len(inside), *given.shape[2:]))
-    terms[1:stations] += beside[:, 1]
-    terms[: stations - 1] += beside[:, 0]
-    terms[stations:] = given[inside].sum(axis=1)
-    return terms
+def _add_lumps(terms: Real, given: Real, division: Division) -> None:
+    """Add what elements give to the nodes beside them: to stations, then inside spans."""
+    beside, spans = given[division.which], len(division.which)
+    terms[1 : spans + 1] += beside[:, 1]
+    terms[:spans] += beside[:, 0]
+    terms[spans + 1 :] = given[division.within].sum(axis=1)
 
 
 def _halves(kind: int, along: NDArray[Any], length: NDArray[Any]) -> NDArray[Any]:

@@ -54,6 +54,13 @@ STEPPED = (
     np.ones(4),
     np.ones((2, 8)),
 )
+# stations, elements, ropes and rounding of three spans, two of them alike
+DIVIDED = (
+    np.array([0.0, 1.0, 1.5, 2.5]),
+    np.array([2, 1, 2]),
+    np.array([0, 0, 0]),
+    1e-15,
+)
 
 # two strings of other tension, held
 STRINGS = (
@@ -210,6 +217,7 @@ OTHERS = {
         np.array([0.4]),
         np.array([0.6]),
     ),
+    "divide": lambda _: _core.divide(*DIVIDED),
 }
 
 
@@ -539,6 +547,31 @@ REFUSED = {
         lambda: _core.recurrence(STEPPED[0][:, 1:], *STEPPED[1:]),
         ValueError,
         "change must have 8 entries along axis 1, got 7",
+    ),
+    "spans of no length": (
+        lambda: _core.divide(DIVIDED[0][::-1], *DIVIDED[1:]),
+        ValueError,
+        "station and elements must make elements of span 0",
+    ),
+    "a span without elements": (
+        lambda: _core.divide(DIVIDED[0], DIVIDED[1] - 1, *DIVIDED[2:]),
+        ValueError,
+        "station and elements must make elements of span 1",
+    ),
+    "stations too few": (
+        lambda: _core.divide(DIVIDED[0][1:], *DIVIDED[1:]),
+        ValueError,
+        "station must have 4 entries along axis 0, got 3",
+    ),
+    "ropes too few": (
+        lambda: _core.divide(*DIVIDED[:2], DIVIDED[2][1:], DIVIDED[3]),
+        ValueError,
+        "rope must have 3 entries along axis 0, got 2",
+    ),
+    "more nodes than are numbered": (
+        lambda: _core.divide(DIVIDED[0], DIVIDED[1] << 30, *DIVIDED[2:]),
+        MemoryError,
+        "",
     ),
     "matrix that is not square": (lambda: _core.invert(np.ones((2, 3))), ValueError, "square"),
     "matrix of three axes": (lambda: _core.invert(np.ones((2, 2, 2))), ValueError, ""),

@@ -215,6 +215,8 @@ def changes(stretches: Sequence[Stretch], stations: Real) -> Real:
 
 def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[list[Rope], Index]:
     """Return the different ropes between stations, and which of them each span has."""
+    if not stretches:
+        return [rope], np.zeros(len(stations) - 1, dtype=np.intp)
     change = list(map(tuple, changes(stretches, stations).tolist()))
     distinct = sorted(set(change))
     found = []
@@ -233,8 +235,6 @@ def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[lis
 
 def _changed(rope: Rope, change: RopeChange) -> Rope:
     """Return the rope with the change."""
-    if change == RopeChange():
-        return rope
     values = {}
     for name, factor in FACTOR.items():
         own, more = getattr(rope, name), getattr(change, name, 0.0)
