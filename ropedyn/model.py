@@ -592,4 +592,7 @@ class Model(Compiled):
 
 def compile_model(scene: Scene, **how: Any) -> Model:
     """Compile a scene; see `Scene.compile`."""
-    return Model(**vars(compile_within(scene, **how)))
+    # its fields are those of what was compiled, which is checked and frozen
+    model = object.__new__(Model)
+    vars(model).update(vars(compile_within(scene, **how)))
+    return model

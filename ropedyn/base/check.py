@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
@@ -57,11 +57,11 @@ def _plain(quantity: Any, name: str, what: str, unit: str) -> Any:
 def number(value: Any, name: str, unit: str = "", *, sign: str = "any") -> float:
     """Return a finite real number."""
     words, has_sign = SIGNS[sign]
-    what = "a finite number" + words
     # floats are nearly all, and the ABC of numbers is slow
-    if type(value) is not float and (
-        isinstance(value, (bool, np.bool_)) or not isinstance(value, Real)
-    ):
+    if type(value) is float and math.isfinite(value) and has_sign(value):
+        return value
+    what = "a finite number" + words
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Real):
         if is_quantity(value):
             return number(_plain(value, name, what, unit), name, unit, sign=sign)
         raise TypeError(_expected(name, what, unit, value))
@@ -81,10 +81,11 @@ def optional(value: Any, name: str, unit: str = "", *, sign: str = "any") -> flo
 
 def count(value: Any, name: str, *, least: int = 1, most: int) -> int:
     """Return a whole number between two bounds."""
+    # as with numbers
+    if type(value) is int and least <= value <= most:
+        return value
     what = f"a whole number from {least} to {most}"
-    if type(value) is not int and (
-        isinstance(value, (bool, np.bool_)) or not isinstance(value, Integral)
-    ):
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Integral):
         raise TypeError(_expected(name, what, "", value))
     result = int(value)
     if not least <= result <= most:
@@ -92,9 +93,8 @@ def count(value: Any, name: str, *, least: int = 1, most: int) -> int:
     return result
 
 
-def one_of(value: Any, name: str, words: Iterable[str]) -> str:
+def one_of(value: Any, name: str, words: Collection[str]) -> str:
     """Return one of the words."""
-    words = tuple(words)
     if isinstance(value, str) and value in words:
         return value
     what = "one of " + ", ".join(f'"{word}"' for word in words)

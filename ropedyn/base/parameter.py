@@ -7,7 +7,7 @@ paths to numbers, files and the command line read the same declaration.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, ItemsView, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass
 from typing import Any, ClassVar, NamedTuple, dataclass_transform
 
@@ -95,7 +95,7 @@ def per_coordinate(unit: str, *, turning: str, sign: str, default: Mapping[str, 
     return _declared(parameter, default)
 
 
-def one_of(words: Iterable[str], *, default: Any = MISSING) -> Any:
+def one_of(words: Collection[str], *, default: Any = MISSING) -> Any:
     """Declare one of some words."""
     return _declared(Parameter(lambda value, name, _: check.one_of(value, name, words)), default)
 
@@ -151,6 +151,7 @@ class Description:
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     _parameters: ClassVar[dict[str, Parameter]]
+    _positions: ClassVar[tuple[str, ...]]
 
     def __init_subclass__(cls, **options: bool) -> None:
         super().__init_subclass__()
@@ -161,13 +162,12 @@ class Description:
             if "parameter" in field.metadata
         }
         cls._parameters = dict(sorted(declared.items(), key=lambda item: item[1].is_late))
+        cls._positions = tuple(name for name, one in declared.items() if one.is_position)
 
     def __post_init__(self) -> None:
+        own = vars(self)
         for name, parameter in self._parameters.items():
-            value = getattr(self, name)
-            kept = parameter.check(value, name, self)
-            if kept is not value:
-                object.__setattr__(self, name, kept)
+            own[name] = parameter.check(own[name], name, self)
         self._agree()
 
     def _agree(self) -> None:
@@ -177,6 +177,11 @@ class Description:
 def parameters(kind: type[Description] | Description) -> dict[str, Parameter]:
     """Return what is declared of each field."""
     return kind._parameters
+
+
+def positions(kind: type[Description] | Description) -> tuple[str, ...]:
+    """Return the names of the fields that are positions along the rope."""
+    return kind._positions
 
 
 def required(kind: type[Description]) -> list[str]:
@@ -194,11 +199,17 @@ class PerCoordinate(Mapping[str, float]):
     def __getitem__(self, coordinate: str) -> float:
         return self._values[coordinate]
 
+    def __contains__(self, coordinate: object) -> bool:
+        return coordinate in self._values
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)
 
     def __len__(self) -> int:
         return len(self._values)
+
+    def items(self) -> ItemsView[str, float]:
+        return self._values.items()
 
     def __hash__(self) -> int:
         return hash(tuple(self._values.items()))

@@ -86,15 +86,10 @@ class Chain(NamedTuple):
         return sizes
 
     @property
-    def free_of(self) -> dict[str, int]:
-        """At how many nodes each coordinate can move."""
-        free = self._sizes @ (self.held == 0)[self.term]
-        return {COORDINATES[c]: n for c, n in zip(self.coordinate.tolist(), free.tolist())}
-
-    @property
     def free(self) -> int:
         """How many coordinates can move."""
-        return sum(self.free_of.values())
+        free_of_term = self.held.shape[1] - self.held.sum(axis=1, dtype=np.int64)
+        return int(free_of_term[self.term] @ self._sizes)
 
     @property
     def finite(self) -> int | None:

@@ -86,7 +86,9 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
     division = Division(*_core.divide(stations, counts, rope, ROUNDING * float(spans.sum())))
     elements = _elements(scene, local, rope[division.span])
     chain = _chain(scene, kind, stations, division, elements)
-    groups, free = components(chain, scene.coordinates), chain.free_of
+    groups = components(chain, scene.coordinates)
+    # nothing is held but at stations, each of which is a node
+    free = dict(zip(scene.coordinates, (len(division.x) - chain.held.sum(axis=0)).tolist()))
     return Compiled(
         scene=scene,
         element=element,

@@ -116,7 +116,7 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
     Two tensed or continuous elements joined there are the one they came from: no other answer
     changes.
     """
-    inside = sorted({at for at in positions if locate(x, at)[1] is not None})
+    inside = sorted(at for at in set(positions) if locate(x, at)[1] is not None)
     if not inside:
         return chain, x
     left = x.searchsorted(inside) - 1

@@ -233,12 +233,13 @@ def error_in_hertz(eigenvalue: Real, error: Real) -> Real:
     sqrt(a + e) - sqrt(a) = e/(sqrt(a + e) + sqrt(a)), so that no digit is lost.
     """
     size = np.abs(eigenvalue)
-    omega, less = np.sqrt(size), np.sqrt(np.maximum(size - error, 0.0))
     # below zero frequency 0 is as far as a mode can go; a growth rate begins there
-    wide = np.where(error > size, np.sqrt(size + error), 0.0)
-    sum_ = omega + less
-    change = np.divide(np.minimum(error, size), sum_, out=np.zeros_like(size), where=sum_ > 0)
-    return np.maximum(change, wide) / (2 * math.pi)
+    most = np.minimum(error, size)
+    sum_ = np.sqrt(size) + np.sqrt(size - most)
+    change = np.divide(most, sum_, out=np.zeros_like(size), where=sum_ > 0)
+    wide = error > size
+    change[wide] = np.sqrt(size + error)[wide]
+    return change / (2 * math.pi)
 
 
 def distance(eigenvalue: Real, true: Real, uncertain: Real) -> Real:

@@ -46,17 +46,18 @@ class Question:
             or chain.drag is not None
             or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
         }
-        complex_: Flags = np.zeros(self.factor.shape[1], dtype=np.bool_)
-        for part in (part for part in has if has[part]):
-            complex_ |= self.factor[part].imag != 0
-        return complex_
+        found: Flags = np.zeros(self.factor.shape[1], dtype=np.bool_)
+        for part in has:
+            if has[part] and not found.all():
+                found |= self.factor[part].imag != 0
+        return found
 
     @computed
     def cut(self) -> tuple[Chain, Real]:
         """The component's chain with nodes where points need them, and where they stand."""
         model, points = self.model, [*self.drives, *self.responses]
         chain = model.chain.only(self.component)
-        between = [p for p in points if locate(model.x, p[1])[1] is not None]
+        between = [p for p in dict.fromkeys(points) if locate(model.x, p[1])[1] is not None]
         if model.element not in EXACT:
             for point in filter(is_force, between):
                 raise SceneError(

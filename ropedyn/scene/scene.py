@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..base import check
 from ..base.computed import computed
 from ..base.errors import SceneError
-from ..base.parameter import Description, given, instance
+from ..base.parameter import Description, given, instance, positions
 from . import damping as _damping
 from . import end as _end
 from . import toml
@@ -56,6 +56,8 @@ _PROPERTIES = {
 }
 """What a rope never had that never had one of these effects."""
 
+_PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
+
 _WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
 
 
@@ -78,9 +80,9 @@ def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
 
 
 def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
-    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
     if damping is None or isinstance(damping, _damping.KINDS):
         return damping
+    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
     if isinstance(damping, (tuple, list)):
         for i, one in enumerate(damping):
             check.instance(one, f"damping[{i}]", _damping.KINDS, names)
@@ -94,12 +96,11 @@ def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | No
 
 
 def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
-    names = ", ".join(kind.__name__ for kind in _part.KINDS)
     if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
-        raise TypeError(f"parts must be a sequence of {names}, got {check.shown(parts)}")
+        raise TypeError(f"parts must be a sequence of {_PART_NAMES}, got {check.shown(parts)}")
     parts = tuple(parts)
     for i, part in enumerate(parts):
-        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {names}")
+        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {_PART_NAMES}")
     return parts
 
 
@@ -176,29 +177,29 @@ NodeForce, Stop, AddedMass, LocalChange
             )
 
     def _check_places(self) -> None:
-        coordinates, present = self.coordinates, ", ".join(self.coordinates)
         for i, part in enumerate(self.parts):
-            for name in _part.position_names(part):
+            for name in positions(part):
                 check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
             if isinstance(part, Stretch):
                 self._check_stretch(i, part)
                 continue
             for coordinate in part.stands_on:
-                if coordinate not in coordinates:
+                if coordinate not in self.coordinates:
                     chosen = hasattr(part, "coordinate")
                     name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
                     raise SceneError(
-                        f"{name} must be one the scene has ({present}), got {coordinate!r}"
+                        f"{name} must be one the scene has ({', '.join(self.coordinates)}), "
+                        f"got {coordinate!r}"
                     )
             if isinstance(part, _part.Hinge):
                 self._check_hinge(i, part.x)
         for i, end in enumerate(self.ends):
             for name, values in _end.end_of(end).standing.items():
                 for coordinate in values:
-                    if coordinate not in coordinates:
+                    if coordinate not in self.coordinates:
                         raise SceneError(
                             f"ends[{i}].{name} must stand on coordinates the scene has "
-                            f"({present}), got {coordinate!r}"
+                            f"({', '.join(self.coordinates)}), got {coordinate!r}"
                         )
 
     def _check_stretch(self, i: int, part: Stretch) -> None:

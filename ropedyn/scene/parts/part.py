@@ -8,7 +8,7 @@ from dataclasses import KW_ONLY
 from typing import Any, ClassVar
 
 from ...base import check
-from ...base.parameter import depending, number, one_of, parameters
+from ...base.parameter import depending, number, one_of, positions
 from . import stretch as _stretch
 from .broken_wire import BrokenWire
 from .law import NodeForce, Stop
@@ -285,9 +285,4 @@ def stretches(parts: Iterable[Part | Stretch]) -> list[Stretch]:
 
 def places(parts: Iterable[Part | Stretch]) -> list[float]:
     """Return where parts stand, begin and end [m]."""
-    return [getattr(part, name) for part in parts for name in position_names(part)]
-
-
-def position_names(part: Part | Stretch) -> list[str]:
-    """Return the names of its positions along the rope."""
-    return [name for name, parameter in parameters(part).items() if parameter.is_position]
+    return [getattr(part, name) for part in parts for name in positions(part)]
