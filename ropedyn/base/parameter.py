@@ -209,6 +209,7 @@ class PerCoordinate(Mapping[str, float]):
         return len(self._values)
 
     def items(self) -> ItemsView[str, float]:
+        """Return the coordinates with their numbers."""
         return self._values.items()
 
     def __hash__(self) -> int:

@@ -47,8 +47,8 @@ class Question:
             or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
         }
         found: Flags = np.zeros(self.factor.shape[1], dtype=np.bool_)
-        for part in has:
-            if has[part] and not found.all():
+        for part, is_there in has.items():
+            if is_there and not found.all():
                 found |= self.factor[part].imag != 0
         return found
 

@@ -65,10 +65,23 @@ def value_at(scene: Scene, path: str) -> float:
 
 def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
     """Return a scene with other numbers, by their paths."""
+    changes: dict[tuple[str, int], dict[str, Any]] = {}
     for path, value in values.items():
         value_at(scene, path)
-        scene = _put(scene, path, value)
-    return scene
+        place = _place(path)
+        change = changes.setdefault((place.of, place.at or 0), {})
+        if place.kind:
+            beside = change.get(place.kind, getattr(_owner(scene, place, path), place.kind))
+            change[place.kind] = {**beside, place.name: value}
+        else:
+            change[place.name] = value
+    kept: dict[str, list[Any]] = {}
+    for (of, at), change in changes.items():
+        many = kept.setdefault(of, list(scene.ends if of == "ends" else _all(scene, of)))
+        many[at] = dataclasses.replace(_all(scene, of)[at], **change)
+    alone = ("rope", "tension", "gravity")
+    whole = {of: many[0] if of in alone else tuple(many) for of, many in kept.items()}
+    return scene.replace(**whole) if whole else scene
 
 
 def unit_of(path: str) -> str:
@@ -112,20 +125,6 @@ def _all(scene: Scene, of: str) -> tuple[Any, ...]:
         if of == "parts"
         else (getattr(scene, of),)
     )
-
-
-def _put(scene: Scene, path: str, value: float) -> Scene:
-    place = _place(path)
-    owner = _owner(scene, place, path)
-    change: dict[str, Any] = {place.name: value}
-    if place.kind:
-        change = {place.kind: {**getattr(owner, place.kind), **change}}
-    changed = dataclasses.replace(owner, **change)
-    if place.of in ("rope", "tension", "gravity"):
-        return scene.replace(**{place.of: changed})
-    many = list(scene.ends if place.of == "ends" else _all(scene, place.of))
-    many[place.at or 0] = changed
-    return scene.replace(**{place.of: tuple(many)})
 
 
 def _absent(path: str, why: str) -> SceneError:
