@@ -28,7 +28,7 @@ from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
 from .response.frf import FRF
-from .response.frf_rate import solve_frf
+from .response.harmonic import solve_harmonic
 from .scene.scene import Scene
 
 
@@ -253,7 +253,7 @@ class Model(Compiled):
         0.0025
         """
         refuse_nonlinear(self)
-        return solve_frf(
+        return solve_harmonic(
             self,
             frequency,
             drive=drive,

@@ -73,6 +73,30 @@ struct rd_krylov rd_krylov(double _Complex p, double _Complex growth)
     return k;
 }
 
+static double _Complex series_slope(double _Complex p, int j)
+{
+    static const double factorial[] = {1, 1, 2, 6, 24};
+    double _Complex sum = 1, slope = 0;
+    for (int n = TERMS; n > 0; n--) {
+        const double a = 4 * n + j, under = a * (a - 1) * (a - 2) * (a - 3);
+        slope = (sum + p * slope) / under;
+        sum = 1 + p * sum / under;
+    }
+    return slope / factorial[j];
+}
+
+/* P^j c_j has the derivative P^(j - 1) c_(j - 1) with respect to P, that of c_0 is P^3 c_3 */
+struct rd_krylov rd_krylov_slope(double _Complex p, double _Complex growth)
+{
+    struct rd_krylov slope = {.one = 0};
+    const struct rd_krylov k = rd_krylov(p, growth);
+    for (int j = 0; j < 5; j++)
+        slope.c[j] = cabs(p) <= SMALL
+                         ? series_slope(p, j) * k.one
+                         : (k.c[j == 0 ? 3 : j - 1] * (j == 0 ? p : 1) - j * k.c[j]) / (4 * p);
+    return slope;
+}
+
 double _Complex rd_krylov_growth(double _Complex p)
 {
     if (cabs(p) <= SMALL)

@@ -40,12 +40,32 @@ static double highest_of_resonator(const double *value)
     return value[1] / value[0];
 }
 
-/* k times the square of what the spring is longer by, lambda m y/k */
-static double stiffer_resonator(const double *value, double lambda, const double *moved, double y)
+/* e y y' - y v^T u' - y' v^T u */
+static double _Complex bracket(double _Complex e, const double _Complex *v,
+                               const struct rd_foot_pair *pair)
 {
-    const double force = lambda * value[0] * y;
-    (void)moved;
-    return force * (force / value[1]);
+    const double _Complex *u = pair->moved[0], *other = pair->moved[1], *y = pair->y;
+    return e * y[0] * y[1] - y[0] * (v[0] * other[0] + v[1] * other[1]) -
+           y[1] * (v[0] * u[0] + v[1] * u[1]);
+}
+
+/* w = -mu k'/k and e = (k' + mu)/k, mu = inertia m: by mu at fixed u and y, which errors of y change
+   by their square only, and by k' the square (mu/k)^2 y y' of what the spring is longer by;
+   k' = k + s c, the dashpot c = 2 zeta sqrt(k m) of the damping ratio */
+static void slopes_of_resonator(const double *value, double _Complex inertia,
+                                double _Complex dashpot, const struct rd_foot_pair *pair,
+                                double _Complex *number)
+{
+    const double m = value[0], k = value[1];
+    const double _Complex product = pair->y[0] * pair->y[1];
+    const double _Complex drag = dashpot * value[3], stiff = 1 + drag / k;
+    const double _Complex force = inertia * m / k, by_stiff = force * force * product;
+    const double _Complex lever[2] = {1};
+    number[RD_CARRIED_OF_MASS] =
+        -m * stiff * (bracket(stiff + force, lever, pair) + force * product);
+    number[RD_CARRIED_OF_STIFFNESS] = by_stiff * (k + drag / 2);
+    number[RD_CARRIED_OF_DAMPING] = by_stiff * (2 * sqrt(k) * sqrt(m) * dashpot);
+    number[RD_CARRIED_OF_MASS_DAMPED] = by_stiff * drag / 2;
 }
 
 /* The roots of 1 + cos x cosh x below x, one in each ((n - 1) pi, n pi): e is positive behind the
@@ -99,18 +119,70 @@ static double highest_of_wire(const double *value)
     return INFINITY;
 }
 
-/* by a step in the modulus E (1 + 2 i z) */
-static double stiffer_wire(const double *value, double lambda, const double *moved, double y)
+/* fill_wire's w = Lambda W, e, v and rest = Lambda R, functions of z = -4 q alone but for Lambda */
+struct wire_form {
+    double _Complex w, e, v[2], rest[2];
+};
+
+static double _Complex at_rest(const double _Complex *rest, const struct rd_foot_pair *pair)
 {
-    const double stepped[RD_ATTACHED_VALUES] = {value[0], value[1], value[2], RD_COMPLEX_STEP / 2};
-    struct rd_foot foot;
-    fill_wire(stepped, -lambda, I, &foot);
-    return cimag(form_of(&foot, moved, y)) / RD_COMPLEX_STEP;
+    return rest[0] * pair->moved[0][0] * pair->moved[1][0] +
+           rest[1] * pair->moved[0][1] * pair->moved[1][1];
+}
+
+/* fill_wire's two parts and z d/dz of them */
+static void form_of_wire(const struct rd_krylov *f, const struct rd_krylov *slope,
+                         double _Complex z, double l, struct wire_form *X, struct wire_form *dX)
+{
+    const double _Complex *c = f->c;
+    double _Complex d[5];
+    for (int j = 0; j < 5; j++)
+        d[j] = z * slope->c[j];
+    *X = (struct wire_form){.e = (f->one + c[0]) / 2};
+    *dX = (struct wire_form){.e = d[0] / 2};
+    if (cabs(c[1]) >= 2 * cabs(c[3])) {
+        X->w = c[1];
+        dX->w = d[1];
+        X->v[0] = 1;
+        X->v[1] = l * c[2] / c[1];
+        dX->v[1] = l * (d[2] - c[2] / c[1] * d[1]) / c[1];
+        X->rest[1] = -2 * l * l * c[4] / c[1];
+        dX->rest[1] = -2 * l * l * (d[4] - c[4] / c[1] * d[1]) / c[1];
+    } else {
+        X->w = 2 * c[3];
+        dX->w = 2 * d[3];
+        X->v[0] = c[2] / (2 * c[3]);
+        dX->v[0] = (d[2] - c[2] / c[3] * d[3]) / (2 * c[3]);
+        X->v[1] = l;
+        X->rest[0] = -c[4] / c[3];
+        dX->rest[0] = -(d[4] - c[4] / c[3] * d[3]) / c[3];
+    }
+}
+
+/* Lambda = -inertia m and z = -4 Lambda/k': Lambda d/dLambda (Lambda X) = Lambda (X + z X') and
+   k' d/dk' (Lambda X) = -Lambda z X'; k' = k (1 + 2 i zeta) */
+static void slopes_of_wire(const double *value, double _Complex inertia, double _Complex dashpot,
+                           const struct rd_foot_pair *pair, double _Complex *number)
+{
+    const double turn = dashpot == 0 ? 0 : 2 * value[3];
+    const double _Complex stiff = CMPLX(1, turn), pull = -inertia * value[0];
+    const double _Complex z = -4 * (pull / (value[1] * stiff)), growth = rd_krylov_growth(z);
+    const struct rd_krylov f = rd_krylov(z, growth), slope = rd_krylov_slope(z, growth);
+    struct wire_form X, dX;
+    form_of_wire(&f, &slope, z, value[2], &X, &dX);
+    const double _Complex own = bracket(X.e, X.v, pair);
+    const double _Complex all = X.w * own + at_rest(X.rest, pair);
+    const double _Complex changed =
+        dX.w * own + X.w * bracket(dX.e, dX.v, pair) + at_rest(dX.rest, pair);
+    number[RD_CARRIED_OF_MASS] = -value[0] * (all + changed);
+    number[RD_CARRIED_OF_STIFFNESS] = -pull * changed;
+    number[RD_CARRIED_OF_DAMPING] = dashpot == 0 ? 0 : -pull * changed * (2 * I / stiff);
+    number[RD_CARRIED_OF_MASS_DAMPED] = 0;
 }
 
 const struct rd_attached rd_attached_of[RD_ATTACHED_KINDS] = {
-    [RD_RESONATOR] = {fill_resonator, highest_of_resonator, stiffer_resonator},
-    [RD_WIRE] = {fill_wire, highest_of_wire, stiffer_wire},
+    [RD_RESONATOR] = {fill_resonator, highest_of_resonator, slopes_of_resonator},
+    [RD_WIRE] = {fill_wire, highest_of_wire, slopes_of_wire},
 };
 
 void rd_attached_fill(const struct rd_chain *chain, size_t k, double _Complex inertia,
@@ -159,15 +231,6 @@ void rd_attached_add(const struct rd_chain *chain, size_t term, double _Complex 
     }
 }
 
-void rd_attached_tip(const struct rd_chain *chain, size_t k, double _Complex inertia,
-                     double _Complex dashpot, double _Complex *row)
-{
-    struct rd_foot foot;
-    rd_attached_fill(chain, k, inertia, dashpot, &foot);
-    const double _Complex tip[2] = {foot.tip[0] / foot.gap, foot.tip[1] / foot.gap};
-    rd_attached_row(chain, k, tip, row);
-}
-
 /* displacement and rotation of the foot with the motion u (width) of the node */
 static void move_foot(const struct rd_chain *chain, size_t k, const double *u, double *moved)
 {
@@ -213,38 +276,63 @@ void rd_attached_energy(const struct rd_chain *chain, double lambda, const doubl
     }
 }
 
-/* The form at fixed u and y by m, which lambda multiplies, by k and by the motion of the foot. */
-static void fill_slope(const struct rd_chain *chain, size_t k, double lambda, const double *u,
-                       double y, double *number, double *row)
+size_t rd_attached_node(const struct rd_chain *chain, size_t k)
 {
-    const struct rd_attached *kind = rd_attached_of + chain->attached_kind[k];
-    double moved[2];
+    size_t s = 0;
+    while (s < chain->stretches && chain->term[s] != chain->attached_term[k])
+        s++;
+    return s < chain->stretches ? (size_t)chain->first[s] : chain->nodes;
+}
+
+void rd_attached_slopes(const struct rd_chain *chain, size_t k, double _Complex inertia,
+                        double _Complex dashpot, const double _Complex *a, const double _Complex *b,
+                        const double _Complex *y, double _Complex *number, double _Complex *row)
+{
+    const double *value = chain->attached_value + k * RD_ATTACHED_VALUES;
+    const double *of = chain->attached_row + k * 2 * chain->width;
+    const double _Complex *const u[2] = {a, b};
+    const size_t w = chain->width;
+    struct rd_foot_pair pair = {0};
     struct rd_foot foot;
-    move_foot(chain, k, u, moved);
-    rd_attached_fill(chain, k, CMPLX(-lambda, -RD_COMPLEX_STEP), 0, &foot);
-    number[RD_CARRIED_OF_MASS] = -cimag(form_of(&foot, moved, y)) / RD_COMPLEX_STEP;
-    number[RD_CARRIED_OF_STIFFNESS] =
-        kind->stiffer(chain->attached_value + k * RD_ATTACHED_VALUES, lambda, moved, y);
-    for (size_t i = 0; i < 2 * chain->width; i++) {
-        const size_t line = i / chain->width;
-        const double force =
-            creal(foot.rest[line]) * moved[line] - creal(foot.weight) * y * creal(foot.lever[line]);
-        row[i] = 2 * force * u[i % chain->width];
+    rd_attached_fill(chain, k, inertia, dashpot, &foot);
+    for (size_t n = 0; n < 2; n++) {
+        for (size_t i = 0; i < 2 * w; i++)
+            pair.moved[n][i / w] += of[i] * u[n][i % w];
+        const double _Complex along =
+            foot.lever[0] * pair.moved[n][0] + foot.lever[1] * pair.moved[n][1];
+        pair.y[n] = y ? y[n] : along / foot.gap;
+    }
+    rd_attached_of[chain->attached_kind[k]].slopes(value, inertia, dashpot, &pair, number);
+    for (size_t i = 0; i < 2 * w; i++) {
+        const size_t line = i / w;
+        row[i] = 0;
+        for (size_t n = 0; n < 2; n++)
+            row[i] += (foot.rest[line] * pair.moved[n][line] -
+                       foot.weight * pair.y[n] * foot.lever[line]) *
+                      u[1 - n][i % w];
     }
 }
 
-void rd_attached_slopes(const struct rd_chain *chain, double lambda, const double *shape,
-                        const double *y, double *number, double *row)
+/* t = (c_0, l c_1) of q and e = (1 + c_0)/2 of -4 q: q changes with 1/k' and m alike */
+void rd_attached_tip(const struct rd_chain *chain, size_t k, double _Complex inertia,
+                     double _Complex dashpot, double _Complex *tip)
 {
-    memset(number, 0, chain->attached * RD_CARRIED_NUMBERS * sizeof *number);
-    memset(row, 0, chain->attached * 2 * chain->width * sizeof *row);
-    for (size_t s = 0; s < chain->stretches; s++) {
-        const int32_t term = chain->term[s];
-        const double *u = shape + (size_t)chain->first[s] * chain->width;
-        for (size_t k = rd_attached_first(chain, (size_t)term); rd_attached_is_of(chain, k, term);
-             k++)
-            fill_slope(chain, k, lambda, u, y[k], number + k * RD_CARRIED_NUMBERS,
-                       row + k * 2 * chain->width);
+    const double *value = chain->attached_value + k * RD_ATTACHED_VALUES;
+    const double turn = dashpot == 0 ? 0 : 2 * value[3];
+    const double _Complex stiff = CMPLX(1, turn);
+    const double _Complex q = -inertia * value[0] / (value[1] * stiff);
+    const double _Complex growth = rd_krylov_growth(-4 * q);
+    const struct rd_krylov slope = rd_krylov_slope(-4 * q, growth), of = rd_krylov_slope(q, growth);
+    struct rd_foot foot;
+    rd_attached_fill(chain, k, inertia, dashpot, &foot);
+    const double _Complex gap_slope = -4 * q * slope.c[0] / 2;
+    for (int i = 0; i < 2; i++) {
+        const double l = i == 0 ? 1 : value[2];
+        const double _Complex by_q =
+            (l * q * of.c[i] - foot.tip[i] / foot.gap * gap_slope) / foot.gap;
+        tip[i] = foot.tip[i] / foot.gap;
+        tip[2 + i] = -by_q;
+        tip[4 + i] = dashpot == 0 ? 0 : -by_q * (2 * I / stiff);
     }
 }
 

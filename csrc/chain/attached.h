@@ -27,6 +27,23 @@ struct rd_foot {
     double held;              /* eigenvalues below lambda with the foot held; for real lambda */
 };
 
+/* two motions of a foot (displacement, rotation), each with its y */
+struct rd_foot_pair {
+    double _Complex moved[2][2], y[2];
+};
+
+/* Derivatives of the form of two motions, w e y y' - w (y v^T u' + y' v^T u) + u^T diag(rest) u', at
+   fixed u and y: by the factor of inertia, by the logarithm of the stiffness k, by the damping
+   ratio, and by that of the mass m as far as its damping ratio ties the dashpot to it. By ln m it is
+   inertia times the first and the last. */
+enum rd_carried_number {
+    RD_CARRIED_OF_MASS,
+    RD_CARRIED_OF_STIFFNESS,
+    RD_CARRIED_OF_DAMPING,
+    RD_CARRIED_OF_MASS_DAMPED,
+    RD_CARRIED_NUMBERS
+};
+
 /* what a kind of structure is */
 struct rd_attached {
     /* the foot at inertia = -lambda = s^2 and dashpot = s */
@@ -34,8 +51,9 @@ struct rd_attached {
                  struct rd_foot *foot);
     /* the largest eigenvalue with the foot held, INFINITY where there is none [rad^2/s^2] */
     double (*highest)(const double *value);
-    /* k d/dk, k its stiffness, of the form at fixed motion of the foot and y */
-    double (*stiffer)(const double *value, double lambda, const double *moved, double y);
+    /* number (RD_CARRIED_NUMBERS) of the form of two motions */
+    void (*slopes)(const double *value, double _Complex inertia, double _Complex dashpot,
+                   const struct rd_foot_pair *pair, double _Complex *number);
 };
 
 /* (RD_ATTACHED_KINDS) */
@@ -57,10 +75,6 @@ double rd_attached_highest(const struct rd_chain *chain);
 void rd_attached_add(const struct rd_chain *chain, size_t term, double _Complex inertia,
                      double _Complex dashpot, double _Complex *D);
 
-/* row (width): motion of the tip per motion of the node */
-void rd_attached_tip(const struct rd_chain *chain, size_t k, double _Complex inertia,
-                     double _Complex dashpot, double _Complex *row);
-
 /* Twice the strain energy [J]; what the kinetic energy adds to shape^T M shape [kg m^2]; and
    shape^T Im D shape by the structures' own damping, to first order [J]. */
 enum rd_carried { RD_CARRIED_STRAIN, RD_CARRIED_KINETIC, RD_CARRIED_LOST, RD_CARRIED };
@@ -69,15 +83,21 @@ enum rd_carried { RD_CARRIED_STRAIN, RD_CARRIED_KINETIC, RD_CARRIED_LOST, RD_CAR
 void rd_attached_energy(const struct rd_chain *chain, double lambda, const double *shape,
                         const double *y, double *energy);
 
-/* Of the form of a structure, which its numbers change at fixed u and y: of m it is -lambda/m times
-   the first, which is what the kinetic energy adds to shape^T M shape; of k, the second over k. */
-enum rd_carried_number { RD_CARRIED_OF_MASS, RD_CARRIED_OF_STIFFNESS, RD_CARRIED_NUMBERS };
+/* The slopes of structure k with two motions a, b (width) of its node: number (RD_CARRIED_NUMBERS),
+   and row (2, width) of each entry of attached_row. y (2), or NULL: what the motions make of it. A
+   length l of the structure with m and k kept is a factor on the rotation of its foot. */
+void rd_attached_slopes(const struct rd_chain *chain, size_t k, double _Complex inertia,
+                        double _Complex dashpot, const double _Complex *a, const double _Complex *b,
+                        const double _Complex *y, double _Complex *number, double _Complex *row);
 
-/* number (attached, RD_CARRIED_NUMBERS) and row (attached, 2, width), of each entry of attached_row:
-   the slopes of each structure in the mode lambda, shape (nodes, width) with y (attached). A length l
-   of the structure with m and k kept is a factor on the rotation of its foot. */
-void rd_attached_slopes(const struct rd_chain *chain, double lambda, const double *shape,
-                        const double *y, double *number, double *row);
+/* the node that carries structure k, or the number of nodes where none does */
+size_t rd_attached_node(const struct rd_chain *chain, size_t k);
+
+/* tip (3, 2): motion of the tip of structure k per displacement and per rotation of its foot, t/e; of
+   a wire, how that changes with the logarithm of its stiffness, and by as much less with that of its
+   mass; and with its damping ratio */
+void rd_attached_tip(const struct rd_chain *chain, size_t k, double _Complex inertia,
+                     double _Complex dashpot, double _Complex *tip);
 
 /* The inertia (width, width) that they have where all moves together, -dD/dlambda at 0; added. */
 void rd_attached_inertia(const struct rd_chain *chain, size_t term, double *M);

@@ -66,23 +66,41 @@ struct rd_cantilever rd_cantilever_at(enum rd_kind kind, double _Complex theta)
     return in_closed_form(theta);
 }
 
-/* Small theta by an imaginary step, whose square is nothing beside 1. Beyond, with
-   1/cosh t = 1 - theta P1 and d(1/cosh t)/dtheta = -tau/(2 cosh t), d t/dtheta = 1/2t: */
-struct rd_cantilever rd_cantilever_slope(double theta)
+/* |theta| <= 1: c' and d' term by term, C' = c + theta c' */
+static struct rd_cantilever slope_by_series(double _Complex theta)
 {
-    static const double step = 0x1p-100;
-    const struct rd_cantilever at =
-        rd_cantilever_at(RD_TENSED, fabs(theta) <= 1 ? CMPLX(theta, step) : theta);
-    if (fabs(theta) <= 1)
-        return (struct rd_cantilever){
-            .tau = cimag(at.tau) / step,
-            .P = {cimag(at.P[0]) / step, cimag(at.P[1]) / step, cimag(at.P[2]) / step},
-        };
-    const double tau = creal(at.tau), P1 = creal(at.P[1]), P2 = creal(at.P[2]);
-    const double secant = 1 - theta * P1;
-    const double slope = (secant * secant - tau) / (2 * theta);
+    double _Complex c = 0, d = 0, c_slope = 0, d_slope = 0, power = 1, below = 0;
+    double factorial = 1; /* (2k + 1)! */
+    for (int k = 0; k < TERMS; k++) {
+        const double next = factorial * (2 * k + 2);
+        const double share = (2 * k + 2) / (next * (2 * k + 3));
+        c += power / next;
+        d += power * share;
+        c_slope += below * k / next;
+        d_slope += below * (k * share);
+        below = power;
+        power *= theta;
+        factorial = next * (2 * k + 3);
+    }
+    const double _Complex C = 1 + theta * c, C_slope = c + theta * c_slope;
+    const double _Complex P2_slope = (d_slope - d / C * C_slope) / C;
+    const double _Complex slope = -d / C - theta * P2_slope;
+    return (struct rd_cantilever){.tau = slope,
+                                  .P = {slope, (c_slope - c / C * C_slope) / C, P2_slope}};
+}
+
+/* Beyond, with 1/cosh t = 1 - theta P1 and d(1/cosh t)/dtheta = -tau/(2 cosh t),
+   d t/dtheta = 1/2t: */
+struct rd_cantilever rd_cantilever_slope(double _Complex theta)
+{
+    if (cabs(theta) <= 1)
+        return slope_by_series(theta);
+    const struct rd_cantilever at = rd_cantilever_at(RD_TENSED, theta);
+    const double _Complex P1 = at.P[1], P2 = at.P[2];
+    const double _Complex secant = 1 - theta * P1;
+    const double _Complex slope = (secant * secant - at.tau) / (2 * theta);
     return (struct rd_cantilever){
         .tau = slope,
-        .P = {slope, (secant * tau / 2 - P1) / theta, -(slope + P2) / theta},
+        .P = {slope, (secant * at.tau / 2 - P1) / theta, -(slope + P2) / theta},
     };
 }

@@ -13,7 +13,7 @@ struct rd_cantilever {
 
 struct rd_cantilever rd_cantilever_at(enum rd_kind kind, double _Complex theta);
 
-/* d/dtheta of a tensed one's, real */
-struct rd_cantilever rd_cantilever_slope(double theta);
+/* d/dtheta of a tensed one's */
+struct rd_cantilever rd_cantilever_slope(double _Complex theta);
 
 #endif

@@ -254,23 +254,6 @@ enum rd_status rd_element_matrix(const struct rd_element *element, double _Compl
     return status;
 }
 
-enum rd_status rd_element_jump(const struct rd_element *element, double *jump)
-{
-    const size_t w = element->width, n = 2 * w;
-    double _Complex K[N * N];
-    struct opening opening;
-    const enum rd_status status = closed_matrix(element, 1, 1, K);
-    memset(jump, 0, w * n * sizeof *jump);
-    for (size_t e = 0; e < w; e++) {
-        if (!open_hinge(element, e, 1, K, &opening))
-            continue;
-        follow(element, &opening, w, jump);
-        for (size_t j = 0; j < n; j++)
-            jump[e * n + j] -= creal(opening.share) * creal(opening.row[j]);
-    }
-    return status;
-}
-
 /* sections and tension are one in a tensed element that bends, where a hinge opens in z, and in a
    string that hangs */
 static bool is_inseparable(const struct rd_element *element)

@@ -21,10 +21,6 @@ enum rd_status rd_element_matrix(const struct rd_element *element, double _Compl
 enum rd_status rd_element_stiffness(const struct rd_element *element, double *elastic,
                                     double *tension);
 
-/* how far the hinge opens: the element's left end moves by u_a + jump (u_a, u_b),
-   jump (width, 2 width) */
-enum rd_status rd_element_jump(const struct rd_element *element, double *jump);
-
 /* The element's static shape: u(s) = shape (u_a, u_b) at the distance s from its left node,
    shape (width, 2 width). */
 enum rd_status rd_element_shape(const struct rd_element *element, double s, double *shape);

@@ -2,8 +2,7 @@
 #ifndef RD_ENERGY_H
 #define RD_ENERGY_H
 
-#include "base/status.h"
-#include "chain/chain.h"
+#include "energy/sensitivity.h"
 
 enum rd_strain {
     RD_STRAIN_BENDING,
@@ -15,15 +14,20 @@ enum rd_strain {
     RD_STRAINS
 };
 
-/* Twice the energies [J] of a shape (nodes, width): strain (RD_STRAINS), and kinetic (width) [kg m^2]
-   what each coordinate gives to shape^T M shape. Inertia that couples two coordinates is the first
-   one's: the end correction of lumped masses, M_z,beta, is inertia of z; and dragged [N s m], which
-   is shape^T C shape of dashpots and of drag along the spans.
+/* twice the energies [J] of RD_LANES shapes */
+struct rd_energy {
+    lanes strain[RD_STRAINS];
+    lanes
+        kinetic[RD_WIDTH_MAX]; /* (width) [kg m^2] what each coordinate gives to shape^T M shape */
+    lanes dragged;             /* [N s m] shape^T C shape of dashpots and drag along the spans */
+};
+
+/* Of the first load of a sensitivity turned to lines of real factors. Inertia that couples two
+   coordinates is the first one's: the end correction of lumped masses, M_z,beta, is inertia of z.
 
    The motion inside continuous elements is that at the eigenvalue lambda, and the integrals along
    them are exact; they must be shorter than their first resonance as a cantilever.
    RD_NOT_POSITIVE_DEFINITE where one is not. */
-enum rd_status rd_energy(const struct rd_chain *chain, double lambda, const double *shape,
-                         double *strain, double *kinetic, double *dragged);
+enum rd_status rd_energy_fill(struct rd_sensitivity *sensitivity, struct rd_energy *energy);
 
 #endif

@@ -2,31 +2,43 @@
 #ifndef RD_SENSITIVITY_MASSLESS_H
 #define RD_SENSITIVITY_MASSLESS_H
 
+#include "base/status.h"
 #include "element/element.h"
 #include "element/rods.h"
+#include "energy/lines.h"
+#include "energy/moved.h"
 #include "energy/property.h"
 
-/* A massless element, see element/element.h for its form, ready to be asked. */
+/* A massless element of sections S/section and tension T tension, ready to be asked. */
 struct rd_massless {
     struct rd_element element;
-    struct rd_rods rods;
-    double jump[RD_WIDTH_MAX * 2 * RD_WIDTH_MAX]; /* of its hinge, rd_element_jump */
-    double bow, bow_slope;   /* 1/tau and its derivative with respect to theta = T S_bb l^2/4 */
-    double sway, sway_slope; /* tau/P2 */
+    struct rd_rods rods;                  /* of S */
+    cv section, tension;                  /* factors */
+    cv theta;                             /* T S_bb l^2/4, of the halves */
+    cv bow, bow_slope;                    /* 1/tau and its derivative with respect to theta */
+    cv sway, sway_slope;                  /* tau/P2 */
+    cv near[RD_WIDTH_MAX * RD_WIDTH_MAX]; /* where it is hinged: its stiffness without, of the */
+    cv far[RD_WIDTH_MAX * RD_WIDTH_MAX];  /* left end by the motion of the left and the right one */
 };
 
-/* that on the right of the nodes of a stretch */
+/* that on the right of the nodes of a stretch. RD_NOT_POSITIVE_DEFINITE, RD_CRITICAL_ELEMENT: as
+   rd_element_matrix */
 enum rd_status rd_massless_of(const struct rd_chain *chain, size_t stretch,
-                              struct rd_massless *massless);
+                              const struct rd_lines *lines, struct rd_massless *massless);
 
-/* u (2, width), the motion of the nodes, <- that of the element's ends; adds the squares of the
-   jumps to jump (width) */
-void rd_massless_open(const struct rd_massless *massless, double *u, double *jump);
+/* opens the hinges of an element whose nodes move by moved->u */
+void rd_massless_open(const struct rd_massless *massless, const cv spring, struct rd_moved *moved);
+
+/* the rest of `moved` from its u */
+void rd_massless_move(const struct rd_massless *massless, struct rd_moved *moved);
 
 /* adds dPi/dp of the string in an element, Pi = T (z_b - z_a)^2/l */
-void rd_string_slope(const struct rd_element *element, const double *u, double *slope);
+void rd_string_slope(const struct rd_element *element, cv tension, const struct rd_moved *a,
+                     const struct rd_moved *b, cv *slope);
 
-/* adds dPi/dp of an element with its ends moved by u (2, width) to slope (RD_PROPERTIES) */
-void rd_massless_slope(const struct rd_massless *massless, const double *u, double *slope);
+/* adds dPi/dp of the bilinear form of two motions to slope (RD_PROPERTIES), p being S/section and
+   T tension */
+void rd_massless_slope(const struct rd_massless *massless, const struct rd_moved *a,
+                       const struct rd_moved *b, cv *slope);
 
 #endif

@@ -4,9 +4,9 @@
 
 #include "chain/chain.h"
 
-/* RD_OF_INERTIA + i stands for coordinate i of the element: -dPi/d(lambda p) with p its inertia per
-   length, the integral of its square, which only continuous elements have. Of an entry of S that
-   couples two channels both places change. */
+/* RD_OF_INERTIA + i stands for coordinate i of the element: dPi/d(inertia p) = -dPi/d(lambda p) with
+   p its inertia per length, the integral of its square, which only continuous elements have. Of an
+   entry of S that couples two channels both places change. */
 enum rd_property {
     RD_OF_SECTION, /* S: aa, tt, bb, then at, ab, tb [1/N, 1/(N m^2), 1/(N m)] */
     RD_OF_TENSION = 6,

@@ -1,44 +1,28 @@
-/* How the form of a mode changes with the numbers of each stretch. */
+/* How the form of two motions changes with the numbers of each stretch. */
 #include "energy/sensitivity.h"
 
 #include "chain/elements.h"
 
 #include <string.h>
 
-enum { W = RD_WIDTH_MAX };
+#pragma GCC diagnostic ignored "-Wpsabi"
 
-void rd_sensitivity_begin(const struct rd_chain *chain, double lambda,
-                          struct rd_sensitivity *sensitivity)
+bool rd_sensitivity_prepare(const struct rd_chain *chain, const struct rd_fields *fields,
+                            struct rd_sensitivity *sensitivity, struct rd_workspace *workspace)
 {
     sensitivity->chain = chain;
-    sensitivity->lambda = lambda;
+    sensitivity->fields = fields;
     sensitivity->waves = chain->kind == RD_CONTINUOUS || chain->sag;
+    sensitivity->moved =
+        rd_take_aligned(workspace, fields->loads, sizeof *sensitivity->moved, sizeof(lanes));
+    return sensitivity->moved != NULL;
+}
+
+void rd_sensitivity_begin(struct rd_sensitivity *sensitivity, const struct rd_lines *lines)
+{
+    sensitivity->lines = lines;
     if (sensitivity->waves)
-        sensitivity->of.span.element = chain->distinct;
-}
-
-static void add_massless(const struct rd_massless *massless, const double *u, double *slope,
-                         double *jump)
-{
-    double moved[2 * W];
-    memcpy(moved, u, 2 * massless->element.width * sizeof *u);
-    if (massless->element.hinge)
-        rd_massless_open(massless, moved, jump);
-    rd_massless_slope(massless, moved, slope);
-}
-
-static void add_wave(const struct rd_wave_slopes *slopes, const double *hinge, const double *u,
-                     double *slope, double *jump)
-{
-    double moved[2 * W];
-    memcpy(moved, u, 2 * slopes->chain->width * sizeof *u);
-    rd_wave_slopes_open(slopes, hinge, moved, jump);
-    rd_wave_slopes_add(slopes, moved, slope);
-    if (slopes->chain->kind == RD_RIGID) {
-        const struct rd_element element = rd_chain_element(slopes->chain, slopes->element);
-        if (rd_element_find(&element, RD_BETA) < element.width)
-            rd_string_slope(&element, moved, slope);
-    }
+        sensitivity->of.span.element = sensitivity->chain->distinct;
 }
 
 /* a continuous element is kept from one stretch to the next: it costs a few joints in every lane */
@@ -47,38 +31,113 @@ static enum rd_status prepare(struct rd_sensitivity *sensitivity, size_t k)
     const struct rd_chain *chain = sensitivity->chain;
     const size_t e = (size_t)chain->element[k];
     if (!sensitivity->waves)
-        return rd_massless_of(chain, k, &sensitivity->of.massless);
+        return rd_massless_of(chain, k, sensitivity->lines, &sensitivity->of.massless);
     if (e == sensitivity->of.span.element)
         return RD_OK;
-    return rd_wave_slopes_of(chain, e, sensitivity->lambda, &sensitivity->of.span);
+    return rd_wave_slopes_of(chain, e, sensitivity->lines, &sensitivity->of.span);
+}
+
+/* the motion of the ends of element i, apart from their nodes where the load slips */
+static void read(const struct rd_sensitivity *sensitivity, size_t load, size_t i,
+                 struct rd_moved *moved)
+{
+    const struct rd_fields *fields = sensitivity->fields;
+    const size_t w = sensitivity->chain->width;
+    const int32_t *slip = fields->slip ? fields->slip + 3 * load : NULL;
+    for (size_t k = 0; k < 2 * w; k++)
+        moved->u[k] = rd_field_at(fields, sensitivity->lines, load, i * w + k);
+    for (size_t k = 0; k < w; k++)
+        moved->opens[k] = c_zero();
+    if (slip && slip[0] >= 0 && (size_t)slip[0] == i) {
+        cv *u = moved->u + (size_t)slip[1] * w + (size_t)slip[2];
+        *u = c_add(*u, c_real(slip[1] ? -1 : 1));
+    }
+}
+
+static void move(const struct rd_sensitivity *sensitivity, const double *hinge, size_t i)
+{
+    const cv spring = sensitivity->lines->spring;
+    for (size_t load = 0; load < sensitivity->fields->loads; load++) {
+        struct rd_moved *moved = sensitivity->moved + load;
+        read(sensitivity, load, i, moved);
+        if (sensitivity->waves) {
+            rd_wave_slopes_open(&sensitivity->of.span, hinge, spring, moved);
+            rd_wave_slopes_move(&sensitivity->of.span, moved);
+        } else {
+            rd_massless_open(&sensitivity->of.massless, spring, moved);
+            rd_massless_move(&sensitivity->of.massless, moved);
+        }
+    }
+}
+
+static void add_wave(const struct rd_sensitivity *sensitivity, const struct rd_moved *a,
+                     const struct rd_moved *b, cv *slope)
+{
+    const struct rd_wave_slopes *span = &sensitivity->of.span;
+    rd_wave_slopes_add(span, a, b, slope);
+    if (span->chain->kind != RD_RIGID)
+        return;
+    const struct rd_element element = rd_chain_element(span->chain, span->element);
+    if (rd_element_find(&element, RD_BETA) < element.width)
+        rd_string_slope(&element, sensitivity->lines->tension, a, b, slope);
+}
+
+static void add(const struct rd_sensitivity *sensitivity, const int32_t *pair, cv *slope, cv *jump)
+{
+    const struct rd_moved *a = sensitivity->moved + pair[0], *b = sensitivity->moved + pair[1];
+    for (size_t k = 0; k < sensitivity->chain->width; k++)
+        jump[k] = c_add(jump[k], c_mul(a->opens[k], b->opens[k]));
+    if (sensitivity->waves)
+        add_wave(sensitivity, a, b, slope);
+    else
+        rd_massless_slope(&sensitivity->of.massless, a, b, slope);
+}
+
+/* slopes by S and T of those by S/section and T tension */
+static void scale(const struct rd_lines *lines, cv *slope)
+{
+    const cv soft = c_inverse(lines->section);
+    for (size_t p = RD_OF_SECTION; p < RD_OF_TENSION; p++)
+        slope[p] = c_mul(slope[p], soft);
+    slope[RD_OF_TENSION] = c_mul(slope[RD_OF_TENSION], lines->tension);
 }
 
 enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t stretch,
-                                      const double *shape, double *slope, double *jump)
+                                      const struct rd_pairs *pairs, cv *slope, cv *jump)
 {
     const struct rd_chain *chain = sensitivity->chain;
     const size_t w = chain->width;
     const double *hinge = chain->hinge ? chain->hinge + (size_t)chain->term[stretch] * w : NULL;
-    memset(slope, 0, RD_PROPERTIES * sizeof *slope);
-    memset(jump, 0, w * sizeof *jump);
+    memset(slope, 0, pairs->count * RD_PROPERTIES * sizeof *slope);
+    memset(jump, 0, pairs->count * w * sizeof *jump);
     const enum rd_status status = prepare(sensitivity, stretch);
     if (status != RD_OK)
         return status;
-    for (size_t i = (size_t)chain->first[stretch]; i < (size_t)chain->first[stretch + 1]; i++)
-        if (sensitivity->waves)
-            add_wave(&sensitivity->of.span, hinge, shape + i * w, slope, jump);
-        else
-            add_massless(&sensitivity->of.massless, shape + i * w, slope, jump);
+    for (size_t i = (size_t)chain->first[stretch]; i < (size_t)chain->first[stretch + 1]; i++) {
+        move(sensitivity, hinge, i);
+        for (size_t p = 0; p < pairs->count; p++)
+            add(sensitivity, pairs->of + 2 * p, slope + p * RD_PROPERTIES, jump + p * w);
+    }
+    for (size_t p = 0; p < pairs->count; p++)
+        scale(sensitivity->lines, slope + p * RD_PROPERTIES);
+    for (size_t k = 0; k < pairs->count * w; k++)
+        jump[k] = c_mul(jump[k], sensitivity->lines->spring);
     return RD_OK;
 }
 
-void rd_sensitivity_nodes(const struct rd_chain *chain, size_t stretch, const double *shape,
-                          double *dyad)
+void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stretch,
+                          const struct rd_pairs *pairs, cv *dyad)
 {
+    const struct rd_chain *chain = sensitivity->chain;
     const size_t w = chain->width, first = (size_t)chain->first[stretch];
-    memset(dyad, 0, w * w * sizeof *dyad);
+    memset(dyad, 0, pairs->count * w * w * sizeof *dyad);
     for (size_t i = first; i < first + rd_stretch_nodes(chain, stretch); i++)
-        for (size_t a = 0; a < w; a++)
-            for (size_t b = 0; b < w; b++)
-                dyad[a * w + b] += shape[i * w + a] * shape[i * w + b];
+        for (size_t p = 0; p < pairs->count; p++) {
+            const size_t a = (size_t)pairs->of[2 * p], b = (size_t)pairs->of[2 * p + 1];
+            for (size_t k = 0; k < w * w; k++) {
+                const cv u = rd_field_at(sensitivity->fields, sensitivity->lines, a, i * w + k / w);
+                const cv v = rd_field_at(sensitivity->fields, sensitivity->lines, b, i * w + k % w);
+                dyad[p * w * w + k] = c_add(dyad[p * w * w + k], c_mul(u, v));
+            }
+        }
 }

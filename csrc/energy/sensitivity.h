@@ -1,7 +1,9 @@
-/* How the form of a mode changes with the numbers of each stretch. */
+/* How the form of two motions changes with the numbers of each stretch. */
 #ifndef RD_SENSITIVITY_H
 #define RD_SENSITIVITY_H
 
+#include "base/workspace.h"
+#include "energy/lines.h"
 #include "energy/massless.h"
 #include "energy/span.h"
 
@@ -12,30 +14,41 @@
 
        dlambda/dp = dPi/dp at a fixed shape / (u^T M u)
 
-   For a shape (nodes, width), stretch after stretch; several of them may share one of these. */
+   Two responses u_d, u_r to unit loads, of which Z u_d = e_d and h = e_r^T u_d, have
+
+       dh/dp = -u_r^T (dZ/dp) u_d = -dPi/dp of the bilinear form at fixed motion of the nodes
+
+   Stretch after stretch; several of them may share one of these. */
 struct rd_sensitivity {
     const struct rd_chain *chain;
-    double lambda;
-    bool waves; /* elements are stepped along: continuous ones, and those that hang */
+    const struct rd_lines *lines;
+    const struct rd_fields *fields;
+    struct rd_moved *moved; /* (loads) */
+    bool waves;             /* elements are stepped along: continuous ones, and those that hang */
     union {
         struct rd_massless massless;
         struct rd_wave_slopes span;
     } of;
 };
 
-void rd_sensitivity_begin(const struct rd_chain *chain, double lambda,
-                          struct rd_sensitivity *sensitivity);
+/* takes what the loads need from a workspace, false where it is too small or measures */
+bool rd_sensitivity_prepare(const struct rd_chain *chain, const struct rd_fields *fields,
+                            struct rd_sensitivity *sensitivity, struct rd_workspace *workspace);
 
-/* slope (RD_PROPERTIES) <- dPi/dp summed over the elements of a stretch, jump (width) <- the sum of
-   the squares by which its hinges open: dPi/d(stiffness of the hinge).
+/* turns to other lines */
+void rd_sensitivity_begin(struct rd_sensitivity *sensitivity, const struct rd_lines *lines);
+
+/* For each pair of loads slope (pairs, RD_PROPERTIES) <- dPi/dp summed over the elements of a
+   stretch, jump (pairs, width) <- the sum of the products by which its hinges open:
+   dPi/d(spring stiffness of the hinge).
    RD_NOT_POSITIVE_DEFINITE, RD_CRITICAL_ELEMENT: as rd_element_matrix; the first also where a
-   continuous element is longer than its first resonance as a cantilever. */
+   continuous element is longer than its first resonance as a cantilever and nothing is damped. */
 enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t stretch,
-                                      const double *shape, double *slope, double *jump);
+                                      const struct rd_pairs *pairs, cv *slope, cv *jump);
 
-/* dyad (width, width) <- the sum of u u^T over the nodes of a stretch: dPi/dK and
-   -dPi/d(lambda M) of its node term */
-void rd_sensitivity_nodes(const struct rd_chain *chain, size_t stretch, const double *shape,
-                          double *dyad);
+/* dyad (pairs, width, width) <- the sum of u u^T over the nodes of a stretch: dPi/dK and
+   dPi/d(inertia M) of its node term */
+void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stretch,
+                          const struct rd_pairs *pairs, cv *dyad);
 
 #endif

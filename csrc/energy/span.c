@@ -1,41 +1,32 @@
 /* How the form of continuous elements changes with their numbers. */
 #include "energy/span.h"
 
-#include "base/complex_step.h"
-#include "base/dense.h"
+#include "span/span.h"
+#include "sweep/kernel/transfer.h"
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-enum { W = RD_WIDTH_MAX };
+enum { W = RD_WIDTH_MAX, N = RD_STATE_MAX };
 
-/* The mixed form P = f^T F u_a + (f^T G f - u_a^T Q u_a)/2 of an element has u_b = dP/df and
-   f_a = dP/du_a; Pi = 2 (f^T u_b - P) is stationary in f, so that dPi/dp = -2 dP/dp at fixed f. A
-   number gets a lane in which it is stepped by i RD_COMPLEX_STEP scale. */
-static struct rate_matrix *next(struct rd_wave_slopes *slopes, struct rate_matrix *rate,
-                                size_t property, double scale, int *lane)
-{
-    const size_t k = slopes->count++;
-    slopes->at[k] = property;
-    slopes->step[k] = -2 / (RD_COMPLEX_STEP * scale);
-    *lane = (int)(k % RD_LANES);
-    return rate + k / RD_LANES;
-}
+/* The mixed form P = f^T F u_a + (f^T G f - u_a^T Q u_a)/2 of an element, f = f_b, has u_b = dP/df
+   and f_a = dP/du_a; Pi = 2 (f^T u_b - P) is stationary in f and in the motion inside, and along the
+   element dP/dx = y^T H y/2 with y = (u, f), y' = J H y (span/rate_matrix.h). So
 
-/* both places of an entry of S, whose size is that of its channels' own */
-static void step_section(struct rd_wave_slopes *slopes, struct rate_matrix *rate, size_t i,
-                         size_t j)
+       dPi/dp = - integral of y^T (dH/dp) y,
+
+   each a factor times the integral of a product of two rows of y, as a form of (u_a, f_b). */
+static void begin(struct rd_wave_slopes *slopes, size_t property, size_t i, size_t j, cv factor)
 {
-    const struct rd_chain *chain = slopes->chain;
-    const double *S = chain->flexibility + slopes->element * RD_CHANNELS * RD_CHANNELS;
-    const int c = rd_channel_of(chain->coordinate[i]), d = rd_channel_of(chain->coordinate[j]);
-    const double scale = sqrt(S[c * (RD_CHANNELS + 1)]) * sqrt(S[d * (RD_CHANNELS + 1)]);
-    int lane;
-    struct rate_matrix *in = next(slopes, rate, rd_property_of(c, d), scale, &lane);
-    in->S[i][j].im[lane] = in->S[j][i].im[lane] = RD_COMPLEX_STEP * scale;
-    in->elastic[i][j] = in->elastic[j][i] = 1;
+    struct rd_wave_form *number = slopes->number + slopes->count++;
+    number->property = property;
+    number->i = i;
+    number->j = j;
+    number->factor = factor;
+    memset(number->form, 0, sizeof number->form);
 }
 
 /* a rigid element is a beam beside a string, which is not here */
@@ -44,154 +35,409 @@ static bool is_beam(const struct rd_chain *chain)
     return chain->kind == RD_RIGID && chain->coordinate[chain->width - 1] == RD_BETA;
 }
 
-/* T stands in q of beta, of a string as 1/T in S */
-static void step_tension(struct rd_wave_slopes *slopes, struct rate_matrix *rate)
+/* both places of an entry of S; T stands in q of beta, of a string as 1/T in S */
+static void begin_all(struct rd_wave_slopes *slopes)
 {
     const struct rd_chain *chain = slopes->chain;
-    const size_t z = rd_coordinate_find(chain->width, chain->coordinate, RD_Z);
-    int lane;
-    if (z == chain->width || is_beam(chain))
-        return;
-    const bool string = rate->z < 0;
-    const double scale = string ? chain->tension[slopes->element] : 1;
-    struct rate_matrix *in = next(slopes, rate, RD_OF_TENSION, scale, &lane);
-    if (string)
-        in->S[z][z].im[lane] = -RD_COMPLEX_STEP * in->S[z][z].re[lane];
-    else
-        in->q[chain->width - 1].im[lane] = RD_COMPLEX_STEP;
-}
-
-/* lambda p stands in q = -lambda p */
-static void step_inertia(struct rd_wave_slopes *slopes, struct rate_matrix *rate, size_t i)
-{
-    int lane;
-    struct rate_matrix *in = next(slopes, rate, RD_OF_INERTIA + i, -1, &lane);
-    in->q[i].im[lane] = -RD_COMPLEX_STEP;
-}
-
-static void step_sag(struct rd_wave_slopes *slopes, struct rate_matrix *rate)
-{
-    int lane;
-    if (!rate->hangs)
-        return;
-    struct rate_matrix *in = next(slopes, rate, RD_OF_SAG, 1, &lane);
-    in->sag.im[lane] = RD_COMPLEX_STEP;
-}
-
-static void step_all(struct rd_wave_slopes *slopes, struct rate_matrix *rate)
-{
-    const struct rd_chain *chain = slopes->chain;
+    const size_t w = chain->width, z = rd_coordinate_find(w, chain->coordinate, RD_Z);
     slopes->count = 0;
-    for (size_t i = 0; i < chain->width; i++)
+    for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j <= i; j++)
-            if (chain->coordinate[i] != RD_Z && chain->coordinate[j] != RD_Z)
-                step_section(slopes, rate, i, j);
-    step_tension(slopes, rate);
-    step_sag(slopes, rate);
-    for (size_t i = 0; chain->inertia && i < chain->width; i++)
-        step_inertia(slopes, rate, i);
+            if (i != z && j != z)
+                begin(slopes,
+                      rd_property_of(rd_channel_of(chain->coordinate[i]),
+                                     rd_channel_of(chain->coordinate[j])),
+                      w + i, w + j, c_real(i == j ? -1 : -2));
+    if (z < w && !is_beam(chain) && slopes->rate.z < 0)
+        begin(slopes, RD_OF_TENSION, w + z, w + z,
+              c_mul(slopes->rate.S[z][z], slopes->rate.S[z][z]));
+    if (z < w && !is_beam(chain) && slopes->rate.z >= 0)
+        begin(slopes, RD_OF_TENSION, w - 1, w - 1, c_real(1));
+    if (slopes->rate.hangs)
+        begin(slopes, RD_OF_SAG, w, 1, c_real(-2));
+    for (size_t i = 0; chain->inertia && i < w; i++)
+        begin(slopes, RD_OF_INERTIA + i, i, i, c_real(1));
 }
 
-enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e, double lambda,
-                                 struct rd_wave_slopes *slopes)
+/* y (2 width) <- J H y h */
+RD_INLINE void differentiate(const struct rate_matrix *rate, size_t w, double h, cv *y)
 {
-    const size_t w = chain->width;
-    struct rate_matrix rate[RD_SLOPE_GROUPS];
+    cv d[N];
+    for (size_t i = 0; i < w; i++) {
+        d[i] = c_zero();
+        for (size_t j = 0; j < w; j++)
+            if (rate->elastic[i][j])
+                d[i] = c_add(d[i], c_mul(rate->S[i][j], y[w + j]));
+        d[w + i] = c_mul(rate->q[i], y[i]);
+    }
+    if (rate->z >= 0) {
+        d[rate->z] = c_add(d[rate->z], c_scale_lanes(y[w - 1], rate->lever));
+        d[2 * w - 1] = c_sub(d[2 * w - 1], c_scale_lanes(y[w + (size_t)rate->z], rate->lever));
+    }
+    if (rate->hangs) {
+        d[0] = c_add(d[0], c_mul(y[1], rate->sag));
+        d[w + 1] = c_sub(d[w + 1], c_mul(y[w], rate->sag));
+    }
+    for (size_t i = 0; i < 2 * w; i++)
+        y[i] = c_scale(d[i], h);
+}
+
+/* Gauss points on (0, 1) and their weights: exact for polynomials of degree 15, and for products of
+   two waves of one radian to 1e-17 of them */
+enum { POINTS = 8, HANGING = 2 };
+
+static const double point[POINTS] = {0.019855071751231884, 0.10166676129318664, 0.2372337950418355,
+                                     0.4082826787521751,   0.5917173212478249,  0.7627662049581645,
+                                     0.8983332387068134,   0.9801449282487681};
+static const double share[POINTS] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894363,
+                                     0.18134189168918100, 0.18134189168918100, 0.15685332293894363,
+                                     0.11119051722668724, 0.05061426814518813};
+
+/* y (POINTS, 2 width of y, 2 width of y_a) at the points, by the series of the exponential */
+RD_INLINE void fill_points(const struct rate_matrix *rate, size_t w, double l, int terms,
+                           cv (*y)[N][N])
+{
+    for (size_t c = 0; c < 2 * w; c++) {
+        cv d[N];
+        double power[POINTS];
+        for (size_t i = 0; i < 2 * w; i++) {
+            d[i] = c_real(i == c);
+            for (int k = 0; k < POINTS; k++)
+                y[k][i][c] = d[i];
+        }
+        for (int k = 0; k < POINTS; k++)
+            power[k] = 1;
+        for (int m = 1; m <= terms; m++) {
+            differentiate(rate, w, l / m, d);
+            for (int k = 0; k < POINTS; k++) {
+                power[k] *= point[k];
+                for (size_t i = 0; i < 2 * w; i++)
+                    y[k][i][c] = c_add(y[k][i][c], c_scale(d[i], power[k]));
+            }
+        }
+    }
+}
+
+/* the triple of an element of so many coordinates, D = F - I */
+struct triple {
+    cv D[W * W], G[W * W], Q[W * W];
+};
+
+/* A (w, w) B, A^T B */
+RD_INLINE void times(size_t w, const cv *A, const cv *B, cv *C)
+{
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            cv sum = c_mul(A[i * w], B[j]);
+            for (size_t k = 1; k < w; k++)
+                sum = c_add(sum, c_mul(A[i * w + k], B[k * w + j]));
+            C[i * w + j] = sum;
+        }
+}
+
+RD_INLINE void transposed_times(size_t w, const cv *A, const cv *B, cv *C)
+{
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            cv sum = c_mul(A[i], B[j]);
+            for (size_t k = 1; k < w; k++)
+                sum = c_add(sum, c_mul(A[k * w + i], B[k * w + j]));
+            C[i * w + j] = sum;
+        }
+}
+
+/* rows of y at a point <- the same by (u_a, f_b): f_a = F^T f_b - Q u_a */
+RD_INLINE void by_both_ends(const struct triple *t, size_t w, cv (*y)[N])
+{
+    for (size_t i = 0; i < 2 * w; i++) {
+        cv row[N];
+        for (size_t j = 0; j < w; j++) {
+            row[j] = y[i][j];
+            row[w + j] = y[i][w + j];
+            for (size_t k = 0; k < w; k++) {
+                row[j] = c_sub(row[j], c_mul(y[i][w + k], t->Q[k * w + j]));
+                row[w + j] = c_add(row[w + j], c_mul(y[i][w + k], t->D[j * w + k]));
+            }
+        }
+        for (size_t j = 0; j < 2 * w; j++)
+            y[i][j] = row[j];
+    }
+}
+
+/* the forms of the first piece */
+static RD_CLONES void fill_slice(struct rd_wave_slopes *slopes, const struct triple *t, double l,
+                                 int terms)
+{
+    const size_t w = slopes->chain->width, n = 2 * w;
+    cv y[POINTS][N][N];
+    fill_points(&slopes->rate, w, l, terms + (slopes->rate.hangs ? HANGING : 0), y);
+    for (int k = 0; k < POINTS; k++) {
+        by_both_ends(t, w, y[k]);
+        for (size_t p = 0; p < slopes->count; p++) {
+            struct rd_wave_form *number = slopes->number + p;
+            const cv *a = y[k][number->i], *b = y[k][number->j];
+            for (size_t i = 0; i < n; i++)
+                for (size_t j = i; j < n; j++) {
+                    const cv both = c_add(c_mul(a[i], b[j]), c_mul(a[j], b[i]));
+                    cv *sum = number->form + i * n + j;
+                    *sum = c_add(*sum, c_scale(both, share[k] * l / 2));
+                }
+        }
+    }
+    for (size_t p = 0; p < slopes->count; p++)
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < i; j++)
+                slopes->number[p].form[i * n + j] = slopes->number[p].form[j * n + i];
+}
+
+/* A <- A^-1 by Gauss and Jordan without exchange; whether no pivot was negative or zero */
+RD_INLINE bool invert(size_t w, cv *A)
+{
+    bool positive = true;
+    for (size_t k = 0; k < w; k++) {
+        for (int lane = 0; lane < RD_LANES; lane++)
+            positive &= A[k * (w + 1)].re[lane] > 0 || A[k * (w + 1)].im[lane] != 0;
+        const cv pivot = c_inverse(A[k * (w + 1)]);
+        A[k * (w + 1)] = c_real(1);
+        for (size_t j = 0; j < w; j++)
+            A[k * w + j] = c_mul(A[k * w + j], pivot);
+        for (size_t i = 0; i < w; i++) {
+            if (i == k)
+                continue;
+            const cv a = A[i * w + k];
+            A[i * w + k] = c_zero();
+            for (size_t j = 0; j < w; j++)
+                A[i * w + j] = c_sub(A[i * w + j], c_mul(a, A[k * w + j]));
+        }
+    }
+    return positive;
+}
+
+/* The state between two halves: u_m = U1 u_a + U2 f_b and f_m = P1 u_a + P2 f_b. */
+struct middle {
+    cv U1[W * W], U2[W * W], P1[W * W], P2[W * W];
+};
+
+/* u_m = (I + G Q)^-1 (F u_a + G F^T f_b), f_m = F^T f_b - Q u_m */
+RD_INLINE void find_middle(size_t w, const struct triple *t, struct middle *m)
+{
+    cv M[W * W], F[W * W], FT[W * W], MG[W * W], QU[W * W];
+    times(w, t->G, t->Q, M);
+    for (size_t i = 0; i < w; i++)
+        M[i * (w + 1)] = c_add(M[i * (w + 1)], c_real(1));
+    invert(w, M);
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            F[i * w + j] = c_add(t->D[i * w + j], c_real(i == j));
+            FT[j * w + i] = F[i * w + j];
+        }
+    times(w, M, F, m->U1);
+    times(w, M, t->G, MG);
+    times(w, MG, FT, m->U2);
+    times(w, t->Q, m->U1, m->P1);
+    times(w, t->Q, m->U2, QU);
+    for (size_t i = 0; i < w * w; i++) {
+        m->P1[i] = c_neg(m->P1[i]);
+        m->P2[i] = c_sub(FT[i], QU[i]);
+    }
+}
+
+/* D = 2 D1 + D1 D1 - F (I + G Q)^-1 G Q F of two equal halves, and so on: by what is between them,
+   u_b = u_m + D u_m + G f_b and f_a = f_m + D^T f_m - Q u_a */
+RD_INLINE void join_triples(size_t w, const struct middle *m, struct triple *t)
+{
+    struct triple half = *t;
+    cv X[W * W], Y[W * W], Z[W * W], FP[W * W];
+    times(w, half.G, m->P1, X); /* u_m - u_a = D u_a + G f_m */
+    for (size_t i = 0; i < w * w; i++)
+        X[i] = c_add(half.D[i], X[i]);
+    times(w, half.D, m->U1, Y);
+    times(w, half.D, m->U2, Z);
+    transposed_times(w, half.D, m->P1, FP);
+    for (size_t i = 0; i < w * w; i++)
+        t->D[i] = c_add(X[i], Y[i]);
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            const size_t k = i * w + j, l = j * w + i;
+            const cv G = c_add(c_add(m->U2[k], m->U2[l]), c_add(Z[k], Z[l]));
+            const cv P = c_add(c_add(m->P1[k], m->P1[l]), c_add(FP[k], FP[l]));
+            t->G[k] = c_add(half.G[k], c_scale(G, 0.5));
+            t->Q[k] = c_sub(half.Q[k], c_scale(P, 0.5));
+        }
+}
+
+/* The integral over both halves, [I 0; P1 P2]^T X [I 0; P1 P2] + [U1 U2; 0 I]^T X [U1 U2; 0 I] with
+   X = [a b; b^T c]. */
+RD_INLINE void join_form(size_t w, const struct middle *m, cv *form)
+{
+    const size_t n = 2 * w;
+    cv a[W * W], b[W * W], bT[W * W], c[W * W], V[W * W], cP2[W * W], aU1[W * W], V2[W * W];
+    cv sum[W * W], uu[W * W], uf[W * W], ff[W * W];
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            a[i * w + j] = form[i * n + j];
+            b[i * w + j] = bT[j * w + i] = form[i * n + w + j];
+            c[i * w + j] = form[(w + i) * n + w + j];
+        }
+    times(w, c, m->P1, V);
+    times(w, a, m->U2, V2);
+    for (size_t i = 0; i < w * w; i++) {
+        V[i] = c_add(V[i], bT[i]);
+        V2[i] = c_add(V2[i], b[i]);
+    }
+    times(w, b, m->P1, uu);
+    transposed_times(w, m->P1, V, sum);
+    times(w, a, m->U1, aU1);
+    transposed_times(w, m->U1, aU1, uf);
+    for (size_t i = 0; i < w * w; i++)
+        uu[i] = c_add(c_add(a[i], uu[i]), c_add(sum[i], uf[i]));
+    transposed_times(w, V, m->P2, uf);
+    transposed_times(w, m->U1, V2, sum);
+    for (size_t i = 0; i < w * w; i++)
+        uf[i] = c_add(uf[i], sum[i]);
+    times(w, c, m->P2, cP2);
+    transposed_times(w, m->P2, cP2, ff);
+    transposed_times(w, m->U2, V2, sum);
+    for (size_t i = 0; i < w * w; i++)
+        ff[i] = c_add(c_add(ff[i], c[i]), sum[i]);
+    times(w, bT, m->U2, sum);
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            form[i * n + j] = uu[i * w + j];
+            form[i * n + w + j] = form[(w + j) * n + i] = uf[i * w + j];
+            form[(w + i) * n + w + j] = c_add(ff[i * w + j], sum[i * w + j]);
+        }
+}
+
+static RD_CLONES void join(struct rd_wave_slopes *slopes, struct triple *t)
+{
+    const size_t w = slopes->chain->width;
+    struct middle middle;
+    find_middle(w, t, &middle);
+    for (size_t p = 0; p < slopes->count; p++)
+        join_form(w, &middle, slopes->number[p].form);
+    join_triples(w, &middle, t);
+}
+
+static RD_CLONES bool keep(struct rd_wave_slopes *slopes, const struct triple *t)
+{
+    const size_t w = slopes->chain->width;
+    memcpy(slopes->D, t->D, w * w * sizeof *t->D);
+    memcpy(slopes->Q, t->Q, w * w * sizeof *t->Q);
+    memcpy(slopes->stiff, t->G, w * w * sizeof *t->G);
+    return invert(w, slopes->stiff);
+}
+
+enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
+                                 const struct rd_lines *lines, struct rd_wave_slopes *slopes)
+{
+    const cv tension = is_beam(chain) ? c_zero() : lines->tension;
+    struct triple triple;
     slopes->chain = chain;
     slopes->element = e;
-    for (int g = 0; g < RD_SLOPE_GROUPS; g++)
-        rd_rate_fill(chain, e, c_real(1), c_real(!is_beam(chain)), c_real(-lambda), c_zero(),
-                     rate + g);
-    slopes->rate = rate[0];
-    step_all(slopes, rate);
-    for (size_t g = 0; g * RD_LANES < slopes->count; g++)
-        rd_transfer_fill(chain, e, rate + g, slopes->transfer + g);
-    for (size_t i = 0; i < w * w; i++) {
-        slopes->F[i] = creal(slopes->transfer[0].F[0][i]);
-        slopes->G[i] = slopes->stiff[i] = creal(slopes->transfer[0].G[0][i]);
-        slopes->Q[i] = creal(slopes->transfer[0].Q[0][i]);
-    }
-    return rd_dense_invert(w, slopes->stiff) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+    rd_rate_fill(chain, e, lines->section, tension, lines->inertia, lines->dashpot, &slopes->rate);
+    begin_all(slopes);
+    const double radians = rd_transfer_radians(chain, e, &slopes->rate);
+    const int halvings = rd_span_halvings(radians, 1);
+    const int terms = rd_span_terms(ldexp(radians, -halvings));
+    const double l = ldexp(chain->length[e], -halvings);
+    rd_transfer_slice(chain->width, &slopes->rate, l, terms, triple.D, triple.G, triple.Q);
+    fill_slice(slopes, &triple, l, terms);
+    for (int k = 0; k < halvings; k++)
+        join(slopes, &triple);
+    return keep(slopes, &triple) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
 }
 
 /* f_b = G^-1 (u_b - F u_a) and f_a = F^T f_b - Q u_a */
-static void forces(const struct rd_wave_slopes *slopes, const double *u, double *fb, double *fa)
+RD_CLONES void rd_wave_slopes_move(const struct rd_wave_slopes *slopes, struct rd_moved *moved)
 {
     const size_t w = slopes->chain->width;
-    double left[W];
+    const cv *u = moved->u;
+    cv lag[W];
     for (size_t i = 0; i < w; i++) {
-        left[i] = u[w + i];
+        lag[i] = c_sub(u[w + i], u[i]);
         for (size_t j = 0; j < w; j++)
-            left[i] -= slopes->F[i * w + j] * u[j];
+            lag[i] = c_sub(lag[i], c_mul(slopes->D[i * w + j], u[j]));
     }
     for (size_t i = 0; i < w; i++) {
-        fb[i] = 0;
+        moved->right[i] = c_zero();
         for (size_t j = 0; j < w; j++)
-            fb[i] += slopes->stiff[i * w + j] * left[j];
+            moved->right[i] = c_add(moved->right[i], c_mul(slopes->stiff[i * w + j], lag[j]));
     }
     for (size_t i = 0; i < w; i++) {
-        fa[i] = 0;
-        for (size_t j = 0; j < w; j++)
-            fa[i] += slopes->F[j * w + i] * fb[j] - slopes->Q[i * w + j] * u[j];
+        moved->left[i] = moved->right[i];
+        for (size_t j = 0; j < w; j++) {
+            const cv force = c_mul(slopes->D[j * w + i], moved->right[j]);
+            moved->left[i] = c_add(moved->left[i], c_sub(force, c_mul(slopes->Q[i * w + j], u[j])));
+        }
     }
+    const size_t z = rd_coordinate_find(w, slopes->chain->coordinate, RD_Z);
+    const double l = slopes->chain->length[slopes->element];
+    moved->rise = z < w ? c_scale(c_sub(u[w + z], u[z]), 2 / l) : c_zero();
 }
 
 /* Without a jump f_a would be m, each radian of it takes k = (F^T G^-1 F + Q)_ee away, so that it is
    C m/(1 + C k), m/k where the hinge is free. */
-void rd_wave_slopes_open(const struct rd_wave_slopes *slopes, const double *hinge, double *u,
-                         double *jump)
+void rd_wave_slopes_open(const struct rd_wave_slopes *slopes, const double *hinge, cv spring,
+                         struct rd_moved *moved)
 {
     const size_t w = slopes->chain->width;
     for (size_t e = 0; hinge && e < w; e++) {
         if (hinge[e] == 0)
             continue;
-        double fb[W], fa[W], k = slopes->Q[e * (w + 1)];
-        forces(slopes, u, fb, fa);
+        cv k = slopes->Q[e * (w + 1)], F[W];
+        for (size_t i = 0; i < w; i++)
+            F[i] = c_add(slopes->D[i * w + e], c_real(i == e));
         for (size_t i = 0; i < w; i++)
             for (size_t j = 0; j < w; j++)
-                k += slopes->F[i * w + e] * slopes->stiff[i * w + j] * slopes->F[j * w + e];
-        const double opens = isinf(hinge[e]) ? fa[e] / k : hinge[e] * fa[e] / (1 + hinge[e] * k);
-        u[e] += opens;
-        jump[e] += opens * opens;
+                k = c_add(k, c_mul(c_mul(F[i], slopes->stiff[i * w + j]), F[j]));
+        rd_wave_slopes_move(slopes, moved);
+        const cv stiff = isinf(hinge[e]) ? k : c_add(c_scale(spring, 1 / hinge[e]), k);
+        moved->opens[e] = c_mul(moved->left[e], c_inverse(stiff));
+        moved->u[e] = c_add(moved->u[e], moved->opens[e]);
     }
 }
 
-/* imaginary part of P in a lane */
-static double imaginary(const struct rd_transfer *t, int lane, size_t w, const double *u,
-                        const double *f)
-{
-    double sum = 0;
-    for (size_t i = 0; i < w; i++)
-        for (size_t j = 0; j < w; j++) {
-            const size_t at = i * w + j;
-            sum += f[i] * cimag(t->F[lane][at]) * u[j];
-            sum += (f[i] * cimag(t->G[lane][at]) * f[j] - u[i] * cimag(t->Q[lane][at]) * u[j]) / 2;
-        }
-    return sum;
-}
-
-/* dP/dl = f^T Phi u + (f^T S' f - u^T q u)/2, the same everywhere along the element */
-static double by_length(const struct rd_wave_slopes *slopes, const double *u, const double *f)
+/* y_a^T H y_a, the same everywhere along the element */
+RD_INLINE cv by_length(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
+                       const struct rd_moved *b)
 {
     const struct rate_matrix *rate = &slopes->rate;
     const size_t w = slopes->chain->width;
-    double sum = rate->z >= 0 ? f[rate->z] * rate->lever[0] * u[w - 1] : 0;
-    sum += rate->hangs ? f[0] * rate->sag.re[0] * u[1] : 0;
+    cv sum = c_zero();
+    if (rate->z >= 0) {
+        const cv both =
+            c_add(c_mul(a->left[rate->z], b->u[w - 1]), c_mul(b->left[rate->z], a->u[w - 1]));
+        sum = c_add(sum, c_scale_lanes(both, rate->lever));
+    }
+    if (rate->hangs) {
+        const cv both = c_add(c_mul(a->left[0], b->u[1]), c_mul(b->left[0], a->u[1]));
+        sum = c_add(sum, c_mul(both, rate->sag));
+    }
     for (size_t i = 0; i < w; i++) {
-        sum -= rate->q[i].re[0] * u[i] * u[i] / 2;
+        sum = c_sub(sum, c_mul(rate->q[i], c_mul(a->u[i], b->u[i])));
         for (size_t j = 0; j < w; j++)
-            sum += f[i] * rate->S[i][j].re[0] * f[j] / 2;
+            if (rate->elastic[i][j])
+                sum = c_add(sum, c_mul(rate->S[i][j], c_mul(a->left[i], b->left[j])));
     }
     return sum;
 }
 
-void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const double *u, double *slope)
+RD_CLONES void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
+                                  const struct rd_moved *b, cv *slope)
 {
-    const size_t w = slopes->chain->width;
-    double fb[W], fa[W];
-    forces(slopes, u, fb, fa);
-    for (size_t k = 0; k < slopes->count; k++)
-        slope[slopes->at[k]] += slopes->step[k] * imaginary(slopes->transfer + k / RD_LANES,
-                                                            (int)(k % RD_LANES), w, u, fb);
-    slope[RD_OF_LENGTH] -= 2 * by_length(slopes, u, fa);
+    const size_t w = slopes->chain->width, n = 2 * w;
+    cv dyad[N * N];
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            dyad[i * n + j] =
+                c_mul(i < w ? a->u[i] : a->right[i - w], j < w ? b->u[j] : b->right[j - w]);
+    for (size_t p = 0; p < slopes->count; p++) {
+        const struct rd_wave_form *number = slopes->number + p;
+        cv sum = c_zero();
+        for (size_t k = 0; k < n * n; k++)
+            sum = c_add(sum, c_mul(number->form[k], dyad[k]));
+        slope[number->property] = c_add(slope[number->property], c_mul(number->factor, sum));
+    }
+    slope[RD_OF_LENGTH] = c_sub(slope[RD_OF_LENGTH], by_length(slopes, a, b));
 }

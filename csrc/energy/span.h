@@ -3,34 +3,49 @@
 #define RD_SENSITIVITY_SPAN_H
 
 #include "base/status.h"
+#include "energy/lines.h"
+#include "energy/moved.h"
 #include "energy/property.h"
-#include "sweep/kernel/transfer.h"
+#include "span/rate_matrix.h"
 
-enum { RD_SLOPE_GROUPS = (RD_PROPERTIES - 1 + RD_LANES - 1) / RD_LANES };
+enum { RD_STATE_MAX = 2 * RD_WIDTH_MAX };
 
-/* An element at one lambda, ready to be asked; of a rigid one that bends without its string. */
-struct rd_wave_slopes {
-    const struct rd_chain *chain;
-    size_t element;             /* which distinct one; `distinct` before the first */
-    size_t count;               /* numbers that are stepped, a lane each */
-    size_t at[RD_PROPERTIES];   /* (count)  enum rd_property */
-    double step[RD_PROPERTIES]; /* (count)  dPi/dp per imaginary part of the mixed form */
-    struct rate_matrix rate;
-    struct rd_transfer transfer[RD_SLOPE_GROUPS];
-    double F[RD_WIDTH_MAX * RD_WIDTH_MAX], Q[RD_WIDTH_MAX * RD_WIDTH_MAX];
-    double G[RD_WIDTH_MAX * RD_WIDTH_MAX], stiff[RD_WIDTH_MAX * RD_WIDTH_MAX]; /* and G^-1 */
+/* One number of an element: dPi/dp is a factor times the integral of row i times row j of
+   y = (u, f), as a form of (u_a, f_b). */
+struct rd_wave_form {
+    size_t property; /* enum rd_property */
+    size_t i, j;     /* rows of y */
+    cv factor;
+    cv form[RD_STATE_MAX * RD_STATE_MAX]; /* (2 width, 2 width) symmetric */
 };
 
-/* RD_NOT_POSITIVE_DEFINITE where the element is longer than its first resonance as a cantilever */
-enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e, double lambda,
-                                 struct rd_wave_slopes *slopes);
+/* An element at some lines, ready to be asked; of a rigid one that bends without its string. */
+struct rd_wave_slopes {
+    const struct rd_chain *chain;
+    size_t element; /* which distinct one; `distinct` before the first */
+    struct rate_matrix rate;
+    cv D[RD_WIDTH_MAX * RD_WIDTH_MAX]; /* F - I */
+    cv Q[RD_WIDTH_MAX * RD_WIDTH_MAX];
+    cv stiff[RD_WIDTH_MAX * RD_WIDTH_MAX]; /* G^-1 */
+    size_t count;
+    struct rd_wave_form number[RD_PROPERTIES]; /* (count) */
+};
 
-/* u (2, width), the motion of the nodes, <- that of the element's ends, with compliances `hinge`
-   (width) or NULL between the left ones; adds the squares of the jumps to jump (width) */
-void rd_wave_slopes_open(const struct rd_wave_slopes *slopes, const double *hinge, double *u,
-                         double *jump);
+/* RD_NOT_POSITIVE_DEFINITE where G is not: the element is longer than its first resonance as a
+   cantilever, which the joints of its halves meet. Where it is damped that is not seen. */
+enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
+                                 const struct rd_lines *lines, struct rd_wave_slopes *slopes);
 
-/* adds dPi/dp of an element with its ends moved by u (2, width) to slope (RD_PROPERTIES) */
-void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const double *u, double *slope);
+/* opens hinges of compliances `hinge` (width) or NULL of an element whose nodes move by moved->u */
+void rd_wave_slopes_open(const struct rd_wave_slopes *slopes, const double *hinge, cv spring,
+                         struct rd_moved *moved);
+
+/* the rest of `moved` from its u */
+void rd_wave_slopes_move(const struct rd_wave_slopes *slopes, struct rd_moved *moved);
+
+/* adds dPi/dp of the bilinear form of two motions to slope (RD_PROPERTIES), p being S/section,
+   T tension, and inertia and drag together */
+void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
+                        const struct rd_moved *b, cv *slope);
 
 #endif

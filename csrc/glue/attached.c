@@ -1,14 +1,16 @@
-/* How the tips of the structures move that nodes carry. */
+/* How the tips of the wires move that nodes carry. */
 #include "glue/glue.h"
 
 #include "chain/attached.h"
+
+enum { TIPS = 3 }; /* itself, by stiffness, by damping ratio */
 
 PyObject *py_tip(PyObject *module, PyObject *arguments)
 {
     (void)module;
     struct py_chain parsed = {0};
     PyArrayObject *factor = NULL;
-    PyObject *object, *factors, *rows = NULL, *result = NULL;
+    PyObject *object, *factors, *tips = NULL, *result = NULL;
     Py_ssize_t k;
     if (!PyArg_ParseTuple(arguments, "OnO", &object, &k, &factors))
         return NULL;
@@ -22,22 +24,22 @@ PyObject *py_tip(PyObject *module, PyObject *arguments)
     factor = py_array(factors, NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
     if (factor == NULL)
         goto done;
-    const size_t count = (size_t)PyArray_DIM(factor, 1), w = parsed.chain.width;
-    rows = PyArray_SimpleNew(2, ((npy_intp[]){(npy_intp)w, (npy_intp)count}), NPY_COMPLEX128);
-    if (rows == NULL)
+    const size_t count = (size_t)PyArray_DIM(factor, 1);
+    tips = py_new(NPY_COMPLEX128, 3, (npy_intp[]){TIPS, 2, (npy_intp)count});
+    if (tips == NULL)
         goto done;
     const double _Complex *of = PyArray_DATA(factor);
-    double _Complex *to = PyArray_DATA((PyArrayObject *)rows);
+    double _Complex *to = PyArray_DATA((PyArrayObject *)tips);
     for (size_t i = 0; i < count; i++) {
-        double _Complex row[RD_WIDTH_MAX];
+        double _Complex tip[2 * TIPS];
         rd_attached_tip(&parsed.chain, (size_t)k, of[RD_MASS * count + i],
-                        of[RD_DASHPOTS * count + i], row);
-        for (size_t c = 0; c < w; c++)
-            to[c * count + i] = row[c];
+                        of[RD_DASHPOTS * count + i], tip);
+        for (size_t n = 0; n < 2 * TIPS; n++)
+            to[n * count + i] = tip[n];
     }
-    result = Py_NewRef(rows);
+    result = Py_NewRef(tips);
 done:
-    Py_XDECREF(rows);
+    Py_XDECREF(tips);
     Py_XDECREF(factor);
     py_chain_release(&parsed);
     return result;

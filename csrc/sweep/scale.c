@@ -275,6 +275,16 @@ static struct rd_run run_of(const struct rd_chain *chain, size_t k)
                            .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
 }
 
+size_t rd_sweep_cuts(const struct rd_chain *chain, size_t stretch,
+                     const struct sweep_extent *extent)
+{
+    const struct rd_run run = run_of(chain, stretch);
+    const double radians = chain->length[run.element] * run_wavenumber(chain, &run, extent);
+    return radians <= RADIANS          ? 1
+           : radians <= RD_PIECES_MOST ? (size_t)ceil(radians / RADIANS)
+                                       : RD_PIECES_MOST;
+}
+
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
 {
     size_t steps = 1;

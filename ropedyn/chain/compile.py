@@ -202,7 +202,7 @@ def _chain(
     mass, damping, is_lumped = np.zeros(size), np.zeros(size), kind != CONTINUOUS
     if is_lumped:
         _add_lumps(mass, lumped(kind, scene.coordinates, inertia, length), division)
-        _add_lumps(damping, _halves(kind, along, length), division)
+        _add_lumps(damping, halves(kind, along, length), division)
     terms = list(standing_at(scene, stations))
     stiffness, held, hinge = _terms(scene, terms, mass, damping)
     chain = Chain(
@@ -299,7 +299,7 @@ def _add_lumps(terms: Real, given: Real, division: Division) -> None:
     terms[spans + 1 :] = given[division.within].sum(axis=1)
 
 
-def _halves(kind: int, along: NDArray[Any], length: NDArray[Any]) -> NDArray[Any]:
+def halves(kind: int, along: NDArray[Any], length: NDArray[Any]) -> NDArray[Any]:
     """Return what is `along` elements, per length, half on either node: see `lumped`."""
     count, width = along.shape
     given = np.zeros((count, 2, width, width), dtype=np.result_type(along, length))
@@ -318,7 +318,7 @@ def lumped(
     rule, this is its first error term by Euler and Maclaurin, zero inside a uniform span. With it
     the frequencies of tensed chains converge with the fourth power of the element's length.
     """
-    given = _halves(kind, inertia, length)
+    given = halves(kind, inertia, length)
     if kind != TENSED or "beta" not in coordinates:
         return given
     z, beta = coordinates.index("z"), coordinates.index("beta")

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError
+from ..scene.damping import drag
 from ..scene.end import end_of
 from ..scene.parts.node import AttachedRate, NodeRate
 from ..scene.parts.part import places as places_of
@@ -32,6 +33,8 @@ from ..scene.stations import nearest
 from .compile import (
     INERTIA,
     carried_by,
+    dragged,
+    halves,
     has_inertia,
     inertia_of,
     lumped,
@@ -101,13 +104,15 @@ class Weights:
     jump: Real  # (stretches - 1, width) stiffness of hinges
     node: Real  # (stretches, width, width) springs and inertia
     mass: Real  # (stretches, width, width) springs and inertia
-    # (stretches, width) damping of each coordinate to the ground, which undamped modes do not feel
-    dashpot: Real
+    dashpot: Real  # (stretches, width, width) damping, which undamped modes do not feel
+    dragging: Real  # (stretches - 1, width) the same per length of continuous elements
     # (attached,) relative changes of stiffness and mass of the structures that nodes carry
     stiffer: Real
     # (attached,) relative changes of stiffness and mass of the structures that nodes carry
     heavier: Real
     foot: Real  # (attached, 2, width) displacement and rotation of their feet
+    moves: Real  # (attached, 2, width) the same, but for those that are larger as a whole
+    damped: Real  # (attached,) of their damping ratios, which undamped modes do not feel
 
 
 @dataclass(frozen=True)
@@ -155,6 +160,27 @@ class Places:
         return np.stack([inertia_of(self.model.scene, rope) for rope in self.ropes])
 
     @property
+    def drag(self) -> Real:
+        """Damping per length, of each span and coordinate, shape (spans, width)."""
+        scene = self.model.scene
+        return np.tile(drag(scene.dampings) * dragged(scene), (len(self.counts), 1))
+
+    def at_nodes(self, of: Real) -> Real:
+        """Return what stands at stations, (stations, width), at the stretches, on the diagonal."""
+        node = np.zeros((len(self.station), *2 * of.shape[1:]))
+        own = np.where(self.inside[:, None], 0.0, of[self.station])
+        np.einsum("sii->si", node)[:] = own
+        return node
+
+    def beside(self, given: Real) -> Real:
+        """Return what elements of spans give to their nodes, (spans, 2, ..), at the stretches."""
+        station, inside = self.station, self.inside
+        right = np.minimum(station, len(given) - 1)
+        left = np.where(inside, right, np.maximum(station - 1, 0))
+        total = np.where((station < len(given))[:, None, None], given[right, 0], 0.0)
+        return total + np.where((inside | (station > 0))[:, None, None], given[left, 1], 0.0)
+
+    @property
     def linear_density(self) -> Real:
         """Of each span [kg/m], shape (spans,)."""
         return np.array([rope.linear_density for rope in self.ropes])
@@ -194,11 +220,12 @@ class Rate:
         self.tension, self.length = np.zeros(spans), np.zeros(spans)
         self.mass = np.zeros((spans + 1, width))
         self.stiffness, self.hinge = np.zeros_like(self.mass), np.zeros_like(self.mass)
-        self.dashpot = np.zeros_like(self.mass)
+        self.dashpot, self.drag = np.zeros_like(self.mass), np.zeros(width)
         rows = places.model.chain.attached_row
         carried = 0 if rows is None else len(rows)
         self.stiffer, self.heavier = np.zeros(carried), np.zeros(carried)
-        self.foot = np.zeros((carried, 2, width))
+        self.damped, self.size = np.zeros(carried), np.zeros(carried)
+        self.moves = np.zeros((carried, 2, width))
 
     def weights(self, places: Places) -> Weights:
         """Return the weights that belong to it."""
@@ -206,20 +233,22 @@ class Rate:
         section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
         element = np.column_stack([section, self.tension, self.length, self._sag(places)])
         inertia = self.inertia(places)
-        diagonal = np.arange(self.mass.shape[1])
-        node = np.zeros((len(station), *2 * self.mass.shape[1:]))
-        node[:, diagonal, diagonal] = np.where(inside[:, None], 0.0, self.stiffness[station])
-        mass = np.zeros_like(node)
-        mass[:, diagonal, diagonal] = np.where(inside[:, None], 0.0, self.mass[station])
-        given = self._given(places, inertia)
-        right = np.minimum(station, len(given) - 1)
-        left = np.where(inside, right, np.maximum(station - 1, 0))
-        mass += np.where((station < len(given))[:, None, None], given[right, 0], 0.0)
-        mass += np.where((inside | (station > 0))[:, None, None], given[left, 1], 0.0)
-        jump = np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]])
-        dashpot = np.where(inside[:, None], 0.0, self.dashpot[station])
-        carried = (self.stiffer, self.heavier, self.foot)
-        return Weights(element[span], inertia[span], jump, node, mass, dashpot, *carried)
+        rows = places.model.chain.attached_row
+        larger = self.moves if rows is None else self.size[:, None, None] / 2 * rows
+        return Weights(
+            element=element[span],
+            moving=inertia[span],
+            jump=np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]]),
+            node=places.at_nodes(self.stiffness),
+            mass=places.at_nodes(self.mass) + places.beside(self._given(places, inertia)),
+            dashpot=places.at_nodes(self.dashpot) + places.beside(self._dragging(places)),
+            dragging=np.tile(self.drag, (len(span), 1)),
+            stiffer=self.stiffer,
+            heavier=self.heavier,
+            foot=self.moves + larger,
+            moves=self.moves,
+            damped=self.damped,
+        )
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
@@ -253,6 +282,11 @@ class Rate:
         moving = places.inertia + 1j * STEP * inertia
         length = places.length + 1j * STEP * self.length
         return lumped(model.chain.kind, model.coordinates, moving, length).imag / STEP
+
+    def _dragging(self, places: Places) -> Real:
+        """Return the derivative of the damping along the rope that elements give to their nodes."""
+        kind, more = places.model.chain.kind, np.tile(self.drag, (len(self.length), 1))
+        return halves(kind, places.drag, self.length) + halves(kind, more, places.length)
 
 
 def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
@@ -412,14 +446,12 @@ def _set_attached(rate: Rate, places: Places, k: int, of: AttachedRate) -> None:
     A larger one is the same under a larger motion of its foot: its form is of second order there.
     So nothing of the strain and the kinetic energy has to cancel where the foot hardly moves.
     """
-    rows = places.model.chain.attached_row
-    assert rows is not None
     rate.heavier[k], rate.stiffer[k] = of.mass, of.stiffness
-    rate.foot[k] = of.size / 2 * rows[k]
+    rate.damped[k], rate.size[k] = of.damping, of.size
     for line, moves in enumerate((of.displacement, of.rotation)):
         for c, value in moves.items():
             if c in places.model.coordinates:
-                rate.foot[k, line, places.model.coordinates.index(c)] += value
+                rate.moves[k, line, places.model.coordinates.index(c)] += value
 
 
 def _share(own: float, others: float) -> float:

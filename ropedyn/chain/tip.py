@@ -15,6 +15,7 @@ from ..scene.parts.part import standing
 from .chain import ATTACHED
 from .compiled import Compiled
 from .port import Point, locate
+from .rate import Weights
 
 
 class Tip(NamedTuple):
@@ -47,6 +48,32 @@ def tip_of(model: Compiled, point: Point) -> Tip:
     return Tip(structure, root)
 
 
+def root_rows(model: Compiled, tip: Tip, factor: Complex) -> Complex:
+    """Return the motion of a tip per motion of its root, (3, roots, f), see `_core.tip`."""
+    assert model.chain.attached_row is not None
+    kept = [model.coordinates.index(c) for c, _ in tip.root]
+    row = model.chain.attached_row[tip.structure][:, kept]
+    return np.einsum("klf,lc->kcf", _core.tip(model.chain, tip.structure, factor), row)
+
+
+def row_slope(
+    model: Compiled, point: Point, factor: Complex, weights: Weights, stiffer: Complex
+) -> Complex:
+    """Return how fast the motion of a tip per motion of its root changes, (roots, f).
+
+    The wire is `stiffer`, (f,), relative, beside what the weights say.
+    """
+    assert model.chain.attached_row is not None
+    k, root = tip_of(model, point)
+    kept = [model.coordinates.index(c) for c, _ in root]
+    own, by_stiffness, by_ratio = _core.tip(model.chain, k, factor)
+    change = by_stiffness * (weights.stiffer[k] - weights.heavier[k] + stiffer)
+    change = change + by_ratio * weights.damped[k]
+    moved = np.einsum("lf,lc->cf", own, weights.moves[k][:, kept])
+    slope: Complex = moved + np.einsum("lf,lc->cf", change, model.chain.attached_row[k][:, kept])
+    return slope
+
+
 def spread(model: Compiled, responses: Sequence[Point]) -> list[Point]:
     """Return the responses with the motion of the root in place of that of each tip."""
     asked: list[Point] = []
@@ -70,8 +97,7 @@ def gather(
         tip = tip_of(model, point)
         part = slice(at, at + len(tip.root))
         at = part.stop
-        kept = [model.coordinates.index(c) for c, _ in tip.root]
-        row = _core.tip(model.chain, tip.structure, factor)[kept]
+        row = root_rows(model, tip, factor)[0]
         share = row * value[:, part]
         # of the row itself a few roundings; what is 0 does not move the root
         known = np.where(share == 0, 0.0, error[:, part])

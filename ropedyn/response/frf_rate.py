@@ -5,46 +5,193 @@ causes and the motion u_r that a unit load on the response would, the receptance
 
     dh/dp = -u_r^T (dZ/dp) u_d,
 
-and nothing is solved again. What stands at a place needs the motion there. A span adds to Z the
-form of which its Hamiltonian H is the density, see hamiltonian.py: with y = (u, f)
-
-    dh/dp = integral of y_r^T (dH/dp) y_d dx.
-
-As far as there is no load y_r^T H y_d is the same everywhere. Where a place between two spans
-moves, dh/dx is what it is on the left less what it is on the right.
+and nothing is solved again: the slopes of the form u_r^T Z u_d (csrc/energy/sensitivity.h) times
+how fast what the chain is made of changes (chain/rate.py). An end that is moved has the field of
+that motion as u_d, and u_r is that with the end held.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..base.array import Complex, Real
+from ..base.array import Complex, Index, Real
 from ..base.check import NEAR
 from ..base.computed import computed
 from ..base.errors import SceneError
-from ..base.unit import END, QUANTITIES, WIRE
+from ..base.unit import QUANTITIES
+from ..chain import tip
 from ..chain.compile import dragged
 from ..chain.compiled import Compiled
-from ..chain.port import Point, is_force, moving
+from ..chain.port import Point, moving
 from ..chain.rate import ENTRIES, Places, Rate, Weights, asked, rates_of
 from ..scene import damping
-from ..scene.damping import Damping, ModalDamping
-from ..scene.parts.stretch import KINDS as STRETCHES
-from .frf import FRF
-from .hamiltonian import Span, hamiltonian_rate
-from .harmonic import solve_harmonic
-from .products import Loaded, Products, driven
-from .ridders import frf_difference
+from ..scene.damping import Damping
+from .fields import Fields, Slopes
+from .modal_sum import ModalParts, sum_slope
+from .moved_end import is_end
+from .question import Question
+from .solvers import in_slices
 
-TENSION, LENGTH, SAG = 6, 7, 8
-"""Numbers of these weights of an element, behind the entries of its section."""
+TENSION, LENGTH, SAG, INERTIA = 6, 7, 8, 9
+"""Numbers of these slopes of an element, behind those of its section."""
+SLICE = 1 << 19  # Numbers of the fields of one call of the core: a look for Ctrl-C between them.
+
+
+@dataclass(frozen=True, eq=False)
+class ComponentRates:
+    """How the response of one component changes."""
+
+    places: Places  # of the model
+    fields: Fields  # of its loads
+    still: Sequence[Point]  # loads that stay where they are; those on wires go with them
+
+    @computed
+    def slopes(self) -> Slopes:
+        """Of all pairs of fields at all lines."""
+        fields = self.fields
+        loads = len(fields.question.drives) + len(fields.question.responses)
+        size = max(fields.chain.nodes * len(fields.question.component) * loads, 1)
+        question = fields.question
+        parts = in_slices(fields.slopes, len(question.frequency), size, SLICE, question.workers)
+        return Slopes(*parts)
+
+    @computed
+    def _kept(self) -> list[int]:
+        """The component's coordinates among all."""
+        return [self.places.model.coordinates.index(c) for c in self.fields.question.component]
+
+    @computed
+    def _carried(self) -> Index:
+        """The structures that it moves among all."""
+        rows = self.places.model.chain.attached_row
+        return np.flatnonzero([] if rows is None else rows[..., self._kept].any(axis=(1, 2)))
+
+    @computed
+    def _source(self) -> Index:
+        """The model's stretch from whose elements those of each stretch come."""
+        model, x, first = self.places.model, self.fields.x, self.fields.chain.first
+        middle = (x[first[:-1]] + x[first[:-1] + 1]) / 2
+        element = np.searchsorted(model.x, middle) - 1
+        return np.asarray(np.searchsorted(model.chain.first, element, side="right") - 1)
+
+    @computed
+    def _own(self) -> tuple[Index, Index]:
+        """The stretches whose nodes are the model's, and which of its stretches those are."""
+        model, fields = self.places.model, self.fields
+        begin = fields.x[fields.chain.first]
+        node = np.minimum(np.searchsorted(model.x, begin), len(model.x) - 1)
+        own = np.flatnonzero(model.x[node] == begin)
+        return own, np.searchsorted(model.chain.first, node[own], side="right") - 1
+
+    def receptance(self, weights: Weights, by_p: Complex) -> Complex:
+        """Return dh/dp where the chain and the factors, (5, f), change, (drives, responses, f)."""
+        question = self.fields.question
+        total = self._along(weights, by_p) + self._at_nodes(weights, by_p)
+        if len(self._carried):
+            total = total + self._on_structures(weights, by_p)
+        return -total.reshape(len(question.drives), len(question.responses), -1)
+
+    def _along(self, weights: Weights, by_p: Complex) -> Complex:
+        """Sum over the elements."""
+        factor, chain, slopes = self.fields.question.factor, self.fields.chain, self.slopes
+        source = self._source
+        element = weights.element[source]
+        element[:, LENGTH] = self._longer(weights)
+        total = _dot(slopes.element[:, :, :INERTIA], element)
+        width = len(self._kept)
+        inertia = slopes.element[:, :, INERTIA : INERTIA + width]
+        moving = weights.moving[source][:, self._kept]
+        total += _dot(inertia, moving) * factor[damping.INERTIA]
+        if chain.inertia is not None:
+            drag = weights.dragging[source][:, self._kept]
+            total += _dot(inertia, drag) * factor[damping.DASHPOT]
+            total += _dot(inertia, chain.inertia[chain.element]) * by_p[damping.INERTIA]
+        # S/section, T tension
+        section = chain.flexibility[chain.element][:, ENTRIES[0], ENTRIES[1]]
+        share = by_p[damping.SECTION] / factor[damping.SECTION]
+        total -= _dot(slopes.element[:, :, :TENSION], section) * share
+        share = by_p[damping.TENSION] / factor[damping.TENSION]
+        pull = chain.tension[chain.element][:, None]
+        return total + _dot(slopes.element[:, :, TENSION : TENSION + 1], pull) * share
+
+    def _longer(self, weights: Weights) -> Real:
+        """Return how fast the elements of each stretch grow."""
+        model, fields = self.places.model, self.fields
+        grows = np.repeat(weights.element[:, LENGTH], np.diff(model.chain.first))
+        moves = np.append(0.0, np.cumsum(grows))
+        if not moves.any():
+            return np.zeros(len(self._source))
+        self._refuse_loads_at(model.x[moves != 0])
+        anchor = np.union1d(model.x, [p[1] for p in fields.loads])
+        shift = np.zeros(len(anchor))
+        shift[np.searchsorted(anchor, model.x)] = moves
+        # how the pieces between two of them share what they grow by does not matter
+        middle = (fields.x[:-1] + fields.x[1:]) / 2
+        between = np.searchsorted(anchor, middle) - 1
+        count = np.bincount(between, minlength=len(anchor) - 1)
+        each = np.diff(shift) / np.maximum(count, 1)
+        return np.asarray(each[between[fields.chain.first[:-1]]])
+
+    def _refuse_loads_at(self, places: Real) -> None:
+        margin = NEAR * self.places.model.scene.rope.length
+        for point in self.still:
+            if (np.abs(places - point[1]) <= margin).any():
+                raise SceneError(
+                    f"drive and response must not stand where the scene changes, got {point}: what "
+                    "moves there would be left of it or right of it"
+                )
+
+    def _at_nodes(self, weights: Weights, by_p: Complex) -> Complex:
+        """Sum over what stands at nodes, and hinges."""
+        factor, chain, slopes = self.fields.question.factor, self.fields.chain, self.slopes
+        own, of = self._own
+        square = np.ix_(of, self._kept, self._kept)
+        node = slopes.node[:, own]
+        total = _dot(node, weights.node[square]) * factor[damping.SPRING]
+        total += _dot(node, weights.mass[square]) * factor[damping.INERTIA]
+        total += _dot(node, weights.dashpot[square]) * factor[damping.DASHPOT]
+        total += _dot(node, chain.stiffness[chain.term[own]]) * by_p[damping.SPRING]
+        total += _dot(node, chain.mass[chain.term[own]]) * by_p[damping.INERTIA]
+        if chain.hinge is not None:
+            own, of = own[own < len(chain.element)], of[own < len(chain.element)]
+            jump = slopes.jump[:, own]
+            total += _dot(jump, weights.jump[of][:, self._kept])
+            soft = chain.hinge[chain.term[own]]
+            stiff = np.divide(1, soft, out=np.zeros_like(soft), where=soft != 0)
+            share = by_p[damping.SPRING] / factor[damping.SPRING]
+            total += _dot(jump, stiff) * share
+        return total
+
+    def _on_structures(self, weights: Weights, by_p: Complex) -> Complex:
+        """Sum over the structures that nodes carry."""
+        inertia = self.fields.question.factor[damping.INERTIA]
+        number, these = self.slopes.number, self._carried
+        mass, stiffness, loss, mass_loss = np.moveaxis(number, 2, 0)
+        heavier = weights.heavier[these]
+        total = _dot(mass, heavier) * inertia + _dot(mass_loss, heavier)
+        total += _dot(stiffness, weights.stiffer[these]) + _dot(loss, weights.damped[these])
+        total += mass.sum(axis=1) * by_p[damping.INERTIA]
+        return total + _dot(self.slopes.row, weights.foot[these][..., self._kept])
+
+
+def _dot(slopes: Complex, weights: Real) -> Complex:
+    """Contract (pairs, .., f) with (..), shape (pairs, f)."""
+    pairs, lines = slopes.shape[0], slopes.shape[-1]
+    flat: Complex = weights.ravel() @ slopes.reshape(pairs, -1, lines)
+    return flat
+
+
+class Answered(NamedTuple):
+    """A question to a component, and of a sum over modes what it was made of."""
+
+    question: Question
+    parts: ModalParts | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +202,8 @@ class FrequencyRates:
     frequency: Real  # (f,) [Hz]
     drives: tuple[Point, ...]  # that were asked for
     responses: tuple[Point, ...]  # that were asked for
+    answered: Sequence[Answered]  # of the components that take part
+    value: Complex  # (drives, asked, f) receptance, of tips of wires that of their roots
 
     @computed
     def places(self) -> Places:
@@ -62,34 +211,22 @@ class FrequencyRates:
         return Places(self.model)
 
     @computed
-    def loaded(self) -> Loaded:
-        """The spans and the unit loads."""
-        return Loaded(self.model, driven(self.model, self.drives), self.drives, self.responses)
+    def components(self) -> list[ComponentRates]:
+        """Of the questions, of a sum over modes at the lines that its residues come from."""
+        still = [p for p in self.drives if not is_end(p)]
+        still += [p for p in self.responses if not tip.is_tip(p)]
+        return [
+            ComponentRates(
+                self.places,
+                Fields(question if parts is None else parts.lines),
+                [point for point in still if moving(point) in question.component],
+            )
+            for question, parts in self.answered
+        ]
 
     @computed
-    def products(self) -> Products:
-        """Of the fields."""
-        watched = [r for r in self.responses if moving(r) in self.loaded.coordinates]
-        return dataclasses.replace(self.loaded, responses=tuple(watched)).products(self.frequency)
-
-    def receptance(self, path: str) -> Complex:
-        """Return d(receptance)/dp, shape (drives, responses, f)."""
-        of = asked(self.paths, path)
-        if not self._is_exact(path):
-            if path not in self._dampings:
-                of()  # refuses what has no derivative
-            return frf_difference(self.model, path, self.frequency, self.drives, self.responses)
-        value = np.zeros(
-            (len(self.drives), len(self.responses), len(self.frequency)), dtype=np.complex128
-        )
-        moved = [moving(r) in self.loaded.coordinates for r in self.responses]
-        if any(moved):
-            value[:, moved] = of() if path in self._dampings else self._of_rate(of())
-        return value
-
-    @computed
-    def paths(self) -> dict[str, Callable[[], Any]]:
-        """What each number that there are derivatives by does: a rate, of dampings the answer."""
+    def paths(self) -> dict[str, Callable[[], Rate]]:
+        """What each number that there are derivatives by does; dampings change factors."""
         by_damping = {name: partial(self._of_damping, *at) for name, at in self._dampings.items()}
         return rates_of(self.places) | by_damping
 
@@ -106,131 +243,59 @@ class FrequencyRates:
                         found[f"damping.{item.name}"] = (i, item.name)
         return found
 
-    def _is_exact(self, path: str) -> bool:
-        """Whether the fields of forces say all; what is left is differentiated numerically."""
-        scene = self.model.scene
-        special = any(p[0] in (END, WIRE) or is_force(p) for p in (*self.drives, *self.responses))
-        modal = any(isinstance(one, ModalDamping) for one in scene.dampings)
-        if self.model.element != "continuous" or special or modal:
-            return False
-        if path in self._dampings:
-            heavier = self._dampings[path][1] == "mass"
-            return not (heavier and self.model.chain.carried)
-        return not self._is_carried(path)
+    def _of_damping(self, number: int, name: str) -> Rate:
+        """Return that of the drag along the rope."""
+        rate = Rate(self.places)
+        rate.drag += damping.drag([self._unit(number, name)]) * dragged(self.model.scene)
+        return rate
 
-    def _is_carried(self, path: str) -> bool:
-        """Whether it is a number of a structure that a node carries, its place apart."""
-        for i, part in enumerate(self.model.scene.parts):
-            if path.startswith(f"parts[{i}].") and not isinstance(part, STRETCHES):
-                rate = part.rates().get(path.rsplit(".", maxsplit=1)[-1])
-                return rate is not None and rate.attached is not None
-        return False
-
-    def _of_rate(self, rate: Rate) -> Complex:
-        still = np.zeros_like(self._factor)
-        return self._summed(rate.weights(self.places), still, np.zeros(self._width))
-
-    def _of_damping(self, number: int, name: str) -> Complex:
-        """Return that of a number of a damping: all of them are in proportion to what they add."""
-        omega = 2 * np.pi * self.frequency
+    def _unit(self, number: int, name: str) -> Damping:
+        """Return a damping with one of its numbers 1 and no other: it is in proportion to all."""
         one = self.model.scene.dampings[number]
+        floats = [f.name for f in dataclasses.fields(one)]  # type: ignore[arg-type]
+        alone = {k: float(k == name) for k in floats if isinstance(getattr(one, k), float)}
+        return dataclasses.replace(one, **alone)  # type: ignore[type-var]
 
-        def having(value: float) -> Damping:
-            return dataclasses.replace(one, **{name: value})  # type: ignore[type-var]
+    def receptance(self, path: str) -> Complex:
+        """Return d(receptance)/dp, shape (drives, responses, f)."""
+        weights = asked(self.paths, path)().weights(self.places)
+        own = [self._unit(*self._dampings[path])] if path in self._dampings else []
+        value = np.zeros_like(self.value)
+        spread = tip.spread(self.model, self.responses)
+        for (question, parts), component in zip(self.answered, self.components):
+            lines = component.fields.question
+            omega = 2 * np.pi * lines.frequency
+            by_p = (damping.factors(own, omega) - damping.factors([], omega)).T
+            found = component.receptance(weights, by_p)
+            if parts is not None:
+                found = sum_slope(parts, found, float(damping.ratios(own, 1)[0]))
+            d = [k for k, point in enumerate(self.drives) if moving(point) in question.component]
+            r = [k for k, point in enumerate(spread) if moving(point) in question.component]
+            value[np.ix_(d, r)] = found
+        return self._at_tips(weights, own, value)
 
-        on, off = ([having(value)] for value in (1.0, 0.0))
-        by_factor = damping.factors(on, omega).T - damping.factors(off, omega).T
-        drag = (damping.drag(on) - damping.drag(off)) * dragged(self.model.scene)
-        return self._summed(Rate(self.places).weights(self.places), by_factor, drag)
-
-    @property
-    def _width(self) -> int:
-        return len(self.model.coordinates)
-
-    @computed
-    def _factor(self) -> Complex:
-        return damping.factors(self.model.scene.dampings, 2 * np.pi * self.frequency).T
-
-    def _summed(self, weights: Weights, by_factor: Complex, drag: Real) -> Complex:
-        """Return dh/dp by all that changes."""
-        return (
-            self._along(weights, by_factor, drag)
-            - self._at_nodes(weights, by_factor)
-            - self._at_hinges(weights, by_factor)
-        )
-
-    @computed
-    def _kept(self) -> list[int]:
-        return [self.model.coordinates.index(c) for c in self.loaded.coordinates]
-
-    def _along(self, weights: Weights, by_factor: Complex, drag: Real) -> Complex:
-        """Integrate over the spans, and add what their ends move by."""
-        places, products = self.places, self.products
-        begins = np.flatnonzero(~places.inside)[:-1]
-        total = np.zeros(products.span.shape[1:4], dtype=np.complex128)
-        for k, (span, begin) in enumerate(zip(self.loaded.spans, begins)):
-            section = np.zeros((3, 3))
-            section[ENTRIES[0], ENTRIES[1]] = weights.element[begin, :TENSION]
-            section[ENTRIES[1], ENTRIES[0]] = weights.element[begin, :TENSION]
-            own = weights.element[begin]
-            rate = Span(
-                section,
-                tension=float(own[TENSION]),
-                inertia=weights.moving[begin, self._kept],
-                drag=drag[self._kept],
-                sag=float(own[SAG]),
-            )
-            by_p = hamiltonian_rate(span, rate, self.loaded.coordinates, self._factor, by_factor)
-            total += np.einsum("drfij,fij->drf", products.span[k], by_p)
-        moves = np.append(0.0, np.cumsum(weights.element[begins, LENGTH] * places.counts))
-        self._refuse_loads_at(self.loaded.stations[moves != 0])
-        total += np.einsum("s,sdrf->drf", moves[1:], products.last)
-        return total - np.einsum("s,sdrf->drf", moves[:-1], products.first)
-
-    def _refuse_loads_at(self, places: Real) -> None:
-        margin = NEAR * self.model.scene.rope.length
-        for point in self.loaded.loads:
-            if (np.abs(places - point[1]) <= margin).any():
-                raise SceneError(
-                    f"drive and response must not stand where the scene changes, got {point}: what "
-                    "moves there would be left of it or right of it"
-                )
-
-    def _at_nodes(self, weights: Weights, by_factor: Complex) -> Complex:
-        """Sum u_r (dN/dp) u_d over the stations, N on the diagonal."""
-        chain, stations = self.loaded.chain, ~self.places.inside
-        term = chain.term[stations]
-
-        def own(given: Real) -> Real:
-            return np.diagonal(given, axis1=1, axis2=2)
-
-        spring, mass = (own(m[stations])[:, self._kept] for m in (weights.node, weights.mass))
-        dashpot = weights.dashpot[stations][:, self._kept]
-        by_p = np.einsum("sw,f->sfw", spring, self._factor[damping.SPRING])
-        by_p += np.einsum("sw,f->sfw", mass, self._factor[damping.INERTIA])
-        by_p += np.einsum("sw,f->sfw", dashpot, self._factor[damping.DASHPOT])
-        by_p += np.einsum("sw,f->sfw", own(chain.stiffness[term]), by_factor[damping.SPRING])
-        by_p += np.einsum("sw,f->sfw", own(chain.mass[term]), by_factor[damping.INERTIA])
-        return np.einsum("sdrfw,sfw->drf", self.products.node, by_p)
-
-    def _at_hinges(self, weights: Weights, by_factor: Complex) -> Complex:
-        """Sum the products of jumps times how fast the springs across them grow."""
-        chain, stations = self.loaded.chain, ~self.places.inside
-        if chain.hinge is None:
-            return np.zeros(self.products.jump.shape[1:4], dtype=np.complex128)
-        soft = chain.hinge[chain.term[stations][:-1]]
-        stiff = np.divide(1, soft, out=np.zeros_like(soft), where=soft != 0)
-        stiffer = weights.jump[stations[:-1]][:, self._kept]
-        by_p = np.einsum("sw,f->sfw", stiffer, self._factor[damping.SPRING])
-        by_p += np.einsum("sw,f->sfw", stiff, by_factor[damping.SPRING])
-        return np.einsum("sdrfw,sfw->drf", self.products.jump, by_p)
+    def _at_tips(self, weights: Weights, own: Sequence[Damping], value: Complex) -> Complex:
+        """Take roots together to tips, t^T u/e of which both change."""
+        if not any(map(tip.is_tip, self.responses)):
+            return value
+        omega = 2 * np.pi * self.frequency
+        factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
+        more = (damping.factors(own, omega) - damping.factors([], omega))[:, damping.INERTIA]
+        inertia = factor[damping.INERTIA]
+        lighter = np.divide(-more, inertia, out=np.zeros_like(more), where=inertia != 0)
+        none = np.zeros(value.shape)
+        changed, _ = tip.gather(self.model, self.responses, factor, value, none)
+        at = 0
+        for r, point in enumerate(self.responses):
+            count = len(tip.tip_of(self.model, point).root) if tip.is_tip(point) else 1
+            if tip.is_tip(point):
+                root = self.value[:, at : at + count]
+                slope = tip.row_slope(self.model, point, factor, weights, lighter)
+                changed[:, r] += np.einsum("cf,dcf->df", slope, root)
+            at += count
+        return changed
 
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
         times = QUANTITIES[quantity]
         return self.receptance(path) * (2j * np.pi * self.frequency) ** times
-
-
-def solve_frf(model: Compiled, frequency: ArrayLike, **asked: Any) -> FRF:
-    """Compute the frequency response, and keep what its derivatives take; see `Model.frf`."""
-    return solve_harmonic(model, frequency, rates=FrequencyRates, **asked)

@@ -24,6 +24,7 @@ from ..chain.port import Point, moving
 from ..scene import damping
 from ..scene.scene import Scene
 from .frf import FRF, MeshOfResponse
+from .frf_rate import Answered, FrequencyRates
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import moves_ends
 from .question import Question, Solver, workers_of
@@ -39,10 +40,8 @@ def solve_harmonic(
     quantity: str = "receptance",
     solver: str = "sweep",
     threads: int | None = None,
-    rates: Callable[..., Any] | None = None,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
-    # `rates` of model, frequency, drives and responses tell its derivatives
     solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
@@ -59,7 +58,7 @@ def solve_harmonic(
     start = time.perf_counter()
     whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers)
     got = _by_components(whole, partial(modal_sum if is_modal else _line_by_line, solver=solve))
-    value, error, truncation = got.value, got.error, got.truncation
+    value, error, truncation = got.value.copy(), got.error, got.truncation
     if any(map(tip.is_tip, responses)):
         _, truncation = tip.gather(model, responses, factor, value, truncation)
         value, error = tip.gather(model, responses, factor, value, error)
@@ -89,7 +88,7 @@ def solve_harmonic(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh=mesh,
-        solve_rates=None if rates is None else partial(rates, model, f, drives, responses),
+        solve_rates=partial(FrequencyRates, model, f, drives, responses, got.answered, got.value),
     )
 
 
@@ -101,6 +100,7 @@ class Receptance(NamedTuple):
     truncation: Real  # bound of the relative error that modes cause which are left out, as value
     unknowns: int  # of the components that take part
     lines: int  # that were solved
+    answered: list[Answered]
 
 
 def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:
@@ -109,6 +109,7 @@ def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Rec
     value = np.zeros((len(drives), len(responses), len(whole.frequency)), dtype=np.complex128)
     error, truncation = np.zeros(value.shape), np.zeros(value.shape)
     unknowns, lines = 0, 0
+    answered: list[Answered] = []
     for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if moving(point) in component]
         r = [k for k, point in enumerate(responses) if moving(point) in component]
@@ -116,11 +117,13 @@ def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Rec
             continue
         block = (np.array(d)[:, None], r)
         pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
-        got = answer(replace(whole, component=component, drives=pushed, responses=watched))
+        question = replace(whole, component=component, drives=pushed, responses=watched)
+        got = answer(question)
+        answered.append(Answered(question, got.parts))
         value[block], error[block], truncation[block] = got.value, got.rounding, got.truncation
         unknowns += free
         lines += got.lines
-    return Receptance(value, error, truncation, unknowns, lines)
+    return Receptance(value, error, truncation, unknowns, lines, answered)
 
 
 def _line_by_line(question: Question, solver: Solver) -> Summed:

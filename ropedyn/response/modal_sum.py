@@ -83,6 +83,16 @@ class Summed(NamedTuple):
     # Bound of the relative error that the modes cause which are left out, as value
     truncation: Real
     lines: int  # Lines of the solver that it took
+    parts: ModalParts | None = None  # Of a sum over modes
+
+
+class ModalParts(NamedTuple):
+    """What a sum over modes is made of."""
+
+    question: Question  # that it answers
+    lines: Question  # to the undamped model, about what it is made of
+    poles: UndampedPoles
+    residue: Real  # (drives, responses, k)
 
 
 def modal_sum(question: Question, solver: Solver) -> Summed:
@@ -111,7 +121,41 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     share = (omega**2 + poles.shift) / (poles.probe - poles.shift)
     neglected = np.maximum(size[..., None] * _most(poles, omega), missing * share)
     lines = (2 + ROUND // 2 * len(poles.eigenvalue)) * (1 + -(-len(own) // TOGETHER))
-    return Summed(value, _over(error, value), _over(neglected, value), lines)
+    parts = ModalParts(question, undamped_lines(question, poles), poles, residue.value)
+    return Summed(value, _over(error, value), _over(neglected, value), lines, parts)
+
+
+def sum_slope(parts: ModalParts, by_p: Complex, ratio: float) -> Complex:
+    """Return how the sum changes, from the change of H at its lines and that of all ratios.
+
+    H = r/(lambda - z) + .. changes by r'/(lambda - z) - r lambda'/(lambda - z)^2 + ..: the residue
+    and the eigenvalue are told apart by the circles, and no shape changes.
+    """
+    poles, question = parts.poles, parts.question
+    step = _steps(poles)
+    around = by_p[..., : step.size].reshape(*by_p.shape[:2], *step.shape)
+    residue = (-step * around).real.mean(axis=-1)
+    moved = -(step**2 * around).real.mean(axis=-1)
+    value = np.empty((*by_p.shape[:2], len(question.frequency)), dtype=np.complex128)
+    omega = 2 * np.pi * question.frequency
+    most = max(1, (1 << 20) // max(len(poles.eigenvalue), 1))
+    for first in range(0, len(omega), most):
+        part = slice(first, first + most)
+        g, _ = _weights(question, poles, omega, part)
+        by_pole, by_ratio = _weight_slopes(poles, omega[part])
+        value[..., part] = by_p[..., -2].real[..., None] + residue @ g + moved @ by_pole
+        value[..., part] += ratio * (parts.residue @ by_ratio)
+    return value
+
+
+def _weight_slopes(poles: UndampedPoles, omega: Real) -> tuple[Complex, Complex]:
+    """Return dg/dlambda and dg/dzeta, each (k, f)."""
+    own = poles.eigenvalue[:, None]
+    root = np.sqrt(np.maximum(own, 0.0))
+    pole = own - omega**2 + 2j * poles.ratio[:, None] * omega * root
+    turned = np.divide(poles.ratio[:, None], root, out=np.zeros_like(root), where=root > 0)
+    by_pole = 1 / (own + poles.shift) ** 2 - (1 + 1j * turned * omega) / pole**2
+    return by_pole, -2j * omega * root / pole**2
 
 
 class Estimated(NamedTuple):
@@ -214,17 +258,26 @@ def _grouped(eigenvalue: Real, error: Real, ratio: Real, highest: float) -> Unda
     return UndampedPoles(middle, spread, radius, mean, unlike, beyond, shift, probe, largest)
 
 
+def _steps(poles: UndampedPoles) -> Complex:
+    """Return the points of the circles less their middles, (k, points)."""
+    angle = np.pi * (np.arange(ROUND // 2) + 0.5) / (ROUND // 2)
+    return np.multiply.outer(poles.radius, np.exp(1j * angle))  # H of the other half is conjugate
+
+
+def undamped_lines(question: Question, poles: UndampedPoles) -> Question:
+    """Ask the undamped model on the circles, at -s and at the probe."""
+    circles = poles.eigenvalue[:, None] + _steps(poles)
+    z = np.concatenate([circles.ravel(), [-poles.shift, -poles.probe]])
+    hertz = np.sqrt(np.abs(z)) / (2 * np.pi)
+    return dataclasses.replace(question, factor=undamped_factors(z), frequency=hertz)
+
+
 def _taken_apart(
     question: Question, solver: Solver, poles: UndampedPoles
 ) -> tuple[Estimated, Estimated, Estimated]:
     """Return H(-s), the residues, (drives, responses, k), and H at the probe."""
-    angle = np.pi * (np.arange(ROUND // 2) + 0.5) / (ROUND // 2)
-    step = np.multiply.outer(poles.radius, np.exp(1j * angle))  # H of the other half is conjugate
-    circles = poles.eigenvalue[:, None] + step
-    z = np.concatenate([circles.ravel(), [-poles.shift, -poles.probe]])
-    factor = undamped_factors(z)
-    hertz = np.sqrt(np.abs(z)) / (2 * np.pi)
-    value, relative = solver(dataclasses.replace(question, factor=factor, frequency=hertz))
+    step = _steps(poles)
+    value, relative = solver(undamped_lines(question, poles))
     error = np.where(value == 0, 0.0, relative) * np.abs(value)
     around = (*value.shape[:2], *step.shape)
     residue = (-step * value[..., :-2].reshape(around)).real.mean(axis=-1)

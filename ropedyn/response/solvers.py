@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Real
@@ -84,7 +86,7 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
         return value, error
 
     count = len(question.frequency)
-    value, error = _in_slices(solve, count, steps, size, question.workers)
+    value, error = in_slices(solve, count, steps, size, question.workers)
     if reactions:
         value, error = _with_reactions(question, value, error)
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
@@ -93,23 +95,27 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
     return value, relative(value, error)
 
 
-def _in_slices(
-    solve: Callable[[slice], tuple[Complex, Real]], count: int, steps: int, most: int, workers: int
-) -> tuple[Complex, Real]:
+def in_slices(
+    solve: Callable[[slice], Sequence[NDArray[Any]]],
+    count: int,
+    steps: int,
+    most: int,
+    workers: int,
+) -> tuple[NDArray[Any], ...]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
     size = max(LANES, most // max(steps, 1) // LANES * LANES)
     if count * steps > most // 16:
         size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
-    parts = [slice(start, min(start + size, count)) for start in range(0, count, size)]
+    parts = [slice(start, min(start + size, count)) for start in range(0, max(count, 1), size)]
     if workers == 1 or len(parts) == 1:
-        values, errors = zip(*(solve(part) for part in parts))
+        found = [solve(part) for part in parts]
     else:
         executor = ThreadPoolExecutor(workers)
         try:
-            values, errors = zip(*executor.map(solve, parts))
+            found = list(executor.map(solve, parts))
         finally:
             executor.shutdown(cancel_futures=True)
-    return np.concatenate(values, axis=2), np.concatenate(errors, axis=2)
+    return tuple(np.concatenate(arrays, axis=-1) for arrays in zip(*found))
 
 
 def _hold(question: Question, value: Complex, error: Real) -> None:

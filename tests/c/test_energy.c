@@ -1,5 +1,5 @@
 /* Energies of shapes against closed forms; strain and kinetic energy of a mode agree. */
-#include "energy/energy.h"
+#include "mode.h"
 
 #include "assembled/assemble.h"
 #include "chains.h"
@@ -14,13 +14,13 @@ static const double B = 54.626, C = 0.1485;
 static enum rd_status strain_of(const struct rope *rope, const double *shape, double *strain)
 {
     double kinetic[RD_WIDTH_MAX], dragged;
-    return rd_energy(&rope->chain, 0, shape, strain, kinetic, &dragged);
+    return mode_energy(&rope->chain, 0, shape, strain, kinetic, &dragged);
 }
 
 static void kinetic_of(const struct rope *rope, const double *shape, double *kinetic)
 {
     double strain[RD_STRAINS], dragged;
-    CHECK_INT(rd_energy(&rope->chain, 0, shape, strain, kinetic, &dragged), RD_OK);
+    CHECK_INT(mode_energy(&rope->chain, 0, shape, strain, kinetic, &dragged), RD_OK);
 }
 
 static double sum_of(const double *part, size_t count)

@@ -1,5 +1,5 @@
 /* Energies of continuous spans against the integrals of their waves. */
-#include "energy/energy.h"
+#include "mode.h"
 
 #include "chains.h"
 #include "check.h"
@@ -61,7 +61,7 @@ static void wave_of_one_coordinate_has_its_integrals(const char *names, enum rd_
         for (int i = 0; i < 13; i++)
             shape[i] = cos(p * i * recipe.length + phase);
         CHECK_INT(
-            rd_energy(&rope.chain, stiffness * p * p / inertia, shape, stored, kinetic, &dragged),
+            mode_energy(&rope.chain, stiffness * p * p / inertia, shape, stored, kinetic, &dragged),
             RD_OK);
         for (int s = 0; s < RD_STRAINS; s++)
             CHECK_ABS(stored[s], s == (int)strain ? stiffness * p * p * in.sine : 0,
@@ -104,7 +104,7 @@ static void wave_of_a_tensed_beam_has_its_integrals(double tension, double compl
             hinges += hinged ? compliance * moment * moment : 0;
         }
         const double end = shape[12 * w];
-        CHECK_INT(rd_energy(&rope.chain, lambda, shape, stored, kinetic, &dragged), RD_OK);
+        CHECK_INT(mode_energy(&rope.chain, lambda, shape, stored, kinetic, &dragged), RD_OK);
         const double size =
             (fabs(lambda) * (MU + J * p * p) + fabs(tension) * p * p) * LENGTH + hinges + spring;
         const double expected[RD_STRAINS] = {
@@ -136,7 +136,7 @@ static void free_hinge_stores_nothing(void)
         shape[2 * i] = sin(p * i * recipe.length);
         shape[2 * i + 1] = i == 0 ? 0 : p * cos(p * i * recipe.length);
     }
-    CHECK_INT(rd_energy(&rope.chain, lambda, shape, stored, kinetic, &dragged), RD_OK);
+    CHECK_INT(mode_energy(&rope.chain, lambda, shape, stored, kinetic, &dragged), RD_OK);
     const double half = LENGTH / 2, allowed = 4 * rounding(p);
     CHECK_EXACT(stored[RD_STRAIN_SPRING], 0);
     CHECK_REL(stored[RD_STRAIN_BENDING], B * p * p * p * p * half, allowed, "as above");
@@ -166,7 +166,7 @@ static void laid_wave_shares_its_strain(void)
         for (int i = 0; i < 13; i++)
             for (int j = 0; j < 2; j++)
                 shape[2 * i + j] = v[j] * cos(k * i * recipe.length);
-        CHECK_INT(rd_energy(&rope.chain, k * k / theta, shape, stored, kinetic, &dragged), RD_OK);
+        CHECK_INT(mode_energy(&rope.chain, k * k / theta, shape, stored, kinetic, &dragged), RD_OK);
         const double whole = fabs(f[0] * f[0] * S[0]) + fabs(f[1] * f[1] * S[4]);
         const double allowed = 8 * rounding(k) * whole * LENGTH * S[0] * S[4] / det;
         CHECK_ABS(stored[RD_STRAIN_STRETCH], S[0] * f[0] * f[0] * in.sine, allowed, "as above");
@@ -186,7 +186,7 @@ static void element_beyond_its_resonance_is_refused(void)
     struct rope rope = rope_make(&recipe);
     const double k = 2 / LENGTH, shape[2] = {0, 1};
     double stored[RD_STRAINS], kinetic[W], dragged;
-    CHECK_INT(rd_energy(&rope.chain, 300 * k * k / MU, shape, stored, kinetic, &dragged),
+    CHECK_INT(mode_energy(&rope.chain, 300 * k * k / MU, shape, stored, kinetic, &dragged),
               RD_NOT_POSITIVE_DEFINITE);
     rope_free(&rope);
 }

@@ -6,6 +6,8 @@
 #include "chains.h"
 #include "check.h"
 #include "element/stiffness.h"
+#include "mode.h"
+#include "sweep/kernel/transfer.h"
 
 #include <string.h>
 
@@ -157,6 +159,18 @@ static double factor_of(size_t property)
     return property >= RD_OF_INERTIA ? -LAMBDA : 1;
 }
 
+static enum rd_status stretch_of(struct mode *asked, size_t k, double *slope, double *jump)
+{
+    cv slopes[RD_PROPERTIES], jumps[W];
+    const enum rd_status status =
+        rd_sensitivity_stretch(&asked->sensitivity, k, &MODE_PAIR, slopes, jumps);
+    for (size_t p = 0; p < RD_PROPERTIES; p++)
+        slope[p] = slopes[p].re[0];
+    for (size_t i = 0; i < asked->sensitivity.chain->width; i++)
+        jump[i] = jumps[i].re[0];
+    return status;
+}
+
 static void slopes_are_those_of_the_form(enum rd_kind kind, const char *names, double tension,
                                          double compliance)
 {
@@ -168,9 +182,9 @@ static void slopes_are_those_of_the_form(enum rd_kind kind, const char *names, d
     rope.chain.hinge = compliance != 0 ? hinge : NULL;
     for (size_t i = 0; i < 2 * w; i++)
         u[i] = check_random();
-    struct rd_sensitivity sensitivity;
-    rd_sensitivity_begin(&rope.chain, LAMBDA, &sensitivity);
-    CHECK_INT(rd_sensitivity_stretch(&sensitivity, 0, u, slope, jump), RD_OK);
+    struct mode *asked = mode_ask(&rope.chain, LAMBDA, u);
+    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_OK);
+    mode_forget(asked);
     for (size_t property = 0; property < RD_PROPERTIES; property++) {
         const double scale = scale_of(&rope, property);
         if (scale == 0) {
@@ -200,9 +214,9 @@ static void jump_is_the_slope_of_the_hinge(enum rd_kind kind)
     }
     expected /= stiffness * STEP;
     hinge[LEFT_END * 3 + 2] = 1 / stiffness;
-    struct rd_sensitivity sensitivity;
-    rd_sensitivity_begin(&rope.chain, LAMBDA, &sensitivity);
-    CHECK_INT(rd_sensitivity_stretch(&sensitivity, 0, u, slope, jump), RD_OK);
+    struct mode *asked = mode_ask(&rope.chain, LAMBDA, u);
+    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_OK);
+    mode_forget(asked);
     CHECK_ABS(jump[2], expected, ALLOWED * size / stiffness, "as above");
     CHECK_EXACT(jump[0], 0);
     CHECK_EXACT(jump[1], 0);
@@ -222,26 +236,28 @@ static void stretches_add_up(enum rd_kind kind)
                                               whole[RD_PROPERTIES];
     for (size_t i = 0; i < 10; i++)
         u[i] = check_random();
-    struct rd_sensitivity sensitivity;
-    rd_sensitivity_begin(&rope.chain, LAMBDA, &sensitivity);
+    struct mode *asked = mode_ask(&rope.chain, LAMBDA, u);
     for (size_t k = 0; k < 4; k++) {
-        CHECK_INT(rd_sensitivity_stretch(&sensitivity, k, u, slope[k], jump), RD_OK);
+        CHECK_INT(stretch_of(asked, k, slope[k], jump), RD_OK);
         for (size_t p = 0; p < RD_PROPERTIES; p++)
             all[p] += slope[k][p];
     }
+    mode_forget(asked);
     rope.term_of[0] = rope.term_of[1] = rope.term_of[2] = rope.term_of[3] = INNER;
     rope_gather(&rope);
     CHECK_INT(rope.chain.stretches, 2);
-    rd_sensitivity_begin(&rope.chain, LAMBDA, &sensitivity);
-    CHECK_INT(rd_sensitivity_stretch(&sensitivity, 0, u, whole, jump), RD_OK);
+    asked = mode_ask(&rope.chain, LAMBDA, u);
+    CHECK_INT(stretch_of(asked, 0, whole, jump), RD_OK);
     for (size_t p = 0; p < RD_PROPERTIES; p++)
         CHECK_REL(whole[p], all[p], 4 * EPS, "sums in another order");
-    double dyad[4], expected = 0;
-    rd_sensitivity_nodes(&rope.chain, 0, u, dyad);
+    double expected = 0;
+    cv dyad[4];
+    rd_sensitivity_nodes(&asked->sensitivity, 0, &MODE_PAIR, dyad);
     for (size_t i = 0; i < 4; i++)
         expected += u[2 * i] * u[2 * i + 1];
-    CHECK_EXACT(dyad[1], expected);
-    CHECK_EXACT(dyad[2], expected);
+    CHECK_EXACT(dyad[1].re[0], expected);
+    CHECK_EXACT(dyad[2].re[0], expected);
+    mode_forget(asked);
     rope_free(&rope);
 }
 
@@ -251,16 +267,17 @@ static void impossible_elements_are_refused(void)
     struct rope rope = rope_make(&recipe);
     static const double u[4] = {0};
     double slope[RD_PROPERTIES], jump[2];
-    struct rd_sensitivity sensitivity;
     rope.flexibility[8] = -1;
-    rd_sensitivity_begin(&rope.chain, LAMBDA, &sensitivity);
-    CHECK_INT(rd_sensitivity_stretch(&sensitivity, 0, u, slope, jump), RD_NOT_POSITIVE_DEFINITE);
+    struct mode *asked = mode_ask(&rope.chain, LAMBDA, u);
+    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_NOT_POSITIVE_DEFINITE);
+    mode_forget(asked);
     rope_free(&rope);
     struct recipe wave = recipe_of(RD_CONTINUOUS, "z", 30);
     wave.length = 6; /* beyond a quarter of a wave */
     rope = rope_make(&wave);
-    rd_sensitivity_begin(&rope.chain, LAMBDA / 1e2, &sensitivity);
-    CHECK_INT(rd_sensitivity_stretch(&sensitivity, 0, u, slope, jump), RD_NOT_POSITIVE_DEFINITE);
+    asked = mode_ask(&rope.chain, LAMBDA / 1e2, u);
+    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_NOT_POSITIVE_DEFINITE);
+    mode_forget(asked);
     rope_free(&rope);
 }
 

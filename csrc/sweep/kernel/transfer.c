@@ -40,13 +40,35 @@ static double wavenumber(const struct rd_chain *chain, size_t e, const struct ra
     return rd_span_wavenumber(&span);
 }
 
+double rd_transfer_radians(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate)
+{
+    return chain->length[e] * wavenumber(chain, e, rate);
+}
+
+static const struct sweep_kernel *const kernels[] = {&rd_sweep_kernel_1, &rd_sweep_kernel_2,
+                                                     &rd_sweep_kernel_3, &rd_sweep_kernel_4};
+
+void rd_transfer_slice(size_t width, const struct rate_matrix *rate, double l, int terms, cv *D,
+                       cv *G, cv *Q)
+{
+    const size_t full = width * width, sym = width * (width + 1) / 2;
+    cv triple[PACKED];
+    kernels[width - 1]->make_span(rate, l, 0, terms, triple);
+    for (size_t i = 0, p = full; i < width; i++)
+        for (size_t j = 0; j < width; j++) {
+            D[i * width + j] = triple[i * width + j];
+            if (j < i)
+                continue;
+            G[i * width + j] = G[j * width + i] = triple[p];
+            Q[i * width + j] = Q[j * width + i] = triple[sym + p++];
+        }
+}
+
 void rd_transfer_fill(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate,
                       struct rd_transfer *transfer)
 {
     const size_t w = chain->width, full = w * w, sym = w * (w + 1) / 2;
-    const struct sweep_kernel *const kernels[] = {&rd_sweep_kernel_1, &rd_sweep_kernel_2,
-                                                  &rd_sweep_kernel_3, &rd_sweep_kernel_4};
-    const double radians = chain->length[e] * wavenumber(chain, e, rate);
+    const double radians = rd_transfer_radians(chain, e, rate);
     const int halvings = rd_span_halvings(radians, 1);
     cv triple[PACKED];
     kernels[w - 1]->make_span(rate, chain->length[e], halvings,

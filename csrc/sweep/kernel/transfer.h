@@ -19,4 +19,12 @@ struct rd_transfer {
 void rd_transfer_fill(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate,
                       struct rd_transfer *transfer);
 
+/* A bound of the radians that waves, evanescent ones included, have along a whole element. */
+double rd_transfer_radians(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate);
+
+/* D = F - I, G and Q, each (width, width), of a piece of length l by so many terms of its series
+   (span/span.h) */
+void rd_transfer_slice(size_t width, const struct rate_matrix *rate, double l, int terms, cv *D,
+                       cv *G, cv *Q);
+
 #endif

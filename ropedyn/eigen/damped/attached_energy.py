@@ -61,9 +61,9 @@ class AttachedEnergy(NamedTuple):
             if foot_at < 0:
                 continue
             moved = shape[:, foot_at]
-            tip = np.abs((_core.tip(chain, k, factor).T * moved).sum(axis=1))
-            np.maximum(every.motion, tip, out=every.motion)
             foot = moved @ chain.attached_row[k].T
+            tip = np.abs((_core.tip(chain, k, factor)[0].T * foot).sum(axis=1))
+            np.maximum(every.motion, tip, out=every.motion)
             value = chain.attached_value[k]
             if kind == WIRE:
                 strain, kinetic = _wire(value, factor[INERTIA], foot)

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.array import Complex, Real
-from ..base.errors import SceneError
-from ..chain.compile import remeshed, stations_of
-from ..chain.port import Point
-from ..scene.path import value_at, with_values
-from ..scene.stations import nearest
-from .harmonic import solve_harmonic
-
-if TYPE_CHECKING:
-    from ..chain.compiled import Compiled
-
+from ropedyn.base.array import Complex, Real
+from ropedyn.base.errors import SceneError
+from ropedyn.chain.compile import remeshed, stations_of
+from ropedyn.chain.compiled import Compiled
+from ropedyn.chain.port import Point
+from ropedyn.response.harmonic import solve_harmonic
+from ropedyn.scene.path import value_at, with_values
+from ropedyn.scene.stations import nearest
 
 WIDEST, SHRINK, LEVELS = 0.02, 4.0, 12
 """The first step over the size of the number, by what it shrinks, and how often at most."""

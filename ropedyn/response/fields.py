@@ -1,0 +1,184 @@
+"""Motions of all nodes under unit loads, of whose products derivatives of responses are made.
+
+The load whose field has, anywhere, the motion that a unit force there causes in a response: of a
+motion a unit force, of an internal force a dislocation between the element and the node on its
+right. At the left end of the rope, where no element ends, that is what follows from its right end
+(chain/reaction.py).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+from ..base.array import Complex, Flags, Index, Real
+from ..base.computed import computed
+from ..base.errors import SceneError, SolveError
+from ..base.unit import FORCE
+from ..chain.chain import Chain
+from ..chain.compiled import EXACT
+from ..chain.port import Point, Ports, cut, divide, is_force, locate, moving, ports, stops
+from ..chain.reaction import at_start, first_left_end, tellers
+from .moved_end import is_end, released
+from .question import Question
+
+NOWHERE = (-1, 0, 0)  # Where a load does not slip, see csrc/energy/lines.h.
+
+
+class Slopes(NamedTuple):
+    """Of the form of pairs of fields, drives times responses; see csrc/energy/sensitivity.h."""
+
+    element: Complex  # (pairs, stretches - 1, 13, f)
+    jump: Complex  # (pairs, stretches - 1, width, f)
+    node: Complex  # (pairs, stretches, width, width, f)
+    number: Complex  # (pairs, attached, 4, f)
+    row: Complex  # (pairs, attached, 2, width, f)
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """One component with its loads, cut where they stand and into pieces shorter than waves."""
+
+    question: Question
+
+    @computed
+    def cut(self) -> tuple[Chain, Real]:
+        """The chain, and where its nodes stand."""
+        question = self.question
+        model, given = question.model, [*question.drives, *question.responses]
+        chain = model.chain.only(question.component)
+        inside = [p for p in given if not is_end(p) and locate(model.x, p[1])[1] is not None]
+        if inside and model.element not in EXACT:
+            raise SceneError(
+                f"drive and response must stand at nodes of {model.element!r} elements for a "
+                f"derivative, got {inside[0]} between them"
+            )
+        positions = [p[1] for p in inside]
+        if model.element == "tensed":
+            positions += stops(chain, model.x)
+        chain, x = cut(chain, model.x, positions)
+        if model.element != "continuous" or not question.factor.size:
+            return chain, x
+        return divide(chain, x, _core.cuts(chain, question.fastest))
+
+    @property
+    def chain(self) -> Chain:
+        """The chain that is cut."""
+        return self.cut[0]
+
+    @property
+    def x(self) -> Real:
+        """Where its nodes stand [m]."""
+        return self.cut[1]
+
+    @computed
+    def pair(self) -> Index:
+        """Drives with responses, (pairs, 2) numbers of loads."""
+        drives, responses = len(self.question.drives), len(self.question.responses)
+        drive, response = np.indices((drives, responses), dtype=np.int32).reshape(2, -1)
+        return np.stack([drive, response + drives], axis=1).astype(np.int32)
+
+    @computed
+    def slip(self) -> Index:
+        """Element, end and coordinate where each load parts an element from a node, (loads, 3)."""
+        return np.array([self._slip(p) for p in self._given], dtype=np.int32).reshape(-1, 3)
+
+    def _slip(self, point: Point) -> tuple[int, int, int]:
+        if is_end(point) or not is_force(point):
+            return NOWHERE
+        node, at = locate(self.x, point[1])[0], self.question.component.index(moving(point))
+        return (0, 0, at) if at_start(self.x, point) else (node - 1, 1, at)
+
+    @property
+    def loads(self) -> list[Point]:
+        """Forces and dislocations, which stand where they are whatever moves."""
+        return [point for point in self._given if not is_end(point)]
+
+    @property
+    def _given(self) -> list[Point]:
+        return [*self.question.drives, *self.question.responses]
+
+    @computed
+    def _nodes(self) -> Ports:
+        """The motion of every coordinate of every node."""
+        count, width = self.chain.nodes, len(self.question.component)
+        node = np.arange(count)
+        row = np.zeros((count, width, 2, width))
+        row[node, :, (node == count - 1).astype(int)] = np.eye(width)
+        left = np.repeat(np.minimum(node, count - 2), width).astype(np.int32)
+        return Ports(left, row.reshape(-1, 2, width), None)
+
+    @computed
+    def _held(self) -> Flags:
+        """What cannot move, (nodes width,)."""
+        return self.chain.held[self.chain.term_of].ravel().astype(np.bool_)
+
+    def slopes(self, part: slice) -> Slopes:
+        """Return those of some of the lines."""
+        factor = np.ascontiguousarray(self.question.factor[:, part])
+        field = self.at(part)
+        asked = (self.chain, factor, field, self.pair, self.slip)
+        element, jump, node = _core.pair_slopes(*asked)
+        return Slopes(element, jump, node, *_core.carried_pair_slopes(*asked))
+
+    def at(self, part: slice) -> Complex:
+        """Return the fields at some of the lines, (loads, nodes width, f)."""
+        forces = [k for k, point in enumerate(self._given) if not is_end(point)]
+        factor = np.ascontiguousarray(self.question.factor[:, part])
+        value = np.zeros((len(self._given), len(self._held), factor.shape[1]), dtype=np.complex128)
+        value[forces] = self._loaded([self._given[k] for k in forces], factor, part)
+        for k in (k for k in range(len(value)) if k not in forces):
+            value[k] = self._moved(self._given[k], factor, part)
+        value.imag[..., ~self.question.is_damped[part]] = 0.0  # only rounding is there
+        return value
+
+    def _loaded(self, given: Sequence[Point], factor: Complex, part: slice) -> Complex:
+        """Return the fields of forces and dislocations; what is held does not move."""
+        whole = [point for point in given if not at_start(self.x, point)]
+        start = tellers(self.question.component, self.x) if len(whole) < len(given) else []
+        basis = list(dict.fromkeys([*whole, *start]))
+        found = self._solve(self.chain, basis, factor, part)
+        found[:, self._held] = 0.0
+        reaction = (
+            self._reactions(found[[basis.index(p) for p in start]], factor) if start else None
+        )
+        fields = []
+        for point in given:
+            if reaction is not None and at_start(self.x, point):
+                fields.append(reaction[self.question.component.index(moving(point))])
+            else:
+                fields.append(found[basis.index(point)])
+        return np.stack(fields) if fields else found[:0]
+
+    def _reactions(self, told: Complex, factor: Complex) -> Complex:
+        """Combine what tells the forces at the left end, (width, nodes width, f)."""
+        left, right, force = np.split(told, 3)
+        of = first_left_end(self.chain, factor)
+        value = np.einsum("kij,jnk->ink", of.E, force) - np.einsum("kij,jnk->ink", of.Q, left)
+        return value + np.einsum("kij,jnk->ink", of.P, right)
+
+    def _moved(self, end: Point, factor: Complex, part: slice) -> Complex:
+        """Return the field of an end that moves by 1."""
+        model, own = released(self.question.model, end)
+        loose = dataclasses.replace(self.question, model=model)
+        chain = dataclasses.replace(self, question=loose).chain
+        value = self._solve(chain, [own], factor, part)[0]
+        node, at = locate(self.x, own[1])[0], self.question.component.index(own[0])
+        held = self._held.copy()
+        held[node * len(self.question.component) + at] = False
+        value[held] = 0.0
+        moved: Complex = value / value[node * len(self.question.component) + at]
+        return moved
+
+    def _solve(self, chain: Chain, given: Iterable[Point], factor: Complex, part: slice) -> Complex:
+        """Ask the sweep."""
+        pushed = ports(chain, self.x, self.question.component, given)
+        value, _, solved = _core.sweep(chain, factor, pushed, self._nodes)
+        if solved < factor.shape[1]:
+            raise SolveError(self.question.resonance((part.start or 0) + solved))
+        return value
