@@ -35,6 +35,14 @@ static inline cv rd_field_at(const struct rd_fields *fields, const struct rd_lin
 {
     cv x = {{0}, {0}};
     const double *at = fields->value + load * fields->load + i * fields->entry;
+    if (lines->count == RD_LANES && fields->line == 2 && fields->parts == 2) {
+        at += 2 * lines->first;
+        for (size_t k = 0; k < RD_LANES; k++) {
+            x.re[k] = at[2 * k];
+            x.im[k] = at[2 * k + 1];
+        }
+        return x;
+    }
     for (size_t k = 0; k < RD_LANES; k++) {
         const size_t line = lines->first + (k < lines->count ? k : lines->count - 1);
         x.re[k] = at[line * fields->line];

@@ -131,6 +131,8 @@ void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stret
     const struct rd_chain *chain = sensitivity->chain;
     const size_t w = chain->width, first = (size_t)chain->first[stretch];
     memset(dyad, 0, pairs->count * w * w * sizeof *dyad);
+    if (chain->kind == RD_CONTINUOUS && rd_stretch_nodes(chain, stretch) > 1)
+        return;
     for (size_t i = first; i < first + rd_stretch_nodes(chain, stretch); i++)
         for (size_t p = 0; p < pairs->count; p++) {
             const size_t a = (size_t)pairs->of[2 * p], b = (size_t)pairs->of[2 * p + 1];

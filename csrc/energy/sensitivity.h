@@ -47,7 +47,7 @@ enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t
                                       const struct rd_pairs *pairs, cv *slope, cv *jump);
 
 /* dyad (pairs, width, width) <- the sum of u u^T over the nodes of a stretch: dPi/dK and
-   dPi/d(inertia M) of its node term */
+   dPi/d(inertia M) of its node term; 0 inside continuous spans, where nothing stands */
 void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stretch,
                           const struct rd_pairs *pairs, cv *dyad);
 

@@ -21,12 +21,17 @@ enum { W = RD_WIDTH_MAX, N = RD_STATE_MAX };
    each a factor times the integral of a product of two rows of y, as a form of (u_a, f_b). */
 static void begin(struct rd_wave_slopes *slopes, size_t property, size_t i, size_t j, cv factor)
 {
-    struct rd_wave_form *number = slopes->number + slopes->count++;
-    number->property = property;
-    number->i = i;
-    number->j = j;
-    number->factor = factor;
-    memset(number->form, 0, sizeof number->form);
+    size_t k = 0;
+    while (k < slopes->forms && (slopes->form[k].i != i || slopes->form[k].j != j))
+        k++;
+    slopes->number[slopes->numbers++] =
+        (struct rd_wave_number){.property = property, .form = k, .factor = factor};
+    if (k < slopes->forms)
+        return;
+    slopes->forms++;
+    slopes->form[k].i = i;
+    slopes->form[k].j = j;
+    memset(slopes->form[k].form, 0, sizeof slopes->form[k].form);
 }
 
 /* a rigid element is a beam beside a string, which is not here */
@@ -40,7 +45,7 @@ static void begin_all(struct rd_wave_slopes *slopes)
 {
     const struct rd_chain *chain = slopes->chain;
     const size_t w = chain->width, z = rd_coordinate_find(w, chain->coordinate, RD_Z);
-    slopes->count = 0;
+    slopes->forms = slopes->numbers = 0;
     for (size_t i = 0; i < w; i++)
         for (size_t j = 0; j <= i; j++)
             if (i != z && j != z)
@@ -82,39 +87,40 @@ RD_INLINE void differentiate(const struct rate_matrix *rate, size_t w, double h,
         y[i] = c_scale(d[i], h);
 }
 
-/* Gauss points on (0, 1) and their weights: exact for polynomials of degree 15, and for products of
-   two waves of one radian to 1e-17 of them */
-enum { POINTS = 8, HANGING = 2 };
+/* The first piece has 2^-FINER of the radians that one of the sweep has. Gauss points on (0, 1) and
+   their weights are exact for polynomials of degree 7, and for products of two waves of so few
+   radians to 1e-17 of them. */
+enum { FINER = 4, POINTS = 4, HANGING = 2 };
 
-static const double point[POINTS] = {0.019855071751231884, 0.10166676129318664, 0.2372337950418355,
-                                     0.4082826787521751,   0.5917173212478249,  0.7627662049581645,
-                                     0.8983332387068134,   0.9801449282487681};
-static const double share[POINTS] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894363,
-                                     0.18134189168918100, 0.18134189168918100, 0.15685332293894363,
-                                     0.11119051722668724, 0.05061426814518813};
+static const double point[POINTS] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                     0.9305681557970262};
+static const double share[POINTS] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
+                                     0.17392742256872692};
 
 /* y (POINTS, 2 width of y, 2 width of y_a) at the points, by the series of the exponential */
 RD_INLINE void fill_points(const struct rate_matrix *rate, size_t w, double l, int terms,
                            cv (*y)[N][N])
 {
     for (size_t c = 0; c < 2 * w; c++) {
-        cv d[N];
+        cv d[N], sum[POINTS][N];
         double power[POINTS];
-        for (size_t i = 0; i < 2 * w; i++) {
+        for (size_t i = 0; i < 2 * w; i++)
             d[i] = c_real(i == c);
-            for (int k = 0; k < POINTS; k++)
-                y[k][i][c] = d[i];
-        }
-        for (int k = 0; k < POINTS; k++)
+        for (int k = 0; k < POINTS; k++) {
             power[k] = 1;
+            memcpy(sum[k], d, 2 * w * sizeof *d);
+        }
         for (int m = 1; m <= terms; m++) {
             differentiate(rate, w, l / m, d);
             for (int k = 0; k < POINTS; k++) {
                 power[k] *= point[k];
                 for (size_t i = 0; i < 2 * w; i++)
-                    y[k][i][c] = c_add(y[k][i][c], c_scale(d[i], power[k]));
+                    sum[k][i] = c_add(sum[k][i], c_scale(d[i], power[k]));
             }
         }
+        for (int k = 0; k < POINTS; k++)
+            for (size_t i = 0; i < 2 * w; i++)
+                y[k][i][c] = sum[k][i];
     }
 }
 
@@ -173,21 +179,21 @@ static RD_CLONES void fill_slice(struct rd_wave_slopes *slopes, const struct tri
     fill_points(&slopes->rate, w, l, terms + (slopes->rate.hangs ? HANGING : 0), y);
     for (int k = 0; k < POINTS; k++) {
         by_both_ends(t, w, y[k]);
-        for (size_t p = 0; p < slopes->count; p++) {
-            struct rd_wave_form *number = slopes->number + p;
-            const cv *a = y[k][number->i], *b = y[k][number->j];
+        for (size_t p = 0; p < slopes->forms; p++) {
+            struct rd_wave_form *of = slopes->form + p;
+            const cv *a = y[k][of->i], *b = y[k][of->j];
             for (size_t i = 0; i < n; i++)
                 for (size_t j = i; j < n; j++) {
                     const cv both = c_add(c_mul(a[i], b[j]), c_mul(a[j], b[i]));
-                    cv *sum = number->form + i * n + j;
+                    cv *sum = of->form + i * n + j;
                     *sum = c_add(*sum, c_scale(both, share[k] * l / 2));
                 }
         }
     }
-    for (size_t p = 0; p < slopes->count; p++)
+    for (size_t p = 0; p < slopes->forms; p++)
         for (size_t i = 0; i < n; i++)
             for (size_t j = 0; j < i; j++)
-                slopes->number[p].form[i * n + j] = slopes->number[p].form[j * n + i];
+                slopes->form[p].form[i * n + j] = slopes->form[p].form[j * n + i];
 }
 
 /* A <- A^-1 by Gauss and Jordan without exchange; whether no pivot was negative or zero */
@@ -314,8 +320,8 @@ static RD_CLONES void join(struct rd_wave_slopes *slopes, struct triple *t)
     const size_t w = slopes->chain->width;
     struct middle middle;
     find_middle(w, t, &middle);
-    for (size_t p = 0; p < slopes->count; p++)
-        join_form(w, &middle, slopes->number[p].form);
+    for (size_t p = 0; p < slopes->forms; p++)
+        join_form(w, &middle, slopes->form[p].form);
     join_triples(w, &middle, t);
 }
 
@@ -338,7 +344,7 @@ enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
     rd_rate_fill(chain, e, lines->section, tension, lines->inertia, lines->dashpot, &slopes->rate);
     begin_all(slopes);
     const double radians = rd_transfer_radians(chain, e, &slopes->rate);
-    const int halvings = rd_span_halvings(radians, 1);
+    const int halvings = rd_span_halvings(radians, 1) + FINER;
     const int terms = rd_span_terms(ldexp(radians, -halvings));
     const double l = ldexp(chain->length[e], -halvings);
     rd_transfer_slice(chain->width, &slopes->rate, l, terms, triple.D, triple.G, triple.Q);
@@ -427,17 +433,20 @@ RD_CLONES void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const str
                                   const struct rd_moved *b, cv *slope)
 {
     const size_t w = slopes->chain->width, n = 2 * w;
-    cv dyad[N * N];
+    cv dyad[N * N], sum[RD_PROPERTIES];
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
             dyad[i * n + j] =
                 c_mul(i < w ? a->u[i] : a->right[i - w], j < w ? b->u[j] : b->right[j - w]);
-    for (size_t p = 0; p < slopes->count; p++) {
-        const struct rd_wave_form *number = slopes->number + p;
-        cv sum = c_zero();
+    for (size_t p = 0; p < slopes->forms; p++) {
+        sum[p] = c_zero();
         for (size_t k = 0; k < n * n; k++)
-            sum = c_add(sum, c_mul(number->form[k], dyad[k]));
-        slope[number->property] = c_add(slope[number->property], c_mul(number->factor, sum));
+            sum[p] = c_add(sum[p], c_mul(slopes->form[p].form[k], dyad[k]));
+    }
+    for (size_t p = 0; p < slopes->numbers; p++) {
+        const struct rd_wave_number *number = slopes->number + p;
+        cv *of = slope + number->property;
+        *of = c_add(*of, c_mul(number->factor, sum[number->form]));
     }
     slope[RD_OF_LENGTH] = c_sub(slope[RD_OF_LENGTH], by_length(slopes, a, b));
 }

@@ -10,13 +10,17 @@
 
 enum { RD_STATE_MAX = 2 * RD_WIDTH_MAX };
 
-/* One number of an element: dPi/dp is a factor times the integral of row i times row j of
-   y = (u, f), as a form of (u_a, f_b). */
+/* The integral of row i times row j of y = (u, f) along an element, as a form of (u_a, f_b). */
 struct rd_wave_form {
-    size_t property; /* enum rd_property */
-    size_t i, j;     /* rows of y */
-    cv factor;
+    size_t i, j;
     cv form[RD_STATE_MAX * RD_STATE_MAX]; /* (2 width, 2 width) symmetric */
+};
+
+/* One number of an element: dPi/dp is a factor times a form. */
+struct rd_wave_number {
+    size_t property; /* enum rd_property */
+    size_t form;
+    cv factor;
 };
 
 /* An element at some lines, ready to be asked; of a rigid one that bends without its string. */
@@ -27,8 +31,9 @@ struct rd_wave_slopes {
     cv D[RD_WIDTH_MAX * RD_WIDTH_MAX]; /* F - I */
     cv Q[RD_WIDTH_MAX * RD_WIDTH_MAX];
     cv stiff[RD_WIDTH_MAX * RD_WIDTH_MAX]; /* G^-1 */
-    size_t count;
-    struct rd_wave_form number[RD_PROPERTIES]; /* (count) */
+    size_t forms, numbers;
+    struct rd_wave_form form[RD_PROPERTIES];     /* (forms) */
+    struct rd_wave_number number[RD_PROPERTIES]; /* (numbers) */
 };
 
 /* RD_NOT_POSITIVE_DEFINITE where G is not: the element is longer than its first resonance as a

@@ -19,7 +19,6 @@ from .. import _core
 from ..base.array import Complex, Flags, Index, Real
 from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
-from ..base.unit import FORCE
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT
 from ..chain.port import Point, Ports, cut, divide, is_force, locate, moving, ports, stops
