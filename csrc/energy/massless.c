@@ -213,11 +213,17 @@ void rd_string_slope(const struct rd_element *element, cv tension, const struct 
         c_sub(slope[RD_OF_LENGTH], c_mul(c_scale(tension, element->tension), turn));
 }
 
-RD_CLONES void rd_massless_slope(const struct rd_massless *massless, const struct rd_moved *a,
-                                 const struct rd_moved *b, cv *slope)
+static RD_CLONES void add_all(const struct rd_massless *massless, const struct rd_moved *a,
+                              const struct rd_moved *b, cv *slope)
 {
     add_rods(massless, a, b, slope);
     if (bends(&massless->element))
         add_bending(massless, a, b, slope);
+}
+
+void rd_massless_slope(const struct rd_massless *massless, const struct rd_moved *a,
+                       const struct rd_moved *b, cv *slope)
+{
+    add_all(massless, a, b, slope);
     rd_string_slope(&massless->element, massless->tension, a, b, slope);
 }

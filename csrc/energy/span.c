@@ -355,7 +355,7 @@ enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
 }
 
 /* f_b = G^-1 (u_b - F u_a) and f_a = F^T f_b - Q u_a */
-RD_CLONES void rd_wave_slopes_move(const struct rd_wave_slopes *slopes, struct rd_moved *moved)
+static RD_CLONES void move(const struct rd_wave_slopes *slopes, struct rd_moved *moved)
 {
     const size_t w = slopes->chain->width;
     const cv *u = moved->u;
@@ -380,6 +380,11 @@ RD_CLONES void rd_wave_slopes_move(const struct rd_wave_slopes *slopes, struct r
     const size_t z = rd_coordinate_find(w, slopes->chain->coordinate, RD_Z);
     const double l = slopes->chain->length[slopes->element];
     moved->rise = z < w ? c_scale(c_sub(u[w + z], u[z]), 2 / l) : c_zero();
+}
+
+void rd_wave_slopes_move(const struct rd_wave_slopes *slopes, struct rd_moved *moved)
+{
+    move(slopes, moved);
 }
 
 /* Without a jump f_a would be m, each radian of it takes k = (F^T G^-1 F + Q)_ee away, so that it is
@@ -429,8 +434,8 @@ RD_INLINE cv by_length(const struct rd_wave_slopes *slopes, const struct rd_move
     return sum;
 }
 
-RD_CLONES void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
-                                  const struct rd_moved *b, cv *slope)
+static RD_CLONES void add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
+                          const struct rd_moved *b, cv *slope)
 {
     const size_t w = slopes->chain->width, n = 2 * w;
     cv dyad[N * N], sum[RD_PROPERTIES];
@@ -449,4 +454,10 @@ RD_CLONES void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const str
         *of = c_add(*of, c_mul(number->factor, sum[number->form]));
     }
     slope[RD_OF_LENGTH] = c_sub(slope[RD_OF_LENGTH], by_length(slopes, a, b));
+}
+
+void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
+                        const struct rd_moved *b, cv *slope)
+{
+    add(slopes, a, b, slope);
 }

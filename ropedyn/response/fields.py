@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
-from ..base.array import Complex, Flags, Index, Real
+from ..base.array import Complex, Flags, Real
 from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import Chain
@@ -76,14 +77,14 @@ class Fields:
         return self.cut[1]
 
     @computed
-    def pair(self) -> Index:
+    def pair(self) -> NDArray[np.int32]:
         """Drives with responses, (pairs, 2) numbers of loads."""
         drives, responses = len(self.question.drives), len(self.question.responses)
         drive, response = np.indices((drives, responses), dtype=np.int32).reshape(2, -1)
-        return np.stack([drive, response + drives], axis=1).astype(np.int32)
+        return np.stack([drive, response + np.int32(drives)], axis=1, dtype=np.int32)
 
     @computed
-    def slip(self) -> Index:
+    def slip(self) -> NDArray[np.int32]:
         """Element, end and coordinate where each load parts an element from a node, (loads, 3)."""
         return np.array([self._slip(p) for p in self._given], dtype=np.int32).reshape(-1, 3)
 

@@ -17,7 +17,9 @@ from ..curves.curves import Curves
 class ResponseRates(Protocol):
     """What derivatives of a response are computed from."""
 
-    model: Any
+    @property
+    def model(self) -> Any:
+        """The model that was asked."""
 
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
@@ -89,9 +91,10 @@ class FRF(Curves):
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.
 
-        Exact for continuous spans: the dynamic stiffness Z is symmetric, damped or not, so that
+        Exact: the dynamic stiffness Z is symmetric, damped or not, so that
         dH/dp = -u_r^T (dZ/dp) u_d with the motion that the drive causes and that which a unit load
-        on the response would. Both are solved once for all numbers.
+        on the response would. Both are solved once for all numbers. Of a sum over modes the
+        residues and the eigenvalues change so.
 
         Parameters
         ----------
@@ -103,11 +106,7 @@ class FRF(Curves):
         -------
         ndarray of complex, as value
             In units of the value per unit of the number. To rounding, which the damping ratio
-            enlarges near resonances as it does that of the value. Chains, modal damping, numbers of
-            resonators and broken wires, the motion of ends, tips of wires and internal forces have
-            central differences extrapolated to no step (Ridders 1982), up to 26 responses each:
-            about nine digits of the largest value, fewer near resonances of damping ratios below
-            1e-3.
+            enlarges near resonances as it does that of the value.
 
         Raises
         ------
@@ -115,7 +114,9 @@ class FRF(Curves):
             If the path is not a string.
         SceneError
             If the path is not that of a number that acts in the scene, or that of a part which does
-            not stand alone, or if the response was read from a file or stepped over time.
+            not stand alone, if a drive or a response stands where the scene changes or between
+            nodes of ``"rigid"`` or ``"difference"`` elements, or if the response was read from a
+            file or stepped over time.
 
         Examples
         --------

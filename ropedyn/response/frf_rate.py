@@ -62,9 +62,10 @@ class ComponentRates:
         return Slopes(*parts)
 
     @computed
-    def _kept(self) -> list[int]:
+    def _kept(self) -> Index:
         """The component's coordinates among all."""
-        return [self.places.model.coordinates.index(c) for c in self.fields.question.component]
+        every = self.places.model.coordinates
+        return np.array([every.index(c) for c in self.fields.question.component], dtype=np.intp)
 
     @computed
     def _carried(self) -> Index:

@@ -153,6 +153,15 @@ def still(array):
     return array
 
 
+PAIR = np.array([[0, 1], [1, 1]], dtype=np.int32)
+SLIP = np.array([[-1, 0, 0], [1, 1, 0]], dtype=np.int32)
+
+
+FIELD = np.random.default_rng(1).normal(size=(2, SHAPES[0].size, len(FACTOR), 2)) @ [1, 1j]
+PAIRED = (FACTOR.T.copy(), FIELD, PAIR, SLIP)
+SPANNED = (PAIRED[0], FIELD[:, : SHAPES[0, :4].size].copy(), PAIR, SLIP)
+
+
 # every entry point that takes a chain
 ENTRIES = {
     "triples": _core.triples,
@@ -179,6 +188,9 @@ ENTRIES = {
     ),
     "tip": lambda chain: _core.tip(chain, 1, FACTOR.T.copy()),
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, np.array([1e4, 1e6])),
+    "cuts": lambda chain: _core.cuts(chain, FACTOR.T.copy()),
+    "pair_slopes": lambda chain: _core.pair_slopes(chain, *PAIRED),
+    "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *PAIRED),
     "march_factor": lambda chain: _core.march_factor(without_wire(chain), BESIDE, LAW, 1e-3, 1.0),
     "march": marched,
     "march_stage": staged,
@@ -200,6 +212,9 @@ SPANS = {
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
+    "cuts": ENTRIES["cuts"],
+    "pair_slopes": lambda chain: _core.pair_slopes(chain, *SPANNED),
+    "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *SPANNED),
 }
 OTHERS = {
     "section": lambda _: _core.section(1.0, 1.0, 1.0, 0.1, 0.1),
@@ -490,6 +505,16 @@ REFUSED = {
         lambda: _core.carried(CHAIN, SHAPES, MOTIONS[:, 1:], np.ones(2)),
         ValueError,
         "motion must have 2 entries along axis 1, got 1",
+    ),
+    "pair of no load": (
+        lambda: _core.pair_slopes(CHAIN, *PAIRED[:2], PAIR + 1, SLIP),
+        ValueError,
+        "pair and slip must name loads and elements of the chain",
+    ),
+    "slip of no element": (
+        lambda: _core.pair_slopes(CHAIN, *PAIRED[:2], PAIR, SLIP + 8),
+        ValueError,
+        "pair and slip must name loads and elements of the chain",
     ),
     "tip -1": (
         lambda: _core.tip(CHAIN, -1, FACTOR.T.copy()),

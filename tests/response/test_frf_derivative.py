@@ -1,6 +1,7 @@
 """Derivatives of frequency responses against closed forms and differences."""
 
 import functools
+import re
 
 import mpmath
 import numpy as np
@@ -211,6 +212,94 @@ def test_derivative_of_a_rope_that_hangs(path):
     rates = frf.rates
     expected = frf_difference(rates.model, path, frf.frequency, frf.drive, frf.response)
     assert error(frf.derivative(path), expected[0]) < QUOTIENT
+
+
+# --- chains, structures, forces, ends, tips -------------------------------------------------------
+
+KINDS = {
+    "continuous": {},
+    "tensed": {"elements": 26},
+    "rigid": {"elements": 26, "element": "rigid"},
+}
+CARRYING = FULL.replace(
+    damping=FULL.damping[:2],
+    parts=(
+        rd.PointMass(0.25, 0.03),
+        rd.Hinge(0.8, stiffness=5.0),
+        rd.Resonator(0.35, 0.02, 60.0, damping_ratio=0.05),
+        rd.BrokenWire(0.55, 0.1, 1e-3, radius=0.01, damping_ratio=0.01),
+        rd.LocalChange(0.2, 0.5, bending=0.8, density=0.9),
+    ),
+)
+HELD = rd.Scene(
+    rd.Rope(LENGTH, DENSITY, bending_stiffness=BENDING),
+    tension=TENSION,
+    damping=rd.LossFactor(0.03),
+    parts=[rd.PointMass(0.4, 0.05)],
+)
+MODAL = HELD.replace(damping=rd.ModalDamping(0.02))
+ASKED = {
+    "motion": (CARRYING, [("z", 0.25), ("alpha", 0.7)], [("z", 0.25), ("beta", 0.7)]),
+    "forces": (CARRYING, [("z", 0.25)], [("F_z", 0.0), ("M_beta", 0.7), ("F_z", LENGTH)]),
+    "tip": (CARRYING, [("z", 0.25)], [("wire", 0), ("z", 0.7)]),
+    "end": (HELD, [("end", 0, "z"), ("z", 0.6)], [("z", 0.9), ("F_z", 0.0), ("M_beta", 0.9)]),
+    "modal": (MODAL, [("z", 0.6)], [("z", 0.9), ("z", 0.6)]),
+}
+
+
+def check_against_differences(scene, kind, drive, response, every):
+    """Every so many numbers of a scene, those apart at which a difference cannot be taken."""
+    model = scene.compile(**KINDS[kind])
+    frf = model.frf([20.0, 140.0], drive=drive, response=response)
+    compared = 0
+    for path in list(frf.rates.paths)[::every]:
+        try:
+            found = frf.derivative(path)
+            expected = frf_difference(model, path, frf.frequency, frf.drive, frf.response)
+        except rd.SceneError as refusal:
+            assert re.search("must not be 0|must not stand", str(refusal))
+            continue
+        compared += 1
+        if expected.any():
+            assert error(found, expected) < 2 * QUOTIENT, path
+        else:
+            assert not found.any()
+    return compared
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("what", ASKED)
+def test_derivative_is_that_of_every_kind_of_question(what, kind):
+    scene, drive, response = ASKED[what]
+    every = 3 if scene is CARRYING else 1
+    assert check_against_differences(scene, kind, drive, response, every) > 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("what", ASKED)
+def test_derivative_is_that_of_every_number(what, kind):
+    scene, drive, response = ASKED[what]
+    assert check_against_differences(scene, kind, drive, response, 1) > 3
+
+
+def test_modal_damping_changes_as_its_sum():
+    """h = sum 2/(mu L) sin sin/(lambda_n - omega^2 + 2 i zeta omega omega_n)."""
+    # 1e-11 of it is beyond 200 000 modes, 2e-10 what the response leaves out
+    scene = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, damping=rd.ModalDamping(0.02))
+    f = np.array([11.0, 21.0, 47.0])
+    frf = scene.compile().frf(f, **WHERE)
+    omega, n = 2 * np.pi * f, np.arange(1, 200_001)[:, None]
+    own = n * np.pi / LENGTH * np.sqrt(TENSION / DENSITY)
+    pole = own**2 - omega**2 + 2j * 0.02 * omega * own
+    weight = np.sin(n * np.pi * DRIVE / LENGTH) * np.sin(n * np.pi * RESPONSE / LENGTH)
+    weight *= 2 / (DENSITY * LENGTH)
+    by_own = -weight * (2 * own + 2j * 0.02 * omega) / pole**2
+    assert error(frf.derivative("tension")[0], (by_own * own / (2 * TENSION)).sum(axis=0)) < 2e-9
+    by_density = -weight / pole / DENSITY - by_own * own / (2 * DENSITY)
+    assert error(frf.derivative("linear_density")[0], by_density.sum(axis=0)) < 2e-9
+    by_ratio = -weight * 2j * omega * own / pole**2
+    assert error(frf.derivative("damping.ratio")[0], by_ratio.sum(axis=0)) < 2e-9
 
 
 # --- without a form of their own ----------------------------------------------------------------
