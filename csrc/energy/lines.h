@@ -13,6 +13,8 @@ struct rd_lines {
 };
 
 /* Motion (loads, nodes, width) of the nodes at every line, anywhere in memory: strides of doubles.
+   Where `forces` are told too it is (loads, nodes, 2, width), with the force on the right end of the
+   element on the left of each node, and continuous elements may be of any length.
    A load may slip: element slip[0] of it ends at slip[1] (0: left, 1: right) apart from the node
    there, which moves by 1 more in coordinate slip[2] at the right end and by 1 less at the left. */
 struct rd_fields {
@@ -20,6 +22,7 @@ struct rd_fields {
     size_t loads;
     size_t line, load, entry; /* strides */
     size_t parts;             /* of a number: 1 real, 2 complex */
+    _Bool forces;
     const int32_t *slip;      /* (loads, 3), element -1: none; or NULL */
 };
 
@@ -29,7 +32,13 @@ struct rd_pairs {
     const int32_t *of; /* (count, 2) */
 };
 
-/* entry i of (nodes, width) of a load in the lanes of these lines */
+/* numbers of a node */
+static inline size_t rd_field_rows(const struct rd_fields *fields, size_t width)
+{
+    return fields->forces ? 2 * width : width;
+}
+
+/* entry i of all of a load in the lanes of these lines */
 static inline cv rd_field_at(const struct rd_fields *fields, const struct rd_lines *lines,
                              size_t load, size_t i)
 {

@@ -34,7 +34,8 @@ static enum rd_status prepare(struct rd_sensitivity *sensitivity, size_t k)
         return rd_massless_of(chain, k, sensitivity->lines, &sensitivity->of.massless);
     if (e == sensitivity->of.span.element)
         return RD_OK;
-    return rd_wave_slopes_of(chain, e, sensitivity->lines, &sensitivity->of.span);
+    return rd_wave_slopes_of(chain, e, sensitivity->lines, sensitivity->fields->forces,
+                             &sensitivity->of.span);
 }
 
 /* the motion of the ends of element i, apart from their nodes where the load slips */
@@ -44,10 +45,14 @@ static void read(const struct rd_sensitivity *sensitivity, size_t load, size_t i
     const struct rd_fields *fields = sensitivity->fields;
     const size_t w = sensitivity->chain->width;
     const int32_t *slip = fields->slip ? fields->slip + 3 * load : NULL;
-    for (size_t k = 0; k < 2 * w; k++)
-        moved->u[k] = rd_field_at(fields, sensitivity->lines, load, i * w + k);
-    for (size_t k = 0; k < w; k++)
+    const size_t rows = rd_field_rows(fields, w), at = i * rows;
+    for (size_t k = 0; k < w; k++) {
+        moved->u[k] = rd_field_at(fields, sensitivity->lines, load, at + k);
+        moved->u[w + k] = rd_field_at(fields, sensitivity->lines, load, at + rows + k);
         moved->opens[k] = c_zero();
+        if (fields->forces)
+            moved->right[k] = rd_field_at(fields, sensitivity->lines, load, at + rows + w + k);
+    }
     if (slip && slip[0] >= 0 && (size_t)slip[0] == i) {
         cv *u = moved->u + (size_t)slip[1] * w + (size_t)slip[2];
         *u = c_add(*u, c_real(slip[1] ? -1 : 1));
@@ -60,7 +65,9 @@ static void move(const struct rd_sensitivity *sensitivity, const double *hinge, 
     for (size_t load = 0; load < sensitivity->fields->loads; load++) {
         struct rd_moved *moved = sensitivity->moved + load;
         read(sensitivity, load, i, moved);
-        if (sensitivity->waves) {
+        if (sensitivity->waves && sensitivity->fields->forces) {
+            rd_wave_slopes_scatter(&sensitivity->of.span, hinge, spring, moved);
+        } else if (sensitivity->waves) {
             rd_wave_slopes_open(&sensitivity->of.span, hinge, spring, moved);
             rd_wave_slopes_move(&sensitivity->of.span, moved);
         } else {
@@ -113,6 +120,8 @@ enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t
     const enum rd_status status = prepare(sensitivity, stretch);
     if (status != RD_OK)
         return status;
+    if (sensitivity->waves && sensitivity->fields->forces)
+        rd_wave_slopes_hinge(&sensitivity->of.span, hinge, sensitivity->lines->spring);
     for (size_t i = (size_t)chain->first[stretch]; i < (size_t)chain->first[stretch + 1]; i++) {
         move(sensitivity, hinge, i);
         for (size_t p = 0; p < pairs->count; p++)
@@ -130,6 +139,7 @@ void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stret
 {
     const struct rd_chain *chain = sensitivity->chain;
     const size_t w = chain->width, first = (size_t)chain->first[stretch];
+    const size_t rows = rd_field_rows(sensitivity->fields, w);
     memset(dyad, 0, pairs->count * w * w * sizeof *dyad);
     if (chain->kind == RD_CONTINUOUS && rd_stretch_nodes(chain, stretch) > 1)
         return;
@@ -137,8 +147,10 @@ void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stret
         for (size_t p = 0; p < pairs->count; p++) {
             const size_t a = (size_t)pairs->of[2 * p], b = (size_t)pairs->of[2 * p + 1];
             for (size_t k = 0; k < w * w; k++) {
-                const cv u = rd_field_at(sensitivity->fields, sensitivity->lines, a, i * w + k / w);
-                const cv v = rd_field_at(sensitivity->fields, sensitivity->lines, b, i * w + k % w);
+                const cv u =
+                    rd_field_at(sensitivity->fields, sensitivity->lines, a, i * rows + k / w);
+                const cv v =
+                    rd_field_at(sensitivity->fields, sensitivity->lines, b, i * rows + k % w);
                 dyad[p * w * w + k] = c_add(dyad[p * w * w + k], c_mul(u, v));
             }
         }

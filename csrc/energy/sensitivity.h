@@ -42,7 +42,8 @@ void rd_sensitivity_begin(struct rd_sensitivity *sensitivity, const struct rd_li
    stretch, jump (pairs, width) <- the sum of the products by which its hinges open:
    dPi/d(spring stiffness of the hinge).
    RD_NOT_POSITIVE_DEFINITE, RD_CRITICAL_ELEMENT: as rd_element_matrix; the first also where a
-   continuous element is longer than its first resonance as a cantilever and nothing is damped. */
+   continuous element without forces is longer than its first resonance as a cantilever and nothing
+   is damped. */
 enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t stretch,
                                       const struct rd_pairs *pairs, cv *slope, cv *jump);
 

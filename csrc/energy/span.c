@@ -334,8 +334,260 @@ static RD_CLONES bool keep(struct rd_wave_slopes *slopes, const struct triple *t
     return invert(w, slopes->stiff);
 }
 
+/* ---- longer than waves: halves joined by the waves between them ---- */
+
+/* 1/z^2 is near the impedance of what moves: with a^2 - k^2 = T S_bb, a k = (lambda mu S_bb)^1/2
+   k (a^2 + k^2)/S_bb of z and (a + k)/S_bb of beta, k/S of the others; waves are no longer than the
+   element. Any z will do. */
+static void set_scale(struct rd_wave_slopes *slopes, int lane)
+{
+    const struct rate_matrix *rate = &slopes->rate;
+    const size_t w = slopes->chain->width;
+    const double least = 1 / slopes->chain->length[slopes->element];
+    for (size_t i = 0; i < w; i++) {
+        const bool bent = (int)i == rate->z || (rate->z >= 0 && i == w - 1);
+        const size_t c = bent ? w - 1 : i, m = bent ? (size_t)rate->z : i;
+        const double S = hypot(rate->S[c][c].re[lane], rate->S[c][c].im[lane]);
+        const double load = S * hypot(rate->q[m].re[lane], rate->q[m].im[lane]);
+        const double half = bent ? S * hypot(rate->q[c].re[lane], rate->q[c].im[lane]) / 2 : 0;
+        const double a = fmax(sqrt(half + sqrt(half * half + load)), least);
+        const double k = bent ? fmax(sqrt(load) / a, least) : fmax(sqrt(load), least);
+        const double stiff = !bent ? k : (int)i == rate->z ? k * (a * a + k * k) : a + k;
+        slopes->waves.z[i][lane] = sqrt(S / stiff);
+    }
+}
+
+/* (n, n) A <- A^-1 by Gauss and Jordan, the largest of a column first, in every lane */
+static void invert_apart(size_t n, cv *A)
+{
+    for (int lane = 0; lane < RD_LANES; lane++) {
+        double _Complex X[2 * W * W];
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < n; j++) {
+                const cv a = A[i * n + j];
+                X[i * 2 * n + j] = CMPLX(a.re[lane], a.im[lane]);
+                X[i * 2 * n + n + j] = i == j;
+            }
+        for (size_t k = 0; k < n; k++) {
+            size_t p = k;
+            for (size_t i = k + 1; i < n; i++)
+                p = cabs(X[i * 2 * n + k]) > cabs(X[p * 2 * n + k]) ? i : p;
+            for (size_t j = 0; j < 2 * n; j++) {
+                const double _Complex x = X[p * 2 * n + j];
+                X[p * 2 * n + j] = X[k * 2 * n + j];
+                X[k * 2 * n + j] = x;
+            }
+            const double _Complex pivot = 1 / X[k * 2 * n + k];
+            for (size_t j = k; j < 2 * n; j++)
+                X[k * 2 * n + j] *= pivot;
+            for (size_t i = 0; i < n; i++) {
+                const double _Complex x = X[i * 2 * n + k];
+                for (size_t j = k; i != k && j < 2 * n; j++)
+                    X[i * 2 * n + j] -= x * X[k * 2 * n + j];
+            }
+        }
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < n; j++) {
+                A[i * n + j].re[lane] = creal(X[i * 2 * n + n + j]);
+                A[i * n + j].im[lane] = cimag(X[i * 2 * n + n + j]);
+            }
+    }
+}
+
+/* the same by the adjugate where there are two or fewer, which is what most ropes have */
+static RD_CLONES void invert_any(size_t n, cv *A)
+{
+    if (n > 2) {
+        invert_apart(n, A);
+        return;
+    }
+    const cv det = n == 1 ? A[0] : c_sub(c_mul(A[0], A[3]), c_mul(A[1], A[2]));
+    const cv s = c_inverse(det), first = n == 1 ? c_real(1) : A[3];
+    if (n == 2) {
+        A[3] = c_mul(A[0], s);
+        A[1] = c_neg(c_mul(A[1], s));
+        A[2] = c_neg(c_mul(A[2], s));
+    }
+    A[0] = c_mul(first, s);
+}
+
+/* (u_a, f_b) = C (a_L, a_R): of u_a + i f_a = 2 a_L and u_b - i f_b = 2 a_R in units of z, 1/z,
+
+       | I - i Q   i F^T   |
+       | i F       I + i G | (u_a, f_b) = 2 (a_L, i a_R),
+
+   whose Hermitian part is I where nothing is damped */
+static RD_CLONES void fill_entry(const struct triple *t, size_t w, const lanes *z, cv *C)
+{
+    const size_t n = 2 * w;
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            const cv one = c_real(i == j);
+            const cv F = c_scale_lanes(c_add(t->D[i * w + j], one), z[j] / z[i]);
+            C[i * n + j] = c_sub(one, c_times_i(c_scale_lanes(t->Q[i * w + j], z[i] * z[j])));
+            C[(w + i) * n + w + j] =
+                c_add(one, c_times_i(c_scale_lanes(t->G[i * w + j], 1 / (z[i] * z[j]))));
+            C[(w + i) * n + j] = C[j * n + w + i] = c_times_i(F);
+        }
+    invert(n, C);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            const cv twice = c_scale(C[i * n + j], 2);
+            C[i * n + j] = j < w ? twice : c_times_i(twice);
+        }
+}
+
+/* form <- C^T diag(z, 1/z) form diag(z, 1/z) C */
+static RD_CLONES void enter_form(size_t w, const lanes *z, const cv *C, cv *form)
+{
+    const size_t n = 2 * w;
+    cv scaled[N * N], half[N * N];
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            const lanes a = i < w ? z[i] : 1 / z[i - w], b = j < w ? z[j] : 1 / z[j - w];
+            scaled[i * n + j] = c_scale_lanes(form[i * n + j], a * b);
+        }
+    times(n, scaled, C, half);
+    transposed_times(n, C, half, form);
+}
+
+/* b_L = u_a - a_L and b_R = a_R + i f_b */
+static RD_CLONES void begin_waves(struct rd_wave_slopes *slopes, const struct triple *t)
+{
+    const size_t w = slopes->chain->width, n = 2 * w;
+    struct rd_scattering *waves = &slopes->waves;
+    cv C[N * N];
+    for (int lane = 0; lane < RD_LANES; lane++)
+        set_scale(slopes, lane);
+    fill_entry(t, w, waves->z, C);
+    for (size_t p = 0; p < slopes->forms; p++)
+        enter_form(w, waves->z, C, slopes->form[p].form);
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            const cv one = c_real(i == j);
+            waves->S11[i * w + j] = c_sub(C[i * n + j], one);
+            waves->S12[i * w + j] = C[i * n + w + j];
+            waves->S21[i * w + j] = c_times_i(C[(w + i) * n + j]);
+            waves->S22[i * w + j] = c_add(one, c_times_i(C[(w + i) * n + w + j]));
+        }
+}
+
+/* The waves between two equal parts, d to the right and c to the left: d = U1 a_L + U2 a_R and
+   c = P1 a_L + P2 a_R of d = S21 a_L + S22 c, c = S11 d + S12 a_R. */
+RD_INLINE void meet_waves(size_t w, const struct rd_scattering *s, struct middle *m)
+{
+    cv M[W * W], X[W * W];
+    times(w, s->S22, s->S11, M);
+    for (size_t i = 0; i < w * w; i++)
+        M[i] = c_sub(c_real(i % (w + 1) == 0), M[i]);
+    invert_any(w, M);
+    times(w, M, s->S21, m->U1);
+    times(w, s->S22, s->S12, X);
+    times(w, M, X, m->U2);
+    times(w, s->S11, m->U1, m->P1);
+    times(w, s->S11, m->U2, m->P2);
+    for (size_t i = 0; i < w * w; i++)
+        m->P2[i] = c_add(m->P2[i], s->S12[i]);
+}
+
+static RD_CLONES void join_waves(struct rd_wave_slopes *slopes)
+{
+    const size_t w = slopes->chain->width;
+    struct rd_scattering *s = &slopes->waves;
+    struct middle m;
+    cv X11[W * W], X12[W * W], X21[W * W], X22[W * W];
+    meet_waves(w, s, &m);
+    for (size_t p = 0; p < slopes->forms; p++)
+        join_form(w, &m, slopes->form[p].form);
+    times(w, s->S12, m.P1, X11);
+    times(w, s->S12, m.P2, X12);
+    times(w, s->S21, m.U1, X21);
+    times(w, s->S21, m.U2, X22);
+    for (size_t i = 0; i < w * w; i++) {
+        s->S11[i] = c_add(s->S11[i], X11[i]);
+        s->S22[i] = c_add(s->S22[i], X22[i]);
+        s->S12[i] = X12[i];
+        s->S21[i] = X21[i];
+    }
+}
+
+/* The left node moves by u_a - C f_a where a hinge opens, u_a = a_L + b_L and f_a = i (b_L - a_L):
+   (I + S11) a_L + S12 a_R = u_a; where it is free, f_a is 0 in its place. */
+void rd_wave_slopes_hinge(struct rd_wave_slopes *slopes, const double *hinge, cv spring)
+{
+    const size_t w = slopes->chain->width;
+    struct rd_scattering *s = &slopes->waves;
+    const cv soft = c_inverse(spring);
+    for (size_t i = 0; i < w; i++) {
+        const bool free = hinge && isinf(hinge[i]);
+        const double C = hinge && !free ? hinge[i] : 0;
+        const cv give = c_times_i(c_scale_lanes(soft, C / (s->z[i] * s->z[i])));
+        for (size_t j = 0; j < w; j++) {
+            const cv one = c_real(i == j), b = s->S11[i * w + j];
+            const cv force = c_sub(b, one);
+            s->enter[i * w + j] = free ? force : c_sub(c_add(one, b), c_mul(give, force));
+        }
+    }
+    invert_any(w, s->enter);
+}
+
+/* what is left of the left node's condition without a_L */
+RD_INLINE void fill_left(const struct rd_wave_slopes *slopes, const double *hinge, cv spring,
+                         const struct rd_moved *moved, const cv *sent, cv *rest)
+{
+    const struct rd_scattering *s = &slopes->waves;
+    const cv soft = c_inverse(spring);
+    for (size_t i = 0; i < slopes->chain->width; i++) {
+        const bool free = hinge && isinf(hinge[i]);
+        const double C = hinge && !free ? hinge[i] : 0;
+        const cv give = c_times_i(c_scale_lanes(soft, C / (s->z[i] * s->z[i])));
+        const cv u = c_scale_lanes(moved->u[i], 1 / s->z[i]);
+        rest[i] = free ? c_neg(sent[i]) : c_add(c_sub(u, sent[i]), c_mul(give, sent[i]));
+    }
+}
+
+static RD_CLONES void scatter(const struct rd_wave_slopes *slopes, const double *hinge, cv spring,
+                              struct rd_moved *moved)
+{
+    const struct rd_scattering *s = &slopes->waves;
+    const size_t w = slopes->chain->width;
+    cv sent[W], rest[W], *in = moved->state;
+    for (size_t i = 0; i < w; i++) {
+        const cv u = c_scale_lanes(moved->u[w + i], 0.5 / s->z[i]);
+        in[w + i] = c_sub(u, c_times_i(c_scale_lanes(moved->right[i], 0.5 * s->z[i])));
+    }
+    for (size_t i = 0; i < w; i++) {
+        sent[i] = c_zero();
+        for (size_t j = 0; j < w; j++)
+            sent[i] = c_add(sent[i], c_mul(s->S12[i * w + j], in[w + j]));
+    }
+    fill_left(slopes, hinge, spring, moved, sent, rest);
+    for (size_t i = 0; i < w; i++) {
+        in[i] = c_zero();
+        for (size_t j = 0; j < w; j++)
+            in[i] = c_add(in[i], c_mul(s->enter[i * w + j], rest[j]));
+    }
+    for (size_t i = 0; i < w; i++) {
+        cv out = sent[i];
+        for (size_t j = 0; j < w; j++)
+            out = c_add(out, c_mul(s->S11[i * w + j], in[j]));
+        const cv u = c_scale_lanes(c_add(in[i], out), s->z[i]);
+        moved->left[i] = c_times_i(c_scale_lanes(c_sub(out, in[i]), 1 / s->z[i]));
+        moved->opens[i] = hinge && hinge[i] != 0 ? c_sub(u, moved->u[i]) : c_zero();
+        moved->u[i] = u;
+    }
+}
+
+void rd_wave_slopes_scatter(const struct rd_wave_slopes *slopes, const double *hinge, cv spring,
+                            struct rd_moved *moved)
+{
+    scatter(slopes, hinge, spring, moved);
+}
+
+/* pieces of one radian by their ends */
 enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
-                                 const struct rd_lines *lines, struct rd_wave_slopes *slopes)
+                                 const struct rd_lines *lines, bool forces,
+                                 struct rd_wave_slopes *slopes)
 {
     const cv tension = is_beam(chain) ? c_zero() : lines->tension;
     struct triple triple;
@@ -349,9 +601,15 @@ enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
     const double l = ldexp(chain->length[e], -halvings);
     rd_transfer_slice(chain->width, &slopes->rate, l, terms, triple.D, triple.G, triple.Q);
     fill_slice(slopes, &triple, l, terms);
-    for (int k = 0; k < halvings; k++)
+    const int mixed = forces ? FINER : halvings;
+    for (int k = 0; k < mixed; k++)
         join(slopes, &triple);
-    return keep(slopes, &triple) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+    if (!forces)
+        return keep(slopes, &triple) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+    begin_waves(slopes, &triple);
+    for (int k = mixed; k < halvings; k++)
+        join_waves(slopes);
+    return RD_OK;
 }
 
 /* f_b = G^-1 (u_b - F u_a) and f_a = F^T f_b - Q u_a */
@@ -380,6 +638,8 @@ static RD_CLONES void move(const struct rd_wave_slopes *slopes, struct rd_moved 
     const size_t z = rd_coordinate_find(w, slopes->chain->coordinate, RD_Z);
     const double l = slopes->chain->length[slopes->element];
     moved->rise = z < w ? c_scale(c_sub(u[w + z], u[z]), 2 / l) : c_zero();
+    memcpy(moved->state, u, w * sizeof *u);
+    memcpy(moved->state + w, moved->right, w * sizeof *u);
 }
 
 void rd_wave_slopes_move(const struct rd_wave_slopes *slopes, struct rd_moved *moved)
@@ -441,8 +701,7 @@ static RD_CLONES void add(const struct rd_wave_slopes *slopes, const struct rd_m
     cv dyad[N * N], sum[RD_PROPERTIES];
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
-            dyad[i * n + j] =
-                c_mul(i < w ? a->u[i] : a->right[i - w], j < w ? b->u[j] : b->right[j - w]);
+            dyad[i * n + j] = c_mul(a->state[i], b->state[j]);
     for (size_t p = 0; p < slopes->forms; p++) {
         sum[p] = c_zero();
         for (size_t k = 0; k < n * n; k++)

@@ -316,7 +316,7 @@ static void foot_motion(const struct asked *asked, npy_intp k, npy_intp i, npy_i
     const struct rd_fields *fields = &asked->fields;
     const size_t node = rd_attached_node(&asked->parsed.chain, (size_t)k);
     for (npy_intp n = 0; n < asked->width; n++) {
-        const size_t entry = node * (size_t)asked->width + (size_t)n;
+        const size_t entry = node * rd_field_rows(fields, (size_t)asked->width) + (size_t)n;
         const double *at = fields->value + (size_t)load * fields->load + entry * fields->entry +
                            (size_t)i * fields->line;
         u[n] = CMPLX(at[0], fields->parts == 2 ? at[1] : 0);
@@ -404,7 +404,8 @@ static int parse_pairs(PyObject *arguments, struct asked *asked)
     if (asked->line == NULL)
         return -1;
     asked->count = PyArray_DIM(asked->line, 1);
-    const npy_intp entries = (npy_intp)(chain->nodes * chain->width);
+    const bool forces = chain->kind == RD_CONTINUOUS;
+    const npy_intp entries = (npy_intp)(chain->nodes * chain->width) * (forces ? 2 : 1);
     asked->field =
         py_array(object[2], NPY_COMPLEX128, 3, (npy_intp[]){-1, entries, asked->count}, "field");
     asked->pair = py_array(object[3], NPY_INT32, 2, (npy_intp[]){-1, 2}, "pair");
@@ -421,6 +422,7 @@ static int parse_pairs(PyObject *arguments, struct asked *asked)
         .load = 2 * (size_t)(entries * asked->count),
         .entry = 2 * (size_t)asked->count,
         .parts = 2,
+        .forces = forces,
         .slip = PyArray_DATA(asked->slip),
     };
     asked->pairs = (struct rd_pairs){

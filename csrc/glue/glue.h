@@ -93,7 +93,6 @@ PyObject *py_mixed(PyObject *module, PyObject *arguments);
 PyObject *py_mixed_deflection(PyObject *module, PyObject *arguments);
 PyObject *py_carried(PyObject *module, PyObject *arguments);
 PyObject *py_carried_slopes(PyObject *module, PyObject *arguments);
-PyObject *py_cuts(PyObject *module, PyObject *arguments);
 PyObject *py_pair_slopes(PyObject *module, PyObject *arguments);
 PyObject *py_carried_pair_slopes(PyObject *module, PyObject *arguments);
 PyObject *py_tip(PyObject *module, PyObject *arguments);

@@ -47,8 +47,6 @@ static PyMethodDef methods[] = {
     {"recurrence", py_recurrence, METH_VARARGS,
      "recurrence(change, seen, length, force, state) -> value, state"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},
-    {"cuts", py_cuts, METH_VARARGS,
-     "cuts(chain, factor) -> pieces below their own resonance of an element of each stretch"},
     {"pair_slopes", py_pair_slopes, METH_VARARGS,
      "pair_slopes(chain, factor, field, pair, slip) -> slopes, jumps, dyads of stretches"},
     {"carried_pair_slopes", py_carried_pair_slopes, METH_VARARGS,

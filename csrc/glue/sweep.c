@@ -18,25 +18,18 @@ static struct rd_factors factors_of(PyArrayObject *factor)
     };
 }
 
-/* chain and factor (RD_PARTS, -1) of a question about how far waves reach; the chain is viewed only.
-   -1 with an error set, to be released all the same */
-static int parse_waves(PyObject *arguments, struct py_chain *parsed, PyArrayObject **factor)
-{
-    PyObject *object[2];
-    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1) ||
-        py_chain_view(object[0], parsed) < 0)
-        return -1;
-    *factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
-    return *factor == NULL ? -1 : 0;
-}
-
 PyObject *py_steps(PyObject *module, PyObject *arguments)
 {
     (void)module;
     struct py_chain parsed = {0};
     PyArrayObject *factor = NULL;
-    PyObject *result = NULL;
-    if (parse_waves(arguments, &parsed, &factor) < 0)
+    PyObject *object[2], *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1))
+        return NULL;
+    if (py_chain_view(object[0], &parsed) < 0)
+        goto done;
+    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
+    if (factor == NULL)
         goto done;
     const struct rd_factors factors = factors_of(factor);
     size_t most = 0;
@@ -50,32 +43,6 @@ done:
     Py_XDECREF(factor);
     py_chain_release(&parsed);
     return result;
-}
-
-PyObject *py_cuts(PyObject *module, PyObject *arguments)
-{
-    (void)module;
-    struct py_chain parsed = {0};
-    PyArrayObject *factor = NULL;
-    PyObject *cuts = NULL;
-    if (parse_waves(arguments, &parsed, &factor) < 0)
-        goto done;
-    const struct rd_factors factors = factors_of(factor);
-    const npy_intp between = (npy_intp)parsed.chain.stretches - 1;
-    cuts = py_new(NPY_INTP, 1, &between);
-    for (npy_intp k = 0; cuts != NULL && k < between; k++) {
-        npy_intp *most = (npy_intp *)PyArray_DATA((PyArrayObject *)cuts) + k;
-        *most = 1;
-        for (size_t i = 0; i < factors.count; i++) {
-            const struct sweep_extent extent = rd_sweep_extent(&factors, i);
-            const npy_intp found = (npy_intp)rd_sweep_cuts(&parsed.chain, (size_t)k, &extent);
-            *most = found > *most ? found : *most;
-        }
-    }
-done:
-    Py_XDECREF(factor);
-    py_chain_release(&parsed);
-    return cuts;
 }
 
 /* the index of the frequency that has no answer, or the count of all; -1 and an exception */

@@ -275,21 +275,12 @@ static struct rd_run run_of(const struct rd_chain *chain, size_t k)
                            .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
 }
 
-size_t rd_sweep_cuts(const struct rd_chain *chain, size_t stretch,
-                     const struct sweep_extent *extent)
-{
-    const struct rd_run run = run_of(chain, stretch);
-    const double radians = chain->length[run.element] * run_wavenumber(chain, &run, extent);
-    return radians <= RADIANS          ? 1
-           : radians <= RD_PIECES_MOST ? (size_t)ceil(radians / RADIANS)
-                                       : RD_PIECES_MOST;
-}
-
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
 {
     size_t steps = 1;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
-        const struct rd_run run = run_of(chain, k);
+        const struct rd_run run = {.element = chain->element[k],
+                                   .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
         const struct sweep_pieces pieces = rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k),
                                                            rd_sweep_waves(chain, &run, extent));
         steps += (pieces.count >> pieces.level) + 2 * pieces.level;

@@ -52,10 +52,6 @@ struct sweep_waves rd_sweep_waves(const struct rd_chain *chain, const struct rd_
 struct sweep_pieces rd_sweep_pieces(const struct rd_chain *chain, const struct rd_run *run,
                                     size_t count, struct sweep_waves waves);
 
-/* how many pieces below its first cantilever resonance an element of a stretch is cut in */
-size_t rd_sweep_cuts(const struct rd_chain *chain, size_t stretch,
-                     const struct sweep_extent *extent);
-
 /* steps of a walk through all of the chain, runs by pieces */
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent);
 

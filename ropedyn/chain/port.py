@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..base.array import Index, Real
+from ..base.array import Real
 from ..base.check import COORDINATES, NEAR
 from ..base.errors import SolveError
 from ..base.unit import END, OF_FORCE
@@ -157,41 +157,6 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
         drag=_repeated(chain.drag, source),
         sag=_repeated(chain.sag, source),
     ), nodes
-
-
-def divide(chain: Chain, x: Real, parts: Index) -> tuple[Chain, Real]:
-    """Divide continuous elements into so many equal ones, by their stretch."""
-    if (parts == 1).all():
-        return chain, x
-    counts = np.diff(chain.first)
-    each, which = np.unique(np.stack([chain.element, parts]), axis=1, return_inverse=True)
-    # what stands at the nodes of a stretch stands at the first of them alone
-    twice = np.where(parts > 1, 2, 1)
-    begins = np.append(True, np.diff(np.repeat(np.arange(len(parts)), twice)) > 0)
-    nodes = np.repeat(counts * parts, twice)
-    nodes = np.where(np.repeat(twice, twice) == 1, nodes, np.where(begins, 1, nodes - 1))
-    term = np.where(begins, np.repeat(chain.term[:-1], twice), len(chain.mass))
-    lengths = np.repeat(chain.length[chain.element] / parts, counts * parts)
-    inside = np.concatenate([np.arange(n) for n in np.repeat(parts, counts)])
-    start = np.repeat(x[:-1], np.repeat(parts, counts))
-    width = chain.mass.shape[1]
-    none = np.zeros((1, width, width))
-    return chain._replace(
-        length=chain.length[each[0]] / each[1],
-        tension=chain.tension[each[0]],
-        flexibility=chain.flexibility[each[0]],
-        inertia=None if chain.inertia is None else chain.inertia[each[0]],
-        drag=None if chain.drag is None else chain.drag[each[0]],
-        sag=None if chain.sag is None else chain.sag[each[0]],
-        first=np.append(0, np.cumsum(nodes)).astype(np.int32),
-        element=np.repeat(which.ravel(), twice).astype(np.int32),
-        term=np.append(term, chain.term[-1]).astype(np.int32),
-        mass=np.concatenate([chain.mass, none]),
-        stiffness=np.concatenate([chain.stiffness, none]),
-        held=np.concatenate([chain.held, np.zeros((1, width), dtype=np.uint8)]),
-        hinge=None if chain.hinge is None else np.concatenate([chain.hinge, none[0, :1]]),
-        damping=None if chain.damping is None else np.concatenate([chain.damping, none]),
-    ), np.append(start + inside * lengths, x[-1])
 
 
 def _repeated(array: Real | None, source: NDArray[np.int32]) -> Real | None:

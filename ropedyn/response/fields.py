@@ -22,7 +22,7 @@ from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT
-from ..chain.port import Point, Ports, cut, divide, is_force, locate, moving, ports, stops
+from ..chain.port import Point, Ports, cut, is_force, locate, moving, ports, stops
 from ..chain.reaction import at_start, first_left_end, tellers
 from .moved_end import is_end, released
 from .question import Question
@@ -42,7 +42,7 @@ class Slopes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """One component with its loads, cut where they stand and into pieces shorter than waves."""
+    """One component with its loads, cut where they stand."""
 
     question: Question
 
@@ -61,10 +61,7 @@ class Fields:
         positions = [p[1] for p in inside]
         if model.element == "tensed":
             positions += stops(chain, model.x)
-        chain, x = cut(chain, model.x, positions)
-        if model.element != "continuous" or not question.factor.size:
-            return chain, x
-        return divide(chain, x, _core.cuts(chain, question.fastest))
+        return cut(chain, model.x, positions)
 
     @property
     def chain(self) -> Chain:
@@ -105,18 +102,29 @@ class Fields:
 
     @computed
     def _nodes(self) -> Ports:
-        """The motion of every coordinate of every node."""
+        """What is told of each node, see csrc/energy/lines.h: motion, of continuous spans force."""
         count, width = self.chain.nodes, len(self.question.component)
+        told = 2 if self.question.model.element == "continuous" else 1
         node = np.arange(count)
-        row = np.zeros((count, width, 2, width))
-        row[node, :, (node == count - 1).astype(int)] = np.eye(width)
-        left = np.repeat(np.minimum(node, count - 2), width).astype(np.int32)
-        return Ports(left, row.reshape(-1, 2, width), None)
+        row = np.zeros((count, told, width, 2, width))
+        row[node, 0, :, (node == count - 1).astype(int)] = np.eye(width)
+        left = np.broadcast_to(np.minimum(node, count - 2)[:, None, None], row.shape[:3]).copy()
+        if told == 1:
+            return Ports(left.ravel().astype(np.int32), row.reshape(-1, 2, width), None)
+        force = np.zeros((count, told, width, width))
+        force[1:, 1] = np.eye(width)
+        left[1:, 1] = node[:-1, None]
+        return Ports(
+            left.ravel().astype(np.int32), row.reshape(-1, 2, width), force.reshape(-1, width)
+        )
 
     @computed
     def _held(self) -> Flags:
-        """What cannot move, (nodes width,)."""
-        return self.chain.held[self.chain.term_of].ravel().astype(np.bool_)
+        """What cannot move of what is told, (nodes width,) or twice that."""
+        held = self.chain.held[self.chain.term_of].astype(np.bool_)
+        if self.question.model.element == "continuous":
+            held = np.concatenate([held, np.zeros_like(held)], axis=1)
+        return held.ravel()
 
     def slopes(self, part: slice) -> Slopes:
         """Return those of some of the lines."""
@@ -127,7 +135,7 @@ class Fields:
         return Slopes(element, jump, node, *_core.carried_pair_slopes(*asked))
 
     def at(self, part: slice) -> Complex:
-        """Return the fields at some of the lines, (loads, nodes width, f)."""
+        """Return the fields at some of the lines, (loads, told, f)."""
         forces = [k for k, point in enumerate(self._given) if not is_end(point)]
         factor = np.ascontiguousarray(self.question.factor[:, part])
         value = np.zeros((len(self._given), len(self._held), factor.shape[1]), dtype=np.complex128)
@@ -156,7 +164,7 @@ class Fields:
         return np.stack(fields) if fields else found[:0]
 
     def _reactions(self, told: Complex, factor: Complex) -> Complex:
-        """Combine what tells the forces at the left end, (width, nodes width, f)."""
+        """Combine what tells the forces at the left end, (width, told, f)."""
         left, right, force = np.split(told, 3)
         of = first_left_end(self.chain, factor)
         value = np.einsum("kij,jnk->ink", of.E, force) - np.einsum("kij,jnk->ink", of.Q, left)
@@ -168,11 +176,12 @@ class Fields:
         loose = dataclasses.replace(self.question, model=model)
         chain = dataclasses.replace(self, question=loose).chain
         value = self._solve(chain, [own], factor, part)[0]
-        node, at = locate(self.x, own[1])[0], self.question.component.index(own[0])
+        told = len(self._held) // self.chain.nodes
+        at = locate(self.x, own[1])[0] * told + self.question.component.index(own[0])
         held = self._held.copy()
-        held[node * len(self.question.component) + at] = False
+        held[at] = False
         value[held] = 0.0
-        moved: Complex = value / value[node * len(self.question.component) + at]
+        moved: Complex = value / value[at]
         return moved
 
     def _solve(self, chain: Chain, given: Iterable[Point], factor: Complex, part: slice) -> Complex:

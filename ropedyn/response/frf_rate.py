@@ -56,7 +56,7 @@ class ComponentRates:
         """Of all pairs of fields at all lines."""
         fields = self.fields
         loads = len(fields.question.drives) + len(fields.question.responses)
-        size = max(fields.chain.nodes * len(fields.question.component) * loads, 1)
+        size = max(2 * fields.chain.nodes * len(fields.question.component) * loads, 1)
         question = fields.question
         parts = in_slices(fields.slopes, len(question.frequency), size, SLICE, question.workers)
         return Slopes(*parts)

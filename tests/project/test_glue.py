@@ -159,7 +159,7 @@ SLIP = np.array([[-1, 0, 0], [1, 1, 0]], dtype=np.int32)
 
 FIELD = np.random.default_rng(1).normal(size=(2, SHAPES[0].size, len(FACTOR), 2)) @ [1, 1j]
 PAIRED = (FACTOR.T.copy(), FIELD, PAIR, SLIP)
-SPANNED = (PAIRED[0], FIELD[:, : SHAPES[0, :4].size].copy(), PAIR, SLIP)
+SPANNED = (PAIRED[0], FIELD[:, : 2 * SHAPES[0, :4].size].copy(), PAIR, SLIP)
 
 
 # every entry point that takes a chain
@@ -188,7 +188,6 @@ ENTRIES = {
     ),
     "tip": lambda chain: _core.tip(chain, 1, FACTOR.T.copy()),
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, np.array([1e4, 1e6])),
-    "cuts": lambda chain: _core.cuts(chain, FACTOR.T.copy()),
     "pair_slopes": lambda chain: _core.pair_slopes(chain, *PAIRED),
     "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *PAIRED),
     "march_factor": lambda chain: _core.march_factor(without_wire(chain), BESIDE, LAW, 1e-3, 1.0),
@@ -212,7 +211,6 @@ SPANS = {
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
     "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
-    "cuts": ENTRIES["cuts"],
     "pair_slopes": lambda chain: _core.pair_slopes(chain, *SPANNED),
     "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *SPANNED),
 }
