@@ -65,7 +65,7 @@ static void begin_all(struct rd_wave_slopes *slopes)
 }
 
 /* y (2 width) <- J H y h */
-RD_INLINE void differentiate(const struct rate_matrix *rate, size_t w, double h, cv *y)
+RD_INLINE void differentiate(const struct rate_matrix *rate, size_t w, lanes h, cv *y)
 {
     cv d[N];
     for (size_t i = 0; i < w; i++) {
@@ -84,7 +84,7 @@ RD_INLINE void differentiate(const struct rate_matrix *rate, size_t w, double h,
         d[w + 1] = c_sub(d[w + 1], c_mul(y[w], rate->sag));
     }
     for (size_t i = 0; i < 2 * w; i++)
-        y[i] = c_scale(d[i], h);
+        y[i] = c_scale_lanes(d[i], h);
 }
 
 /* The first piece has 2^-FINER of the radians that one of the sweep has. Gauss points on (0, 1) and
@@ -103,19 +103,19 @@ RD_INLINE void fill_points(const struct rate_matrix *rate, size_t w, double l, i
 {
     for (size_t c = 0; c < 2 * w; c++) {
         cv d[N], sum[POINTS][N];
-        double power[POINTS];
+        lanes power[POINTS];
         for (size_t i = 0; i < 2 * w; i++)
             d[i] = c_real(i == c);
         for (int k = 0; k < POINTS; k++) {
-            power[k] = 1;
+            power[k] = l_fill(1);
             memcpy(sum[k], d, 2 * w * sizeof *d);
         }
         for (int m = 1; m <= terms; m++) {
-            differentiate(rate, w, l / m, d);
+            differentiate(rate, w, l_fill(l / m), d);
             for (int k = 0; k < POINTS; k++) {
                 power[k] *= point[k];
                 for (size_t i = 0; i < 2 * w; i++)
-                    sum[k][i] = c_add(sum[k][i], c_scale(d[i], power[k]));
+                    sum[k][i] = c_add(sum[k][i], c_scale_lanes(d[i], power[k]));
             }
         }
         for (int k = 0; k < POINTS; k++)
@@ -178,6 +178,7 @@ static RD_CLONES void fill_slice(struct rd_wave_slopes *slopes, const struct tri
     cv y[POINTS][N][N];
     fill_points(&slopes->rate, w, l, terms + (slopes->rate.hangs ? HANGING : 0), y);
     for (int k = 0; k < POINTS; k++) {
+        const lanes weight = l_fill(share[k] * l / 2);
         by_both_ends(t, w, y[k]);
         for (size_t p = 0; p < slopes->forms; p++) {
             struct rd_wave_form *of = slopes->form + p;
@@ -186,7 +187,7 @@ static RD_CLONES void fill_slice(struct rd_wave_slopes *slopes, const struct tri
                 for (size_t j = i; j < n; j++) {
                     const cv both = c_add(c_mul(a[i], b[j]), c_mul(a[j], b[i]));
                     cv *sum = of->form + i * n + j;
-                    *sum = c_add(*sum, c_scale(both, share[k] * l / 2));
+                    *sum = c_add(*sum, c_scale_lanes(both, weight));
                 }
         }
     }

@@ -141,21 +141,23 @@ def sum_slope(parts: ModalParts, by_p: Complex, ratio: float) -> Complex:
     most = max(1, (1 << 20) // max(len(poles.eigenvalue), 1))
     for first in range(0, len(omega), most):
         part = slice(first, first + most)
-        g, _ = _weights(question, poles, omega, part)
-        by_pole, by_ratio = _weight_slopes(poles, omega[part])
+        g, by_pole, by_ratio = _weight_slopes(poles, omega[part])
         value[..., part] = by_p[..., -2].real[..., None] + residue @ g + moved @ by_pole
-        value[..., part] += ratio * (parts.residue @ by_ratio)
+        if ratio:
+            value[..., part] += ratio * (parts.residue @ by_ratio)
     return value
 
 
-def _weight_slopes(poles: UndampedPoles, omega: Real) -> tuple[Complex, Complex]:
-    """Return dg/dlambda and dg/dzeta, each (k, f)."""
-    own = poles.eigenvalue[:, None]
-    root = np.sqrt(np.maximum(own, 0.0))
-    pole = own - omega**2 + 2j * poles.ratio[:, None] * omega * root
-    turned = np.divide(poles.ratio[:, None], root, out=np.zeros_like(root), where=root > 0)
-    by_pole = 1 / (own + poles.shift) ** 2 - (1 + 1j * turned * omega) / pole**2
-    return by_pole, -2j * omega * root / pole**2
+def _weight_slopes(poles: UndampedPoles, omega: Real) -> tuple[Complex, Complex, Complex]:
+    """Return g of `_weights`, dg/dlambda and dg/dzeta, each (k, f)."""
+    own, ratio = poles.eigenvalue[:, None], poles.ratio[:, None]
+    root, soft = np.sqrt(np.maximum(own, 0.0)), 1 / (own + poles.shift)
+    lost: Complex = 2j * ratio * root * omega
+    near = 1 / (own - omega**2 + lost)
+    turned = np.divide(ratio, root, out=np.zeros_like(root), where=root > 0)
+    g: Complex = (omega**2 + poles.shift - lost) * (soft * near)
+    by_pole: Complex = soft**2 - (1 + 1j * turned * omega) * near**2
+    return g, by_pole, -2j * root * omega * near**2
 
 
 class Estimated(NamedTuple):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -61,8 +62,9 @@ def _starts(response: Response) -> tuple[list[Start], SceneError | SolveError | 
     """Return what can be started from, and why something else cannot."""
     found: list[Start] = []
     failure: SceneError | SolveError | None = None
-    signed = _signed(_thinned(response))
-    for u in _candidates(response):
+    peaks = functools.cache(functools.partial(peaks_of, response.measured))
+    signed = _signed(_thinned(response, peaks))
+    for u in _candidates(response, peaks):
         for one in signed:
             try:
                 start = _calibrated(one, u)
@@ -93,20 +95,20 @@ def peaks_of(measured: Measured) -> Real:
         return np.zeros(0)
 
 
-def _thinned(response: Response) -> Response:
+def _thinned(response: Response, peaks: Callable[[], Real]) -> Response:
     """Return the same on a few lines: those of peaks, and others evenly."""
     measured = response.measured
     count = len(measured.frequency)
     if count <= LINES:
         return response
     kept = np.unique(np.linspace(0, count - 1, LINES).astype(np.intp))
-    near = np.searchsorted(measured.frequency, peaks_of(measured))
+    near = np.searchsorted(measured.frequency, peaks())
     around = (near[:, None] + np.arange(-2, 3)).ravel()
     kept = np.union1d(kept, around[(around >= 0) & (around < count)])
     return replace(response, measured=lines_of(measured, kept))
 
 
-def _candidates(response: Response) -> Iterator[Real]:
+def _candidates(response: Response, peaks_seen: Callable[[], Real]) -> Iterator[Real]:
     """Yield the guess of the scene, and what fits the peaks under each reading of them."""
     unknowns = response.unknowns
     guess = np.zeros(len(unknowns))
@@ -114,7 +116,7 @@ def _candidates(response: Response) -> Iterator[Real]:
     model = response.model(guess)
     rates = rates_of(Places(model))
     shifts = np.array([path in rates for path in unknowns.paths])
-    peaks = peaks_of(response.measured)
+    peaks = peaks_seen()
     if not shifts.any() or len(peaks) < shifts.sum():
         return
     calculated = NaturalFrequencies(unknowns.only(shifts), response.elements, response.element)
