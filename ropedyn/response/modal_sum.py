@@ -152,12 +152,13 @@ def _weight_slopes(poles: UndampedPoles, omega: Real) -> tuple[Complex, Complex,
     """Return g of `_weights`, dg/dlambda and dg/dzeta, each (k, f)."""
     own, ratio = poles.eigenvalue[:, None], poles.ratio[:, None]
     root, soft = np.sqrt(np.maximum(own, 0.0)), 1 / (own + poles.shift)
-    lost: Complex = 2j * ratio * root * omega
-    near = 1 / (own - omega**2 + lost)
+    lost = 2j * ratio * root * omega
+    near: Complex = 1 / np.asarray(own - omega**2 + lost, dtype=np.complex128)
     turned = np.divide(ratio, root, out=np.zeros_like(root), where=root > 0)
-    g: Complex = (omega**2 + poles.shift - lost) * (soft * near)
-    by_pole: Complex = soft**2 - (1 + 1j * turned * omega) * near**2
-    return g, by_pole, -2j * root * omega * near**2
+    g = (omega**2 + poles.shift - lost) * (soft * near)
+    by_pole = soft**2 - (1 + 1j * turned * omega) * near**2
+    by_ratio = -2j * root * omega * near**2
+    return np.asarray(g, dtype=np.complex128), by_pole, by_ratio
 
 
 class Estimated(NamedTuple):

@@ -253,10 +253,53 @@ static void stretches_add_up(enum rd_kind kind)
     double expected = 0;
     cv dyad[4];
     rd_sensitivity_nodes(&asked->sensitivity, 0, &MODE_PAIR, dyad);
-    for (size_t i = 0; i < 4; i++)
+    /* inside a span nothing stands */
+    for (size_t i = 0; i < 4 && kind != RD_CONTINUOUS; i++)
         expected += u[2 * i] * u[2 * i + 1];
     CHECK_EXACT(dyad[1].re[0], expected);
     CHECK_EXACT(dyad[2].re[0], expected);
+    mode_forget(asked);
+    rope_free(&rope);
+}
+
+/* f_b = G^-1 (u_b - F u_a) of the one element */
+static void force_at_the_right(const struct rd_chain *chain, const double *u, double *f)
+{
+    const size_t w = chain->width;
+    double K[N * N];
+    continuous_matrix(chain, K);
+    for (size_t i = 0; i < w; i++) {
+        f[i] = 0;
+        for (size_t j = 0; j < 2 * w; j++)
+            f[i] += K[(w + i) * 2 * w + j] * u[j];
+    }
+}
+
+/* The force on the right end told, an element has the slopes that it has by the motion of its ends. */
+static void waves_have_the_slopes_of_motion(const char *names, double tension, double compliance)
+{
+    const struct recipe recipe = recipe_of(RD_CONTINUOUS, names, tension);
+    struct rope rope = rope_make(&recipe);
+    const size_t w = rope.chain.width;
+    double hinge[4 * W] = {0}, u[N], told[2 * N] = {0}, opened[N];
+    double slope[RD_PROPERTIES], jump[W], other[RD_PROPERTIES], jumps[W];
+    hinge[LEFT_END * w + w - 1] = compliance;
+    rope.chain.hinge = compliance != 0 ? hinge : NULL;
+    for (size_t i = 0; i < 2 * w; i++)
+        opened[i] = u[i] = check_random();
+    struct mode *asked = mode_ask(&rope.chain, LAMBDA, u);
+    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_OK);
+    opened[w - 1] += asked->sensitivity.moved->opens[w - 1].re[0];
+    memcpy(told, u, w * sizeof *u);
+    memcpy(told + 2 * w, u + w, w * sizeof *u);
+    force_at_the_right(&rope.chain, opened, told + 3 * w);
+    asked->fields.value = told;
+    asked->fields.forces = true;
+    rd_sensitivity_begin(&asked->sensitivity, &asked->lines);
+    CHECK_INT(stretch_of(asked, 0, other, jumps), RD_OK);
+    for (size_t p = 0; p < RD_PROPERTIES; p++)
+        CHECK_ABS(other[p], slope[p], 1e-11 * fabs(slope[p]), "condition of the element");
+    CHECK_ABS(jumps[w - 1], jump[w - 1], 1e-11 * jump[w - 1], "condition of the element");
     mode_forget(asked);
     rope_free(&rope);
 }
@@ -300,6 +343,12 @@ int main(void)
         slopes_are_those_of_the_form(RD_CONTINUOUS, "zb", tension[k], INFINITY);
     }
     slopes_are_those_of_the_form(RD_CONTINUOUS, "xza", 600, 0);
+    for (size_t k = 0; k < 4; k++) {
+        waves_have_the_slopes_of_motion("zb", tension[k], 0);
+        waves_have_the_slopes_of_motion("zb", tension[k], INFINITY);
+        waves_have_the_slopes_of_motion("xzab", tension[k], 0.04);
+    }
+    waves_have_the_slopes_of_motion("z", 600, 0);
     jump_is_the_slope_of_the_hinge(RD_TENSED);
     jump_is_the_slope_of_the_hinge(RD_CONTINUOUS);
     stretches_add_up(RD_TENSED);
