@@ -120,7 +120,7 @@ void rd_massless_open(const struct rd_massless *massless, const cv spring, struc
 
 /* e_c = (u_b - u_a)_c - r_c delta, delta = beta_b - beta_a, the forces g = S^^-1 e/l, and the
    integral m = delta/S_bb - l r^T g of the bending moment that goes with them */
-void rd_massless_move(const struct rd_massless *massless, struct rd_moved *moved)
+static RD_CLONES void move(const struct rd_massless *massless, struct rd_moved *moved)
 {
     const struct rd_element *element = &massless->element;
     const struct rd_rods *rods = &massless->rods;
@@ -147,6 +147,11 @@ void rd_massless_move(const struct rd_massless *massless, struct rd_moved *moved
     moved->moment = c_sub(c_mul(moved->delta, stiff), c_scale(turned, l));
     const cv with = element->kind == RD_DIFFERENCE ? moved->delta : c_add(u[2 * w - 1], u[w - 1]);
     moved->sway = c_sub(moved->rise, with);
+}
+
+void rd_massless_move(const struct rd_massless *massless, struct rd_moved *moved)
+{
+    move(massless, moved);
 }
 
 /* a x b + b x a over 2, for products of different parts */
@@ -202,8 +207,8 @@ RD_INLINE void add_bending(const struct rd_massless *massless, const struct rd_m
     slope[RD_OF_LENGTH] = c_add(slope[RD_OF_LENGTH], c_scale(c_sub(longer, shorter), 1 / l));
 }
 
-void rd_string_slope(const struct rd_element *element, cv tension, const struct rd_moved *a,
-                     const struct rd_moved *b, cv *slope)
+RD_INLINE void add_string(const struct rd_element *element, cv tension, const struct rd_moved *a,
+                          const struct rd_moved *b, cv *slope)
 {
     if (rd_element_find(element, RD_Z) == element->width)
         return;
@@ -213,17 +218,23 @@ void rd_string_slope(const struct rd_element *element, cv tension, const struct 
         c_sub(slope[RD_OF_LENGTH], c_mul(c_scale(tension, element->tension), turn));
 }
 
+void rd_string_slope(const struct rd_element *element, cv tension, const struct rd_moved *a,
+                     const struct rd_moved *b, cv *slope)
+{
+    add_string(element, tension, a, b, slope);
+}
+
 static RD_CLONES void add_all(const struct rd_massless *massless, const struct rd_moved *a,
                               const struct rd_moved *b, cv *slope)
 {
     add_rods(massless, a, b, slope);
     if (bends(&massless->element))
         add_bending(massless, a, b, slope);
+    add_string(&massless->element, massless->tension, a, b, slope);
 }
 
 void rd_massless_slope(const struct rd_massless *massless, const struct rd_moved *a,
                        const struct rd_moved *b, cv *slope)
 {
     add_all(massless, a, b, slope);
-    rd_string_slope(&massless->element, massless->tension, a, b, slope);
 }

@@ -39,8 +39,8 @@ static enum rd_status prepare(struct rd_sensitivity *sensitivity, size_t k)
 }
 
 /* the motion of the ends of element i, apart from their nodes where the load slips */
-static void read(const struct rd_sensitivity *sensitivity, size_t load, size_t i,
-                 struct rd_moved *moved)
+static RD_CLONES void read(const struct rd_sensitivity *sensitivity, size_t load, size_t i,
+                           struct rd_moved *moved)
 {
     const struct rd_fields *fields = sensitivity->fields;
     const size_t w = sensitivity->chain->width;
@@ -134,24 +134,34 @@ enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t
     return RD_OK;
 }
 
-void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stretch,
-                          const struct rd_pairs *pairs, cv *dyad)
+static RD_CLONES void add_nodes(const struct rd_sensitivity *sensitivity, size_t stretch,
+                                const struct rd_pairs *pairs, cv *dyad)
 {
     const struct rd_chain *chain = sensitivity->chain;
     const size_t w = chain->width, first = (size_t)chain->first[stretch];
     const size_t rows = rd_field_rows(sensitivity->fields, w);
-    memset(dyad, 0, pairs->count * w * w * sizeof *dyad);
-    if (chain->kind == RD_CONTINUOUS && rd_stretch_nodes(chain, stretch) > 1)
-        return;
     for (size_t i = first; i < first + rd_stretch_nodes(chain, stretch); i++)
         for (size_t p = 0; p < pairs->count; p++) {
             const size_t a = (size_t)pairs->of[2 * p], b = (size_t)pairs->of[2 * p + 1];
+            cv u[RD_WIDTH_MAX], v[RD_WIDTH_MAX];
+            for (size_t k = 0; k < w; k++) {
+                u[k] = rd_field_at(sensitivity->fields, sensitivity->lines, a, i * rows + k);
+                v[k] = a == b
+                           ? u[k]
+                           : rd_field_at(sensitivity->fields, sensitivity->lines, b, i * rows + k);
+            }
             for (size_t k = 0; k < w * w; k++) {
-                const cv u =
-                    rd_field_at(sensitivity->fields, sensitivity->lines, a, i * rows + k / w);
-                const cv v =
-                    rd_field_at(sensitivity->fields, sensitivity->lines, b, i * rows + k % w);
-                dyad[p * w * w + k] = c_add(dyad[p * w * w + k], c_mul(u, v));
+                cv *sum = dyad + p * w * w + k;
+                *sum = c_add(*sum, c_mul(u[k / w], v[k % w]));
             }
         }
+}
+
+void rd_sensitivity_nodes(const struct rd_sensitivity *sensitivity, size_t stretch,
+                          const struct rd_pairs *pairs, cv *dyad)
+{
+    const struct rd_chain *chain = sensitivity->chain;
+    memset(dyad, 0, pairs->count * chain->width * chain->width * sizeof *dyad);
+    if (chain->kind != RD_CONTINUOUS || rd_stretch_nodes(chain, stretch) == 1)
+        add_nodes(sensitivity, stretch, pairs, dyad);
 }

@@ -30,7 +30,7 @@ from .question import Question
 NOWHERE = (-1, 0, 0)  # Where a load does not slip, see csrc/energy/lines.h.
 
 
-class Slopes(NamedTuple):
+class PairSlopes(NamedTuple):
     """Of the form of pairs of fields, drives times responses; see csrc/energy/sensitivity.h."""
 
     element: Complex  # (pairs, stretches - 1, 13, f)
@@ -126,13 +126,13 @@ class Fields:
             held = np.concatenate([held, np.zeros_like(held)], axis=1)
         return held.ravel()
 
-    def slopes(self, part: slice) -> Slopes:
+    def slopes(self, part: slice) -> PairSlopes:
         """Return those of some of the lines."""
         factor = np.ascontiguousarray(self.question.factor[:, part])
         field = self.at(part)
         asked = (self.chain, factor, field, self.pair, self.slip)
         element, jump, node = _core.pair_slopes(*asked)
-        return Slopes(element, jump, node, *_core.carried_pair_slopes(*asked))
+        return PairSlopes(element, jump, node, *_core.carried_pair_slopes(*asked))
 
     def at(self, part: slice) -> Complex:
         """Return the fields at some of the lines, (loads, told, f)."""

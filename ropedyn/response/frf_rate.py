@@ -32,7 +32,7 @@ from ..chain.port import Point, moving
 from ..chain.rate import ENTRIES, Places, Rate, Weights, asked, rates_of
 from ..scene import damping
 from ..scene.damping import Damping
-from .fields import Fields, Slopes
+from .fields import Fields, PairSlopes
 from .modal_sum import ModalParts, sum_slope
 from .moved_end import is_end
 from .question import Question
@@ -52,14 +52,14 @@ class ComponentRates:
     still: Sequence[Point]  # loads that stay where they are; those on wires go with them
 
     @computed
-    def slopes(self) -> Slopes:
+    def slopes(self) -> PairSlopes:
         """Of all pairs of fields at all lines."""
         fields = self.fields
         loads = len(fields.question.drives) + len(fields.question.responses)
         size = max(2 * fields.chain.nodes * len(fields.question.component) * loads, 1)
         question = fields.question
         parts = in_slices(fields.slopes, len(question.frequency), size, SLICE, question.workers)
-        return Slopes(*parts)
+        return PairSlopes(*parts)
 
     @computed
     def _kept(self) -> Index:
