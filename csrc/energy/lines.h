@@ -23,7 +23,7 @@ struct rd_fields {
     size_t line, load, entry; /* strides */
     size_t parts;             /* of a number: 1 real, 2 complex */
     _Bool forces;
-    const int32_t *slip;      /* (loads, 3), element -1: none; or NULL */
+    const int32_t *slip; /* (loads, 3), element -1: none; or NULL */
 };
 
 /* which load with which */
