@@ -27,6 +27,19 @@ struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section
     return span;
 }
 
+static int is_coupled(const double *S)
+{
+    return S[RD_AXIAL * RD_CHANNELS + RD_TORSION] != 0 ||
+           S[RD_AXIAL * RD_CHANNELS + RD_BENDING] != 0 ||
+           S[RD_TORSION * RD_CHANNELS + RD_BENDING] != 0;
+}
+
+_Bool rd_span_is_plain(const struct rd_chain *chain, size_t e)
+{
+    return chain->inertia && !chain->sag &&
+           !is_coupled(chain->flexibility + e * RD_CHANNELS * RD_CHANNELS);
+}
+
 double rd_span_wavenumber(const struct rd_span *span)
 {
     const size_t w = span->width;
@@ -44,10 +57,7 @@ double rd_span_wavenumber(const struct rd_span *span)
             square += load * S[c * (RD_CHANNELS + 1)] / span->section;
         }
     }
-    const int coupled = S[RD_AXIAL * RD_CHANNELS + RD_TORSION] != 0 ||
-                        S[RD_AXIAL * RD_CHANNELS + RD_BENDING] != 0 ||
-                        S[RD_TORSION * RD_CHANNELS + RD_BENDING] != 0;
-    return sqrt(coupled ? 2 * square : square);
+    return sqrt(is_coupled(S) ? 2 * square : square);
 }
 
 int rd_span_halvings(double radians, size_t count)

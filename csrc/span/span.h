@@ -19,6 +19,10 @@ struct rd_span {
 struct rd_span rd_span_of(const struct rd_chain *chain, size_t e, double section, double tension,
                           double inertia, double dashpot);
 
+/* whether the coordinates of distinct continuous element e know nothing of each other but that z turns
+   with beta: then the whole of it is known in closed form (span/whole.h) */
+_Bool rd_span_is_plain(const struct rd_chain *chain, size_t e);
+
 /* A bound of the largest wavenumber [1/m], evanescent ones included: with h = (T + lambda j) S_bb/2
 
        a^2 = h + sqrt(h^2 + lambda mu S_bb) + lambda (mu S_aa + p S_tt)

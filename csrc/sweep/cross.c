@@ -63,6 +63,7 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
     if (table->levels == levels && table->element == run->element && table->term == run->term &&
         table->way == way && table->rest == rest)
         return;
+    s->whole.count = 0;
     cv *one = s->triple, *two = s->triple + s->coefs;
     const size_t e = (size_t)run->element;
     if (s->chain->inertia)
@@ -106,9 +107,39 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
     s->steps += (double)count;
 }
 
+/* a hinge on the right of a node that the walk comes to from there */
+static void open_behind(struct sweep *s, int way, size_t node)
+{
+    const size_t end = term_at(s, node);
+    if (way && (s->trait[end] & RD_HINGED))
+        s->kernel->open(&s->walk[way], end, &s->state);
+}
+
+/* Across count elements of a plain span, at once: rounding of its phase is that of so many steps. */
+static void cross_plain(struct sweep *s, int32_t element, int way, size_t node, size_t count)
+{
+    struct sweep_whole *whole = &s->whole;
+    if (whole->element != element || whole->count != count) {
+        const double length = (double)count * s->chain->length[element];
+        s->kernel->make_whole(s->chain, &s->block, (size_t)element, length, s->table,
+                              &whole->radians);
+        whole->element = element;
+        whole->count = count;
+        s->tabled.levels = 0;
+    }
+    first_piece(s, way, s->table, node);
+    open_behind(s, way, way ? node - count : node + count);
+    s->steps += (1.0 + whole->radians) * (1.0 + whole->radians);
+    s->radians = l_select(whole->radians > s->radians, whole->radians, s->radians);
+}
+
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
+    if (rd_span_is_plain(s->chain, (size_t)run->element)) {
+        cross_plain(s, run->element, way, node, count);
+        return;
+    }
     struct sweep_pieces all =
         rd_sweep_pieces(s->chain, run, count, rd_sweep_waves(s->chain, run, s->extent));
     if (s->chain->inertia) {
@@ -136,9 +167,7 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
         }
         s->kernel->walk_pieces(&s->walk[way], piece, run->term, pieces, &s->state);
     }
-    const size_t end = term_at(s, way ? node - count : node + count);
-    if (way && (s->trait[end] & RD_HINGED))
-        s->kernel->open(&s->walk[way], end, &s->state);
+    open_behind(s, way, way ? node - count : node + count);
 }
 
 /* A heavy node lies between two stretches: rows lose most digits there. */

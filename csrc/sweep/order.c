@@ -72,6 +72,8 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
     struct sweep_waves waves[RD_LANES];
     for (size_t r = 0; r < runs->count && used > 0; r++) {
         const struct rd_run *run = runs->run + r;
+        if (rd_span_is_plain(chain, (size_t)run->element))
+            continue;
         const bool known =
             r > 0 && chain->inertia && is_same_rope(chain, run[-1].element, run->element);
         for (size_t lane = 0; lane < used && !known; lane++)

@@ -1,5 +1,6 @@
 /* Left and right parts and where they meet. */
 #include "sweep/parts.h"
+#include "closed/lane_trig.h"
 #include "sweep/cross.h"
 #include "sweep/foot.h"
 #include "sweep/plan.h"
@@ -99,10 +100,10 @@ static void add(const struct sweep *s, size_t rank, lanes c, double *value, doub
 }
 
 /* no digit is left where the estimated relative error of the meeting itself is 1 */
-static void fail(struct sweep *s, const lanes *singular, double c)
+static void fail(struct sweep *s, const lanes *singular, lanes c)
 {
     for (size_t lane = 0; lane < s->used; lane++)
-        if (!((*singular)[lane] * c < 1.0) && s->index[lane] < s->failed)
+        if (!((*singular)[lane] * c[lane] < 1.0) && s->index[lane] < s->failed)
             s->failed = s->index[lane];
 }
 
@@ -122,7 +123,7 @@ static void meet(struct sweep *s, const struct tap *tap, size_t record, size_t b
                  size_t all, double *value, double *error)
 {
     const size_t size = 2 * s->sym + 2 * s->carried * s->chain->width;
-    const double c = ROUNDING * DBL_EPSILON * sqrt(s->steps);
+    const lanes c = ROUNDING * DBL_EPSILON * l_root(s->steps);
     lanes singular;
     s->kernel->meet(&s->walk[1], tap->motion, tap->force, s->record + record * size, &s->state,
                     s->carried, s->value, s->error, &singular);

@@ -15,6 +15,13 @@ struct sweep_table {
     int way;
 };
 
+/* the plain span in the first place of the table */
+struct sweep_whole {
+    size_t count; /* elements, 0: none */
+    int32_t element;
+    lanes radians;
+};
+
 struct sweep {
     const struct rd_chain *chain;
     struct rd_runs runs;
@@ -45,12 +52,14 @@ struct sweep {
     size_t used;             /* lanes of it that are not repeated */
     size_t failed;           /* the first frequency without a response, or their count */
     struct sweep_table tabled;
+    struct sweep_whole whole;
     struct sweep_block block;
     struct sweep_way way[2];
     struct sweep_extent extent[RD_LANES], most;
     struct sweep_walk walk[2];
     struct sweep_state state;
-    double steps; /* elements crossed + squares of equal pieces in a row */
+    lanes steps;   /* elements crossed + squares of equal pieces in a row, or of radians */
+    lanes radians; /* of the longest plain span */
 };
 
 /* NULL: the workspace measures or is too small */

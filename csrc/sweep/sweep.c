@@ -1,6 +1,8 @@
 /* Frequency response by one sweep from each end, in scattering form. */
 #include "sweep/sweep.h"
 
+#include "closed/lane_trig.h"
+#include "span/span.h"
 #include "sweep/foot.h"
 #include "sweep/order.h"
 #include "sweep/parts.h"
@@ -36,7 +38,9 @@ static enum rd_status begin_block(struct sweep *s, const struct rd_factors *fact
             s->used = lane;
     s->most = rd_sweep_most(s->extent, s->used);
     s->tabled.levels = 0;
-    s->steps = 1.0;
+    s->whole.count = 0;
+    s->steps = l_fill(1.0);
+    s->radians = l_fill(0.0);
     for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)
         s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);
     for (size_t e = 0; s->plain && s->planar && e < s->chain->distinct; e++)
@@ -72,6 +76,8 @@ enum rd_status rd_frf_sweep(const struct rd_chain *chain, const struct rd_factor
             return status;
         rd_sweep_left(s);
         rd_sweep_right(s, count, all, value, error);
+        if (some(s->radians > (double)RD_PIECES_MOST))
+            return RD_SHORT_WAVES;
     }
     find_infinite(value, rows, count, 2, &s->failed);
     find_infinite(error, rows, count, 1, &s->failed);

@@ -123,6 +123,8 @@ struct sweep_kernel {
                        int terms, cv *triple);
     void (*make_span)(const struct rate_matrix *, double length, int halvings, int terms,
                       cv *triple);
+    void (*make_whole)(const struct rd_chain *, const struct sweep_block *, size_t e, double length,
+                       cv *coef, lanes *radians);
     void (*make_coefficients)(const cv *triple, cv *coef);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
     void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);

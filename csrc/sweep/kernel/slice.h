@@ -1,6 +1,7 @@
-/* The scaled triple of the first piece of a continuous span.
+/* The scaled triple of the first piece of a continuous span, and the coefficients of a whole one.
    Included by sweep/kernel/width.h, once per width. */
 #include "span/slice.h"
+#include "span/whole.h"
 
 /* q_i = (inertia p_i + dashpot drag_i) z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j);
    Phi_ij z_j/z_i */
@@ -69,5 +70,53 @@ static RD_CLONES void K_(make_span)(const struct rate_matrix *rate, double l, in
         KEEP for (int i = 0; i < FULL + 2 * SYM; i++)
             half[i] = triple[i];
         K_(join)(NULL, NULL, -1, half, half, triple);
+    }
+}
+
+#if RD_WIDTH > 1
+/* z with beta, which is the last */
+RD_INLINE void K_(whole_bent)(const struct rate_matrix *rate, double l, cv *coef, lanes *radians)
+{
+    enum { B = W - 1 };
+    cv *A = coef, *X = A + SYM, *C = X + FULL;
+    const int z = W == 2 ? 0 : rate->z;
+    const cv load[2] = {rate->q[z], rate->q[B]};
+    const struct bent_span span = bent_span_of(rate->S[B][B], load, rate->lever, l);
+    A[at(z, z)] = span.A[0];
+    A[at(z, B)] = span.A[1];
+    A[at(B, B)] = span.A[2];
+    X[z * W + z] = span.B[0];
+    X[z * W + B] = span.B[1];
+    X[B * W + z] = span.B[2];
+    X[B * W + B] = span.B[3];
+    C[at(z, z)] = span.C[0];
+    C[at(z, B)] = span.C[1];
+    C[at(B, B)] = span.C[2];
+    *radians = span.radians;
+}
+#endif
+
+/* coefficients of a plain span (span/span.h) of element e's section; radians: of its shortest wave */
+static RD_CLONES void K_(make_whole)(const struct rd_chain *chain, const struct sweep_block *b,
+                                     size_t e, double length, cv *coef, lanes *radians)
+{
+    struct rate_matrix rate;
+    cv *A = coef, *X = A + SYM, *C = X + FULL;
+    K_(rate)(chain, b, e, &rate);
+    KEEP for (int i = 0; W > 2 && i < FULL + 2 * SYM; i++)
+        coef[i] = c_zero();
+    *radians = (lanes){0};
+#if RD_WIDTH > 1
+    if (rate.z >= 0)
+        K_(whole_bent)(&rate, length, coef, radians);
+#endif
+    KEEP for (int i = 0; i < W; i++) {
+        if (rate.z >= 0 && (i == rate.z || i == W - 1))
+            continue;
+        const struct plain_span span = plain_span_of(rate.S[i][i], rate.q[i], length);
+        A[at(i, i)] = span.A;
+        X[i * W + i] = span.B;
+        C[at(i, i)] = span.C;
+        *radians = l_most(*radians, span.radians);
     }
 }

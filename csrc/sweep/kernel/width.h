@@ -53,6 +53,7 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_element = K_(make_element),
     .make_slice = K_(make_slice),
     .make_span = K_(make_span),
+    .make_whole = K_(make_whole),
     .make_coefficients = K_(make_coefficients),
     .make_single = K_(make_single),
 #if RD_WIDTH == 2 || RD_WIDTH == 3
