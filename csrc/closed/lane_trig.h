@@ -75,14 +75,14 @@ RD_INLINE cv c_root(cv z)
 struct c_circle {
     cv cos, sin;
     lanes decay;
-    lanes angle; /* Re z */
+    lanes quarters, rest; /* of Re z */
 };
 
 /* where all are real, or all imaginary, what that leaves has the same bits */
 RD_INLINE struct c_circle c_circle_of(cv z)
 {
     struct l_circle u = {.sin = l_fill(0), .cos = l_fill(1)};
-    struct c_circle f = {.decay = l_fill(1), .angle = z.re};
+    struct c_circle f = {.decay = l_fill(1)};
     lanes less = l_fill(0);
     if (some(z.re != 0.0))
         u = l_circle_of(z.re);
@@ -91,6 +91,8 @@ RD_INLINE struct c_circle c_circle_of(cv z)
     const lanes ch = 0.5 * (1.0 + f.decay), sh = l_negative_where(z.im < 0.0, -0.5 * less);
     f.cos = (cv){u.cos * ch, -(u.sin * sh)};
     f.sin = (cv){u.sin * ch, u.cos * sh};
+    f.quarters = u.quarters;
+    f.rest = u.rest;
     return f;
 }
 

@@ -25,16 +25,38 @@
 #include "closed/lane_trig.h"
 #include "span/rate_matrix.h"
 
+/* what the propagating wave does on its way along the half */
+struct half_way {
+    cv phase;             /* e^{i k h} but for what it decays by */
+    lanes quarters, rest; /* Re(k h) = quarters pi/2 + rest */
+    cv det[2];            /* 1/det N_s and 1/det N_a times numbers > 0 */
+};
+
 /* Sigma and Delta: zz, z beta, beta beta */
 struct bent_halves {
     cv sum[3], apart[3];
-    lanes radians; /* of the propagating wave along the span */
+    struct half_way way;
 };
 
 struct plain_halves {
     cv sum, apart, both; /* both: P_s P_a */
-    lanes radians;
+    struct half_way way;
 };
+
+/* radians of the whole span */
+RD_INLINE lanes way_radians(const struct half_way *way)
+{
+    return 2.0 * l_abs(way->quarters * 0x1.921fb54442d18p+0 + way->rest);
+}
+
+RD_INLINE struct half_way way_of(const struct c_circle *f)
+{
+    return (struct half_way){
+        .phase = {f->cos.re - f->sin.im, f->cos.im + f->sin.re},
+        .quarters = f->quarters,
+        .rest = f->rest,
+    };
+}
 
 RD_INLINE cv c_where(lane_mask m, cv a, cv b)
 {
@@ -61,12 +83,15 @@ RD_INLINE struct plain_halves plain_halves_of(cv soft, cv load, double length)
     const cv inverse_a = c_inverse(c_add(s, (cv){fa.im, -fa.re}));
     const cv Ps = c_mul(f.cos, inverse_s), Pa = c_mul(s, inverse_a);
     const cv J = c_scale_lanes(c_inverse(soft), -f.decay);
-    return (struct plain_halves){
+    struct plain_halves halves = {
         .sum = c_add(Ps, Pa),
         .both = c_mul(Ps, Pa),
         .apart = c_times_i(c_mul(J, c_mul(inverse_s, inverse_a))),
-        .radians = 2.0 * l_abs(f.angle),
+        .way = way_of(&f),
     };
+    halves.way.det[0] = inverse_s;
+    halves.way.det[1] = inverse_a;
+    return halves;
 }
 
 /* both wavenumbers, the smaller one from their product */
@@ -94,7 +119,7 @@ RD_INLINE struct wavenumbers wavenumbers_of(cv theta, cv kappa)
 struct half_waves {
     cv C, s, c, g;
     lanes decay[2];
-    lanes radians;
+    struct half_way way;
 };
 
 RD_INLINE struct half_waves half_waves_of(const struct wavenumbers *w, double length)
@@ -109,7 +134,7 @@ RD_INLINE struct half_waves half_waves_of(const struct wavenumbers *w, double le
         .c = a.cos,
         .g = c_over((cv){a.sin.im, -a.sin.re}, w->a, h),
         .decay = {k.decay, a.decay},
-        .radians = 2.0 * l_abs(k.angle),
+        .way = way_of(&k),
     };
 }
 
@@ -167,43 +192,88 @@ RD_INLINE void bent_apart(const struct wavenumbers *w, const struct half_waves *
         }
 }
 
+/* minors of both kinds */
+RD_INLINE void minors_of(const struct wavenumbers *w, const struct half_waves *x, cv b, lanes back,
+                         struct minors *symmetric, struct minors *antisymmetric)
+{
+    const cv k2 = w->k2, a2 = w->a2, q = w->q;
+    const cv Cc = c_mul(x->C, x->c), sg = c_mul(x->s, x->g);
+    const cv Cg = c_mul(x->C, x->g), sc = c_mul(x->s, x->c);
+    const cv near = c_sub(sc, Cg), sum = c_add(c_mul(a2, Cg), c_mul(k2, sc));
+    const cv bE = c_mul(b, w->E), bEr = c_scale_lanes(bE, back * back);
+    const cv br = c_scale_lanes(b, back), bq = c_mul(br, q), bbr = c_mul(br, br);
+    const cv a4Cg = c_mul(c_mul(a2, a2), Cg), k4sc = c_mul(c_mul(k2, k2), sc);
+    *symmetric = (struct minors){
+        .zb = sum,
+        .zM = c_mul(bE, Cc),
+        .Fb = c_neg(c_mul(bEr, c_mul(q, sg))),
+        .zF = c_mul(bq, near),
+        .FM = c_neg(c_mul(bq, c_mul(br, c_add(c_mul(a2, sc), c_mul(k2, Cg))))),
+    };
+    *antisymmetric = (struct minors){
+        .zb = near,
+        .zM = c_mul(bE, sg),
+        .Fb = c_mul(bEr, Cc),
+        .zF = c_neg(c_mul(br, sum)),
+        .FM = c_mul(bbr, c_sub(a4Cg, k4sc)),
+    };
+}
+
+/* the same of real numbers: their products alone */
+RD_INLINE void minors_of_real(const struct wavenumbers *w, const struct half_waves *x, cv b,
+                              lanes back, struct minors *symmetric, struct minors *antisymmetric)
+{
+    const lanes k2 = w->k2.re, a2 = w->a2.re, q = w->q.re;
+    const lanes Cc = x->C.re * x->c.re, sg = x->s.re * x->g.re;
+    const lanes Cg = x->C.re * x->g.re, sc = x->s.re * x->c.re;
+    const lanes near = sc - Cg, sum = a2 * Cg + k2 * sc;
+    const lanes bE = b.re * w->E.re, bEr = bE * (back * back);
+    const lanes br = b.re * back, bq = br * q, bbr = br * br;
+    const lanes a4Cg = a2 * a2 * Cg, k4sc = k2 * k2 * sc;
+    *symmetric = (struct minors){
+        .zb.re = sum,
+        .zM.re = bE * Cc,
+        .Fb.re = -(bEr * (q * sg)),
+        .zF.re = bq * near,
+        .FM.re = -(bq * (br * (a2 * sc + k2 * Cg))),
+    };
+    *antisymmetric = (struct minors){
+        .zb.re = near,
+        .zM.re = bE * sg,
+        .Fb.re = bEr * Cc,
+        .zF.re = -(br * sum),
+        .FM.re = bbr * (a4Cg - k4sc),
+    };
+}
+
+RD_INLINE _Bool is_real(const struct wavenumbers *w, cv b)
+{
+    return !some((w->k.im != 0.0) | (w->a.im != 0.0) | (b.im != 0.0));
+}
+
 RD_INLINE struct bent_halves bent_halves_of(const struct wavenumbers *w, cv b, lanes r,
                                             double length)
 {
     const struct half_waves x = half_waves_of(w, length);
     const lanes back = 1.0 / r;
-    const cv k2 = w->k2, a2 = w->a2, q = w->q;
-    const cv Cc = c_mul(x.C, x.c), sg = c_mul(x.s, x.g), Cg = c_mul(x.C, x.g), sc = c_mul(x.s, x.c);
-    const cv w1 = c_sub(sc, Cg), w2 = c_add(c_mul(a2, Cg), c_mul(k2, sc));
-    const cv w3 = c_add(c_mul(a2, sc), c_mul(k2, Cg));
-    const cv w4 = c_sub(c_mul(c_mul(a2, a2), Cg), c_mul(c_mul(k2, k2), sc));
-    const cv bE = c_mul(b, w->E), bEr = c_scale_lanes(bE, back * back);
-    const cv br = c_scale_lanes(b, back), bbr = c_mul(br, br), qsg = c_mul(q, sg);
-    const struct minors symmetric = {
-        .zb = w2,
-        .zM = c_mul(bE, Cc),
-        .Fb = c_neg(c_mul(bEr, qsg)),
-        .zF = c_mul(br, c_mul(q, w1)),
-        .FM = c_neg(c_mul(bbr, c_mul(q, w3))),
-    };
-    const struct minors antisymmetric = {
-        .zb = w1,
-        .zM = c_mul(bE, sg),
-        .Fb = c_mul(bEr, Cc),
-        .zF = c_neg(c_mul(br, w2)),
-        .FM = c_mul(bbr, w4),
-    };
+    struct minors symmetric, antisymmetric;
+    if (is_real(w, b))
+        minors_of_real(w, &x, b, back, &symmetric, &antisymmetric);
+    else
+        minors_of(w, &x, b, back, &symmetric, &antisymmetric);
     cv Ps[3], Pa[3];
-    const cv per = c_mul(minors_part(&symmetric, Ps), minors_part(&antisymmetric, Pa));
-    struct bent_halves f = {.radians = x.radians};
+    struct bent_halves f = {.way = x.way};
+    f.way.det[0] = minors_part(&symmetric, Ps);
+    f.way.det[1] = minors_part(&antisymmetric, Pa);
     for (int i = 0; i < 3; i++) {
         f.sum[i] = c_add(Ps[i], Pa[i]);
         f.apart[i] = c_sub(Ps[i], Pa[i]);
     }
     const lane_mask faint = x.decay[0] < 0.5;
     if (some(faint)) {
+        const cv per = c_mul(f.way.det[0], f.way.det[1]);
         cv apart[3];
-        bent_apart(w, &x, b, back, c_times_i(c_mul(bE, per)), apart);
+        bent_apart(w, &x, b, back, c_times_i(c_mul(c_mul(b, w->E), per)), apart);
         for (int i = 0; i < 3; i++)
             f.apart[i] = c_where(faint, apart[i], f.apart[i]);
     }

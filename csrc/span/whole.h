@@ -27,7 +27,7 @@ RD_INLINE struct plain_span plain_span_of(cv soft, cv load, double length)
 {
     const struct plain_halves x = plain_halves_of(soft, load, length);
     const cv inverse = c_inverse(x.sum);
-    struct plain_span span = {.radians = x.radians};
+    struct plain_span span = {.radians = way_radians(&x.way)};
     span.A = c_scale(c_mul(x.both, inverse), 2);
     span.B = c_times_i(c_mul(x.apart, inverse));
     span.C = c_times_i(c_scale(inverse, 2));
@@ -132,7 +132,7 @@ RD_INLINE struct bent_span bent_span_of(cv soft, const cv *load, lanes r, double
     const lane_mask near = ~(c_size(w.E) * square > (double)BENT_SHORT);
     const struct bent_halves x = bent_halves_of(&w, c_inverse(soft), r, length);
     bent_span_of_halves(&x, &span);
-    span.radians = x.radians;
+    span.radians = way_radians(&x.way);
     if (!some(near))
         return span;
     struct beam_slice b;

@@ -281,12 +281,9 @@ size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *e
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
         const struct rd_run run = {.element = chain->element[k],
                                    .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
-        steps++;
-        if (rd_span_is_plain(chain, (size_t)run.element))
-            continue;
         const struct sweep_pieces pieces = rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k),
                                                            rd_sweep_waves(chain, &run, extent));
-        steps += (pieces.count >> pieces.level) + 2 * pieces.level - 1;
+        steps += (pieces.count >> pieces.level) + 2 * pieces.level;
     }
     return steps;
 }

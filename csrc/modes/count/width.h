@@ -2,6 +2,7 @@
 #include "modes/walk/width.h"
 
 #include "modes/count/count.h"
+#include "modes/count/whole.h"
 #include "modes/walk/piece.h"
 #include "modes/walk/wave.h"
 
@@ -155,6 +156,26 @@ RD_INLINE void walk_feet(struct wave *wave, const struct rd_walk *walk, int32_t 
     }
 }
 
+/* a plain span at once; false where it has to be walked by pieces, the wave as it was */
+RD_INLINE _Bool leg_walk_whole(struct wave *wave, const struct rd_walk *walk,
+                               const struct rd_leg *leg, lanes lambda, const lanes *z, lanes *own)
+{
+    const struct wave before = *wave;
+    const lanes own_before = *own;
+    const struct step bare = {.tilts = 0};
+    lanes first[W][W];
+    if (!is_whole(walk, leg, lambda))
+        return 0;
+    term_scale(walk, leg->first, leg->before, lambda, z, first);
+    walk_node(wave, walk, leg->first, first, &bare, leg == walk->leg);
+    walk_feet(wave, walk, leg->first, lambda, z, own);
+    if (whole_walk(wave, walk, leg, lambda, z))
+        return 1;
+    *wave = before;
+    *own = own_before;
+    return 0;
+}
+
 /* A leg of equal elements, by pieces of 2^k of them, the largest first; false where they are too
    many. own: eigenvalues of structures with their feet held, added. */
 RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
@@ -230,7 +251,8 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
     struct wave wave;
     start(&wave, walk);
     for (size_t r = 0; r < walk->legs; r++)
-        if (!leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse, &own)) {
+        if (!leg_walk_whole(&wave, walk, walk->leg + r, lambda, z, &own) &&
+            !leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse, &own)) {
             for (int k = 0; k < RD_LANES; k++)
                 counts[k] = NAN;
             return;

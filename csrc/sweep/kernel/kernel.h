@@ -18,6 +18,8 @@ enum rd_trait {
     RD_HINGED = 4,   /* a hinge on its right */
     RD_SKEW = 8,     /* its mass couples z and beta, far from an eccentric one */
     RD_CARRIES = 16, /* structures, see chain/attached.h; with RD_COUPLED */
+    RD_MASSIVE = 32, /* it has mass */
+    RD_DASHED = 64,  /* it has damping; with RD_COUPLED */
 };
 
 enum { RD_PAIRS_MAX = RD_WIDTH_MAX * (RD_WIDTH_MAX + 1) / 2 };

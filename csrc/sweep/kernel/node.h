@@ -290,8 +290,10 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
         K_(hold_all)(s->chain, t, state);
     const double *const all[] = {s->chain->stiffness, s->chain->mass, s->chain->damping};
     const cv factors[] = {s->block->spring, s->block->inertia, s->block->dashpot};
-    const int given_parts = s->chain->damping ? 3 : 2;
-    KEEP for (int part = 0; part < given_parts; part++) {
+    const int traits[] = {RD_SPRUNG, RD_MASSIVE, RD_DASHED};
+    KEEP for (int part = 0; part < 3; part++) {
+        if (!(s->trait[t] & traits[part]))
+            continue;
         const double *given = all[part] + t * FULL;
         const cv factor = factors[part];
         double m[FULL], d[2 * W], row[2 * W][RD_WIDTH_MAX];
