@@ -63,21 +63,32 @@ RD_INLINE cv c_where(lane_mask m, cv a, cv b)
     return (cv){l_select(m, a.re, b.re), l_select(m, a.im, b.im)};
 }
 
-/* sin(z h)/z, h where z is 0 */
-RD_INLINE cv c_over(cv sine, cv z, double h)
+/* sin(z)/z as c_circle_of has sin z: where z is small by its series, in whose terms nothing cancels when
+   z is stepped */
+RD_INLINE cv c_over(const struct c_circle *f, cv z)
 {
-    const lane_mask still = c_size(z) == 0.0;
-    const cv some = {l_select(still, l_fill(1), z.re), z.im};
-    return c_where(still, c_real(h), c_mul(sine, c_inverse(some)));
+    const lane_mask small = c_size(z) < 0.5;
+    const cv over = c_mul(f->sin, c_inverse(z));
+    if (!some(small))
+        return over;
+    const cv x = c_mul(z, z);
+    cv sum = c_real(1);
+    for (int n = 8; n > 0; n--) {
+        sum = c_scale(c_mul(sum, x), -1.0 / (double)(2 * n * (2 * n + 1)));
+        sum.re += 1.0;
+    }
+    return c_where(small, c_scale_lanes(sum, l_root(f->decay)), over);
 }
 
 /* u' = S' f, f' = q u: u = cos kx and sin(kx)/k, k^2 = -S' q */
-RD_INLINE struct plain_halves plain_halves_of(cv soft, cv load, double length)
+RD_INLINE struct plain_halves plain_halves_of(cv soft, cv load, lanes length)
 {
-    const double h = 0.5 * length;
+    const lanes h = 0.5 * length;
     const cv k = c_root(c_neg(c_mul(soft, load)));
-    const struct c_circle f = c_circle_of(c_scale(k, h));
-    const cv s = c_over(f.sin, k, h), fs = c_mul(load, s), fa = c_mul(f.cos, c_inverse(soft));
+    const cv kh = c_scale_lanes(k, h);
+    const struct c_circle f = c_circle_of(kh);
+    const cv s = c_scale_lanes(c_over(&f, kh), h), fs = c_mul(load, s),
+             fa = c_mul(f.cos, c_inverse(soft));
     /* u - i f */
     const cv inverse_s = c_inverse(c_add(f.cos, (cv){fs.im, -fs.re}));
     const cv inverse_a = c_inverse(c_add(s, (cv){fa.im, -fa.re}));
@@ -122,17 +133,17 @@ struct half_waves {
     struct half_way way;
 };
 
-RD_INLINE struct half_waves half_waves_of(const struct wavenumbers *w, double length)
+RD_INLINE struct half_waves half_waves_of(const struct wavenumbers *w, lanes length)
 {
-    const double h = 0.5 * length;
-    const struct c_circle k = c_circle_of(c_scale(w->k, h));
-    /* cosh z = cos(iz), sinh z = -i sin(iz) */
-    const struct c_circle a = c_circle_of(c_times_i(c_scale(w->a, h)));
+    const lanes h = 0.5 * length;
+    /* cosh z = cos iz, sinh(z)/z = sin(iz)/(iz) */
+    const cv kh = c_scale_lanes(w->k, h), iah = c_times_i(c_scale_lanes(w->a, h));
+    const struct c_circle k = c_circle_of(kh), a = c_circle_of(iah);
     return (struct half_waves){
         .C = k.cos,
-        .s = c_over(k.sin, w->k, h),
+        .s = c_scale_lanes(c_over(&k, kh), h),
         .c = a.cos,
-        .g = c_over((cv){a.sin.im, -a.sin.re}, w->a, h),
+        .g = c_scale_lanes(c_over(&a, iah), h),
         .decay = {k.decay, a.decay},
         .way = way_of(&k),
     };
@@ -252,7 +263,7 @@ RD_INLINE _Bool is_real(const struct wavenumbers *w, cv b)
 }
 
 RD_INLINE struct bent_halves bent_halves_of(const struct wavenumbers *w, cv b, lanes r,
-                                            double length)
+                                            lanes length)
 {
     const struct half_waves x = half_waves_of(w, length);
     const lanes back = 1.0 / r;

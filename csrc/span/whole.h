@@ -9,8 +9,8 @@
 #ifndef RD_WHOLE_H
 #define RD_WHOLE_H
 
-#include "span/beam_slice.h"
 #include "span/halves.h"
+#include "span/plain_triple.h"
 
 struct plain_span {
     cv A, B, C;
@@ -23,7 +23,7 @@ struct bent_span {
     lanes radians;
 };
 
-RD_INLINE struct plain_span plain_span_of(cv soft, cv load, double length)
+RD_INLINE struct plain_span plain_span_of(cv soft, cv load, lanes length)
 {
     const struct plain_halves x = plain_halves_of(soft, load, length);
     const cv inverse = c_inverse(x.sum);
@@ -57,29 +57,6 @@ RD_INLINE void bent_span_of_halves(const struct bent_halves *x, struct bent_span
     }
     for (int p = 0; p < 4; p++)
         span->B[p] = p % 2 ? c_neg(c_times_i(Y[p])) : c_times_i(Y[p]);
-}
-
-/* The flexibility, transfer and stiffness of a piece in units of the rate matrix: with z = r l phi,
-   F = f/(r^2 S' l^3) and so on. D, G, Q as A, B and C of struct bent_span. */
-struct bent_triple {
-    cv D[4], G[3], Q[3];
-};
-
-RD_INLINE void bent_triple_scale(const struct beam_slice *b, cv soft, lanes r,
-                                 struct bent_triple *t)
-{
-    const lanes back = 1.0 / r;
-    const cv stiff = c_inverse(soft);
-    t->D[0] = b->Dzz;
-    t->D[1] = c_scale_lanes(b->Dzb, r);
-    t->D[2] = c_scale_lanes(b->Dbz, back);
-    t->D[3] = b->Dbb;
-    t->G[0] = c_mul(soft, c_scale_lanes(b->Gzz, r * r));
-    t->G[1] = c_mul(soft, c_scale_lanes(b->Gzb, r));
-    t->G[2] = c_mul(soft, b->Gbb);
-    t->Q[0] = c_mul(stiff, c_scale_lanes(b->Qzz, back * back));
-    t->Q[1] = c_mul(stiff, c_scale_lanes(b->Qzb, back));
-    t->Q[2] = c_mul(stiff, b->Qbb);
 }
 
 /* K = (G - i I)^-1,  A = K G,  B = K F,  C = -i I + Q + F^T B */
@@ -118,30 +95,22 @@ RD_INLINE void bent_span_where(lane_mask m, const struct bent_span *a, struct be
         b->B[p] = c_where(m, a->B[p], b->B[p]);
 }
 
-/* (k l)^2 + (a l)^2 below which the series is the better one, and its terms for it: of 2^n/(2n + 2)! */
-enum { BENT_SHORT = 2, BENT_TERMS = 10 };
-
 /* soft = S', of loads q_z and q_beta */
-RD_INLINE struct bent_span bent_span_of(cv soft, const cv *load, lanes r, double length)
+RD_INLINE struct bent_span bent_span_of(cv soft, const cv *load, lanes r, lanes length)
 {
-    const cv theta = c_mul(soft, load[1]),
-             kappa = c_neg(c_mul(soft, c_scale_lanes(load[0], r * r)));
-    const struct wavenumbers w = wavenumbers_of(theta, kappa);
-    struct bent_span span, brief;
-    const double square = length * length;
-    const lane_mask near = ~(c_size(w.E) * square > (double)BENT_SHORT);
+    const struct wavenumbers w = bent_wavenumbers(soft, load, r);
+    const lane_mask near = is_brief(&w, length);
     const struct bent_halves x = bent_halves_of(&w, c_inverse(soft), r, length);
+    struct bent_span span, brief;
     bent_span_of_halves(&x, &span);
     span.radians = way_radians(&x.way);
     if (!some(near))
         return span;
-    struct beam_slice b;
     struct bent_triple t;
-    beam_slice_fill(c_scale(theta, square), c_scale(kappa, square * square), BENT_TERMS, &b);
-    bent_triple_scale(&b, c_scale(soft, length), r * length, &t);
+    bent_triple_brief(soft, load, r, length, &t);
     bent_span_of_triple(&t, &brief);
     bent_span_where(near, &brief, &span);
-    span.radians = l_select(near, l_fill(BENT_SHORT), span.radians);
+    span.radians = l_select(near, l_fill(BENT_BRIEF), span.radians);
     return span;
 }
 

@@ -16,6 +16,9 @@ enum { LANES = RD_LANES, ROUNDS = 3, WIDER = 3, WIDEST = 11 };
    are what the others are for, with which rd_certify_size soon comes to the most there are. */
 enum { LEVELS_PER_DOUBLING = 4 };
 
+/* steps of a leg in closed form */
+enum { PLAIN_LEAST = 3 };
+
 /* how far from a mode it is counted */
 static double reach_of(const struct rd_work *work, size_t i, double width)
 {
@@ -245,11 +248,11 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
         const int halvings = rd_span_halvings(still, count);
         size_t levels = (endless ? finer : 0) + (size_t)halvings;
         levels = levels < RD_HALVINGS_MOST ? levels : RD_HALVINGS_MOST;
-        most += ldexp((double)count, halvings);
+        most += fmax(ldexp((double)count, halvings), PLAIN_LEAST);
         for (size_t n = count; n > 1; n /= 2)
             levels++;
-        *steps += whole ? count : 2 + 2 * levels;
-        *pieces += whole ? 0 : levels + 1;
+        *steps += whole ? count : PLAIN_LEAST + 2 * levels;
+        *pieces += whole ? 0 : levels + 2;
     }
     if (endless || (double)*steps < most)
         return false;

@@ -12,7 +12,7 @@
 
 #include "modes/walk/piece.h"
 #include "modes/walk/wave.h"
-#include "span/whole.h"
+#include "span/plain.h"
 
 /* Delta and Sigma of all coordinates, f = -i Y s, and the ways of those waves that propagate */
 struct whole {
@@ -44,15 +44,18 @@ RD_INLINE _Bool whole_bent(const struct rate_matrix *rate, double length, lanes 
 {
     enum { B = W - 1 };
     const cv soft = rate->S[B][B], stiff = c_inverse(soft);
-    const struct wavenumbers w =
-        wavenumbers_of(c_mul(soft, rate->q[B]), c_neg(c_mul(soft, rate->q[0])));
-    if (some(~(w.E.re * (length * length) > (double)BENT_SHORT) | (w.q.re < 0.0)))
+    const cv load[2] = {rate->q[0], rate->q[B]};
+    const struct wavenumbers w = bent_wavenumbers(soft, load, rate->lever);
+    if (some(is_brief(&w, l_fill(length)) | (w.q.re < 0.0)))
         return 0;
     const lanes k = longest(w.k.re, length), a = longest(w.a.re, length);
     z[0] = fitting(stiff.re, k, k * k + a * a);
     z[B] = fitting(stiff.re, a, l_fill(1));
     const lanes r = z[B] / z[0];
-    const struct bent_halves x = bent_halves_of(&w, c_scale_lanes(stiff, z[B] * z[B]), r, length);
+    const cv fitted = c_scale_lanes(stiff, z[B] * z[B]);
+    const lanes all = l_fill(length);
+    struct bent_halves x;
+    rd_bent_halves(&w, &fitted, &r, &all, &x);
     whole->bends = 1;
     whole->ways = 1;
     whole->way[0] = x.way;
@@ -74,8 +77,10 @@ RD_INLINE _Bool whole_plain(const struct rate_matrix *rate, double length, int i
     const lanes k = longest(l_root(not_negative(-(soft.re * rate->q[i].re))), length);
     z[i] = fitting(stiffness, k, l_fill(1));
     const lanes square = z[i] * z[i];
-    const struct plain_halves x = plain_halves_of(c_scale_lanes(soft, 1.0 / square),
-                                                  c_scale_lanes(rate->q[i], square), length);
+    const cv fitted = c_scale_lanes(soft, 1.0 / square), load = c_scale_lanes(rate->q[i], square);
+    const lanes all = l_fill(length);
+    struct plain_halves x;
+    rd_rod_halves(&fitted, &load, &all, &x);
     whole->way[whole->ways++] = x.way;
     whole->sum[i][i] = conjugate(x.sum);
     whole->apart[i][i] = conjugate(x.apart);

@@ -5,6 +5,7 @@
 #include "modes/refine/refine.h"
 #include "modes/walk/piece.h"
 
+#include <complex.h>
 #include <string.h>
 
 /* What a joint of two equal halves needs to be taken apart again, for one lane. */
@@ -66,6 +67,106 @@ static void descend(const struct joint *joint, int32_t halvings, int32_t level, 
     descend(joint, halvings, level - 1, at + ((size_t)1 << (level - 1)), um, fb, u);
 }
 
+/* what a plain span of that length does to waves, u_b = A s_b - i B u_a and so on (span/whole.h) */
+struct plain_coefficients {
+    cv A[W][W], B[W][W], C[W][W];
+};
+
+RD_INLINE void plain_coefficients_fill(const struct rate_matrix *rate, const double *z,
+                                       lanes length, struct plain_coefficients *c)
+{
+    enum { B = W - 1 };
+    const cv soft = c_scale(rate->S[B][B], 1 / (z[B] * z[B]));
+    const cv load[2] = {c_scale(rate->q[0], z[0] * z[0]), c_scale(rate->q[B], z[B] * z[B])};
+    if (W == 1) {
+        struct plain_span span;
+        rd_rod_span(&soft, load, &length, &span);
+        c->A[0][0] = span.A;
+        c->B[0][0] = span.B;
+        c->C[0][0] = span.C;
+        return;
+    }
+    const lanes lever = l_fill(z[B] / z[0]);
+    struct bent_span span;
+    rd_bent_span(&soft, load, &lever, &length, &span);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) {
+            c->A[i * B][j * B] = span.A[i + j];
+            c->B[i * B][j * B] = span.B[2 * i + j];
+            c->C[i * B][j * B] = span.C[i + j];
+        }
+}
+
+/* (i, j) of x y and of x y^T */
+RD_INLINE cv product_at(const cv x[W][W], const cv y[W][W], int i, int j)
+{
+    cv sum = c_mul(x[i][0], y[0][j]);
+    for (int k = 1; k < W; k++)
+        sum = c_add(sum, c_mul(x[i][k], y[k][j]));
+    return sum;
+}
+
+/* Where the two ends of a plain leg stand still or move, u_a and s_b = u_b - i f_b, scaled, its nodes at x
+   move by u: with the coefficients of both sides
+
+       (I - i A1 C2) u = -i (B1 u_a + A1 B2^T s_b) */
+RD_INLINE void plain_motion(const struct rate_matrix *rate, const double *z, double length, lanes x,
+                            const double *ua, const double _Complex *sb, lanes *u)
+{
+    struct plain_coefficients left, right;
+    cv M[W][W], t[W], y[W];
+    plain_coefficients_fill(rate, z, x, &left);
+    plain_coefficients_fill(rate, z, length - x, &right);
+    for (int i = 0; i < W; i++) {
+        t[i] = c_zero();
+        for (int j = 0; j < W; j++) {
+            const cv s = c_make(l_fill(creal(sb[j])), l_fill(cimag(sb[j])));
+            t[i] = c_add(t[i], c_mul(right.B[j][i], s));
+        }
+    }
+    for (int i = 0; i < W; i++) {
+        y[i] = c_zero();
+        for (int j = 0; j < W; j++) {
+            y[i] = c_add(y[i], c_add(c_scale(left.B[i][j], ua[j]), c_mul(left.A[i][j], t[j])));
+            M[i][j] = c_neg(c_times_i(product_at(left.A, right.C, i, j)));
+            M[i][j].re += l_fill(i == j);
+        }
+    }
+    enum { B = W - 1 };
+    if (W == 1) {
+        u[0] = c_mul(y[0], c_inverse(M[0][0])).im;
+        return;
+    }
+    const cv d = c_inverse(c_sub(c_mul(M[0][0], M[B][B]), c_mul(M[0][B], M[B][0])));
+    u[0] = c_mul(c_sub(c_mul(M[B][B], y[0]), c_mul(M[0][B], y[B])), d).im;
+    u[B] = c_mul(c_sub(c_mul(M[0][0], y[B]), c_mul(M[B][0], y[0])), d).im;
+}
+
+/* the nodes of a plain leg between its ends, whose first step is m */
+static void plain_nodes(const struct rd_refine *r, size_t m, lanes lambda, int lane, double *u)
+{
+    const struct rd_leg *leg = r->walk->leg + r->step[m].leg;
+    const double apart = r->walk->chain->length[leg->element];
+    const size_t end = m + PLAIN_STEPS;
+    double ua[W];
+    double _Complex sb[W];
+    struct rate_matrix rate;
+    plain_rate(r->walk, leg, l_fill(lambda[lane]), &rate);
+    for (size_t i = 0; i < W; i++) {
+        ua[i] = r->u[m * W + i][lane];
+        sb[i] = CMPLX(r->u[end * W + i][lane], -r->f[(end - 1) * W + i][lane]);
+    }
+    for (size_t node = 1; node < leg->count; node += RD_LANES) {
+        lanes x, between[W];
+        for (size_t k = 0; k < RD_LANES; k++)
+            x[k] = apart * (double)(node + k < leg->count ? node + k : leg->count - 1);
+        plain_motion(&rate, r->z, apart * (double)leg->count, x, ua, sb, between);
+        for (size_t k = 0; k < RD_LANES && node + k < leg->count; k++)
+            for (size_t i = 0; i < W; i++)
+                u[(node + k) * W + i] = between[i][k] * r->z[i];
+    }
+}
+
 void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *u)
 {
     const struct rd_chain *chain = r->walk->chain;
@@ -82,15 +183,23 @@ void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *
             memcpy(u + (chain->nodes - 1) * W, ua, sizeof ua);
             return;
         }
-        /* the first step of a leg is its largest piece, the last of its levels */
         const struct rd_step *step = r->step + m;
+        double *const node = u + r->walk->leg[step->leg].node * W;
+        if (leg_is_plain(r->walk, r->walk->leg + step->leg)) {
+            if (step->at == 0 && step->term != RD_NO_TERM)
+                memcpy(node, ua, sizeof ua);
+            if (step->at == 0)
+                plain_nodes(r, m, lambda, lane, node);
+            leg = step->leg;
+            continue;
+        }
+        /* the first step of a leg is its largest piece, the last of its levels */
         if (step->leg != leg && step->piece >= 0)
             joint_fill(r, step, lambda, lane, joint);
         leg = step->leg;
         /* a node's own motion is that on the left of its hinge */
         if (step->at > 0 || step->term != RD_NO_TERM)
-            descend(joint, step->halvings, step->level, step->at, ua, fb,
-                    u + r->walk->leg[leg].node * W);
+            descend(joint, step->halvings, step->level, step->at, ua, fb, node);
     }
 }
 

@@ -26,6 +26,19 @@ RD_INLINE const uint8_t *held_at(const struct rd_refine *r, int32_t term)
     return rd_walk_held(r->walk, term);
 }
 
+/* the two pieces of a plain leg with their d/dlambda */
+RD_INLINE void plain_change(const struct rd_refine *r, const struct rd_leg *leg, lanes lambda,
+                            struct piece *level)
+{
+    const struct rd_chain *chain = r->walk->chain;
+    struct rate_matrix rate;
+    lanes first, other;
+    plain_rate(r->walk, leg, lambda, &rate);
+    plain_lengths(&rate, (double)leg->count * chain->length[leg->element], &first, &other);
+    plain_load(&rate, first, level, level + 1);
+    plain_load(&rate, other, level + 2, level + 3);
+}
+
 /* all pieces with their d/dlambda */
 RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
 {
@@ -37,6 +50,11 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
             continue;
         done = step->piece;
         const struct rd_leg *leg = r->walk->leg + step->leg;
+        if (leg_is_plain(r->walk, leg)) {
+            plain_change(r, leg, lambda, (struct piece *)(r->piece + (size_t)done * 6 * W * W));
+            done++;
+            continue;
+        }
         lanes N[W][W], dN[W][W];
         term_load(r->walk, leg->term, step->element, lambda, N);
         for (int i = 0; i < W; i++)
@@ -223,11 +241,35 @@ static _Bool are_equal(const struct rd_leg *a, const struct rd_leg *b)
     return a->element == b->element && a->count == b->count && a->term == b->term;
 }
 
+/* Steps of a plain leg: a long piece and two short ones. */
+static enum rd_status plan_plain(struct rd_refine *r, int32_t index, int32_t *pieces)
+{
+    const struct rd_leg *leg = r->walk->leg + index;
+    const struct rd_step *last = r->steps > 0 ? r->step + r->steps - 1 : NULL;
+    const _Bool shared = last && last->piece >= 0 && index > 0 && are_equal(leg - 1, leg);
+    const int32_t base = shared ? last->piece - 1 : *pieces;
+    if ((size_t)base + 2 > r->pieces || r->steps + PLAIN_STEPS > r->capacity)
+        return RD_NO_MEMORY;
+    for (int k = 0; k < PLAIN_STEPS; k++)
+        r->step[r->steps++] = (struct rd_step){
+            .at = (size_t)k,
+            .piece = base + (k > 0),
+            .element = leg->element,
+            .term = k == 0 ? leg->first : leg->term,
+            .before = k == 0 ? leg->before : leg->element,
+            .leg = index,
+        };
+    *pieces = base + 2;
+    return RD_OK;
+}
+
 /* Steps of a leg: single elements where it is short, pieces of 2^k otherwise. Equal spans side by
    side share their pieces. */
 static enum rd_status plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
 {
     const struct rd_leg *leg = r->walk->leg + index;
+    if (leg_is_plain(r->walk, leg))
+        return plan_plain(r, index, pieces);
     const _Bool joined = leg->count >= 4 || leg_is_continuous(r->walk, leg);
     struct piece level[LEVELS];
     const int halvings = leg_halvings(r->walk, leg, lambda);

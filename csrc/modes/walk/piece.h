@@ -13,6 +13,7 @@
 #include "base/complex_step.h"
 #include "base/real_lanes.h"
 #include "modes/walk/foot.h"
+#include "modes/walk/plain.h"
 #include "modes/walk/walk.h"
 #include "modes/walk/width.h"
 #include "span/slice.h"
@@ -35,6 +36,25 @@ RD_INLINE double largest(lanes x)
     return most;
 }
 
+/* a plain span's piece and, where change is not NULL, its d/dlambda */
+RD_INLINE void plain_load(const struct rate_matrix *rate, lanes length, struct piece *piece,
+                          struct piece *change)
+{
+    struct plain_piece plain;
+    plain_piece_of(rate, length, &plain);
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            piece->D[i][j] = plain.D[i][j].re;
+            piece->G[i][j] = plain.G[i][j].re;
+            piece->Q[i][j] = plain.Q[i][j].re;
+            if (change) {
+                change->D[i][j] = plain.D[i][j].im / RD_COMPLEX_STEP;
+                change->G[i][j] = plain.G[i][j].im / RD_COMPLEX_STEP;
+                change->Q[i][j] = plain.Q[i][j].im / RD_COMPLEX_STEP;
+            }
+        }
+}
+
 /* a continuous element's 2^-halvings part and, where change is not NULL, its d/dlambda */
 RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, int halvings,
                           lanes lambda, struct piece *piece, struct piece *change)
@@ -43,9 +63,14 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
     const size_t e = (size_t)leg->element;
     const cv inertia = c_make(-lambda, l_fill(change ? -RD_COMPLEX_STEP : 0));
     struct rate_matrix rate;
+    const double part = ldexp(1, -halvings);
+    if (leg_is_plain(walk, leg)) {
+        plain_rate(walk, leg, lambda, &rate);
+        plain_load(&rate, l_fill(part * chain->length[e]), piece, change);
+        return;
+    }
     rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, c_zero(), &rate);
     cv D[W][W], G[W][W], Q[W][W];
-    const double part = ldexp(1, -halvings);
     const int terms = rd_span_terms(part * rd_walk_radians(walk, leg, largest(lambda)));
     slice_fill(&rate, part * chain->length[e], terms, D, G, Q);
     for (int i = 0; i < W; i++)
@@ -236,11 +261,6 @@ RD_INLINE lane_mask piece_double(const struct piece *half, const lanes N[W][W], 
     add_congruent(half->G, middle.X, Dt, whole->G);
     add_congruent(half->Q, middle.S, half->D, whole->Q);
     return safe;
-}
-
-RD_INLINE _Bool leg_is_continuous(const struct rd_walk *walk, const struct rd_leg *leg)
-{
-    return walk->chain->inertia && (size_t)leg->element < walk->chain->distinct;
 }
 
 /* level[0] of a leg, one of its 2^halvings parts of an element, and its d/dlambda */

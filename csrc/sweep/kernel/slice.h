@@ -1,7 +1,7 @@
 /* The scaled triple of the first piece of a continuous span, and the coefficients of a whole one.
    Included by sweep/kernel/width.h, once per width. */
+#include "span/plain.h"
 #include "span/slice.h"
-#include "span/whole.h"
 
 /* q_i = (inertia p_i + dashpot drag_i) z_i^2, + T z_beta^2 for beta; S'_ij = S_ij/(section z_i z_j);
    Phi_ij z_j/z_i */
@@ -81,7 +81,9 @@ RD_INLINE void K_(whole_bent)(const struct rate_matrix *rate, double l, cv *coef
     cv *A = coef, *X = A + SYM, *C = X + FULL;
     const int z = W == 2 ? 0 : rate->z;
     const cv load[2] = {rate->q[z], rate->q[B]};
-    const struct bent_span span = bent_span_of(rate->S[B][B], load, rate->lever, l);
+    const lanes length = l_fill(l);
+    struct bent_span span;
+    rd_bent_span(&rate->S[B][B], load, &rate->lever, &length, &span);
     A[at(z, z)] = span.A[0];
     A[at(z, B)] = span.A[1];
     A[at(B, B)] = span.A[2];
@@ -105,6 +107,7 @@ static RD_CLONES void K_(make_whole)(const struct rd_chain *chain, const struct 
     K_(rate)(chain, b, e, &rate);
     KEEP for (int i = 0; W > 2 && i < FULL + 2 * SYM; i++)
         coef[i] = c_zero();
+    const lanes all = l_fill(length);
     *radians = (lanes){0};
 #if RD_WIDTH > 1
     if (rate.z >= 0)
@@ -113,7 +116,8 @@ static RD_CLONES void K_(make_whole)(const struct rd_chain *chain, const struct 
     KEEP for (int i = 0; i < W; i++) {
         if (rate.z >= 0 && (i == rate.z || i == W - 1))
             continue;
-        const struct plain_span span = plain_span_of(rate.S[i][i], rate.q[i], length);
+        struct plain_span span;
+        rd_rod_span(&rate.S[i][i], rate.q + i, &all, &span);
         A[at(i, i)] = span.A;
         X[i * W + i] = span.B;
         C[at(i, i)] = span.C;
