@@ -42,15 +42,6 @@ struct chain_slope {
     lanes split;    /* how far the other phase is, as a sine */
 };
 
-/* to[..] = from[..] where m */
-RD_INLINE void put_where(lane_mask m, void *to, const void *from, size_t bytes)
-{
-    lanes *x = to;
-    const lanes *y = from;
-    for (size_t i = 0; i < bytes / sizeof(lanes); i++)
-        x[i] = l_select(m, y[i], x[i]);
-}
-
 RD_INLINE struct duo duo_add(struct duo a, struct duo b)
 {
     return (struct duo){c_add(a.z, b.z), c_add(a.beta, b.beta)};

@@ -1,15 +1,14 @@
-/* Roots, certificates and counts of chains of one kind. What includes this has
+/* Roots, certificates and counts of chains of one kind. What includes this has, beside
+   what closed/chain_walk.h asks for,
 
        chain_splits, chain_valid, chain_guess   of the numbers of a row
-       chain_fill       puts them into a lane
-       chain_phase      at omega; also how fast it grows with ln omega where nothing disturbs
-       chain_slopes     of the phase by ln omega and by all numbers, and its noise
+       chain_fill       puts what follows from them into a lane
 
    Places of (rope, mode) fill the lanes; one that is done makes room for the next. */
 #ifndef RD_CHAIN_ROOTS_H
 #define RD_CHAIN_ROOTS_H
 
-#include "closed/chain_lanes.h"
+#include "closed/chain_walk.h"
 
 enum {
     BLOCK = 64,       /* rows that wait for each other, at most */
@@ -62,7 +61,10 @@ static void lay(struct rd_workspace *work, size_t spans, size_t numbers, size_t 
 static void put_task(const struct rd_chains *chains, struct chain_lanes *chain,
                      struct chain_place *place, size_t i, const struct chain_task *task)
 {
-    chain_fill(chain, i, chains->number + task->row * chain->numbers);
+    const double *number = chains->number + task->row * chain->numbers;
+    for (size_t j = 0; j < chain->numbers; j++)
+        chain->number[j][i] = number[j];
+    chain_fill(chain, i, number);
     chain->first[i] = (long long)task->first;
     chain->last[i] = (long long)task->last;
     chain->split |= task->first > 0 || task->last < chain->spans;
@@ -99,8 +101,6 @@ RD_INLINE void narrow(struct bracket *b, lanes beyond, lanes pace)
     b->steps += 1.0;
     b->x = l_select(bracketed, inside, outside);
 }
-
-long chain_evaluations, chain_laps;
 
 static size_t next_place(const struct chain_task *task, size_t at, size_t count, _Bool wide)
 {
@@ -142,8 +142,6 @@ RD_CLONES static void seek(const struct rd_chains *chains, struct chain_lanes *c
             return;
         lanes pace;
         const lanes x = b.x, beyond = chain_phase(chain, x, &place, &pace);
-        chain_laps++;
-        for (int i = 0; i < 8; i++) chain_evaluations += busy[i] != 0;
         narrow(&b, beyond, pace);
         const lane_mask near = (l_abs(beyond) < NEAR) & (l_abs(b.x - x) < NEAR * x);
         const lane_mask lost = (b.steps >= steps) | (b.high - b.low < 4e-16 * b.high) |

@@ -88,9 +88,9 @@ RD_INLINE lanes duo_square(struct duo x)
     return c_square(x.z) + c_square(x.beta);
 }
 
-RD_INLINE struct half half_span(cv n, cv d, lanes g)
+RD_INLINE struct half half_span(cv n, cv d, lanes g, lanes scale)
 {
-    const cv per = c_inverse(d);
+    const cv per = {d.re * scale, -d.im * scale};
     return (struct half){
         n, per, g, {c_mul(n, per), (cv){-g * per.im, g * per.re}, c_mul(c_conj(n), per)}};
 }
@@ -119,8 +119,9 @@ RD_INLINE struct span_waves span_waves(lanes length, lanes root_load, lanes pull
     const lanes ct = c * t, st = s * t, more = c + st, less = c - st;
     const lanes p = alpha + k3, q = kappa + a3, x = alpha - k3, y = kappa - a3;
     const cv d = {ct * p + s * q, less}, D = {s * p - ct * q, more};
-    w.sym = half_span((cv){ct * x + s * y, more}, d, 2.0 * gamma * (kappa * ct - alpha * s));
-    w.anti = half_span((cv){s * x - ct * y, -less}, D, 2.0 * gamma * (alpha * ct + kappa * s));
+    const lanes ds = c_square(d), da = c_square(D), both = 1.0 / (ds * da), twice = 2.0 * gamma;
+    w.sym = half_span((cv){ct * x + s * y, more}, d, twice * (kappa * ct - alpha * s), da * both);
+    w.anti = half_span((cv){s * x - ct * y, -less}, D, twice * (alpha * ct + kappa * s), ds * both);
     const struct pair *S = &w.sym.G, *A = &w.anti.G;
     w.P = (struct pair){c_half_sum(S->a, A->a), c_half_sum(S->b, A->b), c_half_sum(S->c, A->c)};
     w.N = (struct pair){c_half_difference(S->a, A->a), c_half_difference(S->b, A->b),

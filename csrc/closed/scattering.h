@@ -22,8 +22,9 @@
 
 struct part {
     struct pair G;
-    lanes K; /* theta/2 = K - less */
-    struct turned less;
+    lanes K; /* theta/2 = K - 2 pi turns - arg turn */
+    lanes turns;
+    cv turn;
 };
 
 /* of one coordinate: b_j = own b'_j - other b'_k gives back what went in before */
@@ -34,7 +35,6 @@ struct passed {
 /* a station, or a hinge, that was passed */
 struct station {
     struct passed z, beta;
-    lanes load_z, load_beta; /* |stiffness| + omega^2 inertia over the scales */
     cv hinge;                /* b_beta = hinge b_z, where there is one */
     struct pair G;           /* with what stands at the station, before the hinge */
 };
@@ -48,15 +48,29 @@ struct scales {
     lanes z, beta; /* s^-2 */
 };
 
+/* to[..] = from[..] where m */
+RD_INLINE void put_where(lane_mask m, void *to, const void *from, size_t bytes)
+{
+    lanes *x = to;
+    const lanes *y = from;
+    for (size_t i = 0; i < bytes / sizeof(lanes); i++)
+        x[i] = l_select(m, y[i], x[i]);
+}
+
 RD_INLINE struct part free_part(void)
 {
     const cv one = c_real(1), none = c_zero();
-    return (struct part){{one, none, one}, l_fill(0), {l_fill(0), l_fill(0)}};
+    return (struct part){{one, none, one}, l_fill(0), l_fill(0), one};
 }
 
-RD_INLINE void lag(struct part *part, cv by)
+/* the angle grows by that of q, both within pi: half turns show in the signs */
+RD_INLINE void lag(struct part *part, cv q)
 {
-    part->less = t_add(part->less, l_angle(by.im, by.re));
+    const cv turn = c_mul(part->turn, q);
+    const lane_mask left = part->turn.im >= 0.0, up = q.im >= 0.0, above = turn.im >= 0.0;
+    part->turns += l_select(left & up & ~above, l_fill(1), l_fill(0));
+    part->turns -= l_select(~left & ~up & above, l_fill(1), l_fill(0));
+    part->turn = c_scale_lanes(turn, 1.0 / c_size(turn));
 }
 
 /* beta reversed */
@@ -72,40 +86,43 @@ RD_INLINE struct duo mirrored_duo(struct duo x)
     return x;
 }
 
-/* of coordinate j beside k */
-RD_INLINE struct passed pass_coordinate(cv *jj, cv *jk, cv *kk, lanes n, lanes ratio, cv *turn)
+/* Of coordinate j beside k. Where its part is as good as held and n is not small the angle of q is
+   lost, and all that follows is not a number. */
+RD_INLINE struct passed pass_coordinate(struct part *part, cv *jj, cv *jk, cv *kk, lanes n,
+                                        lanes ratio)
 {
-    lanes n1, n2;
-    projected(n, &n1, &n2);
-    const cv up = c_add(c_real(1), *jj), down = c_scale_lanes(c_sub(c_real(1), *jj), n2 * ratio);
-    const cv q = c_add(c_mul(up, c_make(n2, n1)), down), per = c_invert(q);
-    const cv x = c_mul(*jk, per), other = c_mul(c_make(n2 * (1.0 - ratio), n1), x);
-    const lanes through = 2.0 * n2 * l_root(ratio);
+    const cv one = c_real(1);
+    const lane_mask same = ratio == 1.0, still = same & (n == 0.0), held = n == (double)INFINITY;
+    if (every(still))
+        return (struct passed){one, c_zero()};
+    const lanes n1 = l_select(held, l_fill(1), n), n2 = l_select(held, l_fill(0), l_fill(1));
+    const lanes root = every(same) ? ratio : l_root(ratio), through = 2.0 * n2 * root;
+    const cv up = c_add(one, *jj), down = c_scale_lanes(c_sub(one, *jj), n2 * ratio);
+    const cv sum = c_add(c_mul(up, c_make(n2, n1)), down);
+    const lanes size = c_square(sum);
+    const lanes lost = l_select(size > 1e-26 * (n1 * n1 + n2), l_fill(0), l_fill((double)NAN));
+    const cv q = {l_select(still, l_fill(2), sum.re + lost), l_select(still, l_fill(0), sum.im)};
+    const lanes s = 1.0 / l_select(still, l_fill(4), size);
+    const cv per = {q.re * s, -q.im * s}, x = c_mul(*jk, per);
+    const cv other = c_mul(c_make(n2 * (1.0 - ratio), n1), x);
     *kk = c_sub(*kk, c_mul(other, *jk));
-    *jk = c_scale_lanes(x, through);
-    *jj = c_sub(c_scale_lanes(c_mul(up, per), 2.0 * n2), c_real(1));
-    *turn = q;
+    put_where(~still, jk, &(cv){x.re * through, x.im * through}, sizeof(cv));
+    const cv moved = c_sub(c_scale_lanes(c_mul(up, per), 2.0 * n2), one);
+    put_where(~still, jj, &moved, sizeof(cv));
+    lag(part, q);
     return (struct passed){c_scale_lanes(per, through), other};
 }
 
 RD_INLINE struct station pass_station(struct part *part, const struct standing *here, lanes omega,
                                       struct scales before, struct scales after)
 {
-    const lanes square = omega * omega;
-    const lanes per_z = 1.0 / after.z, per_beta = 1.0 / after.beta;
-    const lanes inert_z = square * here->mass * per_z;
-    const lanes inert_beta = square * here->turning * per_beta;
-    const lanes stiff_z = here->spring_z * per_z, stiff_beta = here->spring_beta * per_beta;
+    const lanes square = omega * omega, per_z = 1.0 / after.z, per_beta = 1.0 / after.beta;
+    const lanes n_z = (here->spring_z - square * here->mass) * per_z;
+    const lanes n_beta = (here->spring_beta - square * here->turning) * per_beta;
     struct station station;
     struct pair *G = &part->G;
-    cv turn_z, turn_beta;
-    station.z = pass_coordinate(&G->a, &G->b, &G->c, stiff_z - inert_z, before.z * per_z, &turn_z);
-    station.beta = pass_coordinate(&G->c, &G->b, &G->a, stiff_beta - inert_beta,
-                                   before.beta * per_beta, &turn_beta);
-    lag(part, turn_z);
-    lag(part, turn_beta);
-    station.load_z = l_abs(stiff_z) + l_abs(inert_z);
-    station.load_beta = l_abs(stiff_beta) + l_abs(inert_beta);
+    station.z = pass_coordinate(part, &G->a, &G->b, &G->c, n_z, before.z * per_z);
+    station.beta = pass_coordinate(part, &G->c, &G->b, &G->a, n_beta, before.beta * per_beta);
     station.G = *G;
     return station;
 }
@@ -120,11 +137,11 @@ RD_INLINE void pass_hinge(struct part *part, struct station *station)
     part->G.a = c_add(part->G.a, c_mul(station->hinge, part->G.b));
     part->G.b = c_zero();
     part->G.c = c_real(1);
-    lag(part, (cv){l_select(apart, l_fill(0), open.re), l_select(apart, l_fill(1), open.im)});
-    part->less.eighths -= 2.0;
+    /* arg(1 - G_bb) less pi/2, which is 0 there */
+    lag(part, (cv){l_select(apart, l_fill(1), open.im), l_select(apart, l_fill(0), -open.re)});
 }
 
-/* Y of the span is kept; `near` is 1/|D| */
+/* Y of the span is kept; `near` is 1/|D|^2 */
 RD_INLINE struct pair pass_span(struct part *part, const struct span_waves *w, lanes *near)
 {
     const struct pair G = mirrored(part->G), *P = &w->P, *N = &w->N;
@@ -144,7 +161,7 @@ RD_INLINE struct pair pass_span(struct part *part, const struct span_waves *w, l
     part->G.c = c_add(P->c, pair_times(N, beta).beta);
     part->K += w->kl;
     lag(part, c_mul(D, w->lag));
-    *near = l_root(c_square(per));
+    *near = c_square(per);
     return Y;
 }
 
@@ -180,10 +197,13 @@ struct meeting {
 RD_INLINE struct meeting meet(const struct part *first, const struct part *second)
 {
     struct meeting m = {.K = first->K + second->K,
-                        .less = t_add(first->less, second->less),
                         .first = first->G,
                         .second = mirrored(second->G)};
     const struct pair *A = &m.first, *B = &m.second;
+    struct part both = {first->G, m.K, first->turns + second->turns, first->turn};
+    lag(&both, second->turn);
+    m.less = l_angle(both.turn.im, both.turn.re);
+    m.less.eighths += 8.0 * both.turns;
     lanes c, s;
     l_sine_cosine(l_less_angle(m.K, m.less), &s, &c);
     const cv turn = {c, -s};
