@@ -42,7 +42,7 @@ static _Bool chain_valid(const struct rd_chains *chains, const double *number)
 
 /* omega of mode n of one span between held ends with all the mass, or so */
 static double chain_guess(const struct rd_chains *chains, const double *number, size_t first,
-                         size_t last, double n)
+                          size_t last, double n)
 {
     double L = 0, m = 0, T = 0, B = 0;
     (void)chains;
@@ -125,17 +125,26 @@ RD_INLINE void chain_span_slopes(struct chain_lanes *chain, size_t e, struct cha
     sum->noise += of.noise;
 }
 
-#include "closed/chain_walk.h"
 #include "closed/chain_roots.h"
+#include "closed/chain_walk.h"
+
+size_t rd_chain_work(size_t spans, size_t number)
+{
+    struct rd_workspace workspace = {0};
+    struct chain_lanes chain;
+    struct chain_block block;
+    lay(&workspace, spans, rd_bent_numbers(spans), number, &chain, &block);
+    return workspace.used;
+}
 
 void rd_bent_chain_modes(const struct rd_chains *chains, size_t first, size_t last,
-                         const struct rd_closed_modes *modes, void *work)
+                         const struct rd_closed_modes *modes, const struct rd_workspace *workspace)
 {
-    chain_modes(chains, rd_bent_numbers(chains->spans), first, last, modes, work);
+    chain_modes(chains, rd_bent_numbers(chains->spans), first, last, modes, *workspace);
 }
 
 void rd_bent_chain_count(const struct rd_chains *chains, size_t first, size_t last, double omega,
-                         int64_t *count, void *work)
+                         int64_t *count, const struct rd_workspace *workspace)
 {
-    chain_count(chains, rd_bent_numbers(chains->spans), first, last, omega, count, work);
+    chain_count(chains, rd_bent_numbers(chains->spans), first, last, omega, count, *workspace);
 }

@@ -52,8 +52,8 @@ static void lay(struct rd_workspace *work, size_t spans, size_t numbers, size_t 
         chain->near[side] = rd_take_aligned(work, spans, wide, wide);
         chain->in[side] = rd_take_aligned(work, spans, sizeof **chain->in, wide);
     }
-    block->task = rd_take(work, rows, spans * number * sizeof *block->task);
-    block->omega = rd_take(work, rows, spans * number * sizeof *block->omega);
+    block->task = rd_take(work, rows * spans, number * sizeof *block->task);
+    block->omega = rd_take(work, rows * spans, number * sizeof *block->omega);
     block->mode = rd_take(work, rows, number * sizeof *block->mode);
     block->root = rd_take(work, rows, number * sizeof *block->root);
 }
@@ -86,8 +86,8 @@ RD_INLINE void narrow(struct bracket *b, lanes beyond, lanes pace)
     const lane_mask again = (up & b->rising) | (~up & ~b->rising);
     /* Anderson and Bjorck: what stays is weighed by how much nearer the other came */
     const lanes part = 1.0 - beyond / l_select(up, b->below, b->above);
-    const lanes weight = l_select(again & ~open & begun, l_select(part > 0.0, part, l_fill(0.5)),
-                                  l_fill(1));
+    const lanes weight =
+        l_select(again & ~open & begun, l_select(part > 0.0, part, l_fill(0.5)), l_fill(1));
     b->above = l_select(up, b->above * weight, beyond);
     b->below = l_select(up, beyond, b->below * weight);
     b->low = l_select(up, b->x, b->low);
@@ -144,8 +144,8 @@ RD_CLONES static void seek(const struct rd_chains *chains, struct chain_lanes *c
         const lanes x = b.x, beyond = chain_phase(chain, x, &place, &pace);
         narrow(&b, beyond, pace);
         const lane_mask near = (l_abs(beyond) < NEAR) & (l_abs(b.x - x) < NEAR * x);
-        const lane_mask lost = (b.steps >= steps) | (b.high - b.low < 4e-16 * b.high) |
-                               ~(x > 0.0) | ~finite(beyond);
+        const lane_mask lost =
+            (b.steps >= steps) | (b.high - b.low < 4e-16 * b.high) | ~(x > 0.0) | ~finite(beyond);
         for (size_t i = 0; i < RD_LANES; i++)
             if (busy[i] && (near[i] || lost[i])) {
                 omega[at[i]] = near[i] ? x[i] : 0;
@@ -188,8 +188,7 @@ RD_CLONES static void settle(const struct rd_chains *chains, struct chain_lanes 
         const lanes error = noise / f.of_omega + left + 4.0 * ROUNDING;
         const lanes wide = l_most(l_fill(2e-13), 4.0 * error);
         const lane_mask found = (x > 0.0) & (f.of_omega > 0.0) & (error < CERTAIN) &
-                                (f.split > 1e-6) &
-                                chain_passes(chain, &place, omega, wide, noise);
+                                (f.split > 1e-6) & chain_passes(chain, &place, omega, wide, noise);
         for (size_t i = 0; i < RD_LANES && t + i < count; i++) {
             const size_t mode = row * modes->number + t + i;
             modes->omega[mode] = omega[i];
@@ -225,8 +224,8 @@ static size_t list_sections(const struct rd_chains *chains, size_t numbers, size
 }
 
 /* the lowest of the sections of a row, which are sorted each; 0 if some was not found */
-static _Bool lowest(const struct chain_task *task, const double *omega, size_t count,
-                    size_t number, struct chain_task *mode, double *root)
+static _Bool lowest(const struct chain_task *task, const double *omega, size_t count, size_t number,
+                    struct chain_task *mode, double *root)
 {
     _Bool found = 1;
     for (size_t t = 0; t < count; t++)
@@ -248,13 +247,12 @@ static _Bool lowest(const struct chain_task *task, const double *omega, size_t c
 }
 
 static void chain_modes(const struct rd_chains *chains, size_t numbers, size_t first, size_t last,
-                        const struct rd_closed_modes *modes, void *memory)
+                        const struct rd_closed_modes *modes, struct rd_workspace work)
 {
-    struct rd_workspace work = {memory, SIZE_MAX, 0};
-    struct chain_lanes chain = {
-        .spans = chains->spans, .numbers = numbers, .hinge = chains->hinge};
+    struct chain_lanes chain = {.spans = chains->spans, .numbers = numbers, .hinge = chains->hinge};
     struct chain_block block;
     const size_t number = modes->number, rows = block_rows(chains->spans, number);
+    work.used = 0;
     lay(&work, chains->spans, numbers, number, &chain, &block);
     for (; first < last; first += rows) {
         const size_t stop = last - first < rows ? last : first + rows;
@@ -271,10 +269,9 @@ static void chain_modes(const struct rd_chains *chains, size_t numbers, size_t f
             while (t + own < count && block.task[t + own].row == row)
                 own++;
             const size_t at = (row - first) * number;
-            modes->certified[row] =
-                chain_valid(chains, chains->number + row * numbers) &&
-                lowest(block.task + t, block.omega + t, own, number, block.mode + at,
-                       block.root + at);
+            modes->certified[row] = chain_valid(chains, chains->number + row * numbers) &&
+                                    lowest(block.task + t, block.omega + t, own, number,
+                                           block.mode + at, block.root + at);
             t += own;
         }
         settle(chains, &chain, block.mode, block.root, (stop - first) * number, first, modes);
@@ -298,7 +295,8 @@ RD_CLONES static void count_places(const struct rd_chains *chains, struct chain_
         const lanes below = whole_turns(f.beyond / turn + 1.0, slack, &certain);
         for (int side = -1; side < 2; side += 2) {
             lanes pace;
-            const lanes beyond = chain_phase(chain, l_fill(omega * (1 + side * off)), &place, &pace);
+            const lanes beyond =
+                chain_phase(chain, l_fill(omega * (1 + side * off)), &place, &pace);
             certain &= whole_turns(beyond / turn + 1.0, l_fill(4), &certain) == below;
         }
         for (size_t i = 0; i < RD_LANES && t + i < count; i++)
@@ -307,13 +305,12 @@ RD_CLONES static void count_places(const struct rd_chains *chains, struct chain_
 }
 
 static void chain_count(const struct rd_chains *chains, size_t numbers, size_t first, size_t last,
-                        double omega, int64_t *count, void *memory)
+                        double omega, int64_t *count, struct rd_workspace work)
 {
-    struct rd_workspace work = {memory, SIZE_MAX, 0};
-    struct chain_lanes chain = {
-        .spans = chains->spans, .numbers = numbers, .hinge = chains->hinge};
+    struct chain_lanes chain = {.spans = chains->spans, .numbers = numbers, .hinge = chains->hinge};
     struct chain_block block;
     const size_t rows = block_rows(chains->spans, 2);
+    work.used = 0;
     lay(&work, chains->spans, numbers, 2, &chain, &block);
     for (; first < last; first += rows) {
         const size_t stop = last - first < rows ? last : first + rows;

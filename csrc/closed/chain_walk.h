@@ -31,6 +31,21 @@ RD_INLINE lanes chain_spans(struct chain_lanes *chain, lanes omega)
     return pace;
 }
 
+/* where a lane's section is not: no waves are there, and nothing that is not a number stays */
+RD_INLINE void clear_station(struct station *station, lane_mask where)
+{
+    const struct passed same = {c_real(1), c_zero()};
+    const struct station none = {same, same, c_zero(), free_part().G};
+    put_where(where, station, &none, sizeof none);
+}
+
+RD_INLINE void clear_span(struct pair *Y, lanes *near, lane_mask where)
+{
+    const struct pair none = {c_zero(), c_zero(), c_zero()};
+    put_where(where, Y, &none, sizeof none);
+    *near = l_select(where, l_fill(1), *near);
+}
+
 /* right of a station that holds what meets there */
 RD_INLINE struct part beyond_split(_Bool hinged)
 {
@@ -52,8 +67,8 @@ RD_INLINE void chain_from_left(struct chain_lanes *chain, lanes omega, _Bool kep
         const struct standing here = chain_standing(chain, s);
         if (chain->split)
             chain->left[s + 1] = part;
-        struct station station = pass_station(&part, &here, omega, scales_of(chain, s ? s - 1 : 0),
-                                              scales_of(chain, s));
+        struct station station =
+            pass_station(&part, &here, omega, scales_of(chain, s ? s - 1 : 0), scales_of(chain, s));
         if (chain->hinge[s])
             pass_hinge(&part, &station);
         if (chain->split && s > 0) {
@@ -61,7 +76,12 @@ RD_INLINE void chain_from_left(struct chain_lanes *chain, lanes omega, _Bool kep
             put_where(chain->first == at, &part, &apart, sizeof part);
         }
         lanes near;
-        const struct pair Y = chain_pass(&part, chain->wave + s, &near);
+        struct pair Y = chain_pass(&part, chain->wave + s, &near);
+        if (kept && chain->split) {
+            const lane_mask after = chain->last <= at;
+            clear_station(&station, after | ((chain->first > 0) & (chain->first >= at)));
+            clear_span(&Y, &near, after | (chain->first > at));
+        }
         if (kept) {
             chain->station[0][s] = station;
             chain->Y[0][s] = Y;
@@ -104,11 +124,16 @@ RD_INLINE void chain_from_right(struct chain_lanes *chain, lanes omega, size_t s
     const lane_mask last = chain->last == (long long)s;
     put_where(last, part, &end, sizeof end);
     put_where(last, station, &end_station, sizeof end_station);
+    if (chain->split) {
+        const long long at = (long long)s;
+        clear_station(station, (chain->first >= at) | (chain->last < at));
+        clear_span(chain->Y[1] + s, chain->near[1] + s, (chain->first > at) | (chain->last <= at));
+    }
 }
 
 /* where the two parts meet: at the right end, or where the phase is nearest to passing 0 */
 RD_INLINE struct meeting chain_meeting(struct chain_lanes *chain, lanes omega,
-                                      const struct chain_place *place, lane_mask *face)
+                                       const struct chain_place *place, lane_mask *face)
 {
     struct meeting found = {0};
     struct part part = free_part();
@@ -136,7 +161,7 @@ RD_INLINE struct meeting chain_meeting(struct chain_lanes *chain, lanes omega,
 }
 
 RD_INLINE lanes chain_phase(struct chain_lanes *chain, lanes omega, const struct chain_place *place,
-                           lanes *pace)
+                            lanes *pace)
 {
     lane_mask face;
     *pace = chain_spans(chain, omega);
@@ -163,15 +188,15 @@ RD_INLINE void station_slopes(struct chain_lanes *chain, const struct station *s
                          of_beta, square);
     sum->of_omega -= 2.0 * (inert_z * of_z + inert_beta * of_beta);
     sum->noise += 12.0 * duo_square(b);
-    sum->noise += l_select(finite(here.spring_z),
-                           4.0 * l_abs(of_z) * (l_abs(here.spring_z) + inert_z), none);
+    sum->noise +=
+        l_select(finite(here.spring_z), 4.0 * l_abs(of_z) * (l_abs(here.spring_z) + inert_z), none);
     sum->noise += l_select(finite(here.spring_beta),
                            4.0 * l_abs(of_beta) * (l_abs(here.spring_beta) + inert_beta), none);
 }
 
 /* what goes into each span left of the face where the parts meet */
 RD_INLINE void chain_to_left(struct chain_lanes *chain, lanes omega, lane_mask face,
-                            struct duo start, struct chain_slope *sum)
+                             struct duo start, struct chain_slope *sum)
 {
     struct duo b = {c_zero(), c_zero()};
     for (size_t s = chain->spans; s > 0; s--) {
@@ -179,7 +204,8 @@ RD_INLINE void chain_to_left(struct chain_lanes *chain, lanes omega, lane_mask f
         const struct station *station = chain->station[0] + e;
         b = duo_add(b, duo_where(face == (long long)s, start));
         chain->in[0][e] = b;
-        sum->noise += 8.0 * duo_square(pair_times(&chain->wave[e].N, b)) * l_root(chain->near[0][e]);
+        sum->noise +=
+            8.0 * duo_square(pair_times(&chain->wave[e].N, b)) * l_root(chain->near[0][e]);
         b = mirrored_duo(through_span(chain->wave + e, chain->Y[0] + e, b, chain->in[1] + e));
         if (chain->split && e > 0)
             b = duo_where(chain->first != (long long)e, b);
@@ -192,7 +218,7 @@ RD_INLINE void chain_to_left(struct chain_lanes *chain, lanes omega, lane_mask f
 
 /* and right of it */
 RD_INLINE void chain_to_right(struct chain_lanes *chain, lanes omega, lane_mask face,
-                             struct duo start, _Bool wide, struct chain_slope *sum)
+                              struct duo start, _Bool wide, struct chain_slope *sum)
 {
     struct duo b = {c_zero(), c_zero()}, back;
     for (size_t s = 1; s <= chain->spans; s++) {
@@ -209,7 +235,8 @@ RD_INLINE void chain_to_right(struct chain_lanes *chain, lanes omega, lane_mask 
             continue;
         if (chain->hinge[s])
             b.beta = c_mul(station->hinge, b.z);
-        sum->noise += 8.0 * duo_square(pair_times(&chain->wave[s].N, b)) * l_root(chain->near[1][s]);
+        sum->noise +=
+            8.0 * duo_square(pair_times(&chain->wave[s].N, b)) * l_root(chain->near[1][s]);
         chain->in[1][s] = duo_add(chain->in[1][s], b);
         b = mirrored_duo(through_span(chain->wave + s, chain->Y[1] + s, b, &back));
         chain->in[0][s] = duo_add(chain->in[0][s], back);
@@ -218,7 +245,7 @@ RD_INLINE void chain_to_right(struct chain_lanes *chain, lanes omega, lane_mask 
 
 /* the phase with its slopes by all numbers */
 RD_INLINE struct chain_slope chain_slopes(struct chain_lanes *chain, lanes omega,
-                                        const struct chain_place *place)
+                                          const struct chain_place *place)
 {
     lane_mask face;
     for (size_t j = 0; j < chain->numbers; j++)

@@ -12,14 +12,15 @@
 #ifndef RD_CHAINS_H
 #define RD_CHAINS_H
 
+#include "base/workspace.h"
 #include "closed/closed.h"
 
 struct rd_chains {
-    size_t spans;            /* at least 1 */
-    const double *number;    /* rows x rd_..._numbers(spans) */
-    const uint8_t *hinge;    /* (spans + 1), for bent chains */
-    size_t columns;          /* of slopes */
-    const double *jacobian;  /* numbers x columns: d number / d what slopes are by */
+    size_t spans;           /* at least 1 */
+    const double *number;   /* rows x rd_..._numbers(spans) */
+    const uint8_t *hinge;   /* (spans + 1), for bent chains */
+    size_t columns;         /* of slopes */
+    const double *jacobian; /* numbers x columns: d number / d what slopes are by */
 };
 
 static inline size_t rd_bent_numbers(size_t spans)
@@ -32,20 +33,20 @@ static inline size_t rd_plain_numbers(size_t spans)
     return 3 * spans + 2 * (spans + 1);
 }
 
-/* Bytes of `work` for chains of so many spans and modes, 64 bytes aligned; SIZE_MAX where there are
-   too many. */
+/* Bytes of the workspace for chains of so many spans and modes; SIZE_MAX where that is too much. */
 size_t rd_chain_work(size_t spans, size_t number);
 
-/* As rd_bent_modes; `slope` is rows x number x columns. */
+/* As rd_bent_modes; `slope` is rows x number x columns. The workspace is used from its start. */
 void rd_bent_chain_modes(const struct rd_chains *chains, size_t first, size_t last,
-                         const struct rd_closed_modes *modes, void *work);
+                         const struct rd_closed_modes *modes, const struct rd_workspace *workspace);
 void rd_plain_chain_modes(const struct rd_chains *chains, size_t first, size_t last,
-                          const struct rd_closed_modes *modes, void *work);
+                          const struct rd_closed_modes *modes,
+                          const struct rd_workspace *workspace);
 
-/* As rd_bent_count; `work` as for two modes. */
+/* As rd_bent_count; the workspace as for two modes. */
 void rd_bent_chain_count(const struct rd_chains *chains, size_t first, size_t last, double omega,
-                         int64_t *count, void *work);
+                         int64_t *count, const struct rd_workspace *workspace);
 void rd_plain_chain_count(const struct rd_chains *chains, size_t first, size_t last, double omega,
-                          int64_t *count, void *work);
+                          int64_t *count, const struct rd_workspace *workspace);
 
 #endif

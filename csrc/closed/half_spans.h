@@ -150,8 +150,9 @@ RD_INLINE struct half_weights half_weights(const struct half *half, struct duo b
     const cv across = c_add(c_mul(c_conj(v.z), b.beta), c_mul(c_conj(v.beta), b.z));
     const cv sum = c_mul(half->per, c_add(z, beta)), split = c_mul(half->per, c_sub(z, beta));
     const lanes all = duo_square(b);
-    return (struct half_weights){-all * half->per.im, -all * half->per.re, sum.im, split.re,
-                                 c_mul(half->per, across).re, 0.5 * z.im, 0.5 * beta.im};
+    return (struct half_weights){
+        -all * half->per.im,         -all * half->per.re, sum.im,       split.re,
+        c_mul(half->per, across).re, 0.5 * z.im,          0.5 * beta.im};
 }
 
 /* of waves into the right end and, mirrored, the left one: slopes of the phase, and its noise in eps */
@@ -171,9 +172,8 @@ RD_INLINE struct span_slopes span_slopes(const struct span_waves *w, lanes pull,
     /* by kh, by ah, and as kappa turns towards alpha */
     const lanes by_kh = S.d_re * (c * q - st * p) - S.d_im * (s + ct) + S.n_re * (c * y - st * x) +
                         S.n_im * (ct - s) - 2.0 * g * S.g * (k * st + a * c) +
-                        A.d_re * (c * p + st * q) + A.d_im * (ct - s) +
-                        A.n_re * (c * x + st * y) + A.n_im * (s + ct) +
-                        2.0 * g * A.g * (k * c - a * st);
+                        A.d_re * (c * p + st * q) + A.d_im * (ct - s) + A.n_re * (c * x + st * y) +
+                        A.n_im * (s + ct) + 2.0 * g * A.g * (k * c - a * st);
     const lanes by_ah = cf * (S.d_re * p + S.n_re * x + 2.0 * g * k * S.g) +
                         sf * (S.n_im - S.d_im) - cf * (A.d_re * q + A.n_re * y) +
                         sf * (A.d_im + A.n_im) + 2.0 * g * a * cf * A.g;

@@ -108,17 +108,16 @@ RD_INLINE lane_mask projected(lanes x, lanes *x1, lanes *x2)
 RD_INLINE void l_sine_cosine(lanes x, lanes *sine, lanes *cosine)
 {
     static const double S[] = {
-        -1.0 / 6,          1.0 / 120,           -1.0 / 5040,           1.0 / 362880,
-        -1.0 / 39916800.0, 1.0 / 6227020800.0,  -1.0 / 1307674368e3,   1.0 / 355687428096e3,
+        -1.0 / 6,          1.0 / 120,          -1.0 / 5040,         1.0 / 362880,
+        -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368e3, 1.0 / 355687428096e3,
     };
     static const double C[] = {
-        1.0 / 24,           -1.0 / 720,           1.0 / 40320,           -1.0 / 3628800,
-        1.0 / 479001600.0,  -1.0 / 87178291200.0, 1.0 / 20922789888e3,   -1.0 / 6402373705728e3,
+        1.0 / 24,          -1.0 / 720,           1.0 / 40320,         -1.0 / 3628800,
+        1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888e3, -1.0 / 6402373705728e3,
     };
     const lanes shift = l_fill(0x1.8p52), bits = x * 0x1.45f306dc9c883p-1 + shift;
     const lanes j = bits - shift;
-    const lanes r =
-        ((x - j * 0x1.921fb544p+0) - j * 0x1.0b4611a6p-34) - j * 0x1.3198a2e037073p-69;
+    const lanes r = ((x - j * 0x1.921fb544p+0) - j * 0x1.0b4611a6p-34) - j * 0x1.3198a2e037073p-69;
     const lanes u = r * r, s = r + r * u * l_series(S, 8, u);
     const lanes c = 1.0 - 0.5 * u + u * u * l_series(C, 8, u);
     const lane_mask quarter = (lane_mask)bits;

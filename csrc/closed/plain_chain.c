@@ -24,8 +24,8 @@ static _Bool chain_valid(const struct rd_chains *chains, const double *number)
         valid &= number[j] > 0 && number[j] < (double)INFINITY;
     for (size_t s = 0; s <= chains->spans; s++) {
         const double *here = at_station(chains, number, s);
-        valid &= here[MASS] >= 0 && here[MASS] < (double)INFINITY &&
-                 here[SPRING] > -(double)INFINITY;
+        valid &=
+            here[MASS] >= 0 && here[MASS] < (double)INFINITY && here[SPRING] > -(double)INFINITY;
     }
     return valid;
 }
@@ -125,17 +125,17 @@ RD_INLINE void chain_span_slopes(struct chain_lanes *chain, size_t e, struct cha
     sum->noise += 12.0 * size + 4.0 * along + 4.0 * l_abs(work);
 }
 
-#include "closed/chain_walk.h"
 #include "closed/chain_roots.h"
+#include "closed/chain_walk.h"
 
 void rd_plain_chain_modes(const struct rd_chains *chains, size_t first, size_t last,
-                          const struct rd_closed_modes *modes, void *work)
+                          const struct rd_closed_modes *modes, const struct rd_workspace *workspace)
 {
-    chain_modes(chains, rd_plain_numbers(chains->spans), first, last, modes, work);
+    chain_modes(chains, rd_plain_numbers(chains->spans), first, last, modes, *workspace);
 }
 
 void rd_plain_chain_count(const struct rd_chains *chains, size_t first, size_t last, double omega,
-                          int64_t *count, void *work)
+                          int64_t *count, const struct rd_workspace *workspace)
 {
-    chain_count(chains, rd_plain_numbers(chains->spans), first, last, omega, count, work);
+    chain_count(chains, rd_plain_numbers(chains->spans), first, last, omega, count, *workspace);
 }

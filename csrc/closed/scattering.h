@@ -35,8 +35,8 @@ struct passed {
 /* a station, or a hinge, that was passed */
 struct station {
     struct passed z, beta;
-    cv hinge;                /* b_beta = hinge b_z, where there is one */
-    struct pair G;           /* with what stands at the station, before the hinge */
+    cv hinge;      /* b_beta = hinge b_z, where there is one */
+    struct pair G; /* with what stands at the station, before the hinge */
 };
 
 /* what stands at a station, and scales of what is on both of its sides */
@@ -119,7 +119,7 @@ RD_INLINE struct station pass_station(struct part *part, const struct standing *
     const lanes square = omega * omega, per_z = 1.0 / after.z, per_beta = 1.0 / after.beta;
     const lanes n_z = (here->spring_z - square * here->mass) * per_z;
     const lanes n_beta = (here->spring_beta - square * here->turning) * per_beta;
-    struct station station;
+    struct station station = {.hinge = c_zero()};
     struct pair *G = &part->G;
     station.z = pass_coordinate(part, &G->a, &G->b, &G->c, n_z, before.z * per_z);
     station.beta = pass_coordinate(part, &G->c, &G->b, &G->a, n_beta, before.beta * per_beta);
@@ -196,9 +196,8 @@ struct meeting {
 
 RD_INLINE struct meeting meet(const struct part *first, const struct part *second)
 {
-    struct meeting m = {.K = first->K + second->K,
-                        .first = first->G,
-                        .second = mirrored(second->G)};
+    struct meeting m = {
+        .K = first->K + second->K, .first = first->G, .second = mirrored(second->G)};
     const struct pair *A = &m.first, *B = &m.second;
     struct part both = {first->G, m.K, first->turns + second->turns, first->turn};
     lag(&both, second->turn);

@@ -105,5 +105,7 @@ PyObject *py_march_finish(PyObject *module, PyObject *arguments);
 PyObject *py_closed_modes(PyObject *module, PyObject *arguments);
 PyObject *py_closed_count(PyObject *module, PyObject *arguments);
 PyObject *py_closed_response(PyObject *module, PyObject *arguments);
+PyObject *py_closed_chain_modes(PyObject *module, PyObject *arguments);
+PyObject *py_closed_chain_count(PyObject *module, PyObject *arguments);
 
 #endif

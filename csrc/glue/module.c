@@ -71,6 +71,11 @@ static PyMethodDef methods[] = {
      "closed_count(kind, number, omega) -> counts, -1 where not certain"},
     {"closed_response", py_closed_response, METH_VARARGS,
      "closed_response(number, factor, drag, drive, response) -> value, error, certain"},
+    {"closed_chain_modes", py_closed_chain_modes, METH_VARARGS,
+     "closed_chain_modes(kind, numbers, hinge, jacobian, number) -> omega, error, slope, "
+     "certified"},
+    {"closed_chain_count", py_closed_chain_count, METH_VARARGS,
+     "closed_chain_count(kind, numbers, hinge, omega) -> counts, -1 where not certain"},
     {NULL, NULL, 0, NULL},
 };
 

@@ -25,6 +25,8 @@ FLOORS = [
     "march/kernel",
     "march",
     "glue",
+    "glue/closed",
+    "glue/march",
 ]
 """Folders of csrc from the ground up: a file may include what lies in its own or one before it."""
 

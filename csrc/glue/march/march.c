@@ -1,5 +1,5 @@
 /* Implicit time steps. */
-#include "glue/march.h"
+#include "glue/march/march.h"
 
 #include "march/run.h"
 #include "march/stage.h"

@@ -1,5 +1,5 @@
 /* What the entry points of a march parse alike. */
-#include "glue/march.h"
+#include "glue/march/march.h"
 
 #include <math.h>
 #include <string.h>
