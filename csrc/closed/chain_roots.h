@@ -76,8 +76,8 @@ static void put_task(const struct rd_chains *chains, struct chain_lanes *chain,
 /* a root between low and high, where the phase is below 0 and above */
 struct bracket {
     lanes low, high, below, above, x;
-    lane_mask rising; /* the last step moved low */
-    lanes steps;
+    lane_mask rising;  /* the last step moved low */
+    lanes steps, turn; /* since the bracket was halved */
 };
 
 RD_INLINE void narrow(struct bracket *b, lanes beyond, lanes pace)
@@ -93,10 +93,14 @@ RD_INLINE void narrow(struct bracket *b, lanes beyond, lanes pace)
     b->low = l_select(up, b->x, b->low);
     b->high = l_select(up, b->high, b->x);
     b->rising = up;
-    const lanes size = l_abs(beyond) / pace + 0.01, far = 1.0 + l_least(size, l_fill(3));
+    /* outside: as kl asks, and ever further; inside: between, or halves where that is slow */
+    const lanes size = (l_abs(beyond) / pace + 0.01) * (1.0 + b->steps);
+    const lanes far = 1.0 + l_least(size, l_fill(3));
     const lanes outside = l_select(up, b->x * far, b->x / far);
     const lanes width = b->high - b->low, share = b->below / (b->below - b->above);
-    const lanes inside = b->low + width * l_most(l_fill(1e-9), l_least(share, l_fill(1 - 1e-9)));
+    const lane_mask slow = (l_abs(beyond) > 0.05) & (b->turn >= 3.0);
+    b->turn = l_select(slow, l_fill(0), b->turn + 1.0);
+    const lanes inside = b->low + width * l_select(slow, l_fill(0.5), share);
     const lane_mask bracketed = (b->high < (double)INFINITY) & (b->low > 0.0);
     b->steps += 1.0;
     b->x = l_select(bracketed, inside, outside);
@@ -133,7 +137,7 @@ RD_CLONES static void seek(const struct rd_chains *chains, struct chain_lanes *c
             put_task(chains, chain, &place, i, task + t);
             b.x[i] = chain_guess(chains, chains->number + task[t].row * chain->numbers,
                                  task[t].first, task[t].last, (double)task[t].n);
-            b.low[i] = b.steps[i] = 0;
+            b.low[i] = b.steps[i] = b.turn[i] = 0;
             b.high[i] = INFINITY;
             busy[i] = next < count ? -1 : 0;
             next = next_place(task, next < count ? next + 1 : count, count, wide);
@@ -269,9 +273,9 @@ static void chain_modes(const struct rd_chains *chains, size_t numbers, size_t f
             while (t + own < count && block.task[t + own].row == row)
                 own++;
             const size_t at = (row - first) * number;
-            modes->certified[row] = chain_valid(chains, chains->number + row * numbers) &&
-                                    lowest(block.task + t, block.omega + t, own, number,
-                                           block.mode + at, block.root + at);
+            const _Bool found = lowest(block.task + t, block.omega + t, own, number,
+                                       block.mode + at, block.root + at);
+            modes->certified[row] = found && chain_valid(chains, chains->number + row * numbers);
             t += own;
         }
         settle(chains, &chain, block.mode, block.root, (stop - first) * number, first, modes);
