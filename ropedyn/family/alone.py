@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 
 from ..base.array import Complex, Real
-from ..chain.compile import compile_scene
-from ..chain.compiled import refuse_nonlinear
 from ..eigen.eigen import solve_modes
 from ..eigen.modes import Modes
 from ..eigen.spectrum import count_modes
@@ -18,11 +16,18 @@ from .template import SPRING, Template
 
 def modes_of_row(template: Template, number: int, derivative: bool, row: Real) -> tuple[Any, ...]:
     """Find the modes of a row."""
-    model = compile_scene(template.at(row))
-    refuse_nonlinear(model)
-    modes = solve_modes(model, number, below=None, solver="sweep")
-    answer = modes.frequency, modes.eigenvalue, modes.rounding_error, modes.certified
-    return (*answer, _derivatives(template, modes, row)) if derivative else answer
+    modes = solve_modes(template.compiled(row), number, below=None, solver="sweep", strict=False)
+    each = [modes.frequency, modes.eigenvalue, modes.rounding_error]
+    if derivative:
+        each.append(_derivatives(template, modes, row))
+    frequency, eigenvalue, error, *slope = (_filled(one, number) for one in each)
+    return frequency, eigenvalue, error, modes.certified, *slope
+
+
+def _filled(each: Real, number: int) -> Real:
+    """Return so many rows, NaN beyond the last mode of a chain."""
+    lacking = [(0, number - len(each)), *[(0, 0)] * (each.ndim - 1)]
+    return np.pad(each, lacking, constant_values=np.nan)
 
 
 def _derivatives(template: Template, modes: Modes, row: Real) -> Real:
@@ -49,16 +54,12 @@ def _eigenvalue_slope(path: str, modes: Modes, value: float) -> Real:
 
 def count_of_row(template: Template, below: float, row: Real) -> tuple[int]:
     """Count the modes of a row."""
-    model = compile_scene(template.at(row))
-    refuse_nonlinear(model)
-    return (count_modes(model, below),)
+    return (count_modes(template.compiled(row), below),)
 
 
 def frf_of_row(
     template: Template, frequency: Real, asked: dict[str, Any], row: Real
 ) -> tuple[Complex, Real]:
     """Compute the response of a row."""
-    model = compile_scene(template.at(row))
-    refuse_nonlinear(model)
-    found = solve_harmonic(model, frequency, threads=1, **asked)
+    found = solve_harmonic(template.compiled(row), frequency, threads=1, **asked)
     return found.value, found.rounding_error

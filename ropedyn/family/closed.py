@@ -59,6 +59,8 @@ class Component(NamedTuple):
 
 def components_of(template: Template) -> tuple[Component, ...]:
     """Return what moves in closed form: nothing where some does not, or a path does not act."""
+    if template.elements is not None or template.element not in (None, "continuous"):
+        return ()
     row = template.row
     probe = row + PROBE * np.arange(1, len(row) + 1) * row
     try:

@@ -49,6 +49,8 @@ class Family:
         What all other numbers are taken from.
     paths : tuple of str
         The numbers that differ, in the order of the columns of values.
+    elements, element
+        Of chains, as `Scene.compile` takes them; continuous spans where they are None.
 
     Examples
     --------
@@ -61,10 +63,12 @@ class Family:
 
     scene: Scene
     paths: tuple[str, ...]
+    elements: int | None = None
+    element: str | None = None
 
     @computed
     def _template(self) -> Template:
-        return Template(self.scene, self.paths)
+        return Template(self.scene, self.paths, self.elements, self.element)
 
     @computed
     def _closed(self) -> tuple[Component, ...]:
@@ -246,7 +250,7 @@ class Family:
         asked = {"drive": drive, "response": response, "quantity": quantity}
         rows = self._checked(values)
         # what is asked is refused before anything runs, and its shape is known
-        model = compile_scene(self.scene)
+        model = compile_scene(self.scene, elements=self.elements, element=self.element)
         drives, several = points(model, drive, "drive", forces=False, ends=True)
         watched = observed(model, response, drives)
         check.one_of(quantity, "quantity", QUANTITIES)
@@ -318,7 +322,11 @@ def _cost(seconds: float, answered: Sequence[int], rows: int) -> Cost:
     return Cost(seconds, f"{closed} of {rows} rows in closed form", elements=0, unknowns=0)
 
 
-def compile_family(scene: Scene, paths: Iterable[str]) -> Family:
+def compile_family(
+    scene: Scene, paths: Iterable[str], elements: int | None = None, element: str | None = None
+) -> Family:
     """Compile a scene and the numbers that differ; see `Scene.family`."""
     known = template(scene, paths)
-    return Family(scene, known.paths)
+    if elements is not None or element not in (None, "continuous"):
+        compile_scene(scene, elements=elements, element=element)
+    return Family(scene, known.paths, elements, element)

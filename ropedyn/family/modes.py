@@ -25,7 +25,8 @@ class FamilyModes(RowsAnswer):
     paths : tuple of str
         The numbers in which the ropes differ, in the order of the columns.
     frequency : ndarray, shape (m, k)
-        [Hz]; 0 for rigid-body motion and where motion grows, NaN in rows that failed.
+        [Hz]; 0 for rigid-body motion and where motion grows, NaN in rows that failed and beyond
+        the last mode of a chain.
     eigenvalue : ndarray, shape (m, k)
         omega^2 [rad^2/s^2]; negative beyond the critical compression.
     growth : ndarray, shape (m, k)

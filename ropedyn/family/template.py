@@ -13,6 +13,8 @@ import numpy as np
 from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
+from ..chain.compile import compile_scene
+from ..chain.compiled import Compiled, refuse_nonlinear
 from ..scene.end import End, end_of
 from ..scene.path import value_at, with_values
 from ..scene.scene import Scene
@@ -25,6 +27,14 @@ class Template(NamedTuple):
 
     scene: Scene
     paths: tuple[str, ...]
+    elements: int | None = None
+    element: str | None = None
+
+    def compiled(self, row: Real) -> Compiled:
+        """Compile the scene of a row."""
+        model = compile_scene(self.at(row), elements=self.elements, element=self.element)
+        refuse_nonlinear(model)
+        return model
 
     @property
     def row(self) -> Real:

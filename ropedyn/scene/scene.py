@@ -470,7 +470,9 @@ NodeForce, Stop, AddedMass, LocalChange
             self, elements=elements, element=element, tolerance=tolerance, below=below
         )
 
-    def family(self, paths: Iterable[str]) -> Family:
+    def family(
+        self, paths: Iterable[str], *, elements: int | None = None, element: str | None = None
+    ) -> Family:
         """Compile a family: ropes like this one that differ in a few numbers.
 
         Parameters
@@ -480,6 +482,8 @@ NodeForce, Stop, AddedMass, LocalChange
             ``"bending_stiffness"`` or ``"length"``, of a part as ``"parts[0].mass"``, of an end as
             ``"ends[0].spring.beta"``, and what else has a number in the scene. Springs of the ends
             exist whatever the scene says: 0 is free, infinite held.
+        elements, element
+            Of chains, as `compile` takes them: continuous spans where left out.
 
         Returns
         -------
@@ -490,7 +494,7 @@ NodeForce, Stop, AddedMass, LocalChange
         TypeError
             If a path is not a string.
         SceneError
-            If the scene has no number at a path, or one is given twice.
+            If the scene has no number at a path, or one is given twice, or as `compile` does.
 
         Examples
         --------
@@ -501,7 +505,7 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         from ..family.family import compile_family
 
-        return compile_family(self, paths)
+        return compile_family(self, paths, elements, element)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the scene as TOML, whole or not at all.

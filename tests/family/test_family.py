@@ -456,6 +456,20 @@ scene.family(["tension"]).modes(np.linspace(1.0, 2.0, 100_000)[:, None], 5, thre
     assert time.perf_counter() - start < 5.0  # one second on a machine that has nothing else to do
 
 
+def test_chains_have_as_many_modes_as_they_have():
+    """Beads on a string: f_k = sqrt(T/(mu a^2)) sin(k pi/2n)/pi."""
+    string = rd.Scene(rd.Rope(2.0, 0.5), tension=1.0)
+    family = string.family(["tension"], elements=4, element="rigid")
+    found = family.modes([[1000.0], [4000.0]], 5, derivative=True)
+    true = np.sqrt(1000.0 / 0.5) * 2 * np.sin(np.arange(1, 4) * np.pi / 8) / np.pi
+    np.testing.assert_allclose(found.frequency[:, :3], [true, 2 * true], rtol=100 * EPS)
+    np.testing.assert_allclose(found.derivative[0, :3, 0], true / 2000.0, rtol=100 * EPS)
+    assert np.isnan(found.frequency[:, 3:]).all() and np.isnan(found.derivative[:, 3:]).all()
+    assert not found.failed
+    with pytest.raises(rd.SceneError, match="elements must be given"):
+        string.family(["tension"], element="rigid")
+
+
 def test_the_answer_is_kept_in_files(tmp_path):
     family = BEAM.family(["tension", "length"])
     found = family.modes([[1.0, 1.0], [2.0, -1.0]], 2, derivative=True)
