@@ -78,8 +78,7 @@ def components_of(template: Template) -> tuple[Component, ...]:
 
 def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
     """Return the components at a row, None where one has no closed form."""
-    model = compile_scene(template.at(row))
-    refuse_nonlinear(model)
+    model = template.compiled(row)
     places = Places(model)
     rates = rates_of(places)
     found = []

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
-from ...base.array import Complex, Index, Real
-from ...base.errors import SceneError, SolveError
+from ...base.array import Complex, Flags, Index, Real
+from ...base.errors import RopedynError, SceneError, SolveError
 from ...curves.measured import Measured
 from ...model import Model
 from ...response.frf import FRF
 from .natural_frequencies import NaturalFrequencies
 from .unknown import CALIBRATION, Unknowns
 
-# Takes variables u, shape (p,); returns residuals (m,) and their slopes (m, p).
-Misfit = Callable[[Real], tuple[Real, Real]]
+
+class Misfit(Protocol):
+    """Differences of many rows, each of a scene, from what was measured."""
+
+    def __call__(self, rows: Index, u: Real) -> tuple[Real, Real]:
+        """Return residuals (n, m) of some rows at u, (n, p), and their slopes (n, m, p); or NaN."""
+
+    def refusal(self, row: int, u: Real) -> RopedynError:
+        """Say why a row has none at u, shape (p,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,20 +45,20 @@ class PriorMisfit:
         value, std = zip(*(prior[unknowns.paths[i]] for i in at))
         return cls(unknowns, np.array(at, dtype=np.intp), np.array(value), np.array(std))
 
-    def __call__(self, u: Real) -> tuple[Real, Real]:
-        """Return (p - value)/std and its slopes."""
-        residual = (self.unknowns.value(u)[self.at] - self.value) / self.std
-        slope = np.zeros((len(self.at), len(u)))
-        slope[np.arange(len(self.at)), self.at] = self.unknowns.slope(u)[self.at] / self.std
+    def of_rows(self, u: Real) -> tuple[Real, Real]:
+        """Return (p - value)/std, (n, q), and its slopes (n, q, p)."""
+        residual = (self.unknowns.value(u)[:, self.at] - self.value) / self.std
+        slope = np.zeros((*residual.shape, u.shape[1]))
+        slope[:, np.arange(len(self.at)), self.at] = self.unknowns.slope(u)[:, self.at] / self.std
         return residual, slope
 
 
-def unseen_of(slope: Real, known: PriorMisfit | None) -> Index:
-    """Return which numbers change no residual and are not known beforehand."""
-    unseen = np.asarray(~slope.any(axis=0))
+def unseen_of(slope: Real, known: PriorMisfit | None) -> Flags:
+    """Return which numbers change no residual and are not known beforehand, shape (n, p)."""
+    unseen = np.asarray(~slope.any(axis=1))
     if known is not None:
-        unseen[known.at] = False
-    return np.flatnonzero(unseen)
+        unseen[:, known.at] = False
+    return unseen
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,42 +67,57 @@ class JointMisfit:
 
     measured: Misfit
     known: PriorMisfit
-    noise: float
+    noise: Real  # of each row
 
-    def __call__(self, u: Real) -> tuple[Real, Real]:
+    def __call__(self, rows: Index, u: Real) -> tuple[Real, Real]:
         """Return the residuals of both and their slopes."""
-        (first, of_first), (second, of_second) = self.measured(u), self.known(u)
+        return self.joined(rows, u, *self.measured(rows, u))
+
+    def joined(self, rows: Index, u: Real, residual: Real, slope: Real) -> tuple[Real, Real]:
+        """Return the same with what was known, where residuals have been computed."""
+        noise = self.noise[rows, None]
+        more, of_more = self.known.of_rows(u)
         return (
-            np.concatenate([first, self.noise * second]),
-            np.concatenate([of_first, self.noise * of_second]),
+            np.concatenate([residual, noise * more], axis=1),
+            np.concatenate([slope, noise[:, :, None] * of_more], axis=1),
         )
+
+    def refusal(self, row: int, u: Real) -> RopedynError:
+        """Say why a row has none."""
+        return self.measured.refusal(row, u)
 
 
 @dataclass(frozen=True, eq=False)
 class PeakMisfit:
-    """Differences of natural frequencies from measured peaks."""
+    """Differences of natural frequencies from the measured peaks of many ropes."""
 
     calculated: NaturalFrequencies  # the frequencies
-    measured: Real  # (k,) [Hz]
-    weight: Real  # (k,) by which differences are divided [Hz]
-    orders: Index  # (k,) from 1; 0 of a peak that is no mode, whose difference is 0
+    measured: Real  # (n, k) [Hz]
+    weight: Real  # (n, k) by which differences are divided [Hz]
+    orders: Index  # (n, k) from 1; 0 of a peak that is no mode, whose difference is 0
 
-    def __call__(self, u: Real) -> tuple[Real, Real]:
-        """Return the residuals and their slopes."""
-        frequency, slope = self.of_peaks(u)
-        used = self.orders > 0
-        residual = np.where(used, (frequency - self.measured) / self.weight, 0.0)
-        return residual, np.where(used, slope.T / self.weight, 0.0).T
+    def __call__(self, rows: Index, u: Real) -> tuple[Real, Real]:
+        """Return the residuals of some ropes and their slopes."""
+        frequency, slope = self.of_peaks(rows, u)
+        weight, used = self.weight[rows], self.orders[rows] > 0
+        residual, slope = (frequency - self.measured[rows]) / weight, slope / weight[:, :, None]
+        if used.all():
+            return residual, slope
+        return np.where(used, residual, 0.0), np.where(used[:, :, None], slope, 0.0)
 
-    def of_peaks(self, u: Real) -> tuple[Real, Real]:
+    def of_peaks(self, rows: Index, u: Real) -> tuple[Real, Real]:
         """Return the calculated frequency of each peak [Hz] and its slope; any where it is none."""
-        most = int(self.orders.max())
+        orders = self.orders[rows]
+        most = int(orders.max(initial=1))
         frequency, slope = self.calculated(u, most)
-        if len(frequency) < most:
-            raise SolveError(
-                f"the scene must have {most} modes for these orders, got {len(frequency)}"
-            )
-        return frequency[self.orders - 1], slope[self.orders - 1]
+        if orders.shape[1] == most and (orders == np.arange(1, most + 1)).all():
+            return frequency, slope
+        at = np.maximum(orders - 1, 0)
+        return np.take_along_axis(frequency, at, 1), np.take_along_axis(slope, at[:, :, None], 1)
+
+    def refusal(self, row: int, u: Real) -> RopedynError:
+        """Say why a rope has none."""
+        return self.calculated.refusal(u, int(self.orders[row].max()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,3 +199,36 @@ class LineMisfit:
         off = ((value - self.response.measured.value) / self.std).ravel()
         by_u = (slope / self.std[..., None]).reshape(off.size, -1)
         return np.concatenate([off.real, off.imag]), np.concatenate([by_u.real, by_u.imag])
+
+
+@dataclass(frozen=True, eq=False)
+class OneByOne:
+    """Rows whose residuals are computed one after the other."""
+
+    function: Callable[[Real], tuple[Real, Real]]  # of u, shape (p,)
+
+    def __call__(self, rows: Index, u: Real) -> tuple[Real, Real]:
+        """Return the residuals and their slopes."""
+        answers = [self._answer(one) for one in u]
+        most = max(len(residual) for residual, _ in answers)
+        # NaN where there is no scene
+        filled = [
+            (residual, slope) if len(residual) == most else (np.full(most, np.nan), slope[:1])
+            for residual, slope in answers
+        ]
+        slopes = [np.broadcast_to(slope, (most, u.shape[1])) for _, slope in filled]
+        return np.stack([residual for residual, _ in filled]), np.stack(slopes)
+
+    def _answer(self, u: Real) -> tuple[Real, Real]:
+        try:
+            return self.function(u)
+        except (SceneError, SolveError):
+            return np.full(1, np.nan), np.full((1, len(u)), np.nan)
+
+    def refusal(self, row: int, u: Real) -> RopedynError:
+        """Say why there are none."""
+        try:
+            self.function(u)
+        except (SceneError, SolveError) as error:
+            return error
+        return SolveError(f"residuals must be finite, they are not at {u.tolist()}")

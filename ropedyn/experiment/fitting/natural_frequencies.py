@@ -2,80 +2,86 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.array import Index, Real
-from ...base.errors import SceneError
-from ...eigen.eigen import solve_modes
-from ...eigen.sensitivity import Sensitivity, Shapes
-from ...eigen.vectors import solve_shapes
-from ...model import Model
+from ...base.array import Real
+from ...base.errors import RopedynError, SceneError, SolveError
+from ...family.family import Family
 from .unknown import Unknowns
-
-REMEMBERED = 8  # So many answers are kept.
-MARGIN = 1.5  # The highest eigenvalue is thought to be at most so many times the last one.
 
 
 @dataclass(frozen=True, eq=False)
 class NaturalFrequencies:
-    """Natural frequencies of a scene with unknown numbers."""
+    """Natural frequencies of scenes with unknown numbers, for rows of variables."""
 
     unknowns: Unknowns  # what is sought
-    elements: int | None = None  # as `Scene.compile` takes them
-    element: str | None = None  # as `Scene.compile` takes them
-    asked: OrderedDict[tuple[bytes, int], tuple[Real, Real]] = field(
-        default_factory=OrderedDict, init=False, repr=False
-    )
-    highest: dict[int, float] = field(default_factory=dict, init=False, repr=False)
+    family: Family  # of the scenes that differ in it
+
+    @classmethod
+    def of(
+        cls, unknowns: Unknowns, elements: int | None = None, element: str | None = None
+    ) -> NaturalFrequencies:
+        """Compile the family; `elements` and `element` as `Scene.compile` takes them."""
+        family = unknowns.scene.family(unknowns.paths, elements=elements, element=element)
+        return cls(unknowns, family)
 
     def __call__(self, u: Real, count: int) -> tuple[Real, Real]:
-        """Find the lowest frequencies, rigid motion and growth left out, or all there are."""
-        key = u.tobytes(), count
-        if key not in self.asked:
-            if len(self.asked) == REMEMBERED:
-                self.asked.popitem(last=False)
-            self.asked[key] = self._solve(u, count)
-        return self.asked[key]
+        """Find the lowest, rigid motion and growth left out, shapes (n, count) and (n, count, p).
 
-    def _solve(self, u: Real, count: int) -> tuple[Real, Real]:
-        shapes, kept = self._shapes(u, count)
-        found = Sensitivity(shapes)
-        slope = [self._derivative(found, i)[kept] for i in range(len(u))]
-        frequency = np.sqrt(shapes.eigenvalue[kept]) / (2 * np.pi)
-        return frequency, np.column_stack(slope) * self.unknowns.slope(u)
-
-    def _derivative(self, found: Sensitivity, i: int) -> Real:
-        try:
-            return found.frequency(self.unknowns.paths[i])
-        except SceneError as error:
-            raise SceneError(
-                f"unknown[{i}] must change natural frequencies, as damping does not, which a whole "
-                f"response tells: {error}"
-            ) from error
-
-    def _shapes(self, u: Real, count: int) -> tuple[Shapes, Index]:
-        """Return modes among which so many vibrate, or all there are, and which they are."""
-        model = self.unknowns.at(u).compile(elements=self.elements, element=self.element)
+        NaN beyond the last mode of a chain, and in rows that have no answer.
+        """
+        value = self.unknowns.value(u)
+        if len(u) > 1 and (value == value[0]).all():
+            # as at the start of many ropes
+            frequency, slope = self(u[:1], count)
+            return np.repeat(frequency, len(u), axis=0), np.repeat(slope, len(u), axis=0)
         asked = count
         while True:
-            shapes = self._lowest(model, asked)
-            kept = np.flatnonzero(shapes.eigenvalue[:asked] > 0)[:count]
-            if len(kept) == count or len(shapes.eigenvalue) < asked:
-                return shapes, kept
-            asked += count - len(kept)
+            found = self.family.modes(value, asked, derivative=True, threads=1)
+            still = int((found.eigenvalue <= 0).sum(axis=1).max(initial=0))
+            if asked >= count + still:
+                break
+            asked = count + still
+        assert found.derivative is not None
+        frequency, slope = found.frequency, found.derivative
+        if still:
+            last = ~(found.eigenvalue > 0)
+            order = np.argsort(last, axis=1, kind="stable")[:, :count]
+            frequency = np.take_along_axis(np.where(last, np.nan, frequency), order, axis=1)
+            slope = np.take_along_axis(slope, order[:, :, None], axis=1)
+        return frequency, slope * self.unknowns.slope(u)[:, None, :]
 
-    def _lowest(self, model: Model, number: int) -> Shapes:
-        """Return the lowest modes, by one solution where the highest is where it is thought."""
-        thought = self.highest.get(number)
-        if thought is not None:
-            shapes = solve_shapes(model, "sweep", np.full(number, thought))
-            highest = float(shapes.eigenvalue.max(initial=0.0))
-            self.highest[number] = MARGIN * highest
-            if highest <= thought:
-                return shapes
-        found = solve_modes(model, number, below=None, solver="sweep", strict=False).eigenvalue
-        self.highest[number] = MARGIN * float(found.max(initial=0.0))
-        return solve_shapes(model, "sweep", found)
+    def lowest(self, u: Real, count: int) -> tuple[Real, Real]:
+        """Find those of one scene, u of shape (p,), or all there are.
+
+        Raises
+        ------
+        RopedynError
+            If there is no such scene, or its frequencies do not depend on what is sought.
+        """
+        frequency, slope = self(u[None], count)
+        there = ~np.isnan(frequency[0])
+        if not there.any():
+            raise self._refusal(u, count)
+        return frequency[0, there], slope[0, there]
+
+    def refusal(self, u: Real, count: int) -> RopedynError:
+        """Say why a scene has not so many."""
+        try:
+            existing = len(self.lowest(u, count)[0])
+        except RopedynError as error:
+            return error
+        return SolveError(f"the scene must have {count} modes for these orders, got {existing}")
+
+    def _refusal(self, u: Real, count: int) -> RopedynError:
+        failed = self.family.modes(self.unknowns.value(u)[None], count, derivative=True).failed
+        error = failed.get(0, SolveError("the scene must have modes that vibrate, got none"))
+        for i, path in enumerate(self.unknowns.paths):
+            if isinstance(error, SceneError) and str(error).endswith(f"got {path!r}"):
+                return SceneError(
+                    f"unknown[{i}] must change natural frequencies, as damping does not, which a "
+                    f"whole response tells: {error}"
+                )
+        return error

@@ -63,19 +63,27 @@ class Unknowns:
         return self.scale == 0
 
     def value(self, u: Real) -> Real:
-        """Return the numbers, shape (p,)."""
+        """Return the numbers, shape (..., p)."""
         factor = np.exp(np.where(self.by_factor, u, 0.0))
         return self.start * factor + self.scale * u
 
     def slope(self, u: Real) -> Real:
-        """Return dp/du, shape (p,)."""
+        """Return dp/du, shape (..., p)."""
         return np.where(self.by_factor, self.value(u), self.scale)
 
-    def variable(self, value: float, i: int) -> float:
-        """Return u of one number that has the sign of its start."""
-        if self.by_factor[i]:
-            return float(np.log(value / self.start[i]))
-        return float((value - self.start[i]) / self.scale[i])
+    def bound(self, u: Real) -> Real:
+        """Return the numbers at bounds of u, infinite ones too, shape (..., p, bounds)."""
+        start, scale = self.start[:, None], self.scale[:, None]
+        inside = np.where(np.isinf(u), 0.0, u)
+        value = start * np.exp(np.where(scale == 0, inside, 0.0)) + scale * inside
+        return np.where(np.isinf(u), np.sign(start) * np.where(u < 0, 0.0, np.inf), value)
+
+    @property
+    def widest(self) -> Real:
+        """Bounds that exclude nothing, shape (p, 2)."""
+        least = np.where(self.by_factor & (self.start > 0), 0.0, -np.inf)
+        most = np.where(self.by_factor & (self.start < 0), 0.0, np.inf)
+        return np.column_stack([least, most])
 
     def at(self, u: Real) -> Scene:
         """Return the scene with these numbers."""

@@ -100,7 +100,7 @@ class Fit(Identified):
     notes: tuple[str, ...]
     cost: Cost
     solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
-    alternatives_source: Callable[[], tuple[Alternative, ...]] | None = field(
+    alternatives_source: Callable[[Fit], tuple[Alternative, ...]] | None = field(
         default=None, repr=False, metadata=TRANSIENT
     )
 
@@ -151,7 +151,7 @@ class Fit(Identified):
         """
         if self.alternatives_source is None:
             raise SceneError("a fit from a file has no scene: identify again")
-        return self.alternatives_source()
+        return self.alternatives_source(self)
 
     @property
     def peaks(self) -> Table:
@@ -194,7 +194,7 @@ class Fit(Identified):
 
 
 def alternatives_of(
-    fit: Fit, scene: Scene, instead: Callable[[Scene], Fit]
+    scene: Scene, instead: Callable[[Scene], Fit], fit: Fit
 ) -> tuple[Alternative, ...]:
     """Fit with both ends pinned and with both clamped, where the scene's are such words."""
     if "beta" not in scene.coordinates or not all(end in WORDS for end in scene.ends):

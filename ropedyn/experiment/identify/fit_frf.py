@@ -9,14 +9,14 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...curves.measured import Measured
-from ..fitting.minimum import minimise
-from ..fitting.misfit import LineMisfit, LogMisfit, PriorMisfit, Response, unseen_of
+from ..fitting.minimum import Point
+from ..fitting.misfit import LineMisfit, LogMisfit, OneByOne, PriorMisfit, Response, unseen_of
 from ..fitting.unknown import Unknowns
 from .identified import found_by
 from .notes import RESPONSE, notes_of
 from .response_fit import ResponseFit
-from .response_start import start_of_response
-from .solution import Solution, solve
+from .response_start import ROW, near, start_of_response
+from .solution import Solution, Task
 
 ROUGH = {"ftol": 1e-4, "xtol": 1e-6, "gtol": 1e-8}  # Tolerances of a fit that only leads on.
 ROUNDS = 4  # Noise and fit take turns so often at most.
@@ -37,23 +37,20 @@ def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
     response, u = start_of_response(response)
     unknowns, logarithm = response.unknowns, LogMisfit(response)
     _refuse_unseen(logarithm, u, known)
-    near = minimise(logarithm, u, digits=ROUGH)
-    u, evaluations = near.u, near.evaluations
+    first = near(response, u, ROUGH)
+    u, evaluations = first.u[0], int(first.evaluations[0])
     for _ in range(ROUNDS):
         value, _ = response(u)
         std = line_std(measured, value - measured.value)
-        solution = solve(
-            unknowns,
-            LineMisfit(response, std),
-            u,
-            rows=2 * measured.value.size,
-            known=known,
-            noise=None,
-            guess=u,
-        )
-        evaluations += solution.minimum.evaluations
-        u, before = solution.minimum.u, u
-        if (np.abs(u - before) <= SETTLED * solution.uncertainty.std).all():
+        misfit = OneByOne(LineMisfit(response, std))
+        task = Task(unknowns, misfit, 2 * measured.value.size, known, np.full(1, np.nan))
+        start = Point(u[None], *(one[None] for one in misfit.function(u)))
+        solution, failed = task.solve(ROW, start)
+        if failed:
+            raise failed[0]
+        evaluations += int(solution.minimum.evaluations[0])
+        u, before = solution.minimum.u[0], u
+        if (np.abs(u - before) <= SETTLED * solution.uncertainty.std[0]).all():
             break
     return _answer(response, solution, std, evaluations, time.perf_counter() - started)
 
@@ -69,7 +66,7 @@ def _refuse_few(unknowns: Unknowns, lines: int, known: PriorMisfit | None) -> No
 
 def _refuse_unseen(misfit: LogMisfit, u: Real, known: PriorMisfit | None) -> None:
     """Refuse numbers that the response does not depend on, unless they are known beforehand."""
-    for i in unseen_of(misfit(u)[1], known):
+    for i in np.flatnonzero(unseen_of(misfit(u)[1][None], known)[0]):
         raise SceneError(
             f"unknown[{i}] must change the response that was measured, got "
             f"{misfit.response.unknowns.paths[i]!r}, which does not"
@@ -80,7 +77,7 @@ def _answer(
     response: Response, solution: Solution, std: Real, evaluations: int, seconds: float
 ) -> ResponseFit:
     measured = response.measured
-    value, _ = response(solution.minimum.u)
+    value, _ = response(solution.minimum.u[0])
     return ResponseFit(
         drive=measured.drive,
         response=measured.response,
@@ -88,7 +85,7 @@ def _answer(
         frequency=measured.frequency,
         measured=measured.value,
         calculated=value,
-        measured_std=solution.noise * std,
+        measured_std=solution.noise[0] * std,
         notes=(*notes_of(solution, RESPONSE), *_systematic(measured.value, value, std)),
         **found_by(solution, seconds=seconds, elements=response.elements, evaluations=evaluations),
     )

@@ -1,171 +1,201 @@
-"""Fit of numbers of a scene to measured peaks whose modes are known."""
+"""Fit of numbers of many ropes to their measured peaks: rows of numbers in, rows of answers out."""
 
 from __future__ import annotations
 
-import dataclasses
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...base.array import Flags, Index, Real
-from ...base.computed import computed
-from ...base.errors import SceneError, SolveError
-from ...scene.scene import Scene
-from ..fitting.minimum import BLIND, told_directions
+from ...base.array import Flags, Index, Integer, Real
+from ...base.errors import RopedynError, SceneError, SolveError
+from ...family.rows import Answered, Array
 from ..fitting.misfit import PeakMisfit, PriorMisfit, unseen_of
 from ..fitting.natural_frequencies import NaturalFrequencies
-from ..fitting.unknown import Unknowns
-from ..orders.orders import RunnerUp
-from .fit import Fit, alternatives_of
-from .identified import found_by
-from .notes import notes_of
-from .solution import Solution, solve
+from ..orders.orders import found_orders, lowest_suffice
+from .peak_start import start_of_peaks
+from .solution import Solution, Task
 
-LEAST = 0.1  # A number falls to no less than this part of itself in a step.
-NEAR = 0.1  # Smaller relative changes need no further step.
-STEPS = 8  # At most so many steps are taken.
-SETTLED = 0.9  # A step that leaves more than this share of the sum of squares goes too far.
-# What fell until frequencies hardly feel it goes back to where they do, at most to its guess.
-UNFELT, BACK = 1e-4, 1e-2
+
+class Ropes(NamedTuple):
+    """What was measured of many ropes, padded to the largest number of peaks."""
+
+    measured: Real  # (n, k) [Hz]
+    weight: Real  # (n, k) by which differences are divided [Hz]
+    orders: Integer  # (n, k) which mode each peak is, from 1; 0 where it is none
+    guess: Real  # (n, p) of the variables
+    noise: Real  # (n,) standard deviation of residuals, NaN where it is estimated
+    peaks: Integer  # (n,) how many are none of the padding
+    searched: Flags  # (n,) whether other orders may be likelier
+
+    def take(self, some: Index) -> Ropes:
+        """Return some of them."""
+        of: dict[str, Any] = self._asdict()
+        return Ropes(**{name: one[some] for name, one in of.items()})
+
+    def packed(self) -> Real:
+        """Return all of it as rows of numbers."""
+        return np.column_stack([np.asarray(one, dtype=np.float64) for one in self])
+
+    @classmethod
+    def unpacked(cls, rows: Real, p: int) -> Ropes:
+        """Return what was packed, of p variables."""
+        k = (rows.shape[1] - p - 3) // 3
+        measured, weight, orders, guess, *last = np.split(
+            rows, np.cumsum([k, k, k, p, 1, 1]), axis=1
+        )
+        noise, count, searched = (one[:, 0] for one in last)
+        each = noise, count.astype(np.int64), searched > 0
+        return cls(measured, weight, orders.astype(np.int64), guess, *each)
+
+
+class Fitted(NamedTuple):
+    """The solutions of some ropes, in their order, and why others have none."""
+
+    solution: Solution
+    failed: dict[int, RopedynError]
+
+    def arrays(self, orders: Integer, runner_up: Array) -> tuple[Array, ...]:
+        """Return what is to be known of the ropes that have a solution."""
+        found = self.solution
+        minimum = found.minimum
+        return (
+            minimum.u,
+            minimum.residual,
+            minimum.slope,
+            minimum.evaluations,
+            found.noise,
+            found.freedom,
+            found.side,
+            found.weight,
+            orders[found.rows],
+            runner_up[found.rows],
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """Numbers of a scene that are sought by peaks."""
+    """Numbers of ropes that are sought by peaks."""
 
     calculated: NaturalFrequencies  # natural frequencies as functions of what is sought
-    frequency: Real  # (k,) of the peaks [Hz]
-    std: Real | None  # (k,) their standard deviations [Hz]
-    orders: Index  # (k,) which mode each is, from 1; 0 where it is none
     prior: Mapping[str, tuple[float, float]]  # value and standard deviation of what is known
-    runner_up: RunnerUp | None = None  # of the orders, where they were searched
+    missing: int | None = None  # of a search, see `identify`
+    spurious: int = 1  # of a search, see `identify`
+    always: bool = False  # whether orders are searched where the lowest modes suffice
 
-    @property
-    def unknowns(self) -> Unknowns:
-        """What is sought."""
-        return self.calculated.unknowns
+    def misfit(self, ropes: Ropes) -> PeakMisfit:
+        """Return how far calculated frequencies are off."""
+        return PeakMisfit(self.calculated, ropes.measured, ropes.weight, ropes.orders)
 
-    @computed
-    def misfit(self) -> PeakMisfit:
-        """Differences in units of their standard deviations; relative ones where there are none."""
-        weight = self.frequency if self.std is None else self.std
-        return PeakMisfit(self.calculated, self.frequency, weight, self.orders)
+    def task(self, ropes: Ropes) -> Task:
+        """Return what is to be solved."""
+        unknowns, peaks = self.calculated.unknowns, ropes.measured.shape[1]
+        known = PriorMisfit.of(unknowns, self.prior)
+        return Task(unknowns, self.misfit(ropes), peaks, known, ropes.noise)
 
-    @property
-    def known(self) -> PriorMisfit | None:
-        """What is known of the unknown beforehand."""
-        return PriorMisfit.of(self.unknowns, self.prior)
-
-    def instead(self, scene: Scene) -> Fit:
-        """Fit another scene to the same."""
-        unknowns = Unknowns.of(scene, self.unknowns.paths)
-        calculated = dataclasses.replace(self.calculated, unknowns=unknowns)
-        return dataclasses.replace(self, calculated=calculated, runner_up=None).fit()
-
-    def fit(self) -> Fit:
-        """Solve."""
-        began = time.perf_counter()
-        self._refuse_few()
-        start = start_of_peaks(self.misfit, np.zeros(len(self.unknowns)))
-        self._refuse_unseen(start)
-        solution = solve(
-            self.unknowns,
-            self.misfit,
-            start,
-            rows=len(self.frequency),
-            known=self.known,
-            noise=None if self.std is None else 1.0,
+    def solve(self, packed: Real) -> Answered:
+        """Fit ropes, as rows of numbers, and where orders are not said those that are likeliest."""
+        ropes = Ropes.unpacked(packed, len(self.calculated.unknowns))
+        runner_up = np.full(len(packed), None, dtype=object)
+        rows = np.arange(len(packed))
+        first = self._fitted(ropes, rows)
+        again, failed = self._numbered(ropes, first, runner_up)
+        kept = ~np.isin(first.solution.rows, again)
+        parts = [Fitted(first.solution.take(np.flatnonzero(kept)), first.failed)]
+        if len(again):
+            parts.append(self._fitted(ropes, again))
+        failed = {k: e for k, e in first.failed.items() if k not in again} | failed
+        for part in parts[1:]:
+            failed |= part.failed
+        arrays = [part.arrays(ropes.orders, runner_up) for part in parts]
+        return Answered(
+            np.concatenate([part.solution.rows for part in parts]),
+            tuple(np.concatenate(each) for each in zip(*arrays)),
+            {k: (type(e).__name__, str(e)) for k, e in failed.items()},
         )
-        return self._answer(solution, time.perf_counter() - began)
 
-    def _answer(self, solution: Solution, seconds: float) -> Fit:
-        minimum = solution.minimum
-        off = minimum.residual[: solution.rows]
-        frequency = self.frequency + off * self.misfit.weight
-        found = Fit(
-            orders=self.orders.astype(np.int64),
-            measured=self.frequency,
-            measured_std=solution.noise * self.misfit.weight,
-            calculated=np.where(self.orders > 0, frequency, np.nan),
-            runner_up=self.runner_up,
-            notes=notes_of(solution),
-            **found_by(
-                solution,
-                seconds=seconds,
-                elements=self.calculated.elements,
-                evaluations=minimum.evaluations,
-            ),
+    def _fitted(self, ropes: Ropes, rows: Index) -> Fitted:
+        """Fit some of the ropes."""
+        task, p = self.task(ropes), len(self.calculated.unknowns)
+        prior = 0 if task.known is None else len(task.known.at)
+        peaks = (ropes.orders[rows] > 0).sum(axis=1)
+        failed: dict[int, RopedynError] = {
+            int(rows[k]): SceneError(
+                f"measured must have at least {p - prior} peaks for {p} unknown and {prior} prior "
+                f"values, got {peaks[k]}"
+            )
+            for k in np.flatnonzero(peaks + prior < p)
+        }
+        rows = rows[peaks + prior >= p]
+        misfit = self.misfit(ropes)
+        start, evaluations = start_of_peaks(misfit, rows, ropes.guess[rows])
+        lost = np.asarray(np.isnan(start.residual).any(axis=1))
+        failed |= _refusals(misfit, rows[lost], ropes.guess)
+        unseen = unseen_of(start.slope, task.known) & ~lost[:, None]
+        failed |= {
+            int(rows[k]): self._unseen(unseen[k]) for k in np.flatnonzero(unseen.any(axis=1))
+        }
+        kept = np.flatnonzero(~lost & ~unseen.any(axis=1))
+        whole = len(kept) == len(rows)
+        solution, refused = task.solve(rows[kept], start if whole else start.take(kept))
+        solution.minimum.evaluations[:] += evaluations[kept]
+        failed |= {int(rows[kept[k]]): error for k, error in refused.items()}
+        solved = np.delete(np.arange(len(kept)), list(refused))
+        return Fitted(solution.take(solved) if refused else solution, failed)
+
+    def _unseen(self, unseen: Flags) -> SceneError:
+        i = int(np.flatnonzero(unseen)[0])
+        return SceneError(
+            f"unknown[{i}] must change the natural frequencies of these peaks, got "
+            f"{self.calculated.unknowns.paths[i]!r}, which does not"
         )
-        source = partial(alternatives_of, found, self.unknowns.scene, self.instead)
-        return dataclasses.replace(found, alternatives_source=source)
 
-    def _refuse_few(self) -> None:
-        peaks, prior = int((self.orders > 0).sum()), 0 if self.known is None else len(self.known.at)
-        if peaks + prior < len(self.unknowns):
-            raise SceneError(
-                f"measured must have at least {len(self.unknowns) - prior} peaks for "
-                f"{len(self.unknowns)} unknown and {prior} prior values, got {peaks}"
-            )
-
-    def _refuse_unseen(self, u: Real) -> None:
-        """Refuse numbers that no peak depends on, unless they are known beforehand."""
-        for i in unseen_of(self.misfit(u)[1], self.known):
-            raise SceneError(
-                f"unknown[{i}] must change the natural frequencies of these peaks, got "
-                f"{self.unknowns.paths[i]!r}, which does not"
-            )
-
-
-def start_of_peaks(misfit: PeakMisfit, u: Real) -> Real:
-    """Return variables at which frequencies are near the measured ones."""
-    # with frozen shapes, exact for pinned ropes, u^T K u = lambda u^T M u is linear in p:
-    # sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* - lambda, lambda* measured
-    best, least, felt = u, np.inf, np.zeros((1, len(u)))
-    for _ in range(STEPS):
-        try:
-            frequency, slope = misfit.of_peaks(u)
-        except (SceneError, SolveError):
-            if np.isinf(least):
-                raise
-            break
-        used = misfit.orders > 0
-        ratio = (frequency / misfit.measured)[used] ** 2
-        off = float(np.sum(np.log(ratio) ** 2))
-        if off >= least:
-            break
-        best, settled, least = u, off > SETTLED * least, off
-        felt = slope / frequency[:, None]
-        if settled:
-            break
-        unknowns = misfit.calculated.unknowns
-        relative = 2 * (slope / frequency[:, None])[used]
-        inertia = relative.sum(axis=0) * unknowns.start < 0
-        matrix = np.where(inertia, relative, relative * ratio[:, None])
-        change = _step(matrix, 1 - ratio, unknowns.by_factor)
-        if np.abs(change).max() < NEAR:
-            break
-        u = u + np.log1p(change)
-    directions = told_directions(felt)
-    if 0 < directions.shape[1] < len(u):
-        return directions @ (directions.T @ best)
-    share = np.maximum(np.linalg.norm(felt, axis=0), np.finfo(float).tiny)
-    back = np.clip(np.log(BACK / share), 0.0, np.maximum(-best, 0.0))
-    return best + np.where(share < UNFELT, back, 0.0)
+    def _numbered(
+        self, ropes: Ropes, first: Fitted, runner_up: Array
+    ) -> tuple[Index, dict[int, RopedynError]]:
+        """Search orders where the lowest modes do not suffice; return these ropes, and failures."""
+        best = {int(row): k for k, row in enumerate(first.solution.rows)}
+        again, failed = [], {}
+        for row in np.flatnonzero(ropes.searched).tolist():
+            if row not in best and not isinstance(first.failed[row], SolveError):
+                continue
+            count = ropes.peaks[row]
+            frequency, weight = ropes.measured[row, :count], ropes.weight[row, :count]
+            std = None if np.isnan(ropes.noise[row]) else weight
+            centres = [ropes.guess[row]]
+            if row in best:
+                minimum = first.solution.minimum
+                off = minimum.residual[best[row], :count] * weight
+                freedom = int(count) - len(ropes.guess[row])
+                if not self.always and lowest_suffice(off, frequency, std, freedom):
+                    continue
+                centres.append(minimum.u[best[row]])
+            try:
+                orders, runner_up[row] = found_orders(
+                    self.calculated,
+                    centres,
+                    frequency,
+                    std,
+                    missing=self.missing,
+                    spurious=self.spurious,
+                )
+            except RopedynError as error:
+                failed[row] = error
+            else:
+                ropes.orders[row, :count] = orders
+            again.append(row)
+        again = [row for row in again if row not in failed]
+        return np.array(again, dtype=np.intp), failed
 
 
-def _step(matrix: Real, target: Real, movable: Flags) -> Real:
-    """Solve matrix change = target by least squares, none below its least, some not at all."""
-    change = np.zeros(len(movable))
-    free = movable.copy()
-    while free.any():
-        rest = target - matrix[:, ~free] @ change[~free]
-        change[free] = np.linalg.lstsq(matrix[:, free], rest, rcond=BLIND)[0]
-        low = free & (change < LEAST - 1)
-        if not low.any():
-            break
-        change[low] = LEAST - 1
-        free &= ~low
-    return change
+def _refusals(misfit: PeakMisfit, rows: Index, guess: Real) -> dict[int, RopedynError]:
+    """Say why ropes have no frequencies at their guesses, equal ones once."""
+    known: dict[bytes, RopedynError] = {}
+    failed = {}
+    for row in rows.tolist():
+        key = guess[row].tobytes() + misfit.orders[row].max().tobytes()
+        if key not in known:
+            known[key] = misfit.refusal(row, guess[row])
+        failed[row] = known[key]
+    return failed

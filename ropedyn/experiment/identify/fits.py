@@ -8,33 +8,46 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from ...base.answer import TRANSIENT, Answer, axes
+from ...base.answer import TRANSIENT, Answer, Cost, axes
 from ...base.array import Real
+from ...base.computed import computed
 from ...base.drawing import draw
-from ...base.errors import RopedynError
+from ...base.errors import RopedynError, SceneError
 from ...base.table import Table, numbers
 from .fit import Fit
+from .found import UNCONVERGED, Found
+from .identified import intervals
+from .notes import notes_of, noteworthy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+NAMED = 5  # Ropes of which the same is noted are named up to so many.
 
 
 @dataclass(frozen=True, eq=False)
 class Fits(Answer, Sequence[Fit | None]):
     """What was identified of many ropes, in their order.
 
-    A sequence of `Fit`, None where one failed.
+    A sequence of `Fit`, None where one failed; each is made when it is asked for.
 
     Attributes
     ----------
     unknown : tuple of str
         Paths of the numbers.
     value, std : ndarray, shape (ropes, p)
-        NaN of ropes that failed.
+        NaN of ropes that have no solution.
     rms : ndarray, shape (ropes,)
         Root mean square of relative residuals.
+    state : tuple of str
+        Of each rope: "converged", "at a bound" where a number went to 0 or infinity,
+        "not converged" or "failed".
     failure : tuple of str
-        Why one failed; empty of the others.
+        Why one has no solution; empty of the others.
+    notes : tuple of str
+        What the peaks cannot tell, and of which ropes.
+    cost : Cost
+        Of all together.
 
     Examples
     --------
@@ -42,45 +55,64 @@ class Fits(Answer, Sequence[Fit | None]):
     >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
     >>> peaks = [rd.Peaks([f, 2 * f], std=0.1) for f in (25.0, 30.0)]
     >>> fits = rd.identify(scene, peaks, "tension")
-    >>> len(fits), fits.value.round(3).tolist()
-    (2, [[1000.0], [1440.0]])
+    >>> len(fits), fits.value.round(3).tolist(), fits.state
+    (2, [[1000.0], [1440.0]], ('converged', 'converged'))
     """
 
     unknown: tuple[str, ...]
     value: Real = field(metadata=axes("rope", "unknown"))
     std: Real = field(metadata=axes("rope", "unknown"))
     rms: Real = field(metadata=axes("rope"))
+    state: tuple[str, ...]
     failure: tuple[str, ...]
-    fits: tuple[Fit | None, ...] = field(default=(), repr=False, metadata=TRANSIENT)
-    failed: Mapping[int, RopedynError] = field(default_factory=dict, repr=False, metadata=TRANSIENT)
+    notes: tuple[str, ...]
+    cost: Cost
+    found: Found | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @classmethod
-    def of(
-        cls,
-        unknown: tuple[str, ...],
-        fits: Sequence[Fit | None],
-        failed: Mapping[int, RopedynError],
-    ) -> Fits:
-        """Gather the numbers.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
-        >>> fit = rd.identify(scene, rd.Peaks([25.0, 50.0], std=0.1), "tension")
-        >>> rd.Fits.of(("tension",), [fit, None], {1: rd.SolveError("too few modes")}).failure
-        ('', 'too few modes')
-        """
-        nothing = np.full(len(unknown), np.nan)
-        return cls(
-            unknown=unknown,
-            value=np.array([nothing if fit is None else fit.value for fit in fits]),
-            std=np.array([nothing if fit is None else fit.std for fit in fits]),
-            rms=np.array([np.nan if fit is None else fit.rms for fit in fits]),
-            failure=tuple(str(failed.get(i, "")) for i in range(len(fits))),
-            fits=tuple(fits),
-            failed=dict(failed),
+    def of(cls, found: Found) -> Fits:
+        """Gather the numbers."""
+        solution, ropes, n = found.solution, found.ropes, len(found.ropes.peaks)
+        at, p = solution.rows, len(found.how.paths)
+        value, std, rms = np.full((n, p), np.nan), np.full((n, p), np.nan), np.full(n, np.nan)
+        value[at], std[at] = solution.value, solution.std
+        off = solution.minimum.residual[:, : solution.peaks] * (ropes.weight / ropes.measured)[at]
+        rms[at] = np.sqrt(
+            np.sum(off**2, axis=1) / np.maximum((ropes.orders[at] > 0).sum(axis=1), 1)
         )
+        state, failure = np.full(n, "converged", dtype=object), np.full(n, "", dtype=object)
+        state[at[solution.side.any(axis=1)]] = "at a bound"
+        for i, (kind, text) in found.reasons.items():
+            state[i], failure[i] = "not converged" if kind == UNCONVERGED else "failed", text
+        evaluations = int(solution.minimum.evaluations.sum())
+        return cls(
+            unknown=found.how.paths,
+            value=value,
+            std=std,
+            rms=rms,
+            state=tuple(state.tolist()),
+            failure=tuple(failure.tolist()),
+            notes=_notes(found),
+            cost=Cost(
+                n * found.seconds,
+                "least squares",
+                found.how.elements or 0,
+                n * p,
+                factorisations=evaluations,
+            ),
+            found=found,
+        )
+
+    @computed
+    def failed(self) -> Mapping[int, RopedynError]:
+        """Why ropes have no solution, by their number from 0."""
+        return {i: self._found.error(i) for i in sorted(self._found.reasons)}
+
+    @property
+    def _found(self) -> Found:
+        if self.found is None:
+            raise SceneError("fits from a file have no scene: identify again")
+        return self.found
 
     def __len__(self) -> int:
         return len(self.rms)
@@ -91,10 +123,54 @@ class Fits(Answer, Sequence[Fit | None]):
     def __getitem__(self, at: slice) -> tuple[Fit | None, ...]: ...
     def __getitem__(self, at: int | slice) -> Fit | tuple[Fit | None, ...] | None:
         """Return the fit of a rope; those of a file have only what the table shows."""
-        return self.fits[at]
+        if isinstance(at, slice):
+            return tuple(self._found.fit(i) for i in range(len(self))[at])
+        return self._found.fit(range(len(self))[at])
 
     def __iter__(self) -> Iterator[Fit | None]:
-        return iter(self.fits)
+        return (self[i] for i in range(len(self)))
+
+    def interval(self, level: float = 0.95, *, method: str = "profile") -> Real:
+        """Find confidence intervals of all ropes, as `Fit.interval` does.
+
+        Parameters
+        ----------
+        level, method
+            As `Fit.interval` takes them.
+
+        Returns
+        -------
+        ndarray, shape (ropes, p, 2)
+            NaN of ropes that have no solution.
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `Fit.interval` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> peaks = [rd.Peaks([f, 2 * f], std=0.1) for f in (25.0, 30.0)]
+        >>> rd.identify(scene, peaks, "tension").interval(method="linear").round(1).tolist()
+        [[[993.0, 1007.0]], [[1431.6, 1448.4]]]
+        """
+        found = np.full((*self.value.shape, 2), np.nan)
+        solution = self._found.solution
+        found[solution.rows] = intervals(solution, level, method)
+        return found
+
+    def report(self) -> str:
+        """Return how many ropes came to which state, and why others did not, as text."""
+        states = {one: self.state.count(one) for one in dict.fromkeys(self.state)}
+        said = [f"{count} {one}" for one, count in states.items()]
+        lines = [f"{len(self)} ropes: {', '.join(said) or 'none'}"]
+        lines += [f"note: {note}" for note in self.notes]
+        for i, (state, why) in enumerate(zip(self.state, self.failure)):
+            if why:
+                lines.append(f"rope {i} {state}: {why}")
+        return "\n".join(lines)
 
     def table(self) -> Table:
         """Return one row for each rope."""
@@ -103,6 +179,7 @@ class Fits(Answer, Sequence[Fit | None]):
             columns[path] = numbers(self.value[:, k])
             columns[f"std of {path}"] = numbers(self.std[:, k])
         columns["rms residual [%]"] = numbers(100 * self.rms)
+        columns["state"] = self.state
         if any(self.failure):
             columns["failure"] = tuple(why or None for why in self.failure)
         return Table.of("identified", columns)
@@ -110,3 +187,21 @@ class Fits(Answer, Sequence[Fit | None]):
     def plot(self, ax: Axes | None = None, *, unknown: str | None = None) -> Axes:
         """Plot one number of each rope with its standard deviation, the first by default."""
         return draw(self, "plot", ax, unknown=unknown)
+
+
+def _notes(found: Found) -> tuple[str, ...]:
+    """Return what was not told, equal sentences once, with the ropes."""
+    ropes: dict[str, list[int]] = {}
+    for k in np.flatnonzero(noteworthy(found.solution)):
+        one = found.solution.take(np.array([k]))
+        for note in notes_of(one):
+            ropes.setdefault(note, []).append(int(one.rows[0]))
+    return tuple(f"{_named(some)}: {note}" for note, some in ropes.items())
+
+
+def _named(ropes: list[int]) -> str:
+    """Name some ropes."""
+    if len(ropes) == 1:
+        return f"rope {ropes[0]}"
+    few, others = ", ".join(map(str, ropes[:NAMED])), len(ropes) - NAMED
+    return f"ropes {few}" + (f" and {others} others" if others > 0 else "")

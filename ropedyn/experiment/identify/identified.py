@@ -8,6 +8,7 @@ import numpy as np
 
 from ...base import check
 from ...base.answer import Answer, Cost
+from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table
@@ -18,19 +19,27 @@ from .solution import Solution
 def found_by(
     solution: Solution, *, seconds: float, elements: int | None, evaluations: int
 ) -> dict[str, Any]:
-    """Return the fields that say what a solution found."""
-    off = solution.minimum.residual[: solution.rows]
-    sought = len(solution.unknowns)
+    """Return the fields that say what the solution of one rope found."""
+    sought, freedom = len(solution.unknowns), float(solution.freedom[0])
     return {
         "unknown": solution.unknowns.paths,
-        "value": solution.value,
-        "std": solution.std,
-        "correlation": solution.uncertainty.correlation,
-        "freedom": solution.freedom,
-        "chi_square": float(np.sum((off / solution.noise) ** 2)),
+        "value": solution.value[0],
+        "std": solution.std[0],
+        "correlation": solution.uncertainty.correlation[0],
+        "freedom": None if np.isnan(freedom) else freedom,
+        "chi_square": float(solution.off[0] / solution.noise[0] ** 2),
         "cost": Cost(seconds, "least squares", elements or 0, sought, factorisations=evaluations),
         "solution": solution,
     }
+
+
+def intervals(solution: Solution, level: Any, method: Any) -> Real:
+    """Check what is asked and return bounds of the numbers of each rope, shape (n, p, 2)."""
+    level = check.number(level, "level", sign="positive")
+    if level >= 1:
+        raise SceneError(f"level must be between 0 and 1, got {level!r}")
+    check.one_of(method, "method", ("profile", "linear"))
+    return solution.interval(level) if method == "profile" else solution.linear_interval(level)
 
 
 class Identified(Answer):
@@ -49,7 +58,8 @@ class Identified(Answer):
     @property
     def scene(self) -> Scene:
         """The scene with the numbers that were found."""
-        return self._solution.scene
+        solution = self._solution
+        return solution.unknowns.at(solution.minimum.u[0])
 
     @property
     def _solution(self) -> Solution:
@@ -103,13 +113,7 @@ class Identified(Answer):
         >>> print(fit.interval()["bending_stiffness"].round(2))
         [0.   0.18]
         """
-        level = check.number(level, "level", sign="positive")
-        if level >= 1:
-            raise SceneError(f"level must be between 0 and 1, got {level!r}")
-        check.one_of(method, "method", ("profile", "linear"))
-        solution = self._solution
-        by = solution.interval if method == "profile" else solution.linear_interval
-        return Named(by(level), self.unknown)
+        return Named(intervals(self._solution, level, method)[0], self.unknown)
 
     def table(self) -> Table:
         """Return one row for each number."""

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, overload
+from concurrent.futures import Executor
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base import check
-from ...base.array import Real
-from ...base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
+from ...base.array import Flags, Integer, Real
+from ...base.errors import IdentifyWarning, SceneError
+from ...base.progress import Progress
 from ...curves.measured import Measured, above_zero
 from ...curves.peaks import Peaks
 from ...curves.resonance import Resonances
@@ -20,13 +21,13 @@ from ...scene.path import with_values
 from ...scene.prior import Prior
 from ...scene.scene import Scene
 from ..fitting.misfit import PriorMisfit, Response
-from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import Unknowns
-from ..orders.orders import found_orders, given_orders, lowest_orders, lowest_suffice
+from ..orders.orders import given_orders, lowest_orders
 from .fit import Fit
 from .fit_frf import fit_response
-from .fit_peaks import Identification
+from .fit_peaks import Ropes
 from .fits import Fits
+from .found import Found, Options, Workers, find
 from .response_fit import ResponseFit
 
 MOST = 64  # A search lets at most so many modes be missing, and so many peaks be none.
@@ -60,6 +61,9 @@ def identify(
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
     element: str | None = None,
+    threads: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
 ) -> Fit: ...
 
 
@@ -75,6 +79,9 @@ def identify(
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
     element: str | None = None,
+    threads: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
 ) -> Fits: ...
 
 
@@ -90,6 +97,9 @@ def identify(
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
     element: str | None = None,
+    threads: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
 ) -> Fit | Fits | ResponseFit:
     """Find the numbers of a scene that make its answers those that were measured.
 
@@ -127,6 +137,13 @@ def identify(
         What is known beforehand: value and std by path; more than what is sought in a `Prior` only.
     elements, element
         As `Scene.compile` takes them: continuous spans where left out.
+    threads : int, optional
+        That share the ropes of a list; the environment variable ROPEDYN_THREADS or all cores where
+        left out. What is found of a rope does not depend on it.
+    executor : concurrent.futures.Executor, optional
+        That shares them instead, as `sweep` takes it; ropes it lost have failed.
+    progress : None, True or callable
+        True prints the share of ropes that are done to stderr, a callable takes it.
 
     Returns
     -------
@@ -140,7 +157,8 @@ def identify(
         If a value has no meaning, there is no such number in the scene, natural frequencies do not
         depend on it, or there are more unknown numbers than peaks and prior values.
     SolveError
-        If the scene has fewer modes than the orders ask for, or the solution does not converge.
+        If the scene has fewer modes than the orders ask for, or the solution does not converge;
+        of a list nothing is raised: `Fits.state` and `Fits.failure` name each rope without one.
 
     Warns
     -----
@@ -182,77 +200,81 @@ def identify(
         raise SceneError("scale must be False of peaks, which have no amplitude, got True")
     listed = isinstance(measured, (list, tuple))
     if listed and any(isinstance(one, (Peaks, Measured)) for one in measured):
-        return _fits(scene, measured, how)
-    fit = _fit(scene, _peaks(measured, "measured"), how)
+        given = [_peaks(one, f"measured[{i}]") for i, one in enumerate(measured)]
+        fits = Fits.of(_found(scene, given, how, Workers(threads, executor, progress)))
+        _warn(fits.notes)
+        return fits
+    found = _found(scene, [_peaks(measured, "measured")], how, Workers(threads, executor, progress))
+    fit = found.fit(0)
+    if fit is None:
+        raise found.error(0)
     _warn(fit.notes)
     return fit
 
 
-class Options(NamedTuple):
-    """How it is identified, checked; see `identify`."""
-
-    paths: tuple[str, ...]
-    orders: Any
-    missing: int | None
-    spurious: int
-    prior: Mapping[str, tuple[float, float]]
-    elements: int | None
-    element: str | None
-
-
-def _fit(scene: Scene, peaks: Peaks, how: Options) -> Fit:
-    """Identify one rope."""
-    frequency, std = _weighted(peaks)
-    if scene.mean_tension == 0 and "tension" in how.paths:
-        # a string whose lowest peak is its first mode
-        wave = 2 * scene.rope.length * float(frequency.min())
-        scene = _tensed(scene, scene.rope.linear_density * wave**2)
-    calculated = NaturalFrequencies(Unknowns.of(scene, how.paths), how.elements, how.element)
-    orders = given_orders(how.orders, peaks)
-    lowest = Identification(calculated, frequency, std, lowest_orders(frequency), how.prior)
-    if orders is not None:
-        return dataclasses.replace(lowest, orders=orders).fit()
-    return _likeliest(lowest, how)
-
-
-def _likeliest(lowest: Identification, how: Options) -> Fit:
-    """Return the fit with the likeliest orders: of the lowest modes, or as a search says."""
-    centres = [np.zeros(len(how.paths))]
-    try:
-        fit = lowest.fit()
-    except SolveError:
-        pass
-    else:
-        freedom = len(lowest.frequency) - len(how.paths)
-        suffice = lowest_suffice(fit.residual, lowest.frequency, lowest.std, freedom)
-        if how.orders is not None and suffice:
-            return fit
-        assert fit.solution is not None
-        centres.append(fit.solution.minimum.u)
-    orders, runner_up = found_orders(
-        lowest.calculated,
-        centres,
-        lowest.frequency,
-        lowest.std,
-        missing=how.missing,
-        spurious=how.spurious,
-    )
-    return dataclasses.replace(lowest, orders=orders, runner_up=runner_up).fit()
-
-
-def _fits(scene: Scene, measured: Sequence[Any], how: Options) -> Fits:
-    """Identify many ropes; those that cannot be do not stop the others."""
-    fits: list[Fit | None] = []
-    failed: dict[int, RopedynError] = {}
-    for i, one in enumerate(measured):
-        peaks = _peaks(one, f"measured[{i}]")
+def _ropes(measured: Sequence[Peaks], how: Options) -> tuple[Ropes, dict[int, SceneError]]:
+    """Return what was measured as arrays, and why some of it is refused."""
+    count = np.array([np.size(one.frequency) for one in measured], dtype=np.int64)
+    inside = np.arange(count.max(initial=1)) < count[:, None]
+    frequency = _filled(inside, [one.frequency for one in measured], 1.0)
+    given = [one.std is not None for one in measured]
+    std = _filled(inside & np.array(given)[:, None], [one.std for one in measured], 0.0)
+    weight = np.where(np.array(given)[:, None] & inside, std, frequency)
+    least, most = SIZES
+    with np.errstate(over="ignore"):
+        weighable = (frequency >= least) & (frequency <= most)
+        weighable &= (weight >= least * frequency) & (weight <= most * frequency)
+    refused: dict[int, SceneError] = {}
+    for i in np.flatnonzero(~weighable.all(axis=1)).tolist():
         try:
-            fits.append(_fit(scene, peaks, how))
-        except RopedynError as error:
-            fits.append(None)
-            failed[i] = error
-    _warn([f"rope {i}: {note}" for i, fit in enumerate(fits) if fit for note in fit.notes])
-    return Fits.of(how.paths, fits, failed)
+            _weigh(measured[i])
+        except SceneError as error:
+            refused[i] = error
+    orders, said = _orders(measured, how.orders, frequency, inside, refused)
+    # what is refused is no peak of its rope, so that nothing overflows
+    out = list(refused)
+    frequency[out], weight[out], orders[out], said[out] = 1.0, 1.0, 0, True
+    noise = np.where(given, 1.0, np.nan)
+    guess = np.zeros((len(measured), len(how.paths)))
+    return Ropes(frequency, weight, orders, guess, noise, count, ~said), refused
+
+
+def _filled(where: Flags, rows: Sequence[Any], fill: float) -> Real:
+    """Return rows of different lengths, None among them, in an array."""
+    filled = np.full(where.shape, fill)
+    if where.any():
+        filled[where] = np.concatenate([one for one in rows if one is not None])
+    return filled
+
+
+def _orders(
+    measured: Sequence[Peaks],
+    orders: Any,
+    frequency: Real,
+    inside: Flags,
+    refused: dict[int, SceneError],
+) -> tuple[Integer, Flags]:
+    """Return the modes of the peaks of each rope, the lowest where they are not said, and where."""
+    found = np.where(inside, lowest_orders(np.where(inside, frequency, np.inf)), 0)
+    said = np.zeros(len(measured), dtype=bool)
+    alike: dict[tuple[int, Any], list[int]] = {}
+    for i, (k, peaks) in enumerate(zip(inside.sum(axis=1).tolist(), measured)):
+        alike.setdefault((k, peaks.order), []).append(i)
+    for (k, _), ropes in alike.items():
+        try:
+            given = given_orders(orders, measured[ropes[0]])
+        except SceneError as error:
+            refused.update(dict.fromkeys(ropes, error) | refused)
+        else:
+            if given is not None:
+                found[ropes, :k], said[ropes] = given, True
+    return found, said
+
+
+def _found(scene: Scene, measured: Sequence[Peaks], how: Options, workers: Workers) -> Found:
+    """Identify ropes; those that cannot be do not stop the others."""
+    ropes, refused = _ropes(measured, how)
+    return find(scene, how, ropes, workers, refused)
 
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
@@ -271,7 +293,7 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
 
 def _warn(notes: Sequence[str]) -> None:
     for note in notes:
-        warnings.warn(note, IdentifyWarning, stacklevel=4)
+        warnings.warn(note, IdentifyWarning, stacklevel=3)
 
 
 # --- what was given ---------------------------------------------------------------------------
@@ -300,12 +322,12 @@ def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> No
         )
 
 
-def _weighted(peaks: Peaks) -> tuple[Real, Real | None]:
-    """Return frequencies whose squares are numbers, and standard deviations if there are any."""
+def _weigh(peaks: Peaks) -> None:
+    """Refuse frequencies whose squares are no numbers, and standard deviations."""
     frequency = np.asarray(peaks.frequency, dtype=np.float64)
     _within(frequency, "measured", "Hz")
     if peaks.std is None:
-        return frequency, None
+        return
     std = np.asarray(peaks.std, dtype=np.float64)
     if (std == 0).any():
         at = int(np.flatnonzero(std == 0)[0])
@@ -314,7 +336,6 @@ def _weighted(peaks: Peaks) -> tuple[Real, Real | None]:
             "std out where it is not known"
         )
     _within(std, "measured.std", "Hz", frequency)
-    return frequency, std
 
 
 def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:

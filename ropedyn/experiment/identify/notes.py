@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Index, Real
-from .solution import Solution, freedom_of
+from ...base.array import Flags, Index, Real
+from .solution import LEAST_FREEDOM, Solution, freedom_of
 
 INVOLVED = 1e-6  # A number takes part in a direction from this share on.
 UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability are no noise.
@@ -25,15 +25,21 @@ PEAKS = Data("the peaks", "do", "tell")
 RESPONSE = Data("the response", "does", "tells")
 
 
+def noteworthy(solution: Solution) -> Flags:
+    """Say of which ropes something was not told, shape (n,)."""
+    silent = (solution.side != 0) | solution.uncertainty.blind
+    return silent.any(axis=1) | np.isinf(solution.noise) | (_too_far_off(solution) > 0)
+
+
 def notes_of(solution: Solution, data: Data = PEAKS) -> tuple[str, ...]:
-    """Return a sentence for each thing that was not told."""
+    """Return a sentence for each thing that was not told of one rope."""
     return (*_gone(solution, data), *_blind(solution, data), *_noise(solution))
 
 
 def _gone(solution: Solution, data: Data) -> list[str]:
     """Name the numbers that went to 0 or infinity."""
     found = []
-    for path, side in zip(solution.unknowns.paths, solution.side):
+    for path, side in zip(solution.unknowns.paths, solution.side[0]):
         if side:
             where = "0" if side < 0 else "infinity"
             found.append(
@@ -45,9 +51,7 @@ def _gone(solution: Solution, data: Data) -> list[str]:
 
 def _blind(solution: Solution, data: Data) -> list[str]:
     """Name numbers that cannot be told apart, and the combinations that can."""
-    uncertainty = solution.uncertainty
-    blind = uncertainty.blind & (solution.side == 0)
-    at = np.flatnonzero(blind)
+    at = np.flatnonzero(solution.uncertainty.blind[0] & (solution.side[0] == 0))
     if not len(at):
         return []
     names = [solution.unknowns.paths[i] for i in at]
@@ -65,8 +69,8 @@ def combinations(solution: Solution, at: Index) -> list[Real]:
     """Return exponents, small fractions, of products that are told: null space in echelon form."""
     if not solution.unknowns.by_factor[at].all():
         return []
-    basis = solution.uncertainty.basis[at]
-    inertia = solution.minimum.slope[:, at].sum(axis=0) * solution.value[at] < 0
+    basis = solution.uncertainty.basis[0][at]
+    inertia = solution.minimum.slope[0][:, at].sum(axis=0) * solution.value[0][at] < 0
     null = np.linalg.svd(basis.T)[2][np.linalg.matrix_rank(basis, tol=INVOLVED) :]
     pivots: list[int] = []
     for row in range(len(null)):
@@ -92,10 +96,10 @@ def combinations(solution: Solution, at: Index) -> list[Real]:
 
 def _shown(solution: Solution, at: Index, power: Real) -> str:
     """Return a product with its value and standard deviation."""
-    value = float(np.prod(solution.value[at] ** power))
+    value = float(np.prod(solution.value[0][at] ** power))
     direction = np.zeros(len(solution.unknowns))
     direction[at] = power
-    std = solution.noise * float(np.sqrt(direction @ solution.uncertainty.unit @ direction))
+    std = float(solution.noise[0] * np.sqrt(direction @ solution.uncertainty.unit[0] @ direction))
     name = _product([solution.unknowns.paths[i] for i in at], power)
     return f"{name} = {value:.6g} +- {abs(value) * std:.2g}"
 
@@ -112,17 +116,33 @@ def _product(names: list[str], power: Real) -> str:
 
 def _noise(solution: Solution) -> list[str]:
     """Say where nothing tells the noise, or where there is more of it than was said."""
-    if not np.isfinite(solution.noise):
+    if not np.isfinite(solution.noise[0]):
         return ["as many unknown as peaks, and no std: nothing tells how uncertain they are"]
-    if solution.freedom is not None:
-        return []
-    from scipy.special import chdtrc
-
-    freedom = freedom_of(solution.minimum, solution.rows)
-    if freedom < 0.5 or chdtrc(freedom, solution.off) > UNLIKELY:
+    freedom = _too_far_off(solution)[0]
+    if not freedom:
         return []
     return [
-        f"the peaks are off by more than their std: chi-square {solution.off:.3g} of "
+        f"the peaks are off by more than their std: chi-square {solution.off[0]:.3g} of "
         f"{freedom:.3g} degrees of freedom; something else acts, the orders are wrong, or their "
         "std is larger"
     ]
+
+
+def _too_far_off(solution: Solution) -> Real:
+    """Return degrees of freedom of ropes whose peaks are off by more than they say, else 0."""
+    from scipy.special import chdtrc
+
+    def unlikely(freedom: Real, off: Real) -> Flags:
+        # of very few degrees of freedom nothing is said
+        return chdtrc(np.maximum(freedom, LEAST_FREEDOM), off) <= UNLIKELY
+
+    slope, off, n = solution.minimum.slope, solution.off, len(solution.freedom)
+    # there are at least as many as peaks less unknowns
+    least = slope[:, : solution.peaks].any(axis=2).sum(axis=1) - slope.shape[2]
+    at = np.flatnonzero(np.isnan(solution.freedom) & unlikely(least, off))
+    found = np.zeros(n)
+    if len(at):
+        freedom = freedom_of(slope[at], solution.peaks)
+        told = (freedom >= LEAST_FREEDOM) & unlikely(freedom, off[at])
+        found[at] = np.where(told, freedom, 0.0)
+    return found

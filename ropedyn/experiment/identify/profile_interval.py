@@ -1,15 +1,14 @@
-"""Confidence bounds by profile likelihood."""
+"""Confidence bounds by profile likelihood, many side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...base.array import Flags, Real
-from ...base.errors import SceneError, SolveError
-from ..fitting.minimum import Minimum, minimise, told_directions
+from ...base.array import Flags, Index, Real
+from ..fitting.minimum import Point, Told, minimise
 from ..fitting.misfit import Misfit
 
 CLOSE = 1e-3  # A bound is known to this share of its distance: 1e-4 of what is covered.
@@ -19,75 +18,129 @@ OTHERS = (-0.9, 9.0)  # Relative changes that others are guessed to have are bet
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """How the least sum of squares grows as a number moves off (Bates, Watts 1988, section 6.1)."""
+    """How least sums of squares grow as numbers move off (Bates, Watts 1988, section 6.1)."""
 
     misfit: Misfit
-    minimum: Minimum
-    i: int  # the number
-    path: Real  # (p,) change of the best others, linearly, for a change of 1 of it
+    rows: Index  # (n,) of the misfit, one for each bound
+    best: Real  # (n, p) variables where the sum of squares is least
+    least: Real  # (n,) that
+    i: Index  # (n,) the number
+    path: Real  # (n, p) change of the best others, linearly, for a change of 1 of it
     by_factor: Flags  # (p,) numbers sought by logarithms, followed by their relative changes
-    limit: float  # largest distance, of a logarithm or another variable
+    limit: Real  # (n,) largest distance, of a logarithm or another variable
 
-    def bound(self, side: int, root: float, step: float) -> float:
-        """Return u_i where the root of the growth has a value."""
+    def bounds(self, side: NDArray[np.int_], root: Real, step: Real) -> Real:
+        """Return u_i on one side, -1 or 1, where the root of the growth has a value, shape (n,)."""
+        way = side.astype(float)
+        most = np.where(side < 0, 1.0, np.expm1(self.limit))
+        most = np.where(self.by_factor[self.i], most, self.limit)
+        crossing = Crossing.of(root, np.minimum(step, 1.0), most)
+        while len(crossing.going):
+            at = crossing.going
+            crossing.take(self._root(at, way[at] * crossing.step[at], ACCEPTED * root[at] ** 2))
+        there = np.isfinite(crossing.found)
+        each = np.arange(len(self.i))
+        u = self._at(each, way * np.where(there, crossing.found, 0.0))[each, self.i]
+        return np.where(there, u, way * np.inf)
 
-        def off(distance: float) -> float:
-            return self._root(side * distance, ACCEPTED * root**2)
+    def _at(self, some: Index, distance: Real) -> Real:
+        """Return the variables at distances, the others next to where they are best, (k, p)."""
+        each, i = np.arange(len(some)), self.i[some]
+        straight = distance[:, None] * self.path[some]
+        change = np.where(self.by_factor, np.clip(straight, *OTHERS), 0.0)
+        change[each, i] = 0.0
+        moved = np.where(self.by_factor, np.log1p(change), straight)
+        least = np.expm1(-self.limit[some])
+        held = np.log1p(np.maximum(distance, least))
+        moved[each, i] = np.where(self.by_factor[i], held, straight[each, i])
+        return self.best[some] + moved
 
-        most = self.limit
-        if self.by_factor[self.i]:
-            most = 1.0 if side < 0 else float(np.expm1(self.limit))
-        distance = _crossing(off, root, min(step, 1.0), most)
-        if np.isinf(distance):
-            return side * np.inf
-        return float(self._at(side * distance)[self.i])
-
-    def _at(self, distance: float) -> Real:
-        """Return the variables at a distance, the others next to where they are best."""
-        change = np.where(self.by_factor, np.clip(distance * self.path, *OTHERS), 0.0)
-        change[self.i] = 0.0
-        moved = np.where(self.by_factor, np.log1p(change), distance * self.path)
-        if self.by_factor[self.i]:
-            least = np.expm1(-self.limit)
-            moved[self.i] = np.log1p(max(distance, least))
-        return self.minimum.u + moved
-
-    def _root(self, distance: float, accepted: float) -> float:
-        """Return the root of the growth at a distance, infinite where there is no scene."""
-        others = np.delete(np.eye(len(self.path)), self.i, axis=1)
-        start = self._at(distance)
-        try:
-            residual, slope = self.misfit(start)
-            free = slope @ others
-            along, _ = np.linalg.qr(free @ told_directions(free))
-            left, less = float(residual @ residual), float(np.sum((along.T @ residual) ** 2))
-            if less > accepted:
-                left, less = minimise(self.misfit, start, others).cost, 0.0
-        except (SceneError, SolveError):
-            return np.inf
-        return float(np.sqrt(max(left - less - self.minimum.cost, 0.0)))
+    def _root(self, some: Index, distance: Real, accepted: Real) -> Real:
+        """Return the roots of the growth at distances, infinite where there is no scene, (k,)."""
+        rows = self.rows[some]
+        start = Point.of(self.misfit, rows, self._at(some, distance))
+        cost = np.einsum("nm,nm->n", start.residual, start.residual)
+        there = np.flatnonzero(np.isfinite(cost + start.slope.sum(axis=(1, 2))))
+        left = np.full(len(some), np.inf)
+        if not len(there):
+            return left
+        free = np.ones(self.path[some].shape, dtype=bool)
+        free[np.arange(len(some)), self.i[some]] = False
+        slope = start.slope[there] * free[there][:, None, :]
+        along = Told.of(slope).along(start.residual[there])
+        less = np.einsum("nq,nq->n", along, along)
+        linear = less <= accepted[there]
+        left[there[linear]] = cost[there[linear]] - less[linear]
+        far = there[~linear]
+        if len(far):
+            found = minimise(self.misfit, rows[far], start.take(far), free[far])
+            left[far] = np.where(found.reached, found.cost, np.inf)
+        return np.sqrt(np.maximum(left - self.least[some], 0.0))
 
 
-def _crossing(root: Callable[[float], float], target: float, step: float, limit: float) -> float:
-    """Return where an increasing function that is 0 at 0 is `target`, infinite beyond a limit."""
-    low, at_low, high, at_high = 0.0, 0.0, np.inf, np.inf
-    below, above, leap = 0, 0, 3.0
-    while True:
-        value = root(step)
-        if abs(value - target) <= CLOSE * target:
-            return step
-        if value < target:
-            low, at_low, below, above = step, value, below + 1, 0
-        else:
-            high, at_high, below, above = step, value, 0, above + 1
-        if np.isfinite(high):
-            if high - low <= 1e-6 * high:
-                return high if np.isfinite(at_high) else np.inf
-            halve = max(below, above) > 2 or not np.isfinite(at_high)
-            secant = 0.5 if halve else (target - at_low) / (at_high - at_low)
-            step = low + (high - low) * min(max(secant, 0.02), 0.98)
-        elif low >= limit:
-            return np.inf
-        else:
-            ahead = low * target / at_low if at_low > 0 else np.inf
-            step, leap = min(max(ahead, 1.1 * low), leap * low, limit), min(leap**2, 1e4)
+@dataclass(eq=False)
+class Crossing:
+    """Where increasing functions that are 0 at 0 have a value, infinite beyond a limit."""
+
+    target: Real  # (n,)
+    limit: Real  # (n,)
+    step: Real  # (n,) where each is asked next
+    found: Real  # (n,)
+    going: Index  # that are not found
+    low: Real  # (n,) below, with the values there
+    at_low: Real
+    high: Real  # (n,) above
+    at_high: Real
+    below: NDArray[np.int_]  # (n,) how often in a row it was below
+    above: NDArray[np.int_]
+    leap: Real  # (n,) by which it goes on at most
+
+    @classmethod
+    def of(cls, target: Real, step: Real, limit: Real) -> Crossing:
+        """Begin with steps."""
+        n = len(target)
+        low, at_low = np.zeros(n), np.zeros(n)
+        high, at_high = np.full(n, np.inf), np.full(n, np.inf)
+        below, above = np.zeros(n, dtype=int), np.zeros(n, dtype=int)
+        found, leap = np.full(n, np.nan), np.full(n, 3.0)
+        each = low, at_low, high, at_high, below, above, leap
+        return cls(target, limit, step.copy(), found, np.arange(n), *each)
+
+    def take(self, value: Real) -> None:
+        """Take the values where each was asked, and choose where to ask next."""
+        at = self.going
+        close = np.abs(value - self.target[at]) <= CLOSE * self.target[at]
+        self.found[at[close]] = self.step[at[close]]
+        at, value = at[~close], value[~close]
+        under = value < self.target[at]
+        self.low[at[under]], self.at_low[at[under]] = self.step[at[under]], value[under]
+        self.high[at[~under]], self.at_high[at[~under]] = self.step[at[~under]], value[~under]
+        self.below[at] = np.where(under, self.below[at] + 1, 0)
+        self.above[at] = np.where(under, 0, self.above[at] + 1)
+        held = np.isfinite(self.high[at])
+        shut = held & (self.high[at] - self.low[at] <= 1e-6 * self.high[at])
+        ends = at[shut]
+        self.found[ends] = np.where(np.isfinite(self.at_high[ends]), self.high[ends], np.inf)
+        beyond = ~held & (self.low[at] >= self.limit[at])
+        self.found[at[beyond]] = np.inf
+        self._narrow(at[held & ~shut])
+        self._leap(at[~held & ~beyond])
+        self.going = at[~(shut | beyond)]
+
+    def _narrow(self, at: Index) -> None:
+        """Ask between both sides."""
+        low, high, at_low = self.low[at], self.high[at], self.at_low[at]
+        halve = np.maximum(self.below[at], self.above[at]) > 2
+        halve |= ~np.isfinite(self.at_high[at])
+        rise = np.where(halve, 1.0, self.at_high[at] - at_low)
+        secant = np.where(halve, 0.5, (self.target[at] - at_low) / rise)
+        self.step[at] = low + (high - low) * np.clip(secant, 0.02, 0.98)
+
+    def _leap(self, at: Index) -> None:
+        """Ask further on."""
+        low, at_low = self.low[at], self.at_low[at]
+        rises = at_low > 0
+        ahead = np.where(rises, low * self.target[at] / np.where(rises, at_low, 1.0), np.inf)
+        ahead = np.minimum(np.maximum(ahead, 1.1 * low), self.leap[at] * low)
+        self.step[at] = np.minimum(ahead, self.limit[at])
+        self.leap[at] = np.minimum(self.leap[at] ** 2, 1e4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,16 +16,17 @@ from ...chain.rate import Places, rates_of
 from ...curves.measured import Measured, lines_of
 from ...curves.peaks import Peaks
 from ...model import Model
-from ..fitting.minimum import Minimum, minimise
-from ..fitting.misfit import LogMisfit, PeakMisfit, Response
+from ..fitting.minimum import Minimum, Point, minimise
+from ..fitting.misfit import LogMisfit, OneByOne, PeakMisfit, Response
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import CALIBRATION
-from .fit_peaks import start_of_peaks
+from .peak_start import start_of_peaks
 
 SEEN = 1e-3  # Modes with less than this part of the largest residue are not looked for.
 HIDDEN = 3  # So many of the lowest modes may be missing below the first line.
 LINES = 200  # Starts are compared on so many lines.
 CLOSE = 0.2  # No other start has to better this root mean square of logarithms.
+ROW = np.zeros(1, dtype=np.intp)  # The one row that a response is.
 ROUGH = {"ftol": 1e-2, "xtol": 1e-3, "gtol": 1e-6}  # Tolerances of the fit of a start.
 
 
@@ -43,19 +44,29 @@ def start_of_response(response: Response) -> tuple[Response, Real]:
     best: tuple[Minimum, Response] | None = None
     for start in sorted(starts, key=lambda one: one.cost):
         try:
-            found = minimise(LogMisfit(start.response), start.u, digits=ROUGH)
+            found = near(start.response, start.u, ROUGH)
         except (SceneError, SolveError) as error:
             failure = failure or error
             continue
-        if best is None or found.cost < best[0].cost:
+        if best is None or found.cost[0] < best[0].cost[0]:
             best = found, start.response
-        if best[0].cost <= CLOSE**2 * len(found.residual):
+        if best[0].cost[0] <= CLOSE**2 * found.residual.shape[1]:
             break
     if best is None:
         assert failure is not None
         raise failure
     minimum, chosen = best
-    return replace(response, unknowns=chosen.unknowns), minimum.u
+    return replace(response, unknowns=chosen.unknowns), minimum.u[0]
+
+
+def near(response: Response, u: Real, digits: Mapping[str, float]) -> Minimum:
+    """Fit logarithms roughly, as one row."""
+    misfit = OneByOne(LogMisfit(response))
+    start = Point(u[None], *(one[None] for one in misfit.function(u)))
+    found = minimise(misfit, ROW, start, digits=digits)
+    if not found.reached[0]:
+        raise found.refusal(0)
+    return found
 
 
 def _starts(response: Response) -> tuple[list[Start], SceneError | SolveError | None]:
@@ -119,7 +130,8 @@ def _candidates(response: Response, peaks_seen: Callable[[], Real]) -> Iterator[
     peaks = peaks_seen()
     if not shifts.any() or len(peaks) < shifts.sum():
         return
-    calculated = NaturalFrequencies(unknowns.only(shifts), response.elements, response.element)
+    sought = unknowns.only(shifts)
+    calculated = NaturalFrequencies.of(sought, response.elements, response.element)
     try:
         seen = _visible_orders(response.measured, model, len(peaks) + HIDDEN)
     except (SceneError, SolveError):
@@ -128,16 +140,17 @@ def _candidates(response: Response, peaks_seen: Callable[[], Real]) -> Iterator[
     few = max(int(shifts.sum()), len(peaks) // 2)
     readings = [(0, few), *((hidden, len(peaks)) for hidden in range(HIDDEN + 1))]
     for hidden, count in readings:
-        orders = seen[hidden : hidden + count]
-        misfit = PeakMisfit(calculated, peaks[: len(orders)], peaks[: len(orders)], orders)
-        try:
-            first = start_of_peaks(misfit, np.zeros(int(shifts.sum())))
-            found = minimise(misfit, first, digits=ROUGH).u
-        except (SceneError, SolveError):
+        orders = seen[None, hidden : hidden + count]
+        measured = peaks[None, : orders.shape[1]]
+        misfit = PeakMisfit(calculated, measured, measured, orders)
+        first, _ = start_of_peaks(misfit, ROW, np.zeros((1, len(sought))))
+        if np.isnan(first.residual).any():
             continue
-        u = guess.copy()
-        u[shifts] = found
-        yield u
+        found = minimise(misfit, ROW, first, digits=ROUGH)
+        if found.reached[0]:
+            u = guess.copy()
+            u[shifts] = found.u[0]
+            yield u
 
 
 def _visible_orders(measured: Measured, model: Model, count: int) -> Index:

@@ -1,4 +1,4 @@
-"""What an identification found, with all that further questions about it need."""
+"""What an identification found of many ropes, with all that further questions about it need."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.array import Flags, Real
+from ...base.array import Flags, Index, Real
 from ...base.computed import computed
-from ...base.errors import SceneError, SolveError
-from ...scene.scene import Scene
-from ..fitting.minimum import FARTHEST, Minimum, minimise, told_directions
+from ...base.errors import RopedynError, SceneError
+from ..fitting.minimum import FARTHEST, Minimum, NotConverged, Point, Told, minimise
 from ..fitting.misfit import JointMisfit, Misfit, PriorMisfit
 from ..fitting.unknown import Unknowns
 from .profile_interval import Profile
@@ -24,229 +23,289 @@ UNFELT = 100.0  # A number whose logarithm has a larger standard deviation is go
 BACK = 0.1  # Such a number is tried again where it has this share of what the residuals feel most.
 FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
 APART = 1e-6  # A number with more than this share in directions that nothing tells is not told.
+TURNS = 50  # Noise and fit take turns so often at most.
+STATISTICS = ("noise", "freedom", "side", "weight")
+LEAST_FREEDOM = 0.5  # Of fewer degrees of freedom nothing tells the noise.
 
 
-def freedom_of(minimum: Minimum, peaks: int) -> float:
-    """Return the degrees of freedom of the first rows, the peaks: 1 less its leverage for each."""
-    basis = told_directions(minimum.slope)
-    directions, _ = np.linalg.qr(minimum.slope @ basis)
-    used = np.abs(minimum.slope[:peaks]).any(axis=1)
-    return float(used.sum() - np.sum(directions[:peaks][used] ** 2))
+def freedom_of(slope: Real, peaks: int) -> Real:
+    """Return degrees of freedom, (n,), of the first rows, the peaks: 1 less its leverage each."""
+    told, used = Told.of(slope), np.abs(slope[:, :peaks]).any(axis=2)
+    leverage = np.where(told.size[:, None, :] > 0, told.of_rows[:, :peaks] ** 2, 0.0).sum(axis=2)
+    return np.where(used, 1 - leverage, 0.0).sum(axis=1)
 
 
-def quantile(level: float, freedom: float | None) -> float:
+def quantile(level: float, freedom: Real) -> Real:
     """Return how many standard deviations an interval reaches, normal or of Student's t."""
     from scipy.special import ndtri, stdtrit
 
     upper = (1 + level) / 2
-    return float(ndtri(upper) if freedom is None else stdtrit(freedom, upper))
+    given = np.isnan(freedom)
+    return np.where(given, ndtri(upper), stdtrit(np.where(given, 1.0, freedom), upper))
 
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Linear statistics of the variables u."""
+    """Linear statistics of the variables u of many ropes."""
 
-    slope: Real  # (m, p) of residuals; 0 of numbers that are at a bound
-    noise: float  # standard deviation of residuals; infinite where nothing tells it
+    slope: Real  # (n, m, p) of residuals; 0 of numbers that are at a bound
+    noise: Real  # (n,) standard deviation of residuals; infinite where nothing tells it
+
+    @computed
+    def told(self) -> Told:
+        """What is told."""
+        return Told.of(self.slope)
 
     @computed
     def basis(self) -> Real:
-        """Directions that are told, shape (p, r)."""
-        return told_directions(self.slope)
+        """Directions that are told, as columns, shape (n, p, p); the others are 0."""
+        return self.told.basis()
 
-    @property
+    @computed
     def blind(self) -> Flags:
-        """Numbers that are not told, shape (p,)."""
-        return 1 - np.sum(self.basis**2, axis=1) > APART
+        """Numbers that are not told, shape (n, p)."""
+        return 1 - np.sum(self.basis**2, axis=2) > APART
 
     @computed
     def unit(self) -> Real:
-        """Covariance of u for a noise of 1, of least norm where some are not told, (p, p)."""
-        half = self.basis @ np.linalg.pinv(self.slope @ self.basis)
-        return half @ half.T
+        """Covariances of u for a noise of 1, of least norm where some are not told, (n, p, p)."""
+        half = self.told.direction * self.told.inverse[:, :, None]
+        return half.swapaxes(1, 2) @ half
 
-    @property
+    @computed
     def std(self) -> Real:
-        """Standard deviation of u, shape (p,)."""
-        told_ones = ~self.blind
-        std = np.full(len(self.unit), np.inf)
-        if np.isfinite(self.noise):
-            std[told_ones] = self.noise * np.sqrt(np.diag(self.unit)[told_ones])
-        return std
+        """Standard deviation of u, shape (n, p)."""
+        size = np.sqrt(np.diagonal(self.unit, axis1=1, axis2=2))
+        std = np.where(np.isfinite(self.noise), self.noise, 0.0)[:, None] * size
+        return np.where(self.blind | np.isinf(self.noise)[:, None], np.inf, std)
 
     @property
     def correlation(self) -> Real:
-        """Between numbers, NaN where one of them is not told, shape (p, p)."""
-        size = np.sqrt(np.diag(self.unit))
-        size[self.blind] = np.nan
-        correlation = self.unit / np.outer(size, size)
-        np.fill_diagonal(correlation, 1.0)
+        """Between numbers, NaN where one of them is not told, shape (n, p, p)."""
+        size = np.sqrt(np.diagonal(self.unit, axis1=1, axis2=2))
+        size = np.where(self.blind, np.nan, size)
+        correlation = self.unit / (size[:, :, None] * size[:, None, :])
+        correlation[:, np.arange(size.shape[1]), np.arange(size.shape[1])] = 1.0
         return correlation
 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The best numbers and what is known of them."""
+    """The best numbers of many ropes and what is known of them."""
 
-    unknowns: Unknowns  # what was sought
-    misfit: Misfit  # what was made small, with what was known beforehand
+    task: Task  # what was asked
+    rows: Index  # (n,) of its misfit
     minimum: Minimum  # where it is least
-    rows: int  # of the residuals, those that were measured
-    noise: float  # standard deviation of residuals; infinite where nothing tells it
-    freedom: float | None  # degrees of freedom it was estimated with; None where it was given
-    side: NDArray[np.int_]  # (p,) -1 of numbers that went to 0, 1 to infinity, else 0
+    noise: Real  # (n,) standard deviation of residuals; infinite where nothing tells it
+    freedom: Real  # (n,) degrees of freedom it was estimated with; NaN where it was given
+    side: NDArray[np.int_]  # (n, p) -1 of numbers that went to 0, 1 to infinity, else 0
+    weight: Real  # (n,) of what was known beforehand
+
+    def take(self, some: Index) -> Solution:
+        """Return that of some of the ropes."""
+        parts = {name: getattr(self, name)[some] for name in ("rows", *STATISTICS)}
+        return replace(self, minimum=self.minimum.take(some), **parts)
+
+    def put(self, some: Index, other: Solution) -> None:
+        """Replace that of some of the ropes."""
+        self.minimum.put(some, other.minimum)
+        for name in STATISTICS:
+            getattr(self, name)[some] = getattr(other, name)
 
     @property
-    def off(self) -> float:
-        """Sum of squares of what was measured."""
-        return float(np.sum(self.minimum.residual[: self.rows] ** 2))
+    def unknowns(self) -> Unknowns:
+        """What was sought."""
+        return self.task.unknowns
 
     @property
-    def scene(self) -> Scene:
-        """The scene with the best numbers."""
-        return self.unknowns.at(self.minimum.u)
+    def peaks(self) -> int:
+        """Of the residuals, those that were measured."""
+        return self.task.peaks
 
     @property
+    def off(self) -> Real:
+        """Sum of squares of what was measured, shape (n,)."""
+        return np.sum(self.minimum.residual[:, : self.peaks] ** 2, axis=1)
+
+    @computed
     def value(self) -> Real:
-        """The best numbers, shape (p,)."""
+        """The best numbers, shape (n, p)."""
         value = self.unknowns.value(self.minimum.u)
         return np.where(self.side < 0, 0.0, np.where(self.side > 0, np.inf, value))
 
     @computed
     def uncertainty(self) -> Uncertainty:
         """Of the variables."""
-        return Uncertainty(np.where(self.side == 0, self.minimum.slope, 0.0), self.noise)
+        slope = self.minimum.slope
+        if self.side.any():
+            slope = np.where(self.side[:, None, :] == 0, slope, 0.0)
+        return Uncertainty(slope, self.noise)
 
     @property
     def std(self) -> Real:
-        """Standard deviations of the numbers, shape (p,)."""
+        """Standard deviations of the numbers, shape (n, p)."""
         return self.uncertainty.std * np.abs(self.unknowns.slope(self.minimum.u))
 
     def interval(self, level: float) -> Real:
-        """Return profile likelihood bounds of the numbers, shape (p, 2)."""
-        if not np.isfinite(self.noise):
-            return self._nothing()
+        """Return profile likelihood bounds of the numbers in increasing order, shape (n, p, 2)."""
+        uncertainty, u = self.uncertainty, self.minimum.u
+        free = self.side == 0
+        silent = np.isinf(self.noise)[:, None] | (free & uncertainty.blind)
         root = quantile(level, self.freedom)
-        return np.array([self._bounds(i, root) for i in range(len(self.unknowns))])
+        step = np.where(free, root[:, None] * uncertainty.std, 1.0)
+        # a profile would be that of rounding, which takes long to follow
+        narrow = (uncertainty.blind | (uncertainty.std < NARROW)).all(axis=1) & free.all(axis=1)
+        step[silent] = 0.0
+        bound = u[:, :, None] + step[:, :, None] * np.array([-1.0, 1.0])
+        lane = ~(silent | narrow[:, None])[:, :, None] & (self.side[:, :, None] != [-1, 1])
+        bound[self.side < 0, 0], bound[self.side > 0, 1] = -np.inf, np.inf
+        row, i, way = np.nonzero(lane)
+        if len(row):
+            axis = np.zeros((len(row), u.shape[1]))
+            axis[np.arange(len(row)), i] = 1.0
+            unit = (
+                uncertainty.unit[row, :, i]
+                / np.where(free[row, i], uncertainty.unit[row, i, i], 1.0)[:, None]
+            )
+            weight = np.full(len(self.task.noise), NOMINAL)
+            weight[self.rows] = self.weight
+            profile = Profile(
+                misfit=self.task.misfit(weight),
+                rows=self.rows[row],
+                best=u[row],
+                least=self.minimum.cost[row],
+                i=i,
+                path=np.where(free[row, i][:, None], unit, axis),
+                by_factor=self.unknowns.by_factor,
+                limit=np.where(free[row, i], FARTHEST, 3 * FARTHEST),
+            )
+            root = (root * self.noise)[row]
+            bound[row, i, way] = profile.bounds(2 * way - 1, root, step[row, i])
+        found = np.sort(self.unknowns.bound(bound), axis=2)
+        return np.where(silent[:, :, None], self.unknowns.widest, found)
 
     def linear_interval(self, level: float) -> Real:
-        """Return bounds by the standard deviations alone, shape (p, 2)."""
-        reach = quantile(level, self.freedom) * self.std
-        return np.where(
-            np.isfinite(reach)[:, None],
-            np.column_stack([self.value - reach, self.value + reach]),
-            self._nothing(),
+        """Return bounds by the standard deviations alone, shape (n, p, 2)."""
+        reach = (quantile(level, self.freedom)[:, None] * self.std)[:, :, None]
+        with np.errstate(invalid="ignore"):
+            linear = self.value[:, :, None] + reach * np.array([-1.0, 1.0])
+        return np.where(np.isfinite(reach), linear, self.unknowns.widest)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What was measured of many ropes and what was known of them beforehand."""
+
+    unknowns: Unknowns  # what is sought
+    measured: Misfit
+    peaks: int  # residuals of each
+    known: PriorMisfit | None
+    noise: Real  # (n,) standard deviation of residuals, of each row of the misfit; NaN: to estimate
+
+    def misfit(self, weight: Real) -> Misfit:
+        """Return what is made small, with what was known in units of a noise of each row."""
+        if self.known is None:
+            return self.measured
+        return JointMisfit(self.measured, self.known, weight)
+
+    def solve(
+        self, rows: Index, start: Point, guess: Real | None = None
+    ) -> tuple[Solution, dict[int, RopedynError]]:
+        """Make what was measured fit best; return also why some of the rows have no solution."""
+        first, failed = self._attempt(rows, start, start.u if guess is None else guess)
+        gone = np.flatnonzero(first.side.any(axis=1))
+        gone = gone[[int(k) not in failed for k in gone]] if failed else gone
+        if len(gone):
+            back = Point.of(self.measured, rows[gone], _back(first.take(gone)))
+            there = np.isfinite(back.residual.sum(axis=1) + back.slope.sum(axis=(1, 2)))
+            gone = gone[there]
+            back = back.take(there)
+            origin = back.u if guess is None else guess[gone]
+            second, refused = self._attempt(rows[gone], back, origin)
+            better = second.off < first.off[gone]
+            better[list(refused)] = False
+            first.put(gone[better], second.take(np.flatnonzero(better)))
+        return first, failed
+
+    def _attempt(
+        self, rows: Index, start: Point, origin: Real
+    ) -> tuple[Solution, dict[int, RopedynError]]:
+        """Solve from a start; where the noise has to be known too both take turns."""
+        given = self.noise[rows]
+        sought = np.isnan(given)
+        weight = np.full(len(self.noise), NOMINAL)
+        weight[rows] = np.where(sought, NOMINAL, given)
+        misfit = self.misfit(weight)
+        minimum = minimise(misfit, rows, self._from(misfit, rows, start))
+        noise, freedom = self._noise(minimum, given)
+        failed: dict[int, RopedynError] = {}
+        if self.known is not None:
+            going = np.flatnonzero(sought)
+            for _ in range(TURNS):
+                told = np.isfinite(noise[going])
+                failed |= {int(k): self._untold() for k in going[~told]}
+                going = going[told]
+                change = np.abs(noise[going] / weight[rows[going]] - 1)
+                going = going[(change >= 1e-3) & (noise[going] >= ROUNDING)]
+                if not len(going):
+                    break
+                weight[rows[going]] = noise[going]
+                before = minimum.take(going)
+                point = self._from(misfit, rows[going], before.point)
+                again = minimise(misfit, rows[going], point)
+                again = replace(again, evaluations=again.evaluations + before.evaluations)
+                minimum.put(going, again)
+                noise[going], freedom[going] = self._noise(again, given[going])
+            for k in going.tolist():
+                failed[k] = NotConverged(
+                    f"the noise of the peaks must settle, it was {noise[k]:.3g} after {TURNS} fits"
+                )
+        failed |= {k: minimum.refusal(k) for k in np.flatnonzero(~minimum.reached).tolist()}
+        side = _gone(minimum, origin, self.unknowns, np.where(np.isinf(noise), NOMINAL, noise))
+        return Solution(self, rows, minimum, noise, freedom, side, weight[rows]), failed
+
+    def _from(self, misfit: Misfit, rows: Index, start: Point) -> Point:
+        """Return a start with what was known beforehand."""
+        if not isinstance(misfit, JointMisfit):
+            return start
+        m = self.peaks
+        joined = misfit.joined(rows, start.u, start.residual[:, :m], start.slope[:, :m])
+        return Point(start.u, *joined)
+
+    def _noise(self, minimum: Minimum, given: Real) -> tuple[Real, Real]:
+        """Return standard deviations of residuals, and degrees of freedom or NaN where given."""
+        sought = np.flatnonzero(np.isnan(given))
+        noise, freedom = given.copy(), np.full(len(given), np.nan)
+        if len(sought):
+            free = freedom_of(minimum.slope[sought], self.peaks)
+            size = np.linalg.norm(minimum.residual[sought, : self.peaks], axis=1)
+            told = free >= LEAST_FREEDOM
+            each = np.maximum(size / np.sqrt(np.where(told, free, 1.0)), LEAST_NOISE)
+            noise[sought] = np.where(told, each, np.inf)
+            freedom[sought] = np.where(told, free, 0.0)
+        return noise, freedom
+
+    def _untold(self) -> SceneError:
+        return SceneError(
+            "measured must have a std where what is known beforehand is needed to tell the "
+            f"unknown, got {self.peaks} peaks without: nothing is left to estimate it from"
         )
-
-    def _nothing(self) -> Real:
-        least = np.where(self.unknowns.by_factor & (self.unknowns.start > 0), 0.0, -np.inf)
-        most = np.where(self.unknowns.by_factor & (self.unknowns.start < 0), 0.0, np.inf)
-        return np.column_stack([least, most])
-
-    def _bounds(self, i: int, root: float) -> Real:
-        """Return both bounds of a number in increasing order."""
-        side, uncertainty = self.side[i], self.uncertainty
-        if side == 0 and uncertainty.blind[i]:
-            return self._nothing()[i]
-        path, step, limit = np.zeros(len(self.unknowns)), 1.0, 3 * FARTHEST
-        path[i] = 1.0
-        if side == 0:
-            path = uncertainty.unit[:, i] / uncertainty.unit[i, i]
-            step, limit = root * float(uncertainty.std[i]), FARTHEST
-            if not self.side.any() and (uncertainty.std[~uncertainty.blind] < NARROW).all():
-                # a profile would be that of rounding, which takes long to follow
-                return np.sort([self._number(self.minimum.u[i] + way * step, i) for way in (-1, 1)])
-        profile = Profile(self.misfit, self.minimum, i, path, self.unknowns.by_factor, limit)
-        u = [
-            way * np.inf if way == side else profile.bound(way, root * self.noise, step)
-            for way in (-1, 1)
-        ]
-        return np.sort([self._number(one, i) for one in u])
-
-    def _number(self, u: float, i: int) -> float:
-        if np.isinf(u):
-            at_infinity = 0.0 if u < 0 else np.inf
-            return float(np.sign(self.unknowns.start[i]) * at_infinity)
-        variables = np.array(self.minimum.u)
-        variables[i] = u
-        return float(self.unknowns.value(variables)[i])
-
-
-def solve(
-    unknowns: Unknowns,
-    measured: Misfit,
-    start: Real,
-    *,
-    rows: int,
-    known: PriorMisfit | None,
-    noise: float | None,
-    guess: Real | None = None,
-) -> Solution:
-    """Make what was measured fit best, together with what was known beforehand."""
-
-    def attempt(start: Real) -> Solution:
-        misfit = measured
-        if known is not None and noise is None:
-            misfit, minimum = _weighed(measured, known, start, rows)
-        else:
-            misfit = misfit if known is None else JointMisfit(measured, known, noise or NOMINAL)
-            minimum = minimise(misfit, start)
-        found, freedom = _noise_of(minimum, rows) if noise is None else (noise, None)
-        origin = start if guess is None else guess
-        side = _gone(minimum, origin, unknowns, found if np.isfinite(found) else NOMINAL)
-        return Solution(unknowns, misfit, minimum, rows, found, freedom, side)
-
-    first = attempt(start)
-    if not first.side.any():
-        return first
-    second = attempt(_back(first))
-    return min(first, second, key=lambda one: one.off)
 
 
 def _back(solution: Solution) -> Real:
     """Return variables with numbers that went to 0 or infinity where a tenth hangs on each."""
-    felt = np.linalg.norm(solution.minimum.slope, axis=0)
+    felt = np.linalg.norm(solution.minimum.slope, axis=1)
     # where none is felt any more, as with the lowest peak spurious and far down, all go back as far
-    largest = felt.max() or 1.0
-    share = np.maximum(felt / largest, np.exp(-FARTHEST))
+    largest = felt.max(axis=1, keepdims=True)
+    share = np.maximum(felt / np.where(largest > 0, largest, 1.0), np.exp(-FARTHEST))
     back = np.maximum(np.log(BACK / share), 0.0)
     return solution.minimum.u - solution.side * back
 
 
-def _noise_of(minimum: Minimum, rows: int) -> tuple[float, float]:
-    """Return the standard deviation of residuals and its degrees of freedom."""
-    freedom = freedom_of(minimum, rows)
-    if freedom < 0.5:
-        return np.inf, 0.0
-    noise = float(np.linalg.norm(minimum.residual[:rows]) / np.sqrt(freedom))
-    return max(noise, LEAST_NOISE), freedom
-
-
-def _weighed(
-    measured: Misfit, known: PriorMisfit, start: Real, rows: int
-) -> tuple[JointMisfit, Minimum]:
-    """Estimate the noise and weigh what is known beforehand by it, in turn."""
-    noise, evaluations = NOMINAL, 0
-    for _ in range(50):
-        misfit = JointMisfit(measured, known, noise)
-        minimum = minimise(misfit, start)
-        evaluations += minimum.evaluations
-        start, before = minimum.u, noise
-        noise = _noise_of(minimum, rows)[0]
-        if np.isinf(noise):
-            raise SceneError(
-                "measured must have a std where what is known beforehand is needed to tell the "
-                f"unknown, got {rows} peaks without: nothing is left to estimate it from"
-            )
-        if abs(noise / before - 1) < 1e-3 or noise < ROUNDING:
-            return misfit, replace(minimum, evaluations=evaluations)
-    raise SolveError(f"the noise of the peaks must settle, it was {noise:.3g} after 50 fits")
-
-
-def _gone(minimum: Minimum, start: Real, unknowns: Unknowns, noise: float) -> NDArray[np.int_]:
+def _gone(minimum: Minimum, start: Real, unknowns: Unknowns, noise: Real) -> NDArray[np.int_]:
     """Say which numbers went to 0 (-1) or infinity (1)."""
-    felt = np.linalg.norm(minimum.slope, axis=0)
+    felt = np.linalg.norm(minimum.slope, axis=1)
     way = minimum.u - start
-    unfelt = (felt * UNFELT < noise) & (np.abs(way) > FAR)
+    unfelt = (felt * UNFELT < noise[:, None]) & (np.abs(way) > FAR)
     gone = unknowns.by_factor & (unfelt | (np.abs(way) >= FARTHEST))
     return np.where(gone, np.sign(way), 0).astype(int)

@@ -48,8 +48,8 @@ def given_orders(orders: Any, peaks: Peaks) -> Index | None:
 
 
 def lowest_orders(frequency: Real) -> Index:
-    """Return the lowest modes for peaks in any order."""
-    return np.argsort(np.argsort(frequency, kind="stable")) + 1
+    """Return the lowest modes for peaks in any order, shape (..., k)."""
+    return np.argsort(np.argsort(frequency, axis=-1, kind="stable"), axis=-1) + 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class Factors:
     def of(cls, calculated: NaturalFrequencies, centre: Real, count: int) -> Factors:
         """Choose numbers that the lowest modes tell apart, inertia last."""
         unknowns = calculated.unknowns
-        frequency, slope = calculated(centre, count)
+        frequency, slope = calculated.lowest(centre, count)
         relative = slope / frequency[:, None]
         inertia = relative.sum(axis=0) * unknowns.start < 0
         which: list[int] = []
@@ -80,7 +80,7 @@ class Factors:
         """Return the lowest frequencies, or all there are, and their derivatives."""
         u = self.centre.copy()
         u[self.which] += np.log(factor)
-        frequency, slope = self.calculated(u, count)
+        frequency, slope = self.calculated.lowest(u, count)
         return frequency, slope[:, self.which] / factor
 
 
