@@ -36,7 +36,7 @@ class Answered(NamedTuple):
 class Means(NamedTuple):
     """A way to solve rows, and how many at a time."""
 
-    solve: Callable[[Real], Answered]
+    solve: Callable[[Any], Answered]
     size: int
 
 
@@ -72,7 +72,7 @@ class RowsAnswer(Answer):
 class Shared:
     """Rows, and who works on them."""
 
-    rows: Real
+    rows: Array
     threads: int
     executor: Executor | None
     progress: Progress
@@ -145,7 +145,7 @@ class Shared:
 
 
 def _submitted(
-    executor: Executor, solve: Callable[[Real], Answered], rows: Real
+    executor: Executor, solve: Callable[[Any], Answered], rows: Array
 ) -> Future[Answered]:
     """Submit rows; what refuses them at once, as a broken pool does, is a future as well."""
     try:

@@ -48,8 +48,8 @@ def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
         solution, failed = task.solve(ROW, start)
         if failed:
             raise failed[0]
-        evaluations += int(solution.minimum.evaluations[0])
-        u, before = solution.minimum.u[0], u
+        evaluations += int(solution.record["evaluations"][0])
+        u, before = solution.u[0], u
         if (np.abs(u - before) <= SETTLED * solution.uncertainty.std[0]).all():
             break
     return _answer(response, solution, std, evaluations, time.perf_counter() - started)
@@ -77,7 +77,7 @@ def _answer(
     response: Response, solution: Solution, std: Real, evaluations: int, seconds: float
 ) -> ResponseFit:
     measured = response.measured
-    value, _ = response(solution.minimum.u[0])
+    value, _ = response(solution.u[0])
     return ResponseFit(
         drive=measured.drive,
         response=measured.response,

@@ -1,4 +1,4 @@
-"""Fit of numbers of many ropes to their measured peaks: rows of numbers in, rows of answers out."""
+"""Fit of numbers of many ropes to their measured peaks: rows of peaks in, rows of answers out."""
 
 from __future__ import annotations
 
@@ -7,195 +7,164 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...base.array import Flags, Index, Integer, Real
+from ...base.array import Index
 from ...base.errors import RopedynError, SceneError, SolveError
-from ...family.rows import Answered, Array
+from ...family.rows import Answered
+from ...scene.path import with_values
+from ...scene.scene import Scene
 from ..fitting.misfit import PeakMisfit, PriorMisfit, unseen_of
 from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.unknown import Unknowns
 from ..orders.orders import found_orders, lowest_suffice
 from .peak_start import start_of_peaks
 from .solution import Solution, Task
 
-
-class Ropes(NamedTuple):
-    """What was measured of many ropes, padded to the largest number of peaks."""
-
-    measured: Real  # (n, k) [Hz]
-    weight: Real  # (n, k) by which differences are divided [Hz]
-    orders: Integer  # (n, k) which mode each peak is, from 1; 0 where it is none
-    guess: Real  # (n, p) of the variables
-    noise: Real  # (n,) standard deviation of residuals, NaN where it is estimated
-    peaks: Integer  # (n,) how many are none of the padding
-    searched: Flags  # (n,) whether other orders may be likelier
-
-    def take(self, some: Index) -> Ropes:
-        """Return some of them."""
-        of: dict[str, Any] = self._asdict()
-        return Ropes(**{name: one[some] for name, one in of.items()})
-
-    def packed(self) -> Real:
-        """Return all of it as rows of numbers."""
-        return np.column_stack([np.asarray(one, dtype=np.float64) for one in self])
-
-    @classmethod
-    def unpacked(cls, rows: Real, p: int) -> Ropes:
-        """Return what was packed, of p variables."""
-        k = (rows.shape[1] - p - 3) // 3
-        measured, weight, orders, guess, *last = np.split(
-            rows, np.cumsum([k, k, k, p, 1, 1]), axis=1
-        )
-        noise, count, searched = (one[:, 0] for one in last)
-        each = noise, count.astype(np.int64), searched > 0
-        return cls(measured, weight, orders.astype(np.int64), guess, *each)
+Ropes = NDArray[np.void]
+"""What was measured of many ropes, with the fields of `kind_of_ropes`."""
 
 
-class Fitted(NamedTuple):
-    """The solutions of some ropes, in their order, and why others have none."""
+def kind_of_ropes(k: int, p: int) -> np.dtype[np.void]:
+    """Return what there is of a rope of at most k peaks and p unknown numbers."""
+    return np.dtype(
+        [
+            ("peaks", np.int64),  # how many are none of the padding
+            ("measured", float, (k,)),  # [Hz]
+            ("weight", float, (k,)),  # by which differences are divided [Hz]
+            ("orders", np.int64, (k,)),  # which mode each is, from 1; 0 where it is none
+            ("searched", bool),  # whether other orders may be likelier
+            ("runner_up", object),  # the second best orders, where they were searched
+            ("guess", float, (p,)),  # of the variables
+            ("noise", float),  # standard deviation of residuals, NaN where it is estimated
+        ]
+    )
 
-    solution: Solution
-    failed: dict[int, RopedynError]
 
-    def arrays(self, orders: Integer, runner_up: Array) -> tuple[Array, ...]:
-        """Return what is to be known of the ropes that have a solution."""
-        found = self.solution
-        minimum = found.minimum
-        return (
-            minimum.u,
-            minimum.residual,
-            minimum.slope,
-            minimum.evaluations,
-            found.noise,
-            found.freedom,
-            found.side,
-            found.weight,
-            orders[found.rows],
-            runner_up[found.rows],
-        )
+class Options(NamedTuple):
+    """How it is identified, checked; see `identify`."""
+
+    paths: tuple[str, ...]
+    orders: Any
+    missing: int | None
+    spurious: int
+    prior: Mapping[str, tuple[float, float]]
+    elements: int | None
+    element: str | None
 
 
 @dataclass(frozen=True, eq=False)
 class Identification:
     """Numbers of ropes that are sought by peaks."""
 
+    scene: Scene  # that describes all of them
+    how: Options
     calculated: NaturalFrequencies  # natural frequencies as functions of what is sought
-    prior: Mapping[str, tuple[float, float]]  # value and standard deviation of what is known
-    missing: int | None = None  # of a search, see `identify`
-    spurious: int = 1  # of a search, see `identify`
-    always: bool = False  # whether orders are searched where the lowest modes suffice
+
+    @classmethod
+    def of(cls, scene: Scene, how: Options, ropes: Ropes) -> Identification:
+        """Prepare it, and guess tensions where the scene has none."""
+        tensed = scene
+        if scene.mean_tension == 0 and "tension" in how.paths:
+            # a string whose lowest peak is its first mode
+            tensed = with_values(scene, {"tension": 1.0})
+            inside = np.arange(ropes["measured"].shape[1]) < ropes["peaks"][:, None]
+            wave = 2 * scene.rope.length * np.where(inside, ropes["measured"], np.inf).min(axis=1)
+            guess = np.log(scene.rope.linear_density * wave**2)
+            ropes["guess"][:, how.paths.index("tension")] = guess
+        unknowns = Unknowns.of(tensed, how.paths)
+        return cls(scene, how, NaturalFrequencies.of(unknowns, how.elements, how.element))
 
     def misfit(self, ropes: Ropes) -> PeakMisfit:
         """Return how far calculated frequencies are off."""
-        return PeakMisfit(self.calculated, ropes.measured, ropes.weight, ropes.orders)
+        return PeakMisfit(self.calculated, ropes["measured"], ropes["weight"], ropes["orders"])
 
     def task(self, ropes: Ropes) -> Task:
         """Return what is to be solved."""
-        unknowns, peaks = self.calculated.unknowns, ropes.measured.shape[1]
-        known = PriorMisfit.of(unknowns, self.prior)
-        return Task(unknowns, self.misfit(ropes), peaks, known, ropes.noise)
+        unknowns, k = self.calculated.unknowns, ropes["measured"].shape[1]
+        known = PriorMisfit.of(unknowns, self.how.prior)
+        return Task(unknowns, self.misfit(ropes), k, known, ropes["noise"])
 
-    def solve(self, packed: Real) -> Answered:
-        """Fit ropes, as rows of numbers, and where orders are not said those that are likeliest."""
-        ropes = Ropes.unpacked(packed, len(self.calculated.unknowns))
-        runner_up = np.full(len(packed), None, dtype=object)
-        rows = np.arange(len(packed))
-        first = self._fitted(ropes, rows)
-        again, failed = self._numbered(ropes, first, runner_up)
-        kept = ~np.isin(first.solution.rows, again)
-        parts = [Fitted(first.solution.take(np.flatnonzero(kept)), first.failed)]
-        if len(again):
-            parts.append(self._fitted(ropes, again))
-        failed = {k: e for k, e in first.failed.items() if k not in again} | failed
-        for part in parts[1:]:
-            failed |= part.failed
-        arrays = [part.arrays(ropes.orders, runner_up) for part in parts]
-        return Answered(
-            np.concatenate([part.solution.rows for part in parts]),
-            tuple(np.concatenate(each) for each in zip(*arrays)),
-            {k: (type(e).__name__, str(e)) for k, e in failed.items()},
-        )
+    def solve(self, ropes: Ropes) -> Answered:
+        """Fit ropes, and where orders are not said those that are likeliest."""
+        found, failed = self._fitted(ropes, np.arange(len(ropes)))
+        again, unnumbered = self._numbered(ropes, found, failed)
+        if again or unnumbered:
+            failed = {k: error for k, error in failed.items() if k not in again} | unnumbered
+            first = found.take(np.flatnonzero(~np.isin(found.rows, [*again, *unnumbered])))
+            second, refused = self._fitted(ropes, np.array(again, dtype=np.intp))
+            found, failed = first.with_others(second), failed | refused
+        reasons = {k: (type(error).__name__, str(error)) for k, error in failed.items()}
+        return Answered(found.rows, (found.record, ropes[found.rows]), reasons)
 
-    def _fitted(self, ropes: Ropes, rows: Index) -> Fitted:
-        """Fit some of the ropes."""
-        task, p = self.task(ropes), len(self.calculated.unknowns)
+    def _fitted(self, ropes: Ropes, rows: Index) -> tuple[Solution, dict[int, RopedynError]]:
+        """Fit some of the ropes; return also why others of them have no solution."""
+        task, paths = self.task(ropes), self.how.paths
         prior = 0 if task.known is None else len(task.known.at)
-        peaks = (ropes.orders[rows] > 0).sum(axis=1)
+        peaks = (ropes["orders"][rows] > 0).sum(axis=1)
+        few = peaks + prior < len(paths)
         failed: dict[int, RopedynError] = {
-            int(rows[k]): SceneError(
-                f"measured must have at least {p - prior} peaks for {p} unknown and {prior} prior "
-                f"values, got {peaks[k]}"
+            row: SceneError(
+                f"measured must have at least {len(paths) - prior} peaks for {len(paths)} unknown "
+                f"and {prior} prior values, got {count}"
             )
-            for k in np.flatnonzero(peaks + prior < p)
+            for row, count in zip(rows[few].tolist(), peaks[few].tolist())
         }
-        rows = rows[peaks + prior >= p]
-        misfit = self.misfit(ropes)
-        start, evaluations = start_of_peaks(misfit, rows, ropes.guess[rows])
+        rows, misfit, guess = rows[~few], self.misfit(ropes), ropes["guess"]
+        start, evaluations = start_of_peaks(misfit, rows, guess[rows])
         lost = np.asarray(np.isnan(start.residual).any(axis=1))
-        failed |= _refusals(misfit, rows[lost], ropes.guess)
+        refusal: dict[tuple[bytes, int], RopedynError] = {}
+        for row in rows[lost].tolist():
+            # what equal guesses are refused for is the same
+            key = guess[row].tobytes(), int(ropes["orders"][row].max())
+            if key not in refusal:
+                refusal[key] = misfit.refusal(row, guess[row])
+            failed[row] = refusal[key]
         unseen = unseen_of(start.slope, task.known) & ~lost[:, None]
-        failed |= {
-            int(rows[k]): self._unseen(unseen[k]) for k in np.flatnonzero(unseen.any(axis=1))
-        }
+        for row, i in zip(rows[unseen.any(axis=1)].tolist(), unseen.argmax(axis=1)):
+            failed[row] = SceneError(
+                f"unknown[{i}] must change the natural frequencies of these peaks, got "
+                f"{paths[i]!r}, which does not"
+            )
         kept = np.flatnonzero(~lost & ~unseen.any(axis=1))
         whole = len(kept) == len(rows)
-        solution, refused = task.solve(rows[kept], start if whole else start.take(kept))
-        solution.minimum.evaluations[:] += evaluations[kept]
+        found, refused = task.solve(rows[kept], start if whole else start.take(kept))
+        found.record["evaluations"] += evaluations[kept]
         failed |= {int(rows[kept[k]]): error for k, error in refused.items()}
         solved = np.delete(np.arange(len(kept)), list(refused))
-        return Fitted(solution.take(solved) if refused else solution, failed)
-
-    def _unseen(self, unseen: Flags) -> SceneError:
-        i = int(np.flatnonzero(unseen)[0])
-        return SceneError(
-            f"unknown[{i}] must change the natural frequencies of these peaks, got "
-            f"{self.calculated.unknowns.paths[i]!r}, which does not"
-        )
+        return found.take(solved) if refused else found, failed
 
     def _numbered(
-        self, ropes: Ropes, first: Fitted, runner_up: Array
-    ) -> tuple[Index, dict[int, RopedynError]]:
+        self, ropes: Ropes, found: Solution, failed: Mapping[int, RopedynError]
+    ) -> tuple[list[int], dict[int, RopedynError]]:
         """Search orders where the lowest modes do not suffice; return these ropes, and failures."""
-        best = {int(row): k for k, row in enumerate(first.solution.rows)}
-        again, failed = [], {}
-        for row in np.flatnonzero(ropes.searched).tolist():
-            if row not in best and not isinstance(first.failed[row], SolveError):
-                continue
-            count = ropes.peaks[row]
-            frequency, weight = ropes.measured[row, :count], ropes.weight[row, :count]
-            std = None if np.isnan(ropes.noise[row]) else weight
-            centres = [ropes.guess[row]]
+        again, unnumbered = [], {}
+        best = dict(zip(found.rows.tolist(), found.record))
+        for row in np.flatnonzero(ropes["searched"]).tolist():
+            rope = ropes[row]
+            k, centres = rope["peaks"], [rope["guess"]]
+            frequency, weight = rope["measured"][:k], rope["weight"][:k]
+            std = None if np.isnan(rope["noise"]) else weight
             if row in best:
-                minimum = first.solution.minimum
-                off = minimum.residual[best[row], :count] * weight
-                freedom = int(count) - len(ropes.guess[row])
-                if not self.always and lowest_suffice(off, frequency, std, freedom):
+                off = best[row]["residual"][:k] * weight
+                freedom = int(k) - len(self.how.paths)
+                if self.how.orders and lowest_suffice(off, frequency, std, freedom):
                     continue
-                centres.append(minimum.u[best[row]])
+                centres.append(best[row]["u"])
+            elif not isinstance(failed[row], SolveError):
+                continue
             try:
-                orders, runner_up[row] = found_orders(
+                orders, ropes["runner_up"][row] = found_orders(
                     self.calculated,
                     centres,
                     frequency,
                     std,
-                    missing=self.missing,
-                    spurious=self.spurious,
+                    missing=self.how.missing,
+                    spurious=self.how.spurious,
                 )
             except RopedynError as error:
-                failed[row] = error
+                unnumbered[row] = error
             else:
-                ropes.orders[row, :count] = orders
-            again.append(row)
-        again = [row for row in again if row not in failed]
-        return np.array(again, dtype=np.intp), failed
-
-
-def _refusals(misfit: PeakMisfit, rows: Index, guess: Real) -> dict[int, RopedynError]:
-    """Say why ropes have no frequencies at their guesses, equal ones once."""
-    known: dict[bytes, RopedynError] = {}
-    failed = {}
-    for row in rows.tolist():
-        key = guess[row].tobytes() + misfit.orders[row].max().tobytes()
-        if key not in known:
-            known[key] = misfit.refusal(row, guess[row])
-        failed[row] = known[key]
-    return failed
+                ropes["orders"][row, :k] = orders
+                again.append(row)
+        return again, unnumbered

@@ -15,13 +15,15 @@ from ...base.drawing import draw
 from ...base.errors import RopedynError, SceneError
 from ...base.table import Table, numbers
 from .fit import Fit
-from .found import UNCONVERGED, Found
+from .found import Found
 from .identified import intervals
 from .notes import notes_of, noteworthy
+from .solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+STATES = {"NotConverged": "not converged"}  # By the kind of the error.
 NAMED = 5  # Ropes of which the same is noted are named up to so many.
 
 
@@ -72,34 +74,29 @@ class Fits(Answer, Sequence[Fit | None]):
     @classmethod
     def of(cls, found: Found) -> Fits:
         """Gather the numbers."""
-        solution, ropes, n = found.solution, found.ropes, len(found.ropes.peaks)
-        at, p = solution.rows, len(found.how.paths)
+        solution, ropes, n = found.solution, found.ropes, len(found.ropes)
+        how, at = found.identification.how, solution.rows
+        p = len(how.paths)
         value, std, rms = np.full((n, p), np.nan), np.full((n, p), np.nan), np.full(n, np.nan)
         value[at], std[at] = solution.value, solution.std
-        off = solution.minimum.residual[:, : solution.peaks] * (ropes.weight / ropes.measured)[at]
-        rms[at] = np.sqrt(
-            np.sum(off**2, axis=1) / np.maximum((ropes.orders[at] > 0).sum(axis=1), 1)
-        )
+        relative = (ropes["weight"] / ropes["measured"])[at]
+        off = solution.record["residual"][:, : solution.peaks] * relative
+        rms[at] = np.sqrt(np.sum(off**2, axis=1) / (ropes["orders"][at] > 0).sum(axis=1))
         state, failure = np.full(n, "converged", dtype=object), np.full(n, "", dtype=object)
         state[at[solution.side.any(axis=1)]] = "at a bound"
         for i, (kind, text) in found.reasons.items():
-            state[i], failure[i] = "not converged" if kind == UNCONVERGED else "failed", text
-        evaluations = int(solution.minimum.evaluations.sum())
+            state[i], failure[i] = STATES.get(kind, "failed"), text
+        evaluations = int(solution.record["evaluations"].sum())
+        seconds, elements = n * found.seconds, how.elements or 0
         return cls(
-            unknown=found.how.paths,
+            unknown=how.paths,
             value=value,
             std=std,
             rms=rms,
             state=tuple(state.tolist()),
             failure=tuple(failure.tolist()),
-            notes=_notes(found),
-            cost=Cost(
-                n * found.seconds,
-                "least squares",
-                found.how.elements or 0,
-                n * p,
-                factorisations=evaluations,
-            ),
+            notes=_notes(solution),
+            cost=Cost(seconds, "least squares", elements, n * p, factorisations=evaluations),
             found=found,
         )
 
@@ -189,19 +186,17 @@ class Fits(Answer, Sequence[Fit | None]):
         return draw(self, "plot", ax, unknown=unknown)
 
 
-def _notes(found: Found) -> tuple[str, ...]:
+def _notes(solution: Solution) -> tuple[str, ...]:
     """Return what was not told, equal sentences once, with the ropes."""
     ropes: dict[str, list[int]] = {}
-    for k in np.flatnonzero(noteworthy(found.solution)):
-        one = found.solution.take(np.array([k]))
-        for note in notes_of(one):
-            ropes.setdefault(note, []).append(int(one.rows[0]))
+    for k in np.flatnonzero(noteworthy(solution)):
+        for note in notes_of(solution.take(np.array([k]))):
+            ropes.setdefault(note, []).append(int(solution.rows[k]))
     return tuple(f"{_named(some)}: {note}" for note, some in ropes.items())
 
 
 def _named(ropes: list[int]) -> str:
     """Name some ropes."""
-    if len(ropes) == 1:
-        return f"rope {ropes[0]}"
     few, others = ", ".join(map(str, ropes[:NAMED])), len(ropes) - NAMED
-    return f"ropes {few}" + (f" and {others} others" if others > 0 else "")
+    many = f" and {others} others" if others > 0 else ""
+    return f"rope{'s' if len(ropes) > 1 else ''} {few}{many}"

@@ -20,7 +20,7 @@ def found_by(
     solution: Solution, *, seconds: float, elements: int | None, evaluations: int
 ) -> dict[str, Any]:
     """Return the fields that say what the solution of one rope found."""
-    sought, freedom = len(solution.unknowns), float(solution.freedom[0])
+    sought, freedom = len(solution.unknowns), float(solution.record["freedom"][0])
     return {
         "unknown": solution.unknowns.paths,
         "value": solution.value[0],
@@ -59,7 +59,7 @@ class Identified(Answer):
     def scene(self) -> Scene:
         """The scene with the numbers that were found."""
         solution = self._solution
-        return solution.unknowns.at(solution.minimum.u[0])
+        return solution.unknowns.at(solution.u[0])
 
     @property
     def _solution(self) -> Solution:

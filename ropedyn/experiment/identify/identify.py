@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base import check
-from ...base.array import Flags, Integer, Real
+from ...base.array import Flags, Real
 from ...base.errors import IdentifyWarning, SceneError
 from ...base.progress import Progress
 from ...curves.measured import Measured, above_zero
@@ -25,9 +25,9 @@ from ..fitting.unknown import Unknowns
 from ..orders.orders import given_orders, lowest_orders
 from .fit import Fit
 from .fit_frf import fit_response
-from .fit_peaks import Ropes
+from .fit_peaks import Options, Ropes, kind_of_ropes
 from .fits import Fits
-from .found import Found, Options, Workers, find
+from .found import find
 from .response_fit import ResponseFit
 
 MOST = 64  # A search lets at most so many modes be missing, and so many peaks be none.
@@ -198,13 +198,15 @@ def identify(
         return whole
     if scale:
         raise SceneError("scale must be False of peaks, which have no amplitude, got True")
+    workers: dict[str, Any] = {"threads": threads, "executor": executor, "progress": progress}
     listed = isinstance(measured, (list, tuple))
     if listed and any(isinstance(one, (Peaks, Measured)) for one in measured):
         given = [_peaks(one, f"measured[{i}]") for i, one in enumerate(measured)]
-        fits = Fits.of(_found(scene, given, how, Workers(threads, executor, progress)))
+        fits = Fits.of(find(scene, how, *_ropes(given, how), **workers))
         _warn(fits.notes)
         return fits
-    found = _found(scene, [_peaks(measured, "measured")], how, Workers(threads, executor, progress))
+    ropes = _ropes([_peaks(measured, "measured")], how)
+    found = find(scene, how, *ropes, **workers)
     fit = found.fit(0)
     if fit is None:
         raise found.error(0)
@@ -212,31 +214,41 @@ def identify(
     return fit
 
 
-def _ropes(measured: Sequence[Peaks], how: Options) -> tuple[Ropes, dict[int, SceneError]]:
-    """Return what was measured as arrays, and why some of it is refused."""
+def _ropes(measured: Sequence[Peaks], how: Options) -> tuple[Ropes, dict[int, tuple[str, str]]]:
+    """Return what was measured as rows, and why some of them are refused."""
     count = np.array([np.size(one.frequency) for one in measured], dtype=np.int64)
+    known = np.array([one.std is not None for one in measured])
     inside = np.arange(count.max(initial=1)) < count[:, None]
     frequency = _filled(inside, [one.frequency for one in measured], 1.0)
-    given = [one.std is not None for one in measured]
-    std = _filled(inside & np.array(given)[:, None], [one.std for one in measured], 0.0)
-    weight = np.where(np.array(given)[:, None] & inside, std, frequency)
-    least, most = SIZES
-    with np.errstate(over="ignore"):
-        weighable = (frequency >= least) & (frequency <= most)
-        weighable &= (weight >= least * frequency) & (weight <= most * frequency)
+    std = _filled(inside & known[:, None], [one.std for one in measured], 0.0)
+    weight = np.where(inside & known[:, None], std, frequency)
+    ropes = np.zeros(len(measured), kind_of_ropes(inside.shape[1], len(how.paths)))
+    orders = lowest_orders(np.where(inside, frequency, np.inf))
+    ropes["orders"], ropes["searched"] = np.where(inside, orders, 0), True
     refused: dict[int, SceneError] = {}
-    for i in np.flatnonzero(~weighable.all(axis=1)).tolist():
+    for i in np.flatnonzero(~_weighable(frequency, weight).all(axis=1)).tolist():
         try:
             _weigh(measured[i])
         except SceneError as error:
             refused[i] = error
-    orders, said = _orders(measured, how.orders, frequency, inside, refused)
-    # what is refused is no peak of its rope, so that nothing overflows
-    out = list(refused)
-    frequency[out], weight[out], orders[out], said[out] = 1.0, 1.0, 0, True
-    noise = np.where(given, 1.0, np.nan)
-    guess = np.zeros((len(measured), len(how.paths)))
-    return Ropes(frequency, weight, orders, guess, noise, count, ~said), refused
+    alike: dict[tuple[int, Any], list[int]] = {}
+    for i, (k, peaks) in enumerate(zip(count.tolist(), measured)):
+        alike.setdefault((k, peaks.order), []).append(i)
+    for (k, _), some in alike.items():
+        try:
+            said = given_orders(how.orders, measured[some[0]])
+        except SceneError as error:
+            refused = dict.fromkeys(some, error) | refused
+        else:
+            if said is not None:
+                ropes["orders"][some, :k], ropes["searched"][some] = said, False
+    ropes["peaks"], ropes["measured"], ropes["weight"] = count, frequency, weight
+    ropes["noise"], ropes["runner_up"] = np.where(known, 1.0, np.nan), None
+    for i in refused:
+        # none of its peaks is one, so that nothing overflows
+        ropes["measured"][i], ropes["weight"][i], ropes["orders"][i] = 1.0, 1.0, 0
+        ropes["searched"][i] = False
+    return ropes, {i: ("SceneError", str(error)) for i, error in refused.items()}
 
 
 def _filled(where: Flags, rows: Sequence[Any], fill: float) -> Real:
@@ -245,36 +257,6 @@ def _filled(where: Flags, rows: Sequence[Any], fill: float) -> Real:
     if where.any():
         filled[where] = np.concatenate([one for one in rows if one is not None])
     return filled
-
-
-def _orders(
-    measured: Sequence[Peaks],
-    orders: Any,
-    frequency: Real,
-    inside: Flags,
-    refused: dict[int, SceneError],
-) -> tuple[Integer, Flags]:
-    """Return the modes of the peaks of each rope, the lowest where they are not said, and where."""
-    found = np.where(inside, lowest_orders(np.where(inside, frequency, np.inf)), 0)
-    said = np.zeros(len(measured), dtype=bool)
-    alike: dict[tuple[int, Any], list[int]] = {}
-    for i, (k, peaks) in enumerate(zip(inside.sum(axis=1).tolist(), measured)):
-        alike.setdefault((k, peaks.order), []).append(i)
-    for (k, _), ropes in alike.items():
-        try:
-            given = given_orders(orders, measured[ropes[0]])
-        except SceneError as error:
-            refused.update(dict.fromkeys(ropes, error) | refused)
-        else:
-            if given is not None:
-                found[ropes, :k], said[ropes] = given, True
-    return found, said
-
-
-def _found(scene: Scene, measured: Sequence[Peaks], how: Options, workers: Workers) -> Found:
-    """Identify ropes; those that cannot be do not stop the others."""
-    ropes, refused = _ropes(measured, how)
-    return find(scene, how, ropes, workers, refused)
 
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
@@ -320,6 +302,14 @@ def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> No
             f"{name}[{at}] must be between {least * size:g} and {most * size:g} [{unit}], "
             f"got {float(values[at])!r}"
         )
+
+
+def _weighable(frequency: Real, weight: Real) -> Flags:
+    """Say which peaks have squares that are numbers, and weights."""
+    least, most = SIZES
+    inside = (frequency >= least) & (frequency <= most)
+    with np.errstate(over="ignore"):
+        return inside & (weight >= least * frequency) & (weight <= most * frequency)
 
 
 def _weigh(peaks: Peaks) -> None:

@@ -70,7 +70,7 @@ def combinations(solution: Solution, at: Index) -> list[Real]:
     if not solution.unknowns.by_factor[at].all():
         return []
     basis = solution.uncertainty.basis[0][at]
-    inertia = solution.minimum.slope[0][:, at].sum(axis=0) * solution.value[0][at] < 0
+    inertia = solution.record["slope"][0][:, at].sum(axis=0) * solution.value[0][at] < 0
     null = np.linalg.svd(basis.T)[2][np.linalg.matrix_rank(basis, tol=INVOLVED) :]
     pivots: list[int] = []
     for row in range(len(null)):
@@ -136,11 +136,11 @@ def _too_far_off(solution: Solution) -> Real:
         # of very few degrees of freedom nothing is said
         return chdtrc(np.maximum(freedom, LEAST_FREEDOM), off) <= UNLIKELY
 
-    slope, off, n = solution.minimum.slope, solution.off, len(solution.freedom)
+    slope, off = solution.record["slope"], solution.off
     # there are at least as many as peaks less unknowns
     least = slope[:, : solution.peaks].any(axis=2).sum(axis=1) - slope.shape[2]
-    at = np.flatnonzero(np.isnan(solution.freedom) & unlikely(least, off))
-    found = np.zeros(n)
+    at = np.flatnonzero(np.isnan(solution.record["freedom"]) & unlikely(least, off))
+    found = np.zeros(len(off))
     if len(at):
         freedom = freedom_of(slope[at], solution.peaks)
         told = (freedom >= LEAST_FREEDOM) & unlikely(freedom, off[at])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,13 +35,22 @@ class Profile:
         way = side.astype(float)
         most = np.where(side < 0, 1.0, np.expm1(self.limit))
         most = np.where(self.by_factor[self.i], most, self.limit)
-        crossing = Crossing.of(root, np.minimum(step, 1.0), most)
-        while len(crossing.going):
-            at = crossing.going
-            crossing.take(self._root(at, way[at] * crossing.step[at], ACCEPTED * root[at] ** 2))
-        there = np.isfinite(crossing.found)
-        each = np.arange(len(self.i))
-        u = self._at(each, way * np.where(there, crossing.found, 0.0))[each, self.i]
+        found = np.zeros(len(root))
+        searches = list(map(_crossing, root, np.minimum(step, 1.0), most))
+        asked = np.array([next(search) for search in searches])
+        going = np.arange(len(root))
+        while len(going):
+            value = self._root(going, (way * asked)[going], ACCEPTED * root[going] ** 2)
+            ends = np.zeros(len(going), dtype=bool)
+            for j, (k, one) in enumerate(zip(going, value.tolist())):
+                try:
+                    asked[k] = searches[k].send(one)
+                except StopIteration as end:
+                    found[k], ends[j] = end.value, True
+            going = going[~ends]
+        there = np.isfinite(found)
+        each = np.arange(len(found))
+        u = self._at(each, way * np.where(there, found, 0.0))[each, self.i]
         return np.where(there, u, way * np.inf)
 
     def _at(self, some: Index, distance: Real) -> Real:
@@ -78,69 +88,29 @@ class Profile:
         return np.sqrt(np.maximum(left - self.least[some], 0.0))
 
 
-@dataclass(eq=False)
-class Crossing:
-    """Where increasing functions that are 0 at 0 have a value, infinite beyond a limit."""
+def _crossing(target: float, step: float, limit: float) -> Generator[float, float, float]:
+    """Ask values of an increasing function that is 0 at 0, and return where it is `target`.
 
-    target: Real  # (n,)
-    limit: Real  # (n,)
-    step: Real  # (n,) where each is asked next
-    found: Real  # (n,)
-    going: Index  # that are not found
-    low: Real  # (n,) below, with the values there
-    at_low: Real
-    high: Real  # (n,) above
-    at_high: Real
-    below: NDArray[np.int_]  # (n,) how often in a row it was below
-    above: NDArray[np.int_]
-    leap: Real  # (n,) by which it goes on at most
-
-    @classmethod
-    def of(cls, target: Real, step: Real, limit: Real) -> Crossing:
-        """Begin with steps."""
-        n = len(target)
-        low, at_low = np.zeros(n), np.zeros(n)
-        high, at_high = np.full(n, np.inf), np.full(n, np.inf)
-        below, above = np.zeros(n, dtype=int), np.zeros(n, dtype=int)
-        found, leap = np.full(n, np.nan), np.full(n, 3.0)
-        each = low, at_low, high, at_high, below, above, leap
-        return cls(target, limit, step.copy(), found, np.arange(n), *each)
-
-    def take(self, value: Real) -> None:
-        """Take the values where each was asked, and choose where to ask next."""
-        at = self.going
-        close = np.abs(value - self.target[at]) <= CLOSE * self.target[at]
-        self.found[at[close]] = self.step[at[close]]
-        at, value = at[~close], value[~close]
-        under = value < self.target[at]
-        self.low[at[under]], self.at_low[at[under]] = self.step[at[under]], value[under]
-        self.high[at[~under]], self.at_high[at[~under]] = self.step[at[~under]], value[~under]
-        self.below[at] = np.where(under, self.below[at] + 1, 0)
-        self.above[at] = np.where(under, 0, self.above[at] + 1)
-        held = np.isfinite(self.high[at])
-        shut = held & (self.high[at] - self.low[at] <= 1e-6 * self.high[at])
-        ends = at[shut]
-        self.found[ends] = np.where(np.isfinite(self.at_high[ends]), self.high[ends], np.inf)
-        beyond = ~held & (self.low[at] >= self.limit[at])
-        self.found[at[beyond]] = np.inf
-        self._narrow(at[held & ~shut])
-        self._leap(at[~held & ~beyond])
-        self.going = at[~(shut | beyond)]
-
-    def _narrow(self, at: Index) -> None:
-        """Ask between both sides."""
-        low, high, at_low = self.low[at], self.high[at], self.at_low[at]
-        halve = np.maximum(self.below[at], self.above[at]) > 2
-        halve |= ~np.isfinite(self.at_high[at])
-        rise = np.where(halve, 1.0, self.at_high[at] - at_low)
-        secant = np.where(halve, 0.5, (self.target[at] - at_low) / rise)
-        self.step[at] = low + (high - low) * np.clip(secant, 0.02, 0.98)
-
-    def _leap(self, at: Index) -> None:
-        """Ask further on."""
-        low, at_low = self.low[at], self.at_low[at]
-        rises = at_low > 0
-        ahead = np.where(rises, low * self.target[at] / np.where(rises, at_low, 1.0), np.inf)
-        ahead = np.minimum(np.maximum(ahead, 1.1 * low), self.leap[at] * low)
-        self.step[at] = np.minimum(ahead, self.limit[at])
-        self.leap[at] = np.minimum(self.leap[at] ** 2, 1e4)
+    Infinite beyond a limit.
+    """
+    low, at_low, high, at_high = 0.0, 0.0, np.inf, np.inf
+    below, above, leap = 0, 0, 3.0
+    while True:
+        value = yield step
+        if abs(value - target) <= CLOSE * target:
+            return step
+        if value < target:
+            low, at_low, below, above = step, value, below + 1, 0
+        else:
+            high, at_high, below, above = step, value, 0, above + 1
+        if np.isfinite(high):
+            if high - low <= 1e-6 * high:
+                return high if np.isfinite(at_high) else np.inf
+            halve = max(below, above) > 2 or not np.isfinite(at_high)
+            secant = 0.5 if halve else (target - at_low) / (at_high - at_low)
+            step = low + (high - low) * min(max(secant, 0.02), 0.98)
+        elif low >= limit:
+            return np.inf
+        else:
+            ahead = low * target / at_low if at_low > 0 else np.inf
+            step, leap = min(max(ahead, 1.1 * low), leap * low, limit), min(leap**2, 1e4)

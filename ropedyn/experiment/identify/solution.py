@@ -24,7 +24,6 @@ BACK = 0.1  # Such a number is tried again where it has this share of what the r
 FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
 APART = 1e-6  # A number with more than this share in directions that nothing tells is not told.
 TURNS = 50  # Noise and fit take turns so often at most.
-STATISTICS = ("noise", "freedom", "side", "weight")
 LEAST_FREEDOM = 0.5  # Of fewer degrees of freedom nothing tells the noise.
 
 
@@ -89,28 +88,53 @@ class Uncertainty:
         return correlation
 
 
+def kind_of_solution(m: int, p: int) -> np.dtype[np.void]:
+    """Return what there is of the solution for p numbers by m residuals."""
+    return np.dtype(
+        [
+            ("u", float, (p,)),  # where the sum of squares is least
+            ("residual", float, (m,)),
+            ("slope", float, (m, p)),
+            ("evaluations", np.int64),
+            ("noise", float),  # standard deviation of residuals; infinite where nothing tells it
+            ("freedom", float),  # degrees of freedom it was estimated with; NaN where it was given
+            ("side", np.int64, (p,)),  # -1 of numbers that went to 0, 1 to infinity, else 0
+            ("weight", float),  # of what was known beforehand
+        ]
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """The best numbers of many ropes and what is known of them."""
 
     task: Task  # what was asked
     rows: Index  # (n,) of its misfit
-    minimum: Minimum  # where it is least
-    noise: Real  # (n,) standard deviation of residuals; infinite where nothing tells it
-    freedom: Real  # (n,) degrees of freedom it was estimated with; NaN where it was given
-    side: NDArray[np.int_]  # (n, p) -1 of numbers that went to 0, 1 to infinity, else 0
-    weight: Real  # (n,) of what was known beforehand
+    record: NDArray[np.void]  # (n,) with the fields of `kind_of_solution`
 
     def take(self, some: Index) -> Solution:
         """Return that of some of the ropes."""
-        parts = {name: getattr(self, name)[some] for name in ("rows", *STATISTICS)}
-        return replace(self, minimum=self.minimum.take(some), **parts)
+        return replace(self, rows=self.rows[some], record=self.record[some])
 
-    def put(self, some: Index, other: Solution) -> None:
-        """Replace that of some of the ropes."""
-        self.minimum.put(some, other.minimum)
-        for name in STATISTICS:
-            getattr(self, name)[some] = getattr(other, name)
+    def with_others(self, others: Solution) -> Solution:
+        """Return that of these and other ropes."""
+        rows = np.concatenate([self.rows, others.rows])
+        return Solution(others.task, rows, np.concatenate([self.record, others.record]))
+
+    @property
+    def u(self) -> Real:
+        """The best variables, shape (n, p)."""
+        return self.record["u"]
+
+    @property
+    def noise(self) -> Real:
+        """Standard deviation of residuals, infinite where nothing tells it, shape (n,)."""
+        return self.record["noise"]
+
+    @property
+    def side(self) -> NDArray[np.int64]:
+        """Where numbers went: -1 to 0, 1 to infinity, else 0, shape (n, p)."""
+        return self.record["side"]
 
     @property
     def unknowns(self) -> Unknowns:
@@ -125,18 +149,18 @@ class Solution:
     @property
     def off(self) -> Real:
         """Sum of squares of what was measured, shape (n,)."""
-        return np.sum(self.minimum.residual[:, : self.peaks] ** 2, axis=1)
+        return np.sum(self.record["residual"][:, : self.peaks] ** 2, axis=1)
 
     @computed
     def value(self) -> Real:
         """The best numbers, shape (n, p)."""
-        value = self.unknowns.value(self.minimum.u)
+        value = self.unknowns.value(self.u)
         return np.where(self.side < 0, 0.0, np.where(self.side > 0, np.inf, value))
 
     @computed
     def uncertainty(self) -> Uncertainty:
         """Of the variables."""
-        slope = self.minimum.slope
+        slope = self.record["slope"]
         if self.side.any():
             slope = np.where(self.side[:, None, :] == 0, slope, 0.0)
         return Uncertainty(slope, self.noise)
@@ -144,14 +168,14 @@ class Solution:
     @property
     def std(self) -> Real:
         """Standard deviations of the numbers, shape (n, p)."""
-        return self.uncertainty.std * np.abs(self.unknowns.slope(self.minimum.u))
+        return self.uncertainty.std * np.abs(self.unknowns.slope(self.u))
 
     def interval(self, level: float) -> Real:
         """Return profile likelihood bounds of the numbers in increasing order, shape (n, p, 2)."""
-        uncertainty, u = self.uncertainty, self.minimum.u
+        uncertainty, u = self.uncertainty, self.u
         free = self.side == 0
         silent = np.isinf(self.noise)[:, None] | (free & uncertainty.blind)
-        root = quantile(level, self.freedom)
+        root = quantile(level, self.record["freedom"])
         step = np.where(free, root[:, None] * uncertainty.std, 1.0)
         # a profile would be that of rounding, which takes long to follow
         narrow = (uncertainty.blind | (uncertainty.std < NARROW)).all(axis=1) & free.all(axis=1)
@@ -161,23 +185,19 @@ class Solution:
         bound[self.side < 0, 0], bound[self.side > 0, 1] = -np.inf, np.inf
         row, i, way = np.nonzero(lane)
         if len(row):
-            axis = np.zeros((len(row), u.shape[1]))
-            axis[np.arange(len(row)), i] = 1.0
-            unit = (
-                uncertainty.unit[row, :, i]
-                / np.where(free[row, i], uncertainty.unit[row, i, i], 1.0)[:, None]
-            )
+            unit, along = uncertainty.unit[row, :, i], free[row, i]
+            unit[~along] = np.eye(u.shape[1])[i[~along]]
             weight = np.full(len(self.task.noise), NOMINAL)
-            weight[self.rows] = self.weight
+            weight[self.rows] = self.record["weight"]
             profile = Profile(
                 misfit=self.task.misfit(weight),
                 rows=self.rows[row],
                 best=u[row],
-                least=self.minimum.cost[row],
+                least=np.sum(self.record["residual"][row] ** 2, axis=1),
                 i=i,
-                path=np.where(free[row, i][:, None], unit, axis),
+                path=unit / unit[np.arange(len(i)), i][:, None],
                 by_factor=self.unknowns.by_factor,
-                limit=np.where(free[row, i], FARTHEST, 3 * FARTHEST),
+                limit=np.where(along, FARTHEST, 3 * FARTHEST),
             )
             root = (root * self.noise)[row]
             bound[row, i, way] = profile.bounds(2 * way - 1, root, step[row, i])
@@ -186,7 +206,7 @@ class Solution:
 
     def linear_interval(self, level: float) -> Real:
         """Return bounds by the standard deviations alone, shape (n, p, 2)."""
-        reach = (quantile(level, self.freedom)[:, None] * self.std)[:, :, None]
+        reach = (quantile(level, self.record["freedom"])[:, None] * self.std)[:, :, None]
         with np.errstate(invalid="ignore"):
             linear = self.value[:, :, None] + reach * np.array([-1.0, 1.0])
         return np.where(np.isfinite(reach), linear, self.unknowns.widest)
@@ -213,18 +233,16 @@ class Task:
     ) -> tuple[Solution, dict[int, RopedynError]]:
         """Make what was measured fit best; return also why some of the rows have no solution."""
         first, failed = self._attempt(rows, start, start.u if guess is None else guess)
-        gone = np.flatnonzero(first.side.any(axis=1))
-        gone = gone[[int(k) not in failed for k in gone]] if failed else gone
+        gone = np.setdiff1d(np.flatnonzero(first.side.any(axis=1)), list(failed))
         if len(gone):
             back = Point.of(self.measured, rows[gone], _back(first.take(gone)))
             there = np.isfinite(back.residual.sum(axis=1) + back.slope.sum(axis=(1, 2)))
-            gone = gone[there]
-            back = back.take(there)
+            gone, back = gone[there], back.take(there)
             origin = back.u if guess is None else guess[gone]
             second, refused = self._attempt(rows[gone], back, origin)
             better = second.off < first.off[gone]
             better[list(refused)] = False
-            first.put(gone[better], second.take(np.flatnonzero(better)))
+            first.record[gone[better]] = second.record[better]
         return first, failed
 
     def _attempt(
@@ -261,8 +279,13 @@ class Task:
                     f"the noise of the peaks must settle, it was {noise[k]:.3g} after {TURNS} fits"
                 )
         failed |= {k: minimum.refusal(k) for k in np.flatnonzero(~minimum.reached).tolist()}
-        side = _gone(minimum, origin, self.unknowns, np.where(np.isinf(noise), NOMINAL, noise))
-        return Solution(self, rows, minimum, noise, freedom, side, weight[rows]), failed
+        felt = np.where(np.isinf(noise), NOMINAL, noise)
+        record = np.zeros(len(rows), kind_of_solution(*minimum.slope.shape[1:]))
+        for name in ("u", "residual", "slope", "evaluations"):
+            record[name] = getattr(minimum, name)
+        record["side"] = _gone(minimum, origin, self.unknowns, felt)
+        record["noise"], record["freedom"], record["weight"] = noise, freedom, weight[rows]
+        return Solution(self, rows, record), failed
 
     def _from(self, misfit: Misfit, rows: Index, start: Point) -> Point:
         """Return a start with what was known beforehand."""
@@ -294,12 +317,12 @@ class Task:
 
 def _back(solution: Solution) -> Real:
     """Return variables with numbers that went to 0 or infinity where a tenth hangs on each."""
-    felt = np.linalg.norm(solution.minimum.slope, axis=1)
+    felt = np.linalg.norm(solution.record["slope"], axis=1)
     # where none is felt any more, as with the lowest peak spurious and far down, all go back as far
     largest = felt.max(axis=1, keepdims=True)
     share = np.maximum(felt / np.where(largest > 0, largest, 1.0), np.exp(-FARTHEST))
     back = np.maximum(np.log(BACK / share), 0.0)
-    return solution.minimum.u - solution.side * back
+    return solution.u - solution.side * back
 
 
 def _gone(minimum: Minimum, start: Real, unknowns: Unknowns, noise: Real) -> NDArray[np.int_]:
