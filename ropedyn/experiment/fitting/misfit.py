@@ -209,15 +209,12 @@ class OneByOne:
 
     def __call__(self, rows: Index, u: Real) -> tuple[Real, Real]:
         """Return the residuals and their slopes."""
-        answers = [self._answer(one) for one in u]
-        most = max(len(residual) for residual, _ in answers)
-        # NaN where there is no scene
-        filled = [
-            (residual, slope) if len(residual) == most else (np.full(most, np.nan), slope[:1])
-            for residual, slope in answers
-        ]
-        slopes = [np.broadcast_to(slope, (most, u.shape[1])) for _, slope in filled]
-        return np.stack([residual for residual, _ in filled]), np.stack(slopes)
+        residual, slope = zip(*map(self._answer, u))
+        m = max(map(len, residual))
+        return (
+            np.stack([np.broadcast_to(one, m) for one in residual]),
+            np.stack([np.broadcast_to(one, (m, u.shape[1])) for one in slope]),
+        )
 
     def _answer(self, u: Real) -> tuple[Real, Real]:
         try:
