@@ -60,8 +60,8 @@ class Profile:
         change = np.where(self.by_factor, np.clip(straight, *OTHERS), 0.0)
         change[each, i] = 0.0
         moved = np.where(self.by_factor, np.log1p(change), straight)
-        least = np.expm1(-self.limit[some])
-        held = np.log1p(np.maximum(distance, least))
+        with np.errstate(divide="ignore"):
+            held = np.maximum(np.log1p(np.maximum(distance, -1.0)), -self.limit[some])
         moved[each, i] = np.where(self.by_factor[i], held, straight[each, i])
         return self.best[some] + moved
 
