@@ -42,12 +42,6 @@ TASKS: dict[str, Callable[[rd.Scene], Any]] = {
     "Ten modes of continuous spans, from the scene": modes,
     f"A response of a chain of 100 elements at {len(LINES)} frequencies": response,
 }
-SOUGHT = ("tension", "bending_stiffness")
-GUESS = scene.scene()
-
-
-def identified(peaks: np.ndarray) -> list[float]:
-    return list(rd.identify(GUESS, peaks, SOUGHT).value)
 
 
 def ropes(count: int) -> list[rd.Scene]:
@@ -109,20 +103,6 @@ def cells(found: float, one: float, here: float, count: int) -> list[str]:
     return [*each, f"{one / found:.2f}", f"{here / found:.2f}"]
 
 
-def identification(scenes: Sequence[rd.Scene]) -> str:
-    """Identify every rope from its ten lowest peaks, without noise."""
-    peaks = list(rd.sweep(modes, scenes))
-    here = swept(identified, peaks)
-    true = np.array([(one.tension, one.rope.bending_stiffness) for one in scenes])
-    tension, bending = np.abs(np.array(here.results) / true - 1).max(axis=0)
-    return (
-        "## Tension and bending stiffness from ten peaks\n\nFrom one guess for all ropes, without "
-        f"noise: the largest relative error of the tension is {tension:.1e}, of the bending "
-        f"stiffness {bending:.1e}.\n\n"
-        f"{times(identified, peaks, here.cost.seconds, ['processes'])}"
-    )
-
-
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else ROPES
     scenes = ropes(count)
@@ -134,7 +114,6 @@ def main() -> None:
     for title, task in TASKS.items():
         here = swept(task, scenes).cost.seconds
         parts.append(f"## {title}\n\n{times(task, scenes, here)}")
-    parts.append(identification(scenes))
     report.write("sweep.md", "\n\n".join(parts))
 
 

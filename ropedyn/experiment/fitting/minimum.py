@@ -13,6 +13,7 @@ from ...base.computed import computed
 from ...base.errors import SolveError
 from .misfit import Misfit
 
+TINY = float(np.finfo(float).tiny)
 BLIND = 1e-8  # Singular values below this share of the largest are the rounding of derivatives.
 ROUNDING = 1e-14  # Below this share of it no step goes along their directions.
 FARTHEST = 23.0  # A variable leaves its start by at most so much, a logarithm of ten decades.
@@ -42,13 +43,12 @@ class Told(NamedTuple):
 
     def above(self, least: float) -> Told:
         """Return what is told by more than a share of the first."""
-        floor = least * np.maximum(self.size[:, :1], np.finfo(float).tiny)
-        return self._replace(size=np.where(self.size > floor, self.size, 0.0))
+        floor = least * np.maximum(self.size[:, :1], TINY)
+        return self._replace(size=self.size * (self.size > floor))
 
     def along(self, residual: Real) -> Real:
         """Return the parts of residuals that these directions change, shape (n, q)."""
-        along = np.einsum("nmq,nm->nq", self.of_rows, residual)
-        return np.where(self.size > 0, along, 0.0)
+        return np.einsum("nmq,nm->nq", self.of_rows, residual) * (self.size > 0)
 
     @property
     def inverse(self) -> Real:

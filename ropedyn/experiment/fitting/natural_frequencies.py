@@ -40,7 +40,8 @@ class NaturalFrequencies:
         asked = count
         while True:
             found = self.family.modes(value, asked, derivative=True, threads=1)
-            still = int((found.eigenvalue <= 0).sum(axis=1).max(initial=0))
+            grows = found.eigenvalue <= 0
+            still = int(grows.sum(axis=1).max()) if grows.any() else 0
             if asked >= count + still:
                 break
             asked = count + still

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base import check
 from ...base.array import Flags, Real
+from ...base.computed import computed
 from ...base.errors import SceneError
 from ...scene.path import value_at, with_values
 from ...scene.scene import Scene
@@ -62,14 +63,24 @@ class Unknowns:
         """Which are sought by their logarithms, shape (p,)."""
         return self.scale == 0
 
+    @computed
+    def all_by_factor(self) -> bool:
+        """Whether all are."""
+        return bool(self.by_factor.all())
+
     def value(self, u: Real) -> Real:
         """Return the numbers, shape (..., p)."""
-        factor = np.exp(np.where(self.by_factor, u, 0.0))
-        return self.start * factor + self.scale * u
+        if self.all_by_factor:
+            return self.start * np.exp(u)
+        return self.start * np.exp(np.where(self.by_factor, u, 0.0)) + self.scale * u
 
     def slope(self, u: Real) -> Real:
         """Return dp/du, shape (..., p)."""
-        return np.where(self.by_factor, self.value(u), self.scale)
+        return (
+            self.value(u)
+            if self.all_by_factor
+            else np.where(self.by_factor, self.value(u), self.scale)
+        )
 
     def bound(self, u: Real) -> Real:
         """Return the numbers at bounds of u, infinite ones too, shape (..., p, bounds)."""

@@ -159,7 +159,15 @@ class Fits(Answer, Sequence[Fit | None]):
         return found
 
     def report(self) -> str:
-        """Return how many ropes came to which state, and why others did not, as text."""
+        """Return how many ropes came to which state, and why others did not, as text.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> print(rd.identify(scene, [rd.Peaks([25.0, 50.0], std=0.1)], "tension").report())
+        1 ropes: 1 converged
+        """
         states = {one: self.state.count(one) for one in dict.fromkeys(self.state)}
         said = [f"{count} {one}" for one, count in states.items()]
         lines = [f"{len(self)} ropes: {', '.join(said) or 'none'}"]

@@ -74,19 +74,19 @@ def _frozen_step(ratio: Real, relative: Real, start: Real, movable: Flags) -> Re
     # sum dp dlambda/dp (lambda*/lambda of inertia) = lambda* - lambda, lambda* measured
     inertia = relative.sum(axis=1) * start < 0
     matrix = np.where(inertia[:, None, :], relative, relative * ratio[:, :, None])
-    free = np.broadcast_to(movable, inertia.shape)
-    change = np.zeros(inertia.shape)
-    while True:
+    free = np.tile(movable, (len(ratio), 1))
+    change, going = np.zeros(free.shape), np.arange(len(ratio))
+    while len(going):
         # by least squares, none below its least, some not at all
-        rest = 1 - ratio - np.einsum("nkp,np->nk", matrix, np.where(free, 0.0, change))
-        told = Told.of(matrix * free[:, None, :])
-        best = np.einsum("nqp,nq->np", told.direction, told.along(rest) * told.inverse)
-        change = np.where(free, best, change)
+        some, held = matrix[going], np.where(free[going], 0.0, change[going])
+        told = Told.of(some * free[going][:, None, :])
+        along = told.along(1 - ratio[going] - np.einsum("nkp,np->nk", some, held))
+        best = np.einsum("nqp,nq->np", told.direction, along * told.inverse)
+        change[going] = np.where(free[going], best, held)
         low = free & (change < LEAST - 1)
-        if not low.any():
-            return change
-        change[low] = LEAST - 1
-        free = free & ~low
+        change[low], free[low] = LEAST - 1, False
+        going = np.flatnonzero(low.any(axis=1))
+    return change
 
 
 def _moved(best: Point, felt: Real, guess: Real) -> Real:
