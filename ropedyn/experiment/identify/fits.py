@@ -71,35 +71,6 @@ class Fits(Answer, Sequence[Fit | None]):
     cost: Cost
     found: Found | None = field(default=None, repr=False, metadata=TRANSIENT)
 
-    @classmethod
-    def of(cls, found: Found) -> Fits:
-        """Gather the numbers."""
-        solution, ropes, n = found.solution, found.ropes, len(found.ropes)
-        how, at = found.identification.how, solution.rows
-        p = len(how.paths)
-        value, std, rms = np.full((n, p), np.nan), np.full((n, p), np.nan), np.full(n, np.nan)
-        value[at], std[at] = solution.value, solution.std
-        relative = (ropes["weight"] / ropes["measured"])[at]
-        off = solution.record["residual"][:, : solution.peaks] * relative
-        rms[at] = np.sqrt(np.sum(off**2, axis=1) / (ropes["orders"][at] > 0).sum(axis=1))
-        state, failure = np.full(n, "converged", dtype=object), np.full(n, "", dtype=object)
-        state[at[solution.side.any(axis=1)]] = "at a bound"
-        for i, (kind, text) in found.reasons.items():
-            state[i], failure[i] = STATES.get(kind, "failed"), text
-        evaluations = int(solution.record["evaluations"].sum())
-        seconds, elements = n * found.seconds, how.elements or 0
-        return cls(
-            unknown=how.paths,
-            value=value,
-            std=std,
-            rms=rms,
-            state=tuple(state.tolist()),
-            failure=tuple(failure.tolist()),
-            notes=_notes(solution),
-            cost=Cost(seconds, "least squares", elements, n * p, factorisations=evaluations),
-            found=found,
-        )
-
     @computed
     def failed(self) -> Mapping[int, RopedynError]:
         """Why ropes have no solution, by their number from 0."""
@@ -192,6 +163,35 @@ class Fits(Answer, Sequence[Fit | None]):
     def plot(self, ax: Axes | None = None, *, unknown: str | None = None) -> Axes:
         """Plot one number of each rope with its standard deviation, the first by default."""
         return draw(self, "plot", ax, unknown=unknown)
+
+
+def fits_of(found: Found) -> Fits:
+    """Gather the numbers."""
+    solution, ropes, n = found.solution, found.ropes, len(found.ropes)
+    how, at = found.identification.how, solution.rows
+    p = len(how.paths)
+    value, std, rms = np.full((n, p), np.nan), np.full((n, p), np.nan), np.full(n, np.nan)
+    value[at], std[at] = solution.value, solution.std
+    relative = (ropes["weight"] / ropes["measured"])[at]
+    off = solution.record["residual"][:, : solution.peaks] * relative
+    rms[at] = np.sqrt(np.sum(off**2, axis=1) / (ropes["orders"][at] > 0).sum(axis=1))
+    state, failure = np.full(n, "converged", dtype=object), np.full(n, "", dtype=object)
+    state[at[solution.side.any(axis=1)]] = "at a bound"
+    for i, (kind, text) in found.reasons.items():
+        state[i], failure[i] = STATES.get(kind, "failed"), text
+    evaluations = int(solution.record["evaluations"].sum())
+    seconds, elements = n * found.seconds, how.elements or 0
+    return Fits(
+        unknown=how.paths,
+        value=value,
+        std=std,
+        rms=rms,
+        state=tuple(state.tolist()),
+        failure=tuple(failure.tolist()),
+        notes=_notes(solution),
+        cost=Cost(seconds, "least squares", elements, n * p, factorisations=evaluations),
+        found=found,
+    )
 
 
 def _notes(solution: Solution) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from ..orders.orders import given_orders, lowest_orders
 from .fit import Fit
 from .fit_frf import fit_response
 from .fit_peaks import Options, Ropes, kind_of_ropes
-from .fits import Fits
+from .fits import Fits, fits_of
 from .found import find
 from .response_fit import ResponseFit
 
@@ -202,7 +202,7 @@ def identify(
     listed = isinstance(measured, (list, tuple))
     if listed and any(isinstance(one, (Peaks, Measured)) for one in measured):
         given = [_peaks(one, f"measured[{i}]") for i, one in enumerate(measured)]
-        fits = Fits.of(find(scene, how, *_ropes(given, how), **workers))
+        fits = fits_of(find(scene, how, *_ropes(given, how), **workers))
         _warn(fits.notes)
         return fits
     ropes = _ropes([_peaks(measured, "measured")], how)

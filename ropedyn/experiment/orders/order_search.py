@@ -66,7 +66,6 @@ def search(
     )
     reach = np.full(start.shape, REACH)
     limits = start / reach, start * reach
-    calculated = _remembered(calculated)
     grid = Grid.of(calculated, start, reach, len(measured) + likelihood.missing)
     candidates = _candidates(grid, likelihood, limits)
     back = np.argsort(order, kind="stable")
@@ -86,19 +85,6 @@ def search(
             f"missing and {spurious} peaks that are none"
         )
     return sorted(found.values(), key=lambda one: one.cost)[:KEPT]
-
-
-def _remembered(calculated: Calculated) -> Calculated:
-    """Return the same that calculates nothing twice."""
-    known: dict[tuple[bytes, int], tuple[Real, Real]] = {}
-
-    def remembered(parameters: Real, count: int) -> tuple[Real, Real]:
-        key = parameters.tobytes(), count
-        if key not in known:
-            known[key] = calculated(parameters, count)
-        return known[key]
-
-    return remembered
 
 
 def _keep(found: dict[bytes, Assignment], fit: OrderFit, back: Index, noise: float | None) -> None:
