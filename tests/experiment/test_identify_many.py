@@ -171,3 +171,25 @@ def test_a_path_that_no_frequency_depends_on_is_named_for_each_rope():
     fits = rd.identify(string, [rd.Peaks([10.0]), rd.Peaks([11.0])], "damping.mass")
     assert fits.state == ("failed", "failed")
     assert all(why.startswith("unknown[0] must change natural") for why in fits.failure)
+
+
+@pytest.mark.filterwarnings("ignore::ropedyn.IdentifyWarning")
+def test_an_unknown_end_is_not_left_in_the_worse_of_two_valleys():
+    """A spring of 0 and one of infinity are both at the end of a valley: the deeper one counts."""
+    clamped, spring = (
+        ("clamped", "clamped"),
+        (rd.End(beta="free", spring={"beta": 10.0}), "clamped"),
+    )
+    random = np.random.default_rng(17)
+    given = []
+    for _ in range(60):
+        bending = 10 ** random.uniform(0, 2)
+        tension = 10 ** random.uniform(1, 4) * bending / LENGTH**2
+        exact = scene(tension, bending, clamped).compile().modes(8).frequency
+        given.append(exact * (1 + 1e-3 * random.normal(size=8)))
+    fits = rd.identify(scene(TENSION, 10.0, spring), peaks_of(given, 1e-3), [*BOTH, SPRING])
+    without = rd.identify(scene(TENSION, 10.0, clamped), peaks_of(given, 1e-3), BOTH)
+    solved = np.array(fits.state) != "not converged"
+    assert solved.sum() >= 55
+    # a spring more fits no worse; 1e-3 is what the end of a flat valley leaves
+    assert (8e6 * (fits.rms**2 - without.rms**2)[solved] < 1e-3).all()

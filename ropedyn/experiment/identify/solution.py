@@ -21,6 +21,7 @@ ROUNDING = 1e-12  # Frequencies themselves may have this relative noise, which d
 NARROW = 1e-8  # Below this standard deviation a variable's profile is a parabola, but for rounding.
 UNFELT = 100.0  # A number whose logarithm has a larger standard deviation is gone to 0 or infinity.
 BACK = 0.1  # Such a number is tried again where it has this share of what the residuals feel most.
+OTHER = 7.0  # And where it is on the other side of its start by so much, a factor of 1000.
 FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
 APART = 1e-6  # A number with more than this share in directions that nothing tells is not told.
 TURNS = 50  # Noise and fit take turns so often at most.
@@ -232,18 +233,24 @@ class Task:
         self, rows: Index, start: Point, guess: Real | None = None
     ) -> tuple[Solution, dict[int, RopedynError]]:
         """Make what was measured fit best; return also why some of the rows have no solution."""
-        first, failed = self._attempt(rows, start, start.u if guess is None else guess)
-        gone = np.setdiff1d(np.flatnonzero(first.side.any(axis=1)), list(failed))
-        if len(gone):
-            back = Point.of(self.measured, rows[gone], _back(first.take(gone)))
-            there = np.isfinite(back.residual.sum(axis=1) + back.slope.sum(axis=(1, 2)))
-            gone, back = gone[there], back.take(there)
-            origin = back.u if guess is None else guess[gone]
-            second, refused = self._attempt(rows[gone], back, origin)
-            better = second.off < first.off[gone]
+        origin = start.u if guess is None else guess
+        best, failed = self._attempt(rows, start, origin)
+        gone = np.setdiff1d(np.flatnonzero(best.side.any(axis=1)), list(failed))
+        if not len(gone):
+            return best, failed
+        first = best.take(gone)
+        # again from where something hangs on it, and from the other side of its start
+        for u in (_back(first), np.where(first.side, origin[gone] - OTHER * first.side, first.u)):
+            again = Point.of(self.measured, rows[gone], u)
+            there = np.isfinite(again.residual.sum(axis=1) + again.slope.sum(axis=(1, 2)))
+            at, again = gone[there], again.take(there)
+            if not len(at):
+                continue
+            found, refused = self._attempt(rows[at], again, again.u if guess is None else guess[at])
+            better = found.off < best.off[at]
             better[list(refused)] = False
-            first.record[gone[better]] = second.record[better]
-        return first, failed
+            best.record[at[better]] = found.record[better]
+        return best, failed
 
     def _attempt(
         self, rows: Index, start: Point, origin: Real
