@@ -10,8 +10,7 @@ import numpy as np
 from ..base.array import Flags, Real
 from ..base.errors import RopedynError
 from ..chain.chain import Chain
-from ..chain.compile import compile_scene
-from ..chain.compiled import Compiled, refuse_nonlinear
+from ..chain.compiled import Compiled
 from ..chain.rate import Places, rates_of
 from ..chain.spans import Spans, rates_of_spans, spans_of
 from ..eigen.closed import ClosedModes, ClosedSpans, closed_form
