@@ -573,11 +573,27 @@ static void massless_span_is_a_spring(double tension)
     solved_free(&solved);
 }
 
-/* a rope that is stiffened by 1e25 boundary layers has no mode that could be walked to */
+/* 1e25 boundary layers of a plain rope are its stiffness, and a string is left: L^2 lambda = k^2 pi^2 T/mu */
+static void boundary_layers_beyond_number_leave_a_string(void)
+{
+    struct solved solved;
+    solve(&solved, span_of("zb", 2, 1e12, 1e30, "zb", "zb"), 3);
+    check_certified(&solved, 3);
+    for (size_t k = 0; k < 3; k++) {
+        const double p = (double)(k + 1) * PI / 1e12, exact = p * p * 1e30 / (0.1 + 3e-5 * p * p);
+        CHECK_REL(solved.modes.lambda[k], exact, 64 * EPS, "four times the root's own");
+    }
+    solved_free(&solved);
+}
+
+/* one that twists as it bends has as many pieces, which is more than are walked */
 static void more_waves_than_are_walked_have_no_modes(void)
 {
     struct solved solved;
-    solve(&solved, span_of("zb", 2, 1e12, 1e40, "zb", "zb"), 3);
+    struct rope rope = span_of("zab", 2, 1e12, 1e40, "zab", "zab");
+    for (size_t e = 0; e < rope.chain.distinct; e++)
+        rope.flexibility[9 * e + 5] = rope.flexibility[9 * e + 7] = 1e-3;
+    solve(&solved, rope, 3);
     CHECK_INT(solved.status, RD_SHORT_WAVES);
     CHECK_INT(solved.modes.found, 0);
     solved_free(&solved);
@@ -608,6 +624,7 @@ int main(void)
     continuous_cantilever_and_free_beam_have_their_classical_modes();
     for (double tension = 300; tension < 1e9; tension *= 100)
         massless_span_is_a_spring(tension);
+    boundary_layers_beyond_number_leave_a_string();
     more_waves_than_are_walked_have_no_modes();
     return check_report("test_certify");
 }

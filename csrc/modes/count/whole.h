@@ -6,7 +6,8 @@
        k l - alpha_s - alpha_a + w pi/2 - arg det(I - S22 G)
 
    where alpha = arg(det(u + i f) e^{ikh}) is in -pi/2 .. pi for symmetric motions, for antisymmetric
-   ones pi/2 more, and the two eigenvalues of I - S22 G turn by less than pi/2 each. */
+   ones pi/2 more, and the two eigenvalues of I - S22 G turn by less than pi/2 each. Below lambda = 0 a
+   tensed span has no propagating wave, k is imaginary, and alpha in 0 .. pi. */
 #ifndef RD_COUNT_WHOLE_H
 #define RD_COUNT_WHOLE_H
 
@@ -38,7 +39,7 @@ RD_INLINE cv conjugate(cv a)
     return (cv){a.re, -a.im};
 }
 
-/* false where the waves of a lane are too long for halves */
+/* false where the waves of a lane are too long for halves, or both propagate */
 RD_INLINE _Bool whole_bent(const struct rate_matrix *rate, double length, lanes *z,
                            struct whole *whole)
 {
@@ -46,7 +47,7 @@ RD_INLINE _Bool whole_bent(const struct rate_matrix *rate, double length, lanes 
     const cv soft = rate->S[B][B], stiff = c_inverse(soft);
     const cv load[2] = {rate->q[0], rate->q[B]};
     const struct wavenumbers w = bent_wavenumbers(soft, load, rate->lever);
-    if (some(is_brief(&w, l_fill(length)) | (w.q.re < 0.0)))
+    if (some(is_brief(&w, l_fill(length)) | (w.E.im != 0.0) | (w.a2.re < 0.0)))
         return 0;
     const lanes k = longest(w.k.re, length), a = longest(w.a.re, length);
     z[0] = fitting(stiff.re, k, k * k + a * a);
@@ -71,7 +72,7 @@ RD_INLINE _Bool whole_plain(const struct rate_matrix *rate, double length, int i
                             struct whole *whole)
 {
     const cv soft = rate->S[i][i];
-    if (some((soft.re <= 0.0) | (rate->q[i].re > 0.0)))
+    if (some(soft.re <= 0.0))
         return 0;
     const lanes stiffness = 1.0 / soft.re;
     const lanes k = longest(l_root(not_negative(-(soft.re * rate->q[i].re))), length);
@@ -185,11 +186,11 @@ RD_INLINE _Bool whole_walk(struct wave *wave, const struct rd_walk *walk, const 
     return 1;
 }
 
-/* whether a leg may be walked at once at all lambda */
-RD_INLINE _Bool is_whole(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda)
+/* whether a leg may be walked at once */
+RD_INLINE _Bool is_whole(const struct rd_walk *walk, const struct rd_leg *leg)
 {
     return W <= 2 && leg_is_continuous(walk, leg) &&
-           rd_span_is_plain(walk->chain, (size_t)leg->element) && every(lambda >= 0.0);
+           rd_span_is_plain(walk->chain, (size_t)leg->element);
 }
 
 #endif

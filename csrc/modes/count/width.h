@@ -164,7 +164,7 @@ RD_INLINE _Bool leg_walk_whole(struct wave *wave, const struct rd_walk *walk,
     const lanes own_before = *own;
     const struct step bare = {.tilts = 0};
     lanes first[W][W];
-    if (!is_whole(walk, leg, lambda))
+    if (!is_whole(walk, leg))
         return 0;
     term_scale(walk, leg->first, leg->before, lambda, z, first);
     walk_node(wave, walk, leg->first, first, &bare, leg == walk->leg);

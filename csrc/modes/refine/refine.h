@@ -15,6 +15,7 @@ struct rd_step {
     int32_t before; /* element on its left, -1: none */
     int32_t level;
     int32_t leg;
+    _Bool plain; /* a piece in closed form, no doubling (modes/walk/plain.h) */
 };
 
 /* What an iteration works in. */

@@ -185,7 +185,7 @@ void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *
         }
         const struct rd_step *step = r->step + m;
         double *const node = u + r->walk->leg[step->leg].node * W;
-        if (leg_is_plain(r->walk, r->walk->leg + step->leg)) {
+        if (step->plain) {
             if (step->at == 0 && step->term != RD_NO_TERM)
                 memcpy(node, ua, sizeof ua);
             if (step->at == 0)

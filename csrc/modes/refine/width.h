@@ -50,7 +50,7 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
             continue;
         done = step->piece;
         const struct rd_leg *leg = r->walk->leg + step->leg;
-        if (leg_is_plain(r->walk, leg)) {
+        if (step->plain) {
             plain_change(r, leg, lambda, (struct piece *)(r->piece + (size_t)done * 6 * W * W));
             done++;
             continue;
@@ -258,6 +258,7 @@ static enum rd_status plan_plain(struct rd_refine *r, int32_t index, int32_t *pi
             .term = k == 0 ? leg->first : leg->term,
             .before = k == 0 ? leg->before : leg->element,
             .leg = index,
+            .plain = 1,
         };
     *pieces = base + 2;
     return RD_OK;
@@ -268,7 +269,7 @@ static enum rd_status plan_plain(struct rd_refine *r, int32_t index, int32_t *pi
 static enum rd_status plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
 {
     const struct rd_leg *leg = r->walk->leg + index;
-    if (leg_is_plain(r->walk, leg))
+    if (leg_is_plain_at(r->walk, leg, lambda))
         return plan_plain(r, index, pieces);
     const _Bool joined = leg->count >= 4 || leg_is_continuous(r->walk, leg);
     struct piece level[LEVELS];

@@ -64,11 +64,6 @@ RD_INLINE void slice_load(const struct rd_walk *walk, const struct rd_leg *leg, 
     const cv inertia = c_make(-lambda, l_fill(change ? -RD_COMPLEX_STEP : 0));
     struct rate_matrix rate;
     const double part = ldexp(1, -halvings);
-    if (leg_is_plain(walk, leg)) {
-        plain_rate(walk, leg, lambda, &rate);
-        plain_load(&rate, l_fill(part * chain->length[e]), piece, change);
-        return;
-    }
     rd_rate_fill(chain, e, c_real(1), c_real(1), inertia, c_zero(), &rate);
     cv D[W][W], G[W][W], Q[W][W];
     const int terms = rd_span_terms(part * rd_walk_radians(walk, leg, largest(lambda)));

@@ -35,6 +35,19 @@ RD_INLINE void plain_rate(const struct rd_walk *walk, const struct rd_leg *leg, 
     rd_rate_fill(walk->chain, (size_t)leg->element, c_real(1), c_real(1), inertia, c_zero(), rate);
 }
 
+/* Whether a leg is plain and its waves, were they ever so fast to grow, have real k^2 and a^2, without
+   which a complex step tells no slope. */
+RD_INLINE _Bool leg_is_plain_at(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda)
+{
+    enum { B = W - 1 };
+    struct rate_matrix rate;
+    if (!leg_is_plain(walk, leg))
+        return 0;
+    plain_rate(walk, leg, lambda, &rate);
+    const lanes soft = rate.S[B][B].re, theta = soft * rate.q[B].re, kappa = -soft * rate.q[0].re;
+    return W == 1 || !some(0.25 * theta * theta + kappa < 0.0);
+}
+
 RD_INLINE void plain_piece_of(const struct rate_matrix *rate, lanes length,
                               struct plain_piece *piece)
 {
