@@ -31,21 +31,6 @@ RD_INLINE lanes chain_spans(struct chain_lanes *chain, lanes omega)
     return pace;
 }
 
-/* where a lane's section is not: no waves are there, and nothing that is not a number stays */
-RD_INLINE void clear_station(struct station *station, lane_mask where)
-{
-    const struct passed same = {c_real(1), c_zero()};
-    const struct station none = {same, same, c_zero(), free_part().G};
-    put_where(where, station, &none, sizeof none);
-}
-
-RD_INLINE void clear_span(struct pair *Y, lanes *near, lane_mask where)
-{
-    const struct pair none = {c_zero(), c_zero(), c_zero()};
-    put_where(where, Y, &none, sizeof none);
-    *near = l_select(where, l_fill(1), *near);
-}
-
 /* right of a station that holds what meets there */
 RD_INLINE struct part beyond_split(_Bool hinged)
 {
@@ -76,12 +61,7 @@ RD_INLINE void chain_from_left(struct chain_lanes *chain, lanes omega, _Bool kep
             put_where(chain->first == at, &part, &apart, sizeof part);
         }
         lanes near;
-        struct pair Y = chain_pass(&part, chain->wave + s, &near);
-        if (kept && chain->split) {
-            const lane_mask after = chain->last <= at;
-            clear_station(&station, after | ((chain->first > 0) & (chain->first >= at)));
-            clear_span(&Y, &near, after | (chain->first > at));
-        }
+        const struct pair Y = chain_pass(&part, chain->wave + s, &near);
         if (kept) {
             chain->station[0][s] = station;
             chain->Y[0][s] = Y;
@@ -124,11 +104,6 @@ RD_INLINE void chain_from_right(struct chain_lanes *chain, lanes omega, size_t s
     const lane_mask last = chain->last == (long long)s;
     put_where(last, part, &end, sizeof end);
     put_where(last, station, &end_station, sizeof end_station);
-    if (chain->split) {
-        const long long at = (long long)s;
-        clear_station(station, (chain->first >= at) | (chain->last < at));
-        clear_span(chain->Y[1] + s, chain->near[1] + s, (chain->first > at) | (chain->last <= at));
-    }
 }
 
 /* where the two parts meet: at the right end, or where the phase is nearest to passing 0 */
@@ -194,25 +169,50 @@ RD_INLINE void station_slopes(struct chain_lanes *chain, const struct station *s
                            4.0 * l_abs(of_beta) * (l_abs(here.spring_beta) + inert_beta), none);
 }
 
+/* a span on the way of b, with what comes back from beyond it; b is 0 where no wave goes, whatever
+   was found there */
+RD_INLINE struct duo cross_span(struct chain_lanes *chain, size_t e, int side, struct duo b,
+                                lane_mask way, struct duo *back, struct chain_slope *sum)
+{
+    const struct span_waves *w = chain->wave + e;
+    const lanes near = l_root(chain->near[side][e]);
+    const lanes noise = 8.0 * duo_square(pair_times(&w->N, b)) * near;
+    sum->noise += l_select(way, noise, l_fill(0));
+    b = mirrored_duo(through_span(w, chain->Y[side] + e, b, back));
+    *back = duo_where(way, *back);
+    return duo_where(way, b);
+}
+
+/* a station on the way of b */
+RD_INLINE struct duo cross_station(struct chain_lanes *chain, size_t s, int side, lanes omega,
+                                   struct scales scales, struct duo b, lane_mask way,
+                                   struct chain_slope *sum)
+{
+    struct station station = chain->station[side][s];
+    put_where(~way, &station, &(struct station){0}, sizeof station);
+    if (side == 0 && chain->hinge[s])
+        b.beta = c_mul(station.hinge, b.z);
+    station_slopes(chain, &station, s, omega, b, scales, sum);
+    b = through_station(&station, b);
+    if (side == 1 && chain->hinge[s])
+        b.beta = c_mul(station.hinge, b.z);
+    return b;
+}
+
 /* what goes into each span left of the face where the parts meet */
 RD_INLINE void chain_to_left(struct chain_lanes *chain, lanes omega, lane_mask face,
                              struct duo start, struct chain_slope *sum)
 {
     struct duo b = {c_zero(), c_zero()};
-    for (size_t s = chain->spans; s > 0; s--) {
-        const size_t e = s - 1;
-        const struct station *station = chain->station[0] + e;
-        b = duo_add(b, duo_where(face == (long long)s, start));
+    for (size_t e = chain->spans; e-- > 0;) {
+        const long long at = (long long)e;
+        const lane_mask way = (chain->first <= at) & (face > at);
+        b = duo_add(b, duo_where(face == at + 1, start));
         chain->in[0][e] = b;
-        sum->noise +=
-            8.0 * duo_square(pair_times(&chain->wave[e].N, b)) * l_root(chain->near[0][e]);
-        b = mirrored_duo(through_span(chain->wave + e, chain->Y[0] + e, b, chain->in[1] + e));
-        if (chain->split && e > 0)
-            b = duo_where(chain->first != (long long)e, b);
-        if (chain->hinge[e])
-            b.beta = c_mul(station->hinge, b.z);
-        station_slopes(chain, station, e, omega, b, scales_of(chain, e), sum);
-        b = through_station(station, b);
+        b = cross_span(chain, e, 0, b, way, chain->in[1] + e, sum);
+        const lane_mask further = e > 0 ? way & (chain->first < at) : way;
+        b = cross_station(chain, e, 0, omega, scales_of(chain, e), duo_where(further, b), further,
+                          sum);
     }
 }
 
@@ -222,23 +222,18 @@ RD_INLINE void chain_to_right(struct chain_lanes *chain, lanes omega, lane_mask 
 {
     struct duo b = {c_zero(), c_zero()}, back;
     for (size_t s = 1; s <= chain->spans; s++) {
-        const struct station *station = chain->station[1] + s;
-        const lane_mask ends = chain->last == (long long)s;
-        if (!wide && !any(ends))
+        const long long at = (long long)s;
+        if (!wide && !any(chain->last == at))
             continue;
-        b = duo_add(b, duo_where(face == (long long)s, start));
-        station_slopes(chain, station, s, omega, b, scales_of(chain, s - 1), sum);
-        if (s == chain->spans)
-            return;
-        b = duo_where(~ends, through_station(station, b));
-        if (!wide)
+        b = duo_add(b, duo_where(face == at, start));
+        b = cross_station(chain, s, 1, omega, scales_of(chain, s - 1), b,
+                          (face <= at) & (chain->last >= at), sum);
+        const lane_mask way = (face <= at) & (chain->last > at);
+        b = duo_where(way, b);
+        if (!wide || s == chain->spans)
             continue;
-        if (chain->hinge[s])
-            b.beta = c_mul(station->hinge, b.z);
-        sum->noise +=
-            8.0 * duo_square(pair_times(&chain->wave[s].N, b)) * l_root(chain->near[1][s]);
         chain->in[1][s] = duo_add(chain->in[1][s], b);
-        b = mirrored_duo(through_span(chain->wave + s, chain->Y[1] + s, b, &back));
+        b = cross_span(chain, s, 1, b, way, &back, sum);
         chain->in[0][s] = duo_add(chain->in[0][s], back);
     }
 }

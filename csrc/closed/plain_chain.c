@@ -2,6 +2,8 @@
 
    k = omega sqrt(m/D), scale (D k)^-1/2: a span is G <- e^{2ikl} G, theta/2 += kl, and mode n is where
    theta/2 = (n - 1) pi of the two parts together. beta stays free and does nothing. */
+#pragma GCC optimize("schedule-insns") /* as in closed/bent_chain.c */
+
 #include "closed/chain_lanes.h"
 
 enum { SPAN_NUMBERS = 3, LENGTH = 0, INERTIA, STIFFNESS };

@@ -109,7 +109,9 @@ RD_INLINE struct passed pass_coordinate(struct part *part, cv *jj, cv *jk, cv *k
     put_where(~still, jk, &(cv){x.re * through, x.im * through}, sizeof(cv));
     const cv moved = c_sub(c_scale_lanes(c_mul(up, per), 2.0 * n2), one);
     put_where(~still, jj, &moved, sizeof(cv));
+    const cv turn = part->turn;
     lag(part, q);
+    put_where(still, &part->turn, &turn, sizeof turn);
     return (struct passed){c_scale_lanes(per, through), other};
 }
 
