@@ -144,8 +144,9 @@ RD_CLONES static void seek(const struct rd_chains *chains, struct chain_lanes *c
         }
         if (!any(busy))
             return;
-        lanes pace;
-        const lanes x = b.x, beyond = chain_phase(chain, x, &place, &pace);
+        lanes pace, beyond;
+        const lanes x = b.x;
+        chain_phase(chain, &x, &place, &beyond, &pace);
         narrow(&b, beyond, pace);
         const lane_mask near = (l_abs(beyond) < NEAR) & (l_abs(b.x - x) < NEAR * x);
         const lane_mask lost =
@@ -164,8 +165,9 @@ RD_INLINE lane_mask chain_passes(struct chain_lanes *chain, const struct chain_p
 {
     lane_mask passes = ~(lane_mask){0};
     for (int side = -1; side < 2; side += 2) {
-        lanes pace;
-        const lanes beyond = chain_phase(chain, omega * (1.0 + side * wide), place, &pace);
+        const lanes at = omega * (1.0 + side * wide);
+        lanes beyond, pace;
+        chain_phase(chain, &at, place, &beyond, &pace);
         passes &= side * beyond > noise;
     }
     return passes;
@@ -185,7 +187,8 @@ RD_CLONES static void settle(const struct rd_chains *chains, struct chain_lanes 
             put_task(chains, chain, &place, i, task + own);
             x[i] = root[own];
         }
-        const struct chain_slope f = chain_slopes(chain, x, &place);
+        struct chain_slope f;
+        chain_slopes(chain, &x, &place, &f);
         const lanes step = f.beyond / f.of_omega, omega = x * (1.0 - step);
         const lanes noise = ROUNDING * f.noise;
         const lanes left = f.beyond * f.beyond / f.of_omega + 8.0 * step * step;
@@ -294,13 +297,15 @@ RD_CLONES static void count_places(const struct rd_chains *chains, struct chain_
             put_task(chains, chain, &place, i, task + (t + i < count ? t + i : t));
         const double turn = 2 * PI, off = 2e-13;
         lane_mask certain = ~(lane_mask){0};
-        const struct chain_slope f = chain_slopes(chain, l_fill(omega), &place);
+        const lanes here = l_fill(omega);
+        struct chain_slope f;
+        chain_slopes(chain, &here, &place, &f);
         const lanes slack = f.noise + l_abs(f.of_omega);
         const lanes below = whole_turns(f.beyond / turn + 1.0, slack, &certain);
         for (int side = -1; side < 2; side += 2) {
-            lanes pace;
-            const lanes beyond =
-                chain_phase(chain, l_fill(omega * (1 + side * off)), &place, &pace);
+            const lanes at = l_fill(omega * (1 + side * off));
+            lanes beyond, pace;
+            chain_phase(chain, &at, &place, &beyond, &pace);
             certain &= whole_turns(beyond / turn + 1.0, l_fill(4), &certain) == below;
         }
         for (size_t i = 0; i < RD_LANES && t + i < count; i++)

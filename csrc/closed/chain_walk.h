@@ -135,14 +135,16 @@ RD_INLINE struct meeting chain_meeting(struct chain_lanes *chain, lanes omega,
     return found;
 }
 
-RD_INLINE lanes chain_phase(struct chain_lanes *chain, lanes omega, const struct chain_place *place,
-                            lanes *pace)
+/* the phase that passes 0 at the mode of a place; how fast it grows with ln omega where nothing
+   disturbs the waves */
+RD_CLONES static void chain_phase(struct chain_lanes *chain, const lanes *omega,
+                                  const struct chain_place *place, lanes *beyond, lanes *pace)
 {
     lane_mask face;
-    *pace = chain_spans(chain, omega);
-    chain_from_left(chain, omega, 0);
-    const struct meeting m = chain_meeting(chain, omega, place, &face);
-    return chain_beyond(&m, place);
+    *pace = chain_spans(chain, *omega);
+    chain_from_left(chain, *omega, 0);
+    const struct meeting m = chain_meeting(chain, *omega, place, &face);
+    *beyond = chain_beyond(&m, place);
 }
 
 /* what a station does to the phase, where b goes in after it */
@@ -239,25 +241,25 @@ RD_INLINE void chain_to_right(struct chain_lanes *chain, lanes omega, lane_mask 
 }
 
 /* the phase with its slopes by all numbers */
-RD_INLINE struct chain_slope chain_slopes(struct chain_lanes *chain, lanes omega,
-                                          const struct chain_place *place)
+RD_CLONES static void chain_slopes(struct chain_lanes *chain, const lanes *at,
+                                   const struct chain_place *place, struct chain_slope *sum)
 {
     lane_mask face;
+    const lanes omega = *at;
     for (size_t j = 0; j < chain->numbers; j++)
         chain->slope[j] = l_fill(0);
     chain_spans(chain, omega);
     chain_from_left(chain, omega, 1);
     const struct meeting m = chain_meeting(chain, omega, place, &face);
     const struct duo wave = chain_wave(&m, place);
-    struct chain_slope sum = {.beyond = chain_beyond(&m, place),
-                              .of_omega = l_fill(0),
-                              .noise = 16.0 + l_abs(m.K),
-                              .split = chain_split(&m)};
-    chain_to_left(chain, omega, face, pair_times(&m.second, wave), &sum);
-    chain_to_right(chain, omega, face, mirrored_duo(wave), any(place->wide), &sum);
+    *sum = (struct chain_slope){.beyond = chain_beyond(&m, place),
+                                .of_omega = l_fill(0),
+                                .noise = 16.0 + l_abs(m.K),
+                                .split = chain_split(&m)};
+    chain_to_left(chain, omega, face, pair_times(&m.second, wave), sum);
+    chain_to_right(chain, omega, face, mirrored_duo(wave), any(place->wide), sum);
     for (size_t e = 0; e < chain->spans; e++)
-        chain_span_slopes(chain, e, &sum);
-    return sum;
+        chain_span_slopes(chain, e, sum);
 }
 
 #endif
