@@ -137,7 +137,7 @@ RD_INLINE struct waves waves_of(const double *number, const struct rd_closed_lin
     w.A = c_root(w.A2);
     w.source = c_scale(c_mul(soft, c_inverse(c_scale(root, 4))), L * L2);
     w.spring = c_mul(spring, c_inverse(section));
-    w.certain = (w.K.re >= 0.0625) & (w.A.re >= 0.0625) & (w.K.im <= 0.0);
+    w.certain = (w.K.re >= 0.0625) & (w.A.re >= 0.0625) & (w.K.im <= 0.0) & (w.K.im > -64.0);
     return w;
 }
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Flags, Index, Integer, Real
 from ..chain.chain import Chain
 from ..chain.spans import Spans, spans_of
 
-ALONE = {4: ("bent", [0, 1, 2, 3, 6, 7, 10, 11]), 3: ("plain", [0, 1, 2, 4, 6])}
-"""By the numbers of a span: what the core calls one between springs, and which numbers it takes."""
+KINDS = {4: "bent", 3: "plain"}
+"""What the core calls spans, by their numbers."""
+
+ALONE = {"bent": [0, 1, 2, 3, 6, 7, 10, 11], "plain": [0, 1, 2, 4, 6]}
+"""Which numbers of one span between springs the core takes."""
 
 
 class ClosedModes(NamedTuple):
@@ -28,35 +32,39 @@ class ClosedSpans(NamedTuple):
     """Spans of one form, whatever their numbers."""
 
     kind: str  # as the core calls it
-    taken: Index  # which numbers it takes
+    taken: Index | None  # which numbers one span between springs takes, None of a chain of them
+    hinged: NDArray[np.uint8]  # (stations,)
 
     def modes(self, number: Real, modes: int, jacobian: Real | None = None) -> ClosedModes:
         """Find the lowest modes of each row of numbers, and slopes by what numbers follow from."""
+        if self.taken is None:
+            found = _core.closed_chain_modes(self.kind, number, self.hinged, jacobian, modes)
+            return ClosedModes(*found)
         of = None if jacobian is None else jacobian[self.taken]
         return ClosedModes(*_core.closed_modes(self.kind, number[:, self.taken], of, modes))
 
     def counts(self, number: Real, omega: float) -> Integer:
         """Count the eigenvalues below omega^2 of each row of numbers, -1 where not certain."""
+        if self.taken is None:
+            return _core.closed_chain_count(self.kind, number, self.hinged, omega)
         return _core.closed_count(self.kind, number[:, self.taken], omega)
 
 
-def closed_form(spans: Spans, varied: Flags | None = None) -> ClosedSpans | None:
-    """Return the closed form of spans some of whose numbers vary, None where there is none."""
-    inertia = spans.station[:, : spans.station.shape[1] // 2] != 0
-    if len(spans.span) > 1 or spans.hinged.any() or inertia.any():
-        return None
-    kind, taken = ALONE[spans.span.shape[1]]
-    if varied is not None and np.delete(varied, taken).any():
-        return None
-    return ClosedSpans(kind, np.array(taken))
+def closed_form(spans: Spans, varied: Flags | None = None) -> ClosedSpans:
+    """Return the closed form of spans some of whose numbers vary."""
+    kind = KINDS[spans.span.shape[1]]
+    number = np.where(varied, np.nan, spans.number) if varied is not None else spans.number
+    taken = np.array(ALONE[kind])
+    is_one = len(spans.span) == 1 and not spans.hinged.any() and not np.delete(number, taken).any()
+    return ClosedSpans(kind, taken if is_one else None, spans.hinged)
 
 
 def closed_eigenvalues(chain: Chain, number: int | None, limit: float) -> tuple[Real, Real] | None:
     """Return the lowest eigenvalues of a chain and their errors, None where not certified."""
     spans = spans_of(chain)
-    form = None if spans is None else closed_form(spans)
-    if spans is None or form is None:
+    if spans is None:
         return None
+    form = closed_form(spans)
     row = spans.number[np.newaxis]
     wanted = int(form.counts(row, np.sqrt(limit))[0]) if number is None else number
     if wanted < 1:
@@ -71,8 +79,8 @@ def closed_eigenvalues(chain: Chain, number: int | None, limit: float) -> tuple[
 def closed_count(chain: Chain, limit: float) -> int | None:
     """Count the eigenvalues of a chain below a limit, None where that is not certain."""
     spans = spans_of(chain)
-    form = None if spans is None else closed_form(spans)
-    if spans is None or form is None:
+    if spans is None:
         return None
+    form = closed_form(spans)
     count = int(form.counts(spans.number[np.newaxis], np.sqrt(limit))[0])
     return None if count < 0 else count

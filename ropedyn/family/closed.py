@@ -14,7 +14,7 @@ from ..chain.compiled import Compiled
 from ..chain.rate import Places, rates_of
 from ..chain.spans import Spans, rates_of_spans, spans_of
 from ..eigen.closed import ClosedModes, ClosedSpans, closed_form
-from .rows import Answered
+from .rows import Filled
 from .template import SPRING, Template
 
 PROBE = 2.0**-10
@@ -69,7 +69,7 @@ def components_of(template: Template) -> tuple[Component, ...]:
     if here is None or there is None or len(here) != len(there):
         return ()
     for one, other in zip(here, there):
-        if one.form.kind != other.form.kind or not np.array_equal(one.jacobian, other.jacobian):
+        if not np.array_equal(one.jacobian, other.jacobian):
             return ()
     acting = np.any([one.jacobian.any(axis=0) for one in here], axis=0)
     return here if acting.all() else ()
@@ -84,7 +84,7 @@ def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
     for names in model.components:
         chain = model.chain.only(names)
         spans = spans_of(chain.undamped)
-        if spans is None or len(chain.spans) > 1:
+        if spans is None:
             return None
         columns = []
         for path in template.paths:
@@ -100,8 +100,6 @@ def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
             number[j] = 0.0 if np.isinf(row[c]) else number[j] - jacobian[j, c] * row[c]
         varied: Flags = np.any(jacobian, axis=1)
         form = closed_form(spans, varied)
-        if form is None:
-            return None
         found.append(Component(chain, spans, form, number, jacobian))
     return tuple(found)
 
@@ -117,7 +115,7 @@ def _of_spring(model: Compiled, names: Sequence[str], end: int, coordinate: str)
 
 def closed_modes(
     components: Sequence[Component], number: int, derivative: bool, rows: Real
-) -> Answered:
+) -> Filled:
     """Find the modes of the rows that are certified."""
     found = [one.modes(rows, number, sloped=derivative) for one in components]
     omega, error, slope = _lowest(found, number)
@@ -128,7 +126,7 @@ def closed_modes(
     frequency = omega / (2 * np.pi)
     error = frequency * (error + np.finfo(float).eps)
     answer = frequency, omega * omega, error, certified[at]
-    return Answered(at, answer if slope is None else (*answer, slope * frequency[..., None]), {})
+    return Filled(at, answer if slope is None else (*answer, slope * frequency[..., None]), {})
 
 
 def _lowest(found: Sequence[ClosedModes], number: int) -> tuple[Real, Real, Real | None]:
@@ -145,8 +143,8 @@ def _lowest(found: Sequence[ClosedModes], number: int) -> tuple[Real, Real, Real
     return omega, error, np.take_along_axis(slope, order[..., None], axis=1)
 
 
-def closed_counts(components: Sequence[Component], omega: float, rows: Real) -> Answered:
+def closed_counts(components: Sequence[Component], omega: float, rows: Real) -> Filled:
     """Count the modes of the rows where that is certain."""
     counts = np.array([one.form.counts(one.numbers(rows), omega) for one in components])
     at = np.flatnonzero((counts >= 0).all(axis=0))
-    return Answered(at, (counts.sum(axis=0)[at],), {})
+    return Filled(at, (counts.sum(axis=0)[at],), {})

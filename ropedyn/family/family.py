@@ -29,7 +29,7 @@ from .closed import Component, closed_counts, closed_modes, components_of
 from .frf import FamilyFRF
 from .harmonic import asked_of_rows, closed_frf
 from .modes import FamilyModes
-from .rows import Answered, Means, Shared, one_by_one
+from .rows import Filled, Means, Shared, one_by_one
 from .template import Template, template
 
 ROWS, ROWS_ALONE = 1024, 8
@@ -291,7 +291,7 @@ class Family:
         return self._template.at(row)
 
     def _stages(
-        self, closed: Callable[[Real], Answered] | None, alone: Callable[[Real], tuple[Any, ...]]
+        self, closed: Callable[[Real], Filled] | None, alone: Callable[[Real], tuple[Any, ...]]
     ) -> list[Means]:
         """Return the ways to solve rows: in closed form where there is one, then one by one."""
         last = Means(partial(one_by_one, alone), ROWS_ALONE)

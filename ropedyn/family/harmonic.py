@@ -19,7 +19,7 @@ from ..response.closed import closed_response
 from ..response.solvers import SWEEP_SLICE, relative
 from ..scene import damping
 from .closed import Component
-from .rows import Answered
+from .rows import Filled
 
 
 class Cut(NamedTuple):
@@ -62,7 +62,7 @@ def asked_of_rows(
     return Asked(frequency, factor, drives, responses, quantity, several)
 
 
-def closed_frf(components: Sequence[Component], asked: Asked, rows: Real) -> Answered:
+def closed_frf(components: Sequence[Component], asked: Asked, rows: Real) -> Filled:
     """Compute the responses of the rows of which every line is sure."""
     shape = (len(rows), len(asked.drives), len(asked.responses), len(asked.frequency))
     value, error = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
@@ -80,7 +80,7 @@ def closed_frf(components: Sequence[Component], asked: Asked, rows: Real) -> Ans
     solved &= np.isfinite(value).all(axis=(1, 2, 3)) & ~np.isnan(error).any(axis=(1, 2, 3))
     kept = np.flatnonzero(solved)
     one = kept if asked.several else (kept, 0)
-    return Answered(kept, (value[one], error[one]), {})
+    return Filled(kept, (value[one], error[one]), {})
 
 
 def _answers(

@@ -22,7 +22,7 @@ Reasons = tuple[tuple[int, str, str], ...]
 """Of each row that failed its number, the name of the error and its text."""
 
 
-class Answered(NamedTuple):
+class Filled(NamedTuple):
     """What a chunk of rows has given; of rows that are neither there nor failed nothing is said."""
 
     at: Index
@@ -36,11 +36,11 @@ class Answered(NamedTuple):
 class Means(NamedTuple):
     """A way to solve rows, and how many at a time."""
 
-    solve: Callable[[Any], Answered]
+    solve: Callable[[Any], Filled]
     size: int
 
 
-def one_by_one(solve: Callable[[Real], tuple[Any, ...]], rows: Real) -> Answered:
+def one_by_one(solve: Callable[[Real], tuple[Any, ...]], rows: Real) -> Filled:
     """Solve each row for itself; what refuses a row has not solved it."""
     answers: dict[int, tuple[Any, ...]] = {}
     failed: dict[int, tuple[str, str]] = {}
@@ -50,7 +50,7 @@ def one_by_one(solve: Callable[[Real], tuple[Any, ...]], rows: Real) -> Answered
         except (RopedynError, ArithmeticError) as error:
             failed[k] = type(error).__name__, str(error)
     arrays = tuple(np.array(column) for column in zip(*answers.values()))
-    return Answered(np.array(list(answers), dtype=np.intp), arrays, failed)
+    return Filled(np.array(list(answers), dtype=np.intp), arrays, failed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +106,7 @@ class Shared:
             rest = np.sort(np.concatenate(left)) if left else rest[:0]
         return tuple((row, *reasons[row]) for row in sorted(reasons)), answered
 
-    def _solved(self, stage: Means, rows: Index) -> Generator[tuple[Index, Answered]]:
+    def _solved(self, stage: Means, rows: Index) -> Generator[tuple[Index, Filled]]:
         chunks = [rows[k : k + stage.size] for k in range(0, len(rows), stage.size)]
         threads = min(self.threads, len(chunks))
         if self.executor is None and threads <= 1:
@@ -114,8 +114,8 @@ class Shared:
                 yield chunk, stage.solve(self.rows[chunk])
             return
         executor = self.executor or ThreadPoolExecutor(threads)
-        done: SimpleQueue[Future[Answered]] = SimpleQueue()
-        pending: dict[Future[Answered], Index] = {}
+        done: SimpleQueue[Future[Filled]] = SimpleQueue()
+        pending: dict[Future[Filled], Index] = {}
         try:
             for chunk in chunks:
                 future = _submitted(executor, stage.solve, self.rows[chunk])
@@ -131,7 +131,7 @@ class Shared:
             if executor is not self.executor:
                 executor.shutdown(wait=False, cancel_futures=True)
 
-    def _received(self, future: Future[Answered], sent: int) -> Answered:
+    def _received(self, future: Future[Filled], sent: int) -> Filled:
         """Return a part; rows that another's executor lost have failed."""
         from concurrent.futures import CancelledError
 
@@ -141,16 +141,14 @@ class Shared:
             return future.result()
         except (Exception, CancelledError) as error:
             why = "SolveError", f"the executor lost this row: {error!r}"
-            return Answered(np.arange(0), (), dict.fromkeys(range(sent), why))
+            return Filled(np.arange(0), (), dict.fromkeys(range(sent), why))
 
 
-def _submitted(
-    executor: Executor, solve: Callable[[Any], Answered], rows: Array
-) -> Future[Answered]:
+def _submitted(executor: Executor, solve: Callable[[Any], Filled], rows: Array) -> Future[Filled]:
     """Submit rows; what refuses them at once, as a broken pool does, is a future as well."""
     try:
         return executor.submit(solve, rows)
     except Exception as error:
-        refused: Future[Answered] = Future()
+        refused: Future[Filled] = Future()
         refused.set_exception(error)
         return refused

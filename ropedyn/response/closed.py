@@ -36,7 +36,12 @@ def closed_response(
     Of `chain` only the damping counts, which all rows have; `points` are the drives and responses.
     """
     asked = [*points[0], *points[1]]
-    if form.kind != "bent" or chain.damping is not None or any(p[0] != "z" for p in asked):
+    if (
+        form.taken is None
+        or form.kind != "bent"
+        or chain.damping is not None
+        or any(p[0] != "z" for p in asked)
+    ):
         return None
     drag = 0.0 if chain.drag is None else float(chain.drag[0, 0])
     own = number[:, form.taken]
@@ -54,8 +59,8 @@ def closed_lines(
 ) -> Lines | None:
     """Compute the responses of a chain, None where it or what is asked has no closed form."""
     spans = spans_of(chain.undamped)
-    form = None if spans is None else closed_form(spans)
-    if spans is None or form is None:
+    if spans is None:
         return None
+    form = closed_form(spans)
     points = drives, responses
     return closed_response(form, chain, spans.number[np.newaxis], factor, points)

@@ -68,6 +68,13 @@ STRINGS = (
     np.array([[1.0, 0.1, 10.0, math.inf, math.inf], [1.0, 0.1, 40.0, math.inf, math.inf]]),
 )
 
+# a string of two spans, held at its ends, with a mass between them
+CUT_STRING = (
+    "plain",
+    np.array([[0.4, 0.1, 10.0, 0.6, 0.1, 10.0, 0.0, math.inf, 0.01, 0.0, 0.0, math.inf]]),
+    np.zeros(3, np.uint8),
+)
+
 # of a march: what acts beside CHAIN, two laws, half a midpoint step of 1 ms, a node that moves
 PER_ELEMENT = np.full(len(CHAIN.length), 1e-3)
 BESIDE = (PER_ELEMENT, 1e-3, 100 * PER_ELEMENT, PER_ELEMENT, 1.0, 0.1)
@@ -223,6 +230,8 @@ OTHERS = {
     "recurrence": lambda _: _core.recurrence(*STEPPED),
     "closed_modes": lambda _: _core.closed_modes(*STRINGS, np.eye(5), 2),
     "closed_count": lambda _: _core.closed_count(*STRINGS, 30.0),
+    "closed_chain_modes": lambda _: _core.closed_chain_modes(*CUT_STRING, np.eye(12), 2),
+    "closed_chain_count": lambda _: _core.closed_chain_count(*CUT_STRING, 30.0),
     "closed_response": lambda _: _core.closed_response(
         np.array([[1.0, 0.1, 10.0, 1.0, math.inf, math.inf, math.inf, 0.0]]),
         np.array([[1], [1], [1], [-1e4], [1e2j]], dtype=complex),
