@@ -42,12 +42,11 @@ static _Bool chain_valid(const struct rd_chains *chains, const double *number)
     return valid;
 }
 
-/* omega of mode n of one span between held ends with all the mass, or so */
+/* omega of mode n of one span between held ends that is as long and as heavy, or so */
 static double chain_guess(const struct rd_chains *chains, const double *number, size_t first,
                           size_t last, double n)
 {
     double L = 0, m = 0, T = 0, B = 0;
-    (void)chains;
     for (size_t e = first; e < last; e++) {
         const double *span = number + at_span(e), l = span[LENGTH];
         L += l;
@@ -55,6 +54,9 @@ static double chain_guess(const struct rd_chains *chains, const double *number, 
         T += l * span[TENSION];
         B += l * span[STIFFNESS];
     }
+    /* masses are felt by waves that are longer than what is between them */
+    for (size_t s = first; s <= last && n < (double)(last - first); s++)
+        m += number[at_station(chains->spans, s) + MASS];
     const double beta = n * PI / L;
     return beta * sqrt(((T > 0 ? T : 0) + B * beta * beta) / m);
 }

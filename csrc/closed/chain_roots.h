@@ -17,6 +17,9 @@ enum {
     WIDE_STEPS = 80,
 };
 
+/* a step of so much between two points of a bracket leaves less than NEAR, and that Newton's squares */
+static const double SOON = 3e-7;
+
 /* of mode n of a section of a row */
 struct chain_task {
     size_t row, first, last, n;
@@ -148,18 +151,19 @@ RD_CLONES static void seek(const struct rd_chains *chains, struct chain_lanes *c
         const lanes x = b.x;
         chain_phase(chain, &x, &place, &beyond, &pace);
         narrow(&b, beyond, pace);
-        const lane_mask near = (l_abs(beyond) < NEAR) & (l_abs(b.x - x) < NEAR * x);
+        const lane_mask near = (l_abs(beyond) < SOON) & (l_abs(b.x - x) < SOON * x);
         const lane_mask lost =
             (b.steps >= steps) | (b.high - b.low < 4e-16 * b.high) | ~(x > 0.0) | ~finite(beyond);
         for (size_t i = 0; i < RD_LANES; i++)
             if (busy[i] && (near[i] || lost[i])) {
-                omega[at[i]] = near[i] ? x[i] : 0;
+                omega[at[i]] = near[i] ? b.x[i] : 0;
                 busy[i] = 0;
             }
     }
 }
 
-/* the phase below and above: does it pass 0 */
+/* The phase below and above: does it pass 0. Where the parts may meet anywhere it is the least of all
+   faces, each with noise that is as much smaller. */
 RD_INLINE lane_mask chain_passes(struct chain_lanes *chain, const struct chain_place *place,
                                  lanes omega, lanes wide, lanes noise)
 {
@@ -168,7 +172,7 @@ RD_INLINE lane_mask chain_passes(struct chain_lanes *chain, const struct chain_p
         const lanes at = omega * (1.0 + side * wide);
         lanes beyond, pace;
         chain_phase(chain, &at, place, &beyond, &pace);
-        passes &= side * beyond > noise;
+        passes &= side * beyond > l_select(place->wide, l_fill(0), noise);
     }
     return passes;
 }
