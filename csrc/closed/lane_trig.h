@@ -75,6 +75,7 @@ RD_INLINE cv c_root(cv z)
 struct c_circle {
     cv cos, sin;
     lanes decay;
+    cv phase;             /* e^{i Re z} */
     lanes quarters, rest; /* of Re z */
 };
 
@@ -91,6 +92,7 @@ RD_INLINE struct c_circle c_circle_of(cv z)
     const lanes ch = 0.5 * (1.0 + f.decay), sh = l_negative_where(z.im < 0.0, -0.5 * less);
     f.cos = (cv){u.cos * ch, -(u.sin * sh)};
     f.sin = (cv){u.sin * ch, u.cos * sh};
+    f.phase = (cv){u.cos, u.sin};
     f.quarters = u.quarters;
     f.rest = u.rest;
     return f;

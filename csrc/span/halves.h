@@ -27,7 +27,7 @@
 
 /* what the propagating wave does on its way along the half */
 struct half_way {
-    cv phase;             /* e^{i k h} but for what it decays by */
+    cv phase;             /* e^{i Re(k h)} */
     lanes quarters, rest; /* Re(k h) = quarters pi/2 + rest */
     cv det[2];            /* 1/det N_s and 1/det N_a times numbers > 0 */
 };
@@ -52,7 +52,7 @@ RD_INLINE lanes way_radians(const struct half_way *way)
 RD_INLINE struct half_way way_of(const struct c_circle *f)
 {
     return (struct half_way){
-        .phase = {f->cos.re - f->sin.im, f->cos.im + f->sin.re},
+        .phase = f->phase,
         .quarters = f->quarters,
         .rest = f->rest,
     };

@@ -23,7 +23,7 @@ struct whole {
     _Bool bends;
 };
 
-/* scales that fit the rope itself: those of waves of wavenumbers k and a, no longer than the span */
+/* scales that fit the rope itself: those of waves of wavenumbers |k| and a, no longer than the span */
 RD_INLINE lanes fitting(lanes stiffness, lanes k, lanes square)
 {
     return 1.0 / l_root(stiffness * k * square);
@@ -49,7 +49,7 @@ RD_INLINE _Bool whole_bent(const struct rate_matrix *rate, double length, lanes 
     const struct wavenumbers w = bent_wavenumbers(soft, load, rate->lever);
     if (some(is_brief(&w, l_fill(length)) | (w.E.im != 0.0) | (w.a2.re < 0.0)))
         return 0;
-    const lanes k = longest(w.k.re, length), a = longest(w.a.re, length);
+    const lanes k = longest(c_size(w.k), length), a = longest(w.a.re, length);
     z[0] = fitting(stiff.re, k, k * k + a * a);
     z[B] = fitting(stiff.re, a, l_fill(1));
     const lanes r = z[B] / z[0];
@@ -75,7 +75,7 @@ RD_INLINE _Bool whole_plain(const struct rate_matrix *rate, double length, int i
     if (some(soft.re <= 0.0))
         return 0;
     const lanes stiffness = 1.0 / soft.re;
-    const lanes k = longest(l_root(not_negative(-(soft.re * rate->q[i].re))), length);
+    const lanes k = longest(l_root(l_abs(soft.re * rate->q[i].re)), length);
     z[i] = fitting(stiffness, k, l_fill(1));
     const lanes square = z[i] * z[i];
     const cv fitted = c_scale_lanes(soft, 1.0 / square), load = c_scale_lanes(rate->q[i], square);
