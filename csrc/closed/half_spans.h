@@ -24,7 +24,7 @@
 #ifndef RD_HALF_SPANS_H
 #define RD_HALF_SPANS_H
 
-#include "closed/lane_math.h"
+#include "closed/lane_trig.h"
 
 /* symmetric: (11, 12, 22) */
 struct pair {
@@ -113,8 +113,9 @@ RD_INLINE struct span_waves span_waves(lanes length, lanes root_load, lanes pull
     w.ka = ka;
     w.of_beta = B * R;
     w.of_z = w.of_beta * ka;
-    lanes c, s, e;
-    l_sine_cosine(0.5 * w.kl, &s, &c);
+    const struct l_circle at = l_circle_of(0.5 * w.kl);
+    const lanes c = at.cos, s = at.sin;
+    lanes e;
     const lanes lost = -l_expm1_of_minus(a * length, &e), whole = 1.0 / (1.0 + e), t = lost * whole;
     const lanes ct = c * t, st = s * t, more = c + st, less = c - st;
     const lanes p = alpha + k3, q = kappa + a3, x = alpha - k3, y = kappa - a3;

@@ -103,38 +103,15 @@ RD_INLINE lane_mask projected(lanes x, lanes *x1, lanes *x2)
     return stiff;
 }
 
-/* sin x and cos x for |x| < 1e6: x = j pi/2 + r, |r| <= pi/4, j pi/2 in three parts, the first two of
-   33 bits; series of r to 1e-19 */
-RD_INLINE void l_sine_cosine(lanes x, lanes *sine, lanes *cosine)
-{
-    static const double S[] = {
-        -1.0 / 6,          1.0 / 120,          -1.0 / 5040,         1.0 / 362880,
-        -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368e3, 1.0 / 355687428096e3,
-    };
-    static const double C[] = {
-        1.0 / 24,          -1.0 / 720,           1.0 / 40320,         -1.0 / 3628800,
-        1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888e3, -1.0 / 6402373705728e3,
-    };
-    const lanes shift = l_fill(0x1.8p52), bits = x * 0x1.45f306dc9c883p-1 + shift;
-    const lanes j = bits - shift;
-    const lanes r = ((x - j * 0x1.921fb544p+0) - j * 0x1.0b4611a6p-34) - j * 0x1.3198a2e037073p-69;
-    const lanes u = r * r, s = r + r * u * l_series(S, 8, u);
-    const lanes c = 1.0 - 0.5 * u + u * u * l_series(C, 8, u);
-    const lane_mask quarter = (lane_mask)bits;
-    const lane_mask odd = (quarter & 1) != 0;
-    *sine = l_negative_where((quarter & 2) != 0, l_select(odd, c, s));
-    *cosine = l_negative_where(((quarter + 1) & 2) != 0, l_select(odd, s, c));
-}
-
 /* e^-x - 1 for x >= 0, and e^-x beside it; x = k ln 2 - r, |r| <= ln(2)/2, e^r - 1 by its series.
-   Beyond x = 100 it stays what it is there: products of it are normal numbers, which are fast. */
+   Beyond x = 700 it stays what it is there. */
 RD_INLINE lanes l_expm1_of_minus(lanes x, lanes *e)
 {
     static const double Q[] = {0x1.0000000000000p-1,  0x1.5555555555555p-3,  0x1.5555555555555p-5,
                                0x1.1111111111111p-7,  0x1.6c16c16c16c17p-10, 0x1.a01a01a01a01ap-13,
                                0x1.a01a01a01a01ap-16, 0x1.71de3a556c734p-19, 0x1.27e4fb7789f5cp-22,
                                0x1.ae64567f544e4p-26, 0x1.1eed8eff8d898p-29, 0x1.6124613a86d09p-33};
-    const lanes y = -l_least(x, l_fill(100));
+    const lanes y = -l_least(x, l_fill(700));
     const lanes shift = l_fill(0x1.8p52), bits = y * 0x1.71547652b82fep+0 + shift;
     const lanes k = bits - shift;
     const lanes r = (y - k * 0x1.62e42feep-1) - k * 0x1.a39ef35793c76p-33;

@@ -67,7 +67,9 @@ RD_INLINE lanes chain_span(struct chain_lanes *chain, size_t e, lanes omega)
     w->kl = k * span[LENGTH];
     w->of_z = span[STIFFNESS] * k;
     w->of_beta = l_fill(1);
-    l_sine_cosine(w->kl, &w->s, &w->c);
+    const struct l_circle at = l_circle_of(w->kl);
+    w->s = at.sin;
+    w->c = at.cos;
     w->P = (struct pair){none, none, none};
     w->N = (struct pair){{w->c, w->s}, none, none};
     return w->kl;

@@ -205,9 +205,8 @@ RD_INLINE struct meeting meet(const struct part *first, const struct part *secon
     lag(&both, second->turn);
     m.less = l_angle(both.turn.im, both.turn.re);
     m.less.eighths += 8.0 * both.turns;
-    lanes c, s;
-    l_sine_cosine(l_less_angle(m.K, m.less), &s, &c);
-    const cv turn = {c, -s};
+    const struct l_circle at = l_circle_of(l_less_angle(m.K, m.less));
+    const cv turn = {at.cos, -at.sin};
     const cv zz = c_mul(turn, c_add(c_mul(A->a, B->a), c_mul(A->b, B->b)));
     const cv bb = c_mul(turn, c_add(c_mul(A->b, B->b), c_mul(A->c, B->c)));
     const cv zb = c_mul(turn, c_add(c_mul(A->a, B->b), c_mul(A->b, B->c)));

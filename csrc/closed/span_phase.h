@@ -52,7 +52,9 @@ RD_INLINE struct span_phase span_phase(const struct span_ends *ends, lanes y, la
     const struct end_waves L = end_waves(ends->end, &w), R = end_waves(ends->end + 1, &w);
 
     lanes e;
-    const lanes near = -l_expm1_of_minus(f.A, &e) * (1.0 + e), e2 = e * e;
+    /* products of a smaller one are no normal numbers, which are slow, and change nothing */
+    const lanes decays = l_least(f.A, l_fill(100));
+    const lanes near = -l_expm1_of_minus(decays, &e) * (1.0 + e), e2 = e * e;
     const lanes unlike = l_select(L.r + R.r > 0.0, L.less + L.r * R.less, L.more - L.r * R.more);
     f.delta = near + e2 * unlike;
     const lanes per = 1.0 / f.delta, g = 2.0 * f.A * f.K * e * per;

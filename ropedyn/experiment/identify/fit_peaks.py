@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...base.array import Index
 from ...base.errors import RopedynError, SceneError, SolveError
-from ...family.rows import Answered
+from ...family.rows import Filled
 from ...scene.path import with_values
 from ...scene.scene import Scene
 from ..fitting.misfit import PeakMisfit, PriorMisfit, unseen_of
@@ -85,7 +85,7 @@ class Identification:
         known = PriorMisfit.of(unknowns, self.how.prior)
         return Task(unknowns, self.misfit(ropes), k, known, ropes["noise"])
 
-    def solve(self, ropes: Ropes) -> Answered:
+    def solve(self, ropes: Ropes) -> Filled:
         """Fit ropes, and where orders are not said those that are likeliest."""
         found, failed = self._fitted(ropes, np.arange(len(ropes)))
         again, unnumbered = self._numbered(ropes, found, failed)
@@ -95,7 +95,7 @@ class Identification:
             second, refused = self._fitted(ropes, np.array(again, dtype=np.intp))
             found, failed = first.with_others(second), failed | refused
         reasons = {k: (type(error).__name__, str(error)) for k, error in failed.items()}
-        return Answered(found.rows, (found.record, ropes[found.rows]), reasons)
+        return Filled(found.rows, (found.record, ropes[found.rows]), reasons)
 
     def _fitted(self, ropes: Ropes, rows: Index) -> tuple[Solution, dict[int, RopedynError]]:
         """Fit some of the ropes; return also why others of them have no solution."""
