@@ -218,11 +218,66 @@ static void rods_are_sines_and_keep_the_digits_of_what_decays(void)
     }
 }
 
+/* eight spans: real, damped, brief, of decaying waves, compressed */
+static void fill_lanes(int from, int step, cv *soft, cv *load, lanes *lever, lanes *length)
+{
+    static const double k2[] = {0, 10, 900, 0.2, 30, 1e-6, 2500, 4};
+    static const double tension[] = {300, 0, 20, 0.1, 1e4, 5, -80, -1};
+    static const double damping[] = {0, 0.1, 0, 0, 0.9, 0, 0.02, 0};
+    for (int k = 0; k < RD_LANES; k++) {
+        const int i = (from + step * k) % RD_LANES;
+        const double q = k2[i] * (k2[i] + tension[i]);
+        soft->re[k] = 1;
+        soft->im[k] = -damping[i];
+        load[0].re[k] = -q;
+        load[0].im[k] = damping[i] * q;
+        load[1].re[k] = tension[i];
+        load[1].im[k] = 0;
+        (*lever)[k] = 1 + i % 3;
+        (*length)[k] = i == 6 ? 12 : 1;
+    }
+}
+
+static void check_lane(const cv *mixed, int lane, const cv *alone, int count)
+{
+    for (int i = 0; i < count; i++) {
+        CHECK_EXACT(mixed[i].re[lane], alone[i].re[0]);
+        CHECK_EXACT(mixed[i].im[lane], alone[i].im[0]);
+    }
+}
+
+/* what is beside a span decides which branches are taken, and none of its bits */
+static void lane_knows_nothing_of_its_neighbours(void)
+{
+    cv soft, load[2];
+    lanes lever, length;
+    fill_lanes(0, 1, &soft, load, &lever, &length);
+    const struct bent_span span = bent_span_of(soft, load, lever, length);
+    const struct bent_triple triple = bent_triple_of(soft, load, lever, length);
+    const struct plain_span rod = plain_span_of(soft, load[0], length);
+    for (int lane = 0; lane < RD_LANES; lane++) {
+        fill_lanes(lane, 0, &soft, load, &lever, &length);
+        const struct bent_span own = bent_span_of(soft, load, lever, length);
+        const struct bent_triple form = bent_triple_of(soft, load, lever, length);
+        const struct plain_span alone = plain_span_of(soft, load[0], length);
+        check_lane(span.A, lane, own.A, 3);
+        check_lane(span.B, lane, own.B, 4);
+        check_lane(span.C, lane, own.C, 3);
+        check_lane(triple.D, lane, form.D, 4);
+        check_lane(triple.G, lane, form.G, 3);
+        check_lane(triple.Q, lane, form.Q, 3);
+        check_lane(&rod.A, lane, &alone.A, 1);
+        check_lane(&rod.B, lane, &alone.B, 1);
+        check_lane(&rod.C, lane, &alone.C, 1);
+    }
+}
+
 int main(void)
 {
     circle_is_right_to_the_last_digit();
     root_is_in_the_right_half_plane();
     beams_hold_for_their_waves();
     rods_are_sines_and_keep_the_digits_of_what_decays();
+    lane_knows_nothing_of_its_neighbours();
     return check_report("test_plain");
 }
