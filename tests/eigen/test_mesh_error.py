@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import EPS
 from exact_scene import places
+from general_path import general_path
 from random_scene import WIDTHS, random_line, taut_scene
 
 import ropedyn as rd
@@ -202,7 +203,8 @@ def test_modes_that_continuous_spans_do_not_find_have_an_infinite_mesh_error(ref
     modes = SCENE.compile(elements=12).modes(12)
     twist = modes.family == "torsional"
     assert 0 < twist.sum() < 12
-    np.testing.assert_array_equal(np.isinf(modes.mesh_error), twist)
+    with general_path():
+        np.testing.assert_array_equal(np.isinf(modes.mesh_error), twist)
     np.testing.assert_array_equal(np.isnan(modes.limit), twist)
     assert "inf" in str(modes.table())
 

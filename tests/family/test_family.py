@@ -435,14 +435,16 @@ def test_progress_is_told_and_may_stop_it():
         family.modes(values, 1, progress=enough)
 
 
+@pytest.mark.parametrize("elements", [None, 64], ids=["closed form", "row by row"])
 @pytest.mark.parametrize("threads", [1, 2])
-def test_it_stops_for_control_c(threads):
+def test_it_stops_for_control_c(threads, elements):
     code = f"""
 import ropedyn as rd, numpy as np
 rope = rd.Rope(1.0, 1.0, bending_stiffness=1.0)
 scene = rd.Scene(rope, tension=1.0, parts=[rd.PointMass(0.3, 0.2)])
 print("begin", flush=True)
-scene.family(["tension"]).modes(np.linspace(1.0, 2.0, 100_000)[:, None], 5, threads={threads})
+family = scene.family(["tension"], elements={elements})
+family.modes(np.linspace(1.0, 2.0, 100_000)[:, None], 60, threads={threads})
 """
     child = subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE

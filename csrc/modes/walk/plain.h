@@ -35,8 +35,12 @@ RD_INLINE void plain_rate(const struct rd_walk *walk, const struct rd_leg *leg, 
     rd_rate_fill(walk->chain, (size_t)leg->element, c_real(1), c_real(1), inertia, c_zero(), rate);
 }
 
-/* Whether a leg is plain and its waves, were they ever so fast to grow, have real k^2 and a^2, without
-   which a complex step tells no slope. */
+/* (k^2 + a^2) l^2 below which a leg is walked by doubled pieces: its shape is what is left of stiffnesses
+   beside which its inertia is small, and nodes closer together would lose the more digits of it */
+static const double PLAIN_LEAST = 1.0;
+
+/* Whether a leg is plain and not short, and its waves, were they ever so fast to grow, have real k^2
+   and a^2, without which a complex step tells no slope. */
 RD_INLINE _Bool leg_is_plain_at(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda)
 {
     enum { B = W - 1 };
@@ -45,7 +49,11 @@ RD_INLINE _Bool leg_is_plain_at(const struct rd_walk *walk, const struct rd_leg 
         return 0;
     plain_rate(walk, leg, lambda, &rate);
     const lanes soft = rate.S[B][B].re, theta = soft * rate.q[B].re, kappa = -soft * rate.q[0].re;
-    return W == 1 || !some(0.25 * theta * theta + kappa < 0.0);
+    if (W == 1)
+        return 1;
+    const double length = (double)leg->count * walk->chain->length[leg->element];
+    const double least = 0.25 * (PLAIN_LEAST * PLAIN_LEAST) / (length * length * length * length);
+    return !some(0.25 * theta * theta + kappa < least);
 }
 
 RD_INLINE void plain_piece_of(const struct rate_matrix *rate, lanes length,
