@@ -7,10 +7,14 @@ python benchmarks/family.py
 import timing  # before numpy
 
 # isort: on
+import ctypes
+import subprocess
+import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -26,6 +30,8 @@ ROPES = (1, 10, 100, 1000, 10_000, 100_000, 1_000_000)
 ALONE, CHECKED = 50, 12
 """Ropes that are solved one by one, and those whose frequencies are checked."""
 ELEMENTS = 64
+SPANS = (1, 2, 4, 8)
+SETS = {"AVX-512": "x86-64-v4", "AVX2": "x86-64-v3", "SSE": "x86-64"}
 
 CLAMPED = ["tension", "bending_stiffness"]
 SPRUNG = ["length", "linear_density", *CLAMPED, "ends[0].spring.beta", "ends[1].spring.beta"]
@@ -183,6 +189,103 @@ def threads() -> str:
     return f"100 000 ropes on springs: {least[1]:.2f} s on one thread, {least[2]:.2f} s on two."
 
 
+def chains() -> str:
+    """Return the table of chains of equal spans with a mass and springs at every station."""
+    rows = []
+    for spans in SPANS:
+        rope = rd.Rope(LENGTH, DENSITY, bending_stiffness=1.5)
+        places = [k * LENGTH / spans for k in range(1, spans)]
+        parts = [rd.PointMass(x, 0.01 * (k + 1)) for k, x in enumerate(places)]
+        parts += [rd.Spring(x, 100.0) for x in places]
+        paths = [*CLAMPED, "linear_density", "ends[0].spring.beta", "ends[1].spring.beta"]
+        family = rd.Scene(rope, tension=1000.0, parts=parts).family(paths)
+        values = sprung(1000)[:, [2, 3, 1, 4, 5]]
+        ask = partial(family.modes, values, NUMBER, derivative=True, threads=1)
+        seconds = timing.medians({"": ask}, least=0.05)[""]
+        found = ask()
+        cells = [report.digits(seconds / len(values) * 1e6), found.cost.method]
+        rows.append([f"{spans}", *cells, f"{found.certified.mean():.4f}"])
+    return report.table(["spans", "us a rope", "", "certified"], rows)
+
+
+def responses() -> str:
+    """Return the table of 1000 lines of one span."""
+    scene = rd.Scene(
+        rd.Rope(LENGTH, DENSITY, bending_stiffness=1.5),
+        tension=2000.0,
+        damping=rd.ViscousDamping(0.5),
+    )
+    family, model = scene.family(["tension"]), scene.compile()
+    lines, values = np.linspace(1.0, 400.0, 1000), np.linspace(1000.0, 3000.0, 100)[:, None]
+    asked = {"drive": ("z", 0.4), "response": ("z", 0.6), "threads": 1}
+    calls = {
+        "family, 100 rows": lambda: family.frf(values, lines, **asked),
+        "`model.frf`": lambda: model.frf(lines, **asked),
+        "scene, compiled, `frf`": lambda: (
+            scene.replace(tension=2001.0).compile().frf(lines, **asked)
+        ),
+    }
+    times = timing.medians(calls, least=0.05)
+    times["family, 100 rows"] /= len(values)
+    return report.table(
+        ["way", "ms a rope"], [[name, report.digits(t * 1e3)] for name, t in times.items()]
+    )
+
+
+class Modes(ctypes.Structure):
+    """`struct rd_closed_modes` of csrc/closed/closed.h."""
+
+    _fields_ = (
+        ("number", ctypes.c_size_t),
+        *((name, ctypes.c_void_p) for name in ("omega", "error", "slope", "certified")),
+    )
+
+
+class Ropes(ctypes.Structure):
+    """`struct rd_ropes` of csrc/closed/closed.h."""
+
+    _fields_ = (
+        ("number", ctypes.c_void_p),
+        ("values", ctypes.c_size_t),
+        ("jacobian", ctypes.c_void_p),
+    )
+
+
+def sets() -> str:
+    """Return the table of instruction sets, each compiled for itself."""
+    values = sprung(10_000)
+    # the core's order: springs across the rope before those against turning
+    number = np.ascontiguousarray(values[:, [0, 1, 2, 3, 6, 4, 7, 5]])
+    own, calls, answers = np.eye(8), {}, {}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, arch in SETS.items():
+            library = Path(folder, f"{arch}.so")
+            command = ["gcc", "-std=c17", "-O2", "-fno-gcse", "-ffp-contract=off", "-shared"]
+            command += ["-fno-math-errno", "-Wno-psabi", "-fPIC", "-DRD_ONE_SET", f"-march={arch}"]
+            core = Path(__file__).parent.parent / "csrc"
+            command += [f"-I{core}", str(core / "closed/bent_span.c"), "-o", str(library), "-lm"]
+            subprocess.run(command, check=True)
+            shape = (len(number), NUMBER)
+            answer = [np.empty(shape), np.empty(shape), np.empty((*shape, 8))]
+            answer.append(np.empty(len(number), dtype=np.uint8))
+            ropes = Ropes(number.ctypes.data, 8, own.ctypes.data)
+            modes = Modes(NUMBER, *(one.ctypes.data for one in answer))
+            solve = ctypes.CDLL(str(library)).rd_bent_modes
+            solve.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p]
+            calls[name] = partial(
+                solve, ctypes.addressof(ropes), 0, len(number), ctypes.addressof(modes)
+            )
+            answers[name] = answer, ropes, modes
+        times = timing.medians(calls, budget=6.0)
+    first = answers["AVX-512"][0]
+    rows = []
+    for name, (answer, *_) in answers.items():
+        same = all(np.array_equal(one, two) for one, two in zip(answer, first))
+        each = report.digits(times[name] / len(number) * 1e6)
+        rows.append([name, each, "the same" if same else "others"])
+    return report.table(["instructions", "us a rope", "bits"], rows)
+
+
 def main() -> None:
     """Measure, print and keep."""
     text = f"""# Many ropes
@@ -206,6 +309,25 @@ values and the answer.
 {growth()}
 
 {threads()}
+
+## Instruction sets
+
+The core's part alone, on springs with eight derivatives; each compiled for itself.
+
+{sets()}
+
+## Chains
+
+Ten modes with five derivatives of 1000 ropes with a mass and a spring at every station between
+equal spans.
+
+{chains()}
+
+## Responses
+
+1000 lines of one damped span.
+
+{responses()}
 """
     report.write("family.md", text.rstrip())
 

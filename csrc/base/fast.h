@@ -27,8 +27,9 @@
 #define RD_UNROLL(n)
 #endif
 
-/* one copy of a function per instruction set, chosen when the library is loaded */
-#if RD_FAST && defined(__x86_64__) && defined(__GLIBC__)
+/* one copy of a function per instruction set, chosen when the library is loaded; RD_ONE_SET, which the
+   benchmark of families sets, keeps the one that is compiled for */
+#if RD_FAST && defined(__x86_64__) && defined(__GLIBC__) && !defined(RD_ONE_SET)
 #define RD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define RD_CLONES
