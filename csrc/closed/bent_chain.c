@@ -70,6 +70,11 @@ static void chain_fill(struct chain_lanes *chain, size_t i, const double *number
     }
 }
 
+RD_INLINE _Bool chain_turns_free(const struct chain_lanes *chain, size_t s)
+{
+    return chain->hinge[s];
+}
+
 RD_INLINE struct standing chain_standing(const struct chain_lanes *chain, size_t s)
 {
     const lanes *here = chain->number + at_station(chain->spans, s);

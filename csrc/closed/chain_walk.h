@@ -2,6 +2,7 @@
    What includes this has
 
        chain_standing        what stands at a station
+       chain_turns_free      whether beta is free beside a station that splits the chain
        chain_span            the waves of a span; how fast its kl grows with ln omega
        chain_pass            the part with a span more
        chain_beyond          the phase that passes 0 at the mode of a place
@@ -32,13 +33,13 @@ RD_INLINE lanes chain_spans(struct chain_lanes *chain, lanes omega)
 }
 
 /* right of a station that holds what meets there */
-RD_INLINE struct part beyond_split(_Bool hinged)
+RD_INLINE struct part beyond_split(_Bool turns_free)
 {
     struct part part = free_part();
     part.G.a = c_real(-1);
     /* half a turn for each that is held */
-    part.turn = hinged ? c_imag(1) : c_real(-1);
-    if (!hinged)
+    part.turn = turns_free ? c_imag(1) : c_real(-1);
+    if (!turns_free)
         part.G.c = c_real(-1);
     return part;
 }
@@ -57,7 +58,7 @@ RD_INLINE void chain_from_left(struct chain_lanes *chain, lanes omega, _Bool kep
         if (chain->hinge[s])
             pass_hinge(&part, &station);
         if (chain->split && s > 0) {
-            const struct part apart = beyond_split(chain->hinge[s]);
+            const struct part apart = beyond_split(chain_turns_free(chain, s));
             put_where(chain->first == at, &part, &apart, sizeof part);
         }
         lanes near;

@@ -178,6 +178,28 @@ static void a_mass_on_a_string_slows_what_moves_it(void)
     }
 }
 
+/* n pi/l of either side of a support, whose slopes by the length of the other side are 0 */
+static void a_held_string_has_the_modes_of_both_sides(void)
+{
+    static const double side[] = {1, 0.3};
+    /* of 1: n pi; of 0.3: n pi/0.3 */
+    static const int of[] = {0, 0, 0, 1, 0, 0};
+    const double number[] = {side[0], 3, 3, side[1], 3, 3, 0, INFINITY, 0, INFINITY, 0, INFINITY};
+    struct found found;
+    solve(number, 2, NO_HINGE, 1, 0, &found);
+    CHECK(found.certified[0]);
+    int n[2] = {0};
+    for (size_t k = 0; k < 6 && k < MOST; k++) {
+        const double omega = found.omega[0][k], l = side[of[k]];
+        const double *slope = found.slope + k * rd_plain_numbers(2);
+        CHECK_REL(omega, ++n[of[k]] * PI / l, 16 * EPS, "a root and a quotient");
+        CHECK_REL(slope[of[k] ? 3 : 0], -1 / l, 64 * EPS, "1/l");
+        CHECK_EXACT(slope[of[k] ? 0 : 3], 0);
+        CHECK_INT(count_below(number, 2, NO_HINGE, 0, omega * (1 - 1e-12)), k);
+        CHECK_INT(count_below(number, 2, NO_HINGE, 0, omega * (1 + 1e-12)), k + 1);
+    }
+}
+
 /* nothing moves it, what grows, what has no meaning */
 static void what_has_no_positive_eigenvalue_is_not_certified(void)
 {
@@ -307,6 +329,7 @@ int main(void)
     hinges_and_supports_part_a_beam_into_halves();
     a_split_beam_has_its_modes_twice();
     a_mass_on_a_string_slows_what_moves_it();
+    a_held_string_has_the_modes_of_both_sides();
     what_has_no_positive_eigenvalue_is_not_certified();
     counts_step_at_each_mode();
     slopes_are_those_of_frequencies();

@@ -197,6 +197,46 @@ def test_strings_are_those_of_the_general_path():
         np.testing.assert_allclose(found.growth[k], modes.growth, rtol=1e-9)
 
 
+def test_chains_with_supports_hinges_and_masses_are_those_of_the_general_path():
+    rope = rd.Rope(2.0, 0.5, bending_stiffness=3.0, torsional_stiffness=0.4, polar_inertia=1e-3)
+    both = [rd.Support(1.2), rd.Support(1.2, coordinate="beta")]
+    parts = {
+        "masses": [rd.PointMass(0.3, 0.2), rd.PointMass(1.1, 0.7), rd.Spring(0.8, 40.0)],
+        "a support": [rd.PointMass(0.3, 0.2), rd.Support(0.9)],
+        "a clamp": [rd.PointMass(0.3, 0.2), *both, rd.Spring(1.6, 20.0)],
+        "a hinge": [rd.Hinge(0.1), rd.PointMass(1.5, 0.1)],
+        "stretches": [rd.AddedMass(0.4, 0.9, linear_density=0.3), rd.PointMass(0.3, 0.1)],
+    }
+    string = rope.replace(bending_stiffness=None)
+    seen = 0
+    for name, own in parts.items():
+        for each in (rope, string):
+            if each is string and name in {"a clamp", "a hinge"}:
+                continue
+            scene = rd.Scene(each, tension=30.0, parts=own)
+            mass = next(f"parts[{k}].mass" for k, p in enumerate(own) if hasattr(p, "mass"))
+            paths = ["tension", "linear_density", mass, mass.replace("mass", "x")]
+            family = scene.family(paths)
+            values = [[30.0, 0.5, 0.2, 0.35], [55.0, 0.4, 0.3, 0.25]]
+            found = family.modes(values, 6, derivative=True)
+            assert found.cost.method.startswith("2 of 2"), name
+            for k, row in enumerate(values):
+                model = family.scene_of(row).compile()
+                limit = float(found.frequency[k, 4] + found.frequency[k, 5]) / 2
+                assert family.count([row], below=limit)[0] == 5
+                with general_path():
+                    modes = model.modes(6)
+                    assert model.count(below=limit) == 5
+                    slope = np.stack([modes.derivative(path) for path in paths], axis=1)
+                allowed = 4 * (modes.rounding_error + found.rounding_error[k])
+                assert (np.abs(modes.frequency - found.frequency[k]) <= allowed).all(), name
+                # 1e-9 of the frequency is what shapes of the general path have left
+                off = np.abs(found.derivative[k] - slope) * np.abs(row)
+                assert (off <= 1e-9 * modes.frequency[:, None] + 1e-9 * np.abs(slope)).all(), name
+                seen += 1
+    assert seen == 16
+
+
 def test_a_rope_that_buckles_grows():
     family = BEAM.replace(ends=("pinned", "pinned")).family(["tension"])
     found = family.modes([[-(np.pi**2) / 2], [-(np.pi**2) - 3.0]], 2, derivative=True)
