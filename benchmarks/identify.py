@@ -140,7 +140,7 @@ def compared() -> str:
     alike, most = int((apart < 1e-6).sum()), f"{np.median(apart):.0e}"
     return f"""{text}
 
-All {ROPES} together take {times["side by side"]:.2f} s of one core, {fits.state.count("converged")}
+All {ROPES} take {times["side by side"]:.2f} s of one core, {fits.status.count("converged")}
 converge. SciPy finds the same to 1e-6 for {alike} of {ALONE} ropes, half of them to {most}; it does
 not count modes."""
 
@@ -161,7 +161,7 @@ def hard() -> str:
     for name, ratio, noise, start, unknown in cases:
         true, f = ropes(1000, ratio, noise)
         fits = rd.identify(start, given(f, noise), unknown, threads=1)
-        counted = Counter(fits.state)
+        counted = Counter(fits.status)
         bounds = fits.interval()[:, :2]
         inside = (bounds[..., 0] <= true) & (true <= bounds[..., 1])
         share = 100 * inside[np.isfinite(fits.value[:, 0])].mean(axis=0)

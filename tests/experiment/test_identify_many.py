@@ -97,13 +97,13 @@ def test_every_rope_says_what_became_of_it(monkeypatch, tmp_path):
     given = [*peaks_of([MEASURED[0], string], 1e-3), rd.Peaks([9.0])]
     with pytest.warns(rd.IdentifyWarning, match="rope 1: bending_stiffness goes to 0"):
         fits = rd.identify(GUESS, given, BOTH)
-    assert fits.state == ("converged", "at a bound", "failed")
+    assert fits.status == ("converged", "at a bound", "failed")
     assert fits[1].value_is_bound and fits[2] is None and list(fits.failed) == [2]
     # the second takes 17 evaluations
     monkeypatch.setattr("ropedyn.experiment.fitting.minimum.EVALUATIONS", 4)
     fits = rd.identify(GUESS, given, BOTH)
-    assert fits.state == ("converged", "not converged", "failed")
-    assert fits.table().column("state") == fits.state
+    assert fits.status == ("converged", "not converged", "failed")
+    assert fits.table().column("status") == fits.status
     assert list(fits.failed) == [1, 2] and fits[1] is None
     assert np.isnan(fits.value[1:]).all() and np.isnan(fits.interval()[1:]).all()
     lines = fits.report().splitlines()
@@ -114,7 +114,7 @@ def test_every_rope_says_what_became_of_it(monkeypatch, tmp_path):
         rd.identify(GUESS, given[1], BOTH)
     fits.save(tmp_path / "fits.nc")
     again = rd.load(tmp_path / "fits.nc")
-    assert again.state == fits.state and again.report() == fits.report()
+    assert again.status == fits.status and again.report() == fits.report()
     with pytest.raises(rd.SceneError, match="fits from a file have no scene"):
         again[0]
 
@@ -134,7 +134,7 @@ def test_a_stiff_end_goes_to_infinity_and_says_so():
     with pytest.warns(rd.IdentifyWarning):
         fits = rd.identify(start, given, ["tension", SPRING])
     ends = fits.value[:, 1]
-    for state, value, std in zip(fits.state, ends, fits.std[:, 1]):
+    for state, value, std in zip(fits.status, ends, fits.std[:, 1]):
         # at the bound, or too stiff to be told, or finite by chance of noise
         assert (state == "at a bound") == np.isinf(value)
         assert np.isinf(value) or np.isinf(std) or value > 100.0
@@ -145,7 +145,7 @@ def test_a_stiff_end_goes_to_infinity_and_says_so():
 def test_intervals_of_new_ropes_cover_the_truth(known, seed=20251):
     true, measured = beams(400, 1e-3, seed)
     fits = rd.identify(GUESS, peaks_of(measured, 1e-3 if known else None), BOTH)
-    assert set(fits.state) == {"converged"}
+    assert set(fits.status) == {"converged"}
     for method in ("profile", "linear"):
         low, high = np.moveaxis(fits.interval(0.95, method=method), 2, 0)
         share = ((low <= true) & (true <= high)).mean(axis=0)
@@ -159,7 +159,7 @@ def test_profiles_of_a_stiffness_that_hardly_shows_cover_the_truth():
     exact = pinned_beam(8, TENSION, 0.05)
     measured = exact * (1 + 2e-3 * random.normal(size=(300, 8)))
     fits = rd.identify(GUESS, peaks_of(measured, 2e-3), BOTH)
-    assert set(fits.state) == {"converged", "at a bound"}
+    assert set(fits.status) == {"converged", "at a bound"}
     low, high = np.moveaxis(fits.interval(0.95), 2, 0)
     share = ((low <= [TENSION, 0.05]) & (high >= [TENSION, 0.05])).mean(axis=0)
     # at a bound more is covered: three standard deviations of a share of 95 % of 300
@@ -169,7 +169,7 @@ def test_profiles_of_a_stiffness_that_hardly_shows_cover_the_truth():
 def test_a_path_that_no_frequency_depends_on_is_named_for_each_rope():
     string = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=900.0, damping=rd.RayleighDamping(1.0, 0.0))
     fits = rd.identify(string, [rd.Peaks([10.0]), rd.Peaks([11.0])], "damping.mass")
-    assert fits.state == ("failed", "failed")
+    assert fits.status == ("failed", "failed")
     assert all(why.startswith("unknown[0] must change natural") for why in fits.failure)
 
 
@@ -189,7 +189,7 @@ def test_an_unknown_end_is_not_left_in_the_worse_of_two_valleys():
         given.append(exact * (1 + 1e-3 * random.normal(size=8)))
     fits = rd.identify(scene(TENSION, 10.0, spring), peaks_of(given, 1e-3), [*BOTH, SPRING])
     without = rd.identify(scene(TENSION, 10.0, clamped), peaks_of(given, 1e-3), BOTH)
-    solved = np.array(fits.state) != "not converged"
+    solved = np.array(fits.status) != "not converged"
     assert solved.sum() >= 55
     # a spring more fits no worse; 1e-3 is what the end of a flat valley leaves
     assert (8e6 * (fits.rms**2 - without.rms**2)[solved] < 1e-3).all()

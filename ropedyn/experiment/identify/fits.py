@@ -41,7 +41,7 @@ class Fits(Answer, Sequence[Fit | None]):
         NaN of ropes that have no solution.
     rms : ndarray, shape (ropes,)
         Root mean square of relative residuals.
-    state : tuple of str
+    status : tuple of str
         Of each rope: "converged", "at a bound" where a number went to 0 or infinity,
         "not converged" or "failed".
     failure : tuple of str
@@ -57,7 +57,7 @@ class Fits(Answer, Sequence[Fit | None]):
     >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
     >>> peaks = [rd.Peaks([f, 2 * f], std=0.1) for f in (25.0, 30.0)]
     >>> fits = rd.identify(scene, peaks, "tension")
-    >>> len(fits), fits.value.round(3).tolist(), fits.state
+    >>> len(fits), fits.value.round(3).tolist(), fits.status
     (2, [[1000.0], [1440.0]], ('converged', 'converged'))
     """
 
@@ -65,7 +65,7 @@ class Fits(Answer, Sequence[Fit | None]):
     value: Real = field(metadata=axes("rope", "unknown"))
     std: Real = field(metadata=axes("rope", "unknown"))
     rms: Real = field(metadata=axes("rope"))
-    state: tuple[str, ...]
+    status: tuple[str, ...]
     failure: tuple[str, ...]
     notes: tuple[str, ...]
     cost: Cost
@@ -139,11 +139,11 @@ class Fits(Answer, Sequence[Fit | None]):
         >>> print(rd.identify(scene, [rd.Peaks([25.0, 50.0], std=0.1)], "tension").report())
         1 ropes: 1 converged
         """
-        states = {one: self.state.count(one) for one in dict.fromkeys(self.state)}
+        states = {one: self.status.count(one) for one in dict.fromkeys(self.status)}
         said = [f"{count} {one}" for one, count in states.items()]
         lines = [f"{len(self)} ropes: {', '.join(said) or 'none'}"]
         lines += [f"note: {note}" for note in self.notes]
-        for i, (state, why) in enumerate(zip(self.state, self.failure)):
+        for i, (state, why) in enumerate(zip(self.status, self.failure)):
             if why:
                 lines.append(f"rope {i} {state}: {why}")
         return "\n".join(lines)
@@ -155,7 +155,7 @@ class Fits(Answer, Sequence[Fit | None]):
             columns[path] = numbers(self.value[:, k])
             columns[f"std of {path}"] = numbers(self.std[:, k])
         columns["rms residual [%]"] = numbers(100 * self.rms)
-        columns["state"] = self.state
+        columns["status"] = self.status
         if any(self.failure):
             columns["failure"] = tuple(why or None for why in self.failure)
         return Table.of("identified", columns)
@@ -186,7 +186,7 @@ def fits_of(found: Found) -> Fits:
         value=value,
         std=std,
         rms=rms,
-        state=tuple(state.tolist()),
+        status=tuple(state.tolist()),
         failure=tuple(failure.tolist()),
         notes=_notes(solution),
         cost=Cost(seconds, "least squares", elements, n * p, factorisations=evaluations),

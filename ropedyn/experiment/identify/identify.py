@@ -158,7 +158,7 @@ def identify(
         depend on it, or there are more unknown numbers than peaks and prior values.
     SolveError
         If the scene has fewer modes than the orders ask for, or the solution does not converge;
-        of a list nothing is raised: `Fits.state` and `Fits.failure` name each rope without one.
+        of a list nothing is raised: `Fits.status` and `Fits.failure` name each rope without one.
 
     Warns
     -----
