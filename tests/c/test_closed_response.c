@@ -38,6 +38,7 @@ static struct found solve(const double *number, const struct asked *asked, doubl
                           double x1)
 {
     struct found found;
+    memset(&found, 0, sizeof found); /* padding is compared too */
     const struct rd_closed_lines lines = {LINES, asked->factor[0], drag, 1, 1, &x0, &x1};
     const struct rd_closed_response to = {found.value, found.error, found.certain};
     rd_bent_response(number, 0, 1, &lines, &to);
