@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
@@ -33,7 +34,10 @@ from .rows import Filled, Means, Shared, one_by_one
 from .template import Template, template
 
 ROWS, ROWS_ALONE = 1024, 8
-"""Rows that are sent together: in closed form, and one by one."""
+"""Rows that are sent together at most: in closed form, and one by one."""
+
+NUMBERS = 1 << 20
+"""Numbers of an answer that are sent together at most, unless one row has more."""
 
 MOST_MODES = 100_000
 """Of a row."""
@@ -142,6 +146,7 @@ class Family:
             blank.append(np.full((*shape, p), np.nan))
         start = time.perf_counter()
         stages = self._stages(
+            blank,
             partial(closed_modes, self._closed, number, derivative),
             partial(modes_of_row, self._template, number, derivative),
         )
@@ -201,6 +206,7 @@ class Family:
         rows = self._checked(values)
         blank = [np.full(len(rows), -1, dtype=np.int64)]
         stages = self._stages(
+            blank,
             partial(closed_counts, self._closed, float(np.sqrt(limit))),
             partial(count_of_row, self._template, below),
         )
@@ -259,6 +265,7 @@ class Family:
         start = time.perf_counter()
         swept = asked_of_rows(model, f, drives, watched, quantity, several=several)
         stages = self._stages(
+            blank,
             partial(closed_frf, self._closed, swept) if swept else None,
             partial(frf_of_row, self._template, f, asked),
         )
@@ -291,11 +298,16 @@ class Family:
         return self._template.at(row)
 
     def _stages(
-        self, closed: Callable[[Real], Filled] | None, alone: Callable[[Real], tuple[Any, ...]]
+        self,
+        blank: Sequence[np.ndarray[Any, Any]],
+        closed: Callable[[Real], Filled] | None,
+        alone: Callable[[Real], tuple[Any, ...]],
     ) -> list[Means]:
-        """Return the ways to solve rows: in closed form where there is one, then one by one."""
+        """Return the ways to fill rows: in closed form where there is one, then one by one."""
         last = Means(partial(one_by_one, alone), ROWS_ALONE)
-        return [Means(closed, ROWS), last] if closed and self._closed else [last]
+        row = sum(math.prod(one.shape[1:]) for one in blank)
+        size = max(1, min(ROWS, NUMBERS // max(row, 1)))
+        return [Means(closed, size), last] if closed and self._closed else [last]
 
     def _checked(self, values: ArrayLike) -> Real:
         p = len(self.paths)

@@ -16,6 +16,7 @@ from ..chain.chain import CHANNELS, CONTINUOUS, Chain
 from ..chain.compiled import Compiled
 from ..chain.port import Point, Ports
 from ..response.closed import closed_response
+from ..response.question import damped_lines
 from ..response.solvers import SWEEP_SLICE, relative
 from ..scene import damping
 from .closed import Component
@@ -97,7 +98,7 @@ def _answers(
         left = ~closed.certain
         found = list(zip(closed.value, closed.error))
     rest, at = np.flatnonzero(left.any(axis=1)), pushing + heard
-    for which, cut, chains in _chains(component, np.array([p[1] for p in at]), rows[rest]):
+    for which, cut, chains in _chains(component, np.array([p[1] for p in at]), number[rest]):
         ports = _ports(component, cut, at)
         pushed, watched = (Ports(ports.node[s], ports.row[s], None) for s in _parts(len(drives)))
         column = [component.coordinates.index(p[0]) for p in at]
@@ -150,30 +151,17 @@ def _response(
     value, error, solved = _core.sweep(chain, factor, pushed, watched)
     if solved < count:
         return None
-    value.imag[..., ~_is_damped(chain, factor)] = 0.0  # only rounding is there
+    value.imag[..., ~damped_lines(chain, factor)] = 0.0  # only rounding is there
     return value, relative(value, error)
 
 
-def _is_damped(chain: Chain, factor: Complex) -> Flags:
-    """Return at which lines something of the row is complex, shape (f,)."""
-    has = {
-        damping.SECTION: chain.coordinate[-1] != COORDINATES.index("z"),
-        damping.TENSION: COORDINATES.index("z") in chain.coordinate and chain.tension.any(),
-        damping.SPRING: chain.stiffness.any(),
-        damping.INERTIA: True,
-        damping.DASHPOT: chain.damping is not None or chain.drag is not None,
-    }
-    return (factor[[part for part in has if has[part]]].imag != 0).any(axis=0)
-
-
 def _chains(
-    component: Component, points: Real, rows: Real
+    component: Component, points: Real, number: Real
 ) -> Generator[tuple[Index, Cut, Generator[Chain]]]:
     """Return rows whose points lie alike among their stations, and the chains of these."""
-    number = component.numbers(rows)
     spans, stations = component.parted(number)
     length = spans[:, :, 0]
-    x = np.hstack([np.zeros((len(rows), 1)), np.cumsum(length, axis=1)])
+    x = np.hstack([np.zeros((len(number), 1)), np.cumsum(length, axis=1)])
     near = np.abs(x[:, None, :] - points[:, None]) <= NEAR * x[:, -1, None, None]
     left = (x[:, None, :] < points[:, None]).sum(axis=2)
     place = np.where(near.any(axis=2), near.argmax(axis=2), -left)

@@ -11,6 +11,7 @@ import numpy as np
 from .. import _core
 from ..base import check
 from ..base.array import Complex, Flags, Real
+from ..base.check import COORDINATES
 from ..base.computed import computed
 from ..base.errors import SceneError
 from ..chain.chain import Chain
@@ -35,22 +36,7 @@ class Question:
     @property
     def is_damped(self) -> Flags:
         """Whether a factor of something that this component has is complex, shape (f,)."""
-        chain = self.cut[0]
-        bends, rods = "beta" in self.component, {"x", "alpha"} & set(self.component)
-        has = {
-            damping.SECTION: bends or bool(rods),
-            damping.TENSION: "z" in self.component and self.model.scene.mean_tension != 0,
-            damping.SPRING: bool(chain.stiffness.any()),
-            damping.INERTIA: True,
-            damping.DASHPOT: chain.damping is not None
-            or chain.drag is not None
-            or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
-        }
-        found: Flags = np.zeros(self.factor.shape[1], dtype=np.bool_)
-        for part, is_there in has.items():
-            if is_there and not found.all():
-                found |= self.factor[part].imag != 0
-        return found
+        return damped_lines(self.cut[0], self.factor)
 
     @computed
     def cut(self) -> tuple[Chain, Real]:
@@ -95,6 +81,25 @@ class Question:
 
 Solver = Callable[[Question], tuple[Complex, Real]]
 """What answers it: motion per force, (drives, responses, f), with estimated errors."""
+
+
+def damped_lines(chain: Chain, factor: Complex) -> Flags:
+    """Return at which lines a factor of something that a component has is complex, shape (f,)."""
+    names = {COORDINATES[k] for k in chain.coordinate}
+    has = {
+        damping.SECTION: names != {"z"},
+        damping.TENSION: "z" in names and bool(chain.tension.any()),
+        damping.SPRING: bool(chain.stiffness.any()),
+        damping.INERTIA: True,
+        damping.DASHPOT: chain.damping is not None
+        or chain.drag is not None
+        or (chain.attached_value is not None and bool(chain.attached_value[:, -1].any())),
+    }
+    found: Flags = np.zeros(factor.shape[1], dtype=np.bool_)
+    for part, is_there in has.items():
+        if is_there and not found.all():
+            found |= factor[part].imag != 0
+    return found
 
 
 def workers_of(threads: int | None) -> int:

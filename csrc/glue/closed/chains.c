@@ -1,5 +1,5 @@
 /* Many chains of uniform spans at once, in closed form. */
-#include "glue/glue.h"
+#include "glue/closed/rows.h"
 
 #include "closed/chains.h"
 
@@ -62,108 +62,68 @@ static void release_chains(struct py_chains *parsed)
     Py_XDECREF(parsed->jacobian);
 }
 
-/* rows between two looks for Ctrl-C, each about a microsecond a span and mode */
-static size_t rows_at_once(const struct py_chains *parsed, size_t number)
+/* what is asked of rows */
+struct question {
+    const struct py_chains *of;
+    const struct rd_closed_modes *modes;
+    const struct rd_workspace *workspace;
+    double omega;
+    int64_t *count;
+};
+
+static void solve_modes(const void *asked, size_t first, size_t last)
 {
-    const size_t rows = 100000 / number / parsed->chains.spans;
-    return rows < 1 ? 1 : rows;
+    const struct question *question = asked;
+    (question->of->bent ? rd_bent_chain_modes : rd_plain_chain_modes)(
+        &question->of->chains, first, last, question->modes, question->workspace);
 }
 
-/* 0, or -1 and an exception */
-static int solve_chains(const struct py_chains *parsed, const struct rd_closed_modes *modes,
-                        const struct rd_workspace *workspace)
+static void solve_counts(const void *asked, size_t first, size_t last)
 {
-    const size_t rows = rows_at_once(parsed, modes->number);
-    for (size_t first = 0; first < parsed->rows; first += rows) {
-        const size_t last = parsed->rows - first < rows ? parsed->rows : first + rows;
-        Py_BEGIN_ALLOW_THREADS
-        if (parsed->bent)
-            rd_bent_chain_modes(&parsed->chains, first, last, modes, workspace);
-        else
-            rd_plain_chain_modes(&parsed->chains, first, last, modes, workspace);
-        Py_END_ALLOW_THREADS
-        if (PyErr_CheckSignals() < 0)
-            return -1;
-    }
-    return 0;
+    const struct question *question = asked;
+    (question->of->bent ? rd_bent_chain_count : rd_plain_chain_count)(
+        &question->of->chains, first, last, question->omega, question->count, question->workspace);
 }
 
 PyObject *py_closed_chain_modes(PyObject *module, PyObject *arguments)
 {
     struct py_chains parsed = {0};
+    struct py_closed_modes made = {0};
     struct rd_workspace workspace = {0};
+    const struct question question = {&parsed, &made.modes, &workspace, 0, NULL};
     const char *kind;
     Py_ssize_t number;
-    PyObject *object[3], *omega = NULL, *error = NULL, *slope = NULL, *certified = NULL;
-    PyObject *result = NULL;
+    PyObject *object[3], *result = NULL;
     (void)module;
     if (!PyArg_ParseTuple(arguments, "sOOOn", &kind, object, object + 1, object + 2, &number))
         return NULL;
     if (parse_chains(kind, object[0], object[1], object[2], &parsed) < 0)
         goto done;
-    if (number < 1) {
-        PyErr_Format(PyExc_ValueError, "number must be at least 1, got %zd", number);
+    const size_t spans = parsed.chains.spans;
+    if (py_closed_modes_make(parsed.rows, number, "number", parsed.chains.columns,
+                             parsed.jacobian != NULL, &made) < 0)
         goto done;
-    }
-    workspace.used = rd_chain_work(parsed.chains.spans, (size_t)number);
+    workspace.used = rd_chain_work(spans, made.modes.number);
     if (py_workspace_allocate(&workspace) < 0)
         goto done;
-    const npy_intp shape[] = {(npy_intp)parsed.rows, number, (npy_intp)parsed.chains.columns};
-    omega = py_new(NPY_FLOAT64, 2, shape);
-    error = omega ? py_new(NPY_FLOAT64, 2, shape) : NULL;
-    certified = error ? py_new(NPY_BOOL, 1, shape) : NULL;
-    if (certified == NULL)
-        goto done;
-    slope = parsed.jacobian ? py_new(NPY_FLOAT64, 3, shape) : Py_NewRef(Py_None);
-    if (slope == NULL)
-        goto done;
-    const struct rd_closed_modes modes = {
-        .number = (size_t)number,
-        .omega = PyArray_DATA((PyArrayObject *)omega),
-        .error = PyArray_DATA((PyArrayObject *)error),
-        .slope = parsed.jacobian ? PyArray_DATA((PyArrayObject *)slope) : NULL,
-        .certified = PyArray_DATA((PyArrayObject *)certified),
-    };
-    if (solve_chains(&parsed, &modes, &workspace) == 0)
-        result = PyTuple_Pack(4, omega, error, slope, certified);
+    if (py_rows_solve(parsed.rows, spans * made.modes.number, solve_modes, &question) == 0)
+        result = py_closed_modes_pack(&made);
 done:
     PyMem_RawFree(workspace.base);
-    Py_XDECREF(omega);
-    Py_XDECREF(error);
-    Py_XDECREF(slope);
-    Py_XDECREF(certified);
+    py_closed_modes_release(&made);
     release_chains(&parsed);
     return result;
-}
-
-/* 0, or -1 and an exception */
-static int count_chains(const struct py_chains *parsed, double omega, int64_t *count,
-                        const struct rd_workspace *workspace)
-{
-    const size_t rows = rows_at_once(parsed, 2);
-    for (size_t first = 0; first < parsed->rows; first += rows) {
-        const size_t last = parsed->rows - first < rows ? parsed->rows : first + rows;
-        Py_BEGIN_ALLOW_THREADS
-        if (parsed->bent)
-            rd_bent_chain_count(&parsed->chains, first, last, omega, count, workspace);
-        else
-            rd_plain_chain_count(&parsed->chains, first, last, omega, count, workspace);
-        Py_END_ALLOW_THREADS
-        if (PyErr_CheckSignals() < 0)
-            return -1;
-    }
-    return 0;
 }
 
 PyObject *py_closed_chain_count(PyObject *module, PyObject *arguments)
 {
     struct py_chains parsed = {0};
     struct rd_workspace workspace = {0};
+    struct question question = {.of = &parsed, .workspace = &workspace};
     const char *kind;
-    double omega;
     PyObject *object[2], *count = NULL, *result = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(arguments, "sOOd", &kind, object, object + 1, &omega))
+    if (!PyArg_ParseTuple(arguments, "sOOd", &kind, object, object + 1, &question.omega))
         return NULL;
     if (parse_chains(kind, object[0], object[1], Py_None, &parsed) < 0)
         goto done;
@@ -173,7 +133,8 @@ PyObject *py_closed_chain_count(PyObject *module, PyObject *arguments)
     count = py_new(NPY_INT64, 1, (npy_intp[]){(npy_intp)parsed.rows});
     if (count == NULL)
         goto done;
-    if (count_chains(&parsed, omega, PyArray_DATA((PyArrayObject *)count), &workspace) == 0)
+    question.count = PyArray_DATA((PyArrayObject *)count);
+    if (py_rows_solve(parsed.rows, 2 * parsed.chains.spans, solve_counts, &question) == 0)
         result = Py_NewRef(count);
 done:
     PyMem_RawFree(workspace.base);

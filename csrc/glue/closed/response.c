@@ -1,5 +1,5 @@
 /* Responses of many uniform ropes, in closed form. */
-#include "glue/glue.h"
+#include "glue/closed/rows.h"
 
 #include "closed/response.h"
 
@@ -27,6 +27,19 @@ static int lines_parse(PyObject *const *object, struct py_lines *of)
     return of->certain ? 0 : -1;
 }
 
+/* what is asked of rows */
+struct question {
+    const double *number;
+    struct rd_closed_lines lines;
+    struct rd_closed_response response;
+};
+
+static void solve_lines(const void *asked, size_t first, size_t last)
+{
+    const struct question *question = asked;
+    rd_bent_response(question->number, first, last, &question->lines, &question->response);
+}
+
 PyObject *py_closed_response(PyObject *module, PyObject *arguments)
 {
     struct py_lines of = {0};
@@ -37,25 +50,29 @@ PyObject *py_closed_response(PyObject *module, PyObject *arguments)
         return NULL;
     if (lines_parse(object, &of) < 0)
         goto done;
-    const struct rd_closed_lines lines = {
-        .lines = (size_t)PyArray_DIM(of.factor, 1),
-        .factor = PyArray_DATA(of.factor),
-        .drag = drag,
-        .drives = (size_t)PyArray_DIM(of.drive, 0),
-        .responses = (size_t)PyArray_DIM(of.response, 0),
-        .drive = PyArray_DATA(of.drive),
-        .response = PyArray_DATA(of.response),
+    const struct question question = {
+        .number = PyArray_DATA(of.number),
+        .lines =
+            {
+                .lines = (size_t)PyArray_DIM(of.factor, 1),
+                .factor = PyArray_DATA(of.factor),
+                .drag = drag,
+                .drives = (size_t)PyArray_DIM(of.drive, 0),
+                .responses = (size_t)PyArray_DIM(of.response, 0),
+                .drive = PyArray_DATA(of.drive),
+                .response = PyArray_DATA(of.response),
+            },
+        .response =
+            {
+                .value = PyArray_DATA((PyArrayObject *)of.value),
+                .error = PyArray_DATA((PyArrayObject *)of.error),
+                .certain = PyArray_DATA((PyArrayObject *)of.certain),
+            },
     };
-    const struct rd_closed_response response = {
-        .value = PyArray_DATA((PyArrayObject *)of.value),
-        .error = PyArray_DATA((PyArrayObject *)of.error),
-        .certain = PyArray_DATA((PyArrayObject *)of.certain),
-    };
+    const size_t values = (size_t)PyArray_SIZE((PyArrayObject *)of.value);
     const size_t rows = (size_t)PyArray_DIM(of.number, 0);
-    Py_BEGIN_ALLOW_THREADS
-    rd_bent_response(PyArray_DATA(of.number), 0, rows, &lines, &response);
-    Py_END_ALLOW_THREADS
-    result = PyTuple_Pack(3, of.value, of.error, of.certain);
+    if (py_rows_solve(rows, rows > 0 ? values / rows / 10 : 0, solve_lines, &question) == 0)
+        result = PyTuple_Pack(3, of.value, of.error, of.certain);
 done:
     Py_XDECREF(of.certain);
     Py_XDECREF(of.error);

@@ -1,7 +1,5 @@
 /* Many uniform ropes at once, in closed form. */
-#include "glue/glue.h"
-
-#include "closed/closed.h"
+#include "glue/closed/rows.h"
 
 struct kind {
     const char *name;
@@ -55,47 +53,46 @@ static void release(struct py_ropes *parsed)
     Py_XDECREF(parsed->jacobian);
 }
 
+/* what is asked of rows */
+struct question {
+    const struct py_ropes *of;
+    const struct rd_closed_modes *modes;
+    double omega;
+    int64_t *count;
+};
+
+static void solve_modes(const void *asked, size_t first, size_t last)
+{
+    const struct question *question = asked;
+    question->of->kind->modes(&question->of->ropes, first, last, question->modes);
+}
+
+static void solve_counts(const void *asked, size_t first, size_t last)
+{
+    const struct question *question = asked;
+    question->of->kind->count(&question->of->ropes, first, last, question->omega, question->count);
+}
+
 PyObject *py_closed_modes(PyObject *module, PyObject *arguments)
 {
     struct py_ropes parsed = {0};
+    struct py_closed_modes made = {0};
+    const struct question question = {.of = &parsed, .modes = &made.modes};
     const char *kind;
     Py_ssize_t number;
-    PyObject *object[2], *omega = NULL, *error = NULL, *slope = NULL, *certified = NULL;
-    PyObject *result = NULL;
+    PyObject *object[2], *result = NULL;
     (void)module;
     if (!PyArg_ParseTuple(arguments, "sOOn", &kind, object, object + 1, &number))
         return NULL;
     if (parse(kind, object[0], object[1], &parsed) < 0)
         goto done;
-    if (number < 1) {
-        PyErr_Format(PyExc_ValueError, "modes must be at least 1, got %zd", number);
+    if (py_closed_modes_make(parsed.rows, number, "modes", parsed.ropes.values,
+                             parsed.jacobian != NULL, &made) < 0)
         goto done;
-    }
-    const npy_intp shape[] = {(npy_intp)parsed.rows, number, (npy_intp)parsed.ropes.values};
-    omega = py_new(NPY_FLOAT64, 2, shape);
-    error = omega ? py_new(NPY_FLOAT64, 2, shape) : NULL;
-    certified = error ? py_new(NPY_BOOL, 1, shape) : NULL;
-    if (certified == NULL)
-        goto done;
-    slope = parsed.jacobian ? py_new(NPY_FLOAT64, 3, shape) : Py_NewRef(Py_None);
-    if (slope == NULL)
-        goto done;
-    const struct rd_closed_modes modes = {
-        .number = (size_t)number,
-        .omega = PyArray_DATA((PyArrayObject *)omega),
-        .error = PyArray_DATA((PyArrayObject *)error),
-        .slope = parsed.jacobian ? PyArray_DATA((PyArrayObject *)slope) : NULL,
-        .certified = PyArray_DATA((PyArrayObject *)certified),
-    };
-    Py_BEGIN_ALLOW_THREADS
-    parsed.kind->modes(&parsed.ropes, 0, parsed.rows, &modes);
-    Py_END_ALLOW_THREADS
-    result = PyTuple_Pack(4, omega, error, slope, certified);
+    if (py_rows_solve(parsed.rows, made.modes.number, solve_modes, &question) == 0)
+        result = py_closed_modes_pack(&made);
 done:
-    Py_XDECREF(omega);
-    Py_XDECREF(error);
-    Py_XDECREF(slope);
-    Py_XDECREF(certified);
+    py_closed_modes_release(&made);
     release(&parsed);
     return result;
 }
@@ -103,22 +100,22 @@ done:
 PyObject *py_closed_count(PyObject *module, PyObject *arguments)
 {
     struct py_ropes parsed = {0};
+    struct question question = {.of = &parsed};
     const char *kind;
-    double omega;
-    PyObject *object, *count = NULL;
+    PyObject *object, *count = NULL, *result = NULL;
     (void)module;
-    if (!PyArg_ParseTuple(arguments, "sOd", &kind, &object, &omega))
+    if (!PyArg_ParseTuple(arguments, "sOd", &kind, &object, &question.omega))
         return NULL;
     if (parse(kind, object, Py_None, &parsed) < 0)
         goto done;
     count = py_new(NPY_INT64, 1, (npy_intp[]){(npy_intp)parsed.rows});
     if (count == NULL)
         goto done;
-    int64_t *each = PyArray_DATA((PyArrayObject *)count);
-    Py_BEGIN_ALLOW_THREADS
-    parsed.kind->count(&parsed.ropes, 0, parsed.rows, omega, each);
-    Py_END_ALLOW_THREADS
+    question.count = PyArray_DATA((PyArrayObject *)count);
+    if (py_rows_solve(parsed.rows, 1, solve_counts, &question) == 0)
+        result = Py_NewRef(count);
 done:
+    Py_XDECREF(count);
     release(&parsed);
-    return count;
+    return result;
 }
