@@ -142,7 +142,9 @@ def fitted_beam() -> Scene:
     >>> round(fitted.tension), round(fitted.rope.bending_stiffness, 2)
     (2960, 0.42)
     """
-    return identify(tensed_beam(1000.0, 1.0), measured, ["tension", "bending_stiffness"]).scene
+    return identify(
+        tensed_beam(1000.0, 1.0), measured, ["tension", "bending_stiffness"], ends="given"
+    ).scene
 
 
 def implied(peaks: Peaks = measured) -> Implied:

@@ -104,7 +104,10 @@ def fitted_by_ends(peaks: Peaks, beam: Scene) -> dict[str, Fit]:
     with warnings.catch_warnings():
         # that a stiffness does not show is what the table says
         warnings.simplefilter("ignore", IdentifyWarning)
-        return {end: identify(beam.replace(ends=(end, end)), peaks, UNKNOWN) for end in ENDS}
+        return {
+            end: identify(beam.replace(ends=(end, end)), peaks, UNKNOWN, ends="given")
+            for end in ENDS
+        }
 
 
 def _width(fit: Fit, interval: Named) -> str:

@@ -81,10 +81,10 @@ def test_modes_with_a_node_where_it_is_watched_do_not_mislead():
 
 @pytest.mark.parametrize("factor", [-30.0, *slow(2.5e-4)])
 def test_calibration_may_be_unknown(factor):
-    fit = rd.identify(GUESS, measured(TRUTH, factor=factor), UNKNOWN, scale=True)
+    fit = rd.identify(GUESS, measured(TRUTH, factor=factor), [*UNKNOWN, "calibration"])
     assert off(fit, TRUTH) < 1e-8
-    assert fit.unknown == (*UNKNOWN, "scale")
-    assert abs(fit.value["scale"] / factor - 1) < 1e-8
+    assert fit.unknown == (*UNKNOWN, "calibration")
+    assert abs(fit.value["calibration"] / factor - 1) < 1e-8
     np.testing.assert_allclose(fit.calculated, fit.measured, rtol=1e-7)
 
 
@@ -202,10 +202,10 @@ def test_what_is_known_beforehand_counts():
     data = measured(TRUTH, noise=equal(rng), factor=2.0)
     paths = [*UNKNOWN, "linear_density"]
     prior = {"linear_density": (0.3, 1e-4)}
-    fit = rd.identify(NEAR, data, paths, scale=True, prior=prior)
+    fit = rd.identify(NEAR, data, [*paths, "calibration"], prior=prior)
     assert abs(fit.value["linear_density"] - 0.3) < 1e-6
     assert fit.std["linear_density"] == pytest.approx(1e-4, rel=1e-2)
-    assert abs(fit.value["scale"] / 2 - 1) < 4 * fit.std["scale"] / 2
+    assert abs(fit.value["calibration"] / 2 - 1) < 4 * fit.std["calibration"] / 2
 
 
 # --- the answer -------------------------------------------------------------------------------
@@ -234,8 +234,11 @@ def test_fit_reads_as_tables_and_a_figure(noisy, tmp_path):
     again = rd.load(tmp_path / "fit.nc")
     assert again.value["tension"] == noisy.value["tension"]
     np.testing.assert_array_equal(again.residual, noisy.residual)
+    np.testing.assert_array_equal(again.interval(0.99), noisy.interval(0.99))
+    with pytest.raises(rd.SceneError, match="level must be one of"):
+        again.interval(0.7)
     with pytest.raises(rd.SceneError, match="a fit from a file has no scene: identify again"):
-        again.interval()
+        _ = again.scene
 
 
 def test_a_line_at_0_hz_of_a_free_beam_is_left_out():
@@ -274,7 +277,7 @@ def test_notes_speak_of_the_response():
     data = measured(TRUTH, noise=lambda value: 1e-3 * value)
     with pytest.warns(rd.IdentifyWarning, match="the response cannot tell tension, bending"):
         fit = rd.identify(
-            TRUTH, data, ["tension", "bending_stiffness", "linear_density"], scale=True
+            TRUTH, data, ["tension", "bending_stiffness", "linear_density", "calibration"]
         )
     assert any("what the response tells is" in note for note in fit.notes)
 
@@ -286,10 +289,10 @@ def test_what_has_no_meaning_is_refused():
     data = measured(TRUTH)
     with pytest.raises(rd.SceneError, match='orders must be "auto" of a whole response, got'):
         rd.identify(GUESS, data, UNKNOWN, orders=[1, 2])
-    with pytest.raises(rd.SceneError, match="scale must be False of peaks"):
-        rd.identify(GUESS, [10.0, 20.0], ["tension"], scale=True)
-    with pytest.raises(TypeError, match="scale must be True or False"):
-        rd.identify(GUESS, data, UNKNOWN, scale=2.0)
+    with pytest.raises(rd.SceneError, match="unknown must not have 'calibration' of peaks"):
+        rd.identify(GUESS, [10.0, 20.0], ["tension", "calibration"])
+    with pytest.raises(rd.SceneError, match='ends must be "given" of a whole response'):
+        rd.identify(GUESS, data, UNKNOWN, ends="unknown")
     few = rd.Measured([20.0], [1e-3], drive=POINTS[0], response=POINTS[0])
     with pytest.raises(rd.SceneError, match="measured must have more lines that are not 0 for 3"):
         rd.identify(GUESS, few, UNKNOWN)

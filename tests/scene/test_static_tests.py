@@ -209,9 +209,13 @@ def test_a_test_tells_as_much_beside_peaks_as_alone():
     scene = rd.Scene(rope, tension=3000.0)
     peaks = rd.Peaks(scene.compile().modes(3).frequency, std=0.2, order=[1, 2, 3])
     test = bent(noise=scatter(2, 2e-4))
-    alone = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+    alone = rd.identify(scene, peaks, ["tension", "bending_stiffness"], ends="given")
     both = rd.identify(
-        scene, peaks, ["tension", "bending_stiffness"], prior=rd.Prior.of(bending=test)
+        scene,
+        peaks,
+        ["tension", "bending_stiffness"],
+        ends="given",
+        prior=rd.Prior.of(bending=test),
     )
     stds = np.array([alone.std["bending_stiffness"], test.std])
     assert 0.2 < stds[0] / stds[1] < 5  # both matter

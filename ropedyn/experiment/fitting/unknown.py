@@ -15,7 +15,9 @@ from ...base.errors import SceneError
 from ...scene.path import value_at, with_values
 from ...scene.scene import Scene
 
-CALIBRATION = "scale"  # Path of the factor on a calculated response that makes it the measured one.
+CALIBRATION = (
+    "calibration"  # Path of the factor on a calculated response that makes it the measured one.
+)
 
 _PLACE = re.compile(r"parts\[\d+\]\.(x|start|stop)")
 _ANGLE = "gravity.inclination"

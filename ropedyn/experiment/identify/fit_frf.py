@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 
 import numpy as np
 
+from ...base.answer import Cost
 from ...base.array import Complex, Real
 from ...base.errors import SceneError
+from ...base.named import Named
 from ...curves.measured import Measured
 from ..fitting.minimum import Point
 from ..fitting.misfit import LineMisfit, LogMisfit, OneByOne, PriorMisfit, Response, unseen_of
 from ..fitting.unknown import Unknowns
-from .identified import found_by
+from .known import Solved, kept_bounds
 from .notes import RESPONSE, notes_of
 from .response_fit import ResponseFit
 from .response_start import ROW, near, start_of_response
@@ -78,7 +81,20 @@ def _answer(
 ) -> ResponseFit:
     measured = response.measured
     value, _ = response(solution.u[0])
+    sought, freedom = len(solution.unknowns), float(solution.record["freedom"][0])
+    known = Solved(solution)
     return ResponseFit(
+        unknown=solution.unknowns.paths,
+        value=Named(solution.value[0], solution.unknowns.paths),
+        std=Named(solution.std[0], solution.unknowns.paths),
+        correlation=solution.uncertainty.correlation[0],
+        freedom=None if np.isnan(freedom) else freedom,
+        chi_square=float(solution.off[0] / solution.noise[0] ** 2),
+        cost=Cost(
+            seconds, "least squares", response.elements or 0, sought, factorisations=evaluations
+        ),
+        bounds=partial(kept_bounds, known.interval),
+        known=known,
         drive=measured.drive,
         response=measured.response,
         quantity=measured.quantity,
@@ -87,7 +103,6 @@ def _answer(
         calculated=value,
         measured_std=solution.noise[0] * std,
         notes=(*notes_of(solution, RESPONSE), *_systematic(measured.value, value, std)),
-        **found_by(solution, seconds=seconds, elements=response.elements, evaluations=evaluations),
     )
 
 

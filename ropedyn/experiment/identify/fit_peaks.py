@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.array import Index
-from ...base.errors import RopedynError, SceneError, SolveError
+from ...base.errors import RopedynError, SceneError
 from ...family.rows import Filled
 from ...scene.path import with_values
 from ...scene.scene import Scene
 from ..fitting.misfit import PeakMisfit, PriorMisfit, unseen_of
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import Unknowns
-from ..orders.orders import found_orders, lowest_suffice
 from .peak_start import start_of_peaks
 from .solution import Solution, Task
 
@@ -33,8 +32,6 @@ def kind_of_ropes(k: int, p: int) -> np.dtype[np.void]:
             ("measured", float, (k,)),  # [Hz]
             ("weight", float, (k,)),  # by which differences are divided [Hz]
             ("orders", np.int64, (k,)),  # which mode each is, from 1; 0 where it is none
-            ("searched", bool),  # whether other orders may be likelier
-            ("runner_up", object),  # the second best orders, where they were searched
             ("guess", float, (p,)),  # of the variables
             ("noise", float),  # standard deviation of residuals, NaN where it is estimated
         ]
@@ -46,11 +43,12 @@ class Options(NamedTuple):
 
     paths: tuple[str, ...]
     orders: Any
-    missing: int | None
-    spurious: int
+    ends: str  # "unknown" or "given"
     prior: Mapping[str, tuple[float, float]]
+    model_std: float
     elements: int | None
     element: str | None
+    seed: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,16 +84,10 @@ class Identification:
         return Task(unknowns, self.misfit(ropes), k, known, ropes["noise"])
 
     def solve(self, ropes: Ropes) -> Filled:
-        """Fit ropes, and where orders are not said those that are likeliest."""
+        """Fit ropes; what refuses one has not solved it."""
         found, failed = self._fitted(ropes, np.arange(len(ropes)))
-        again, unnumbered = self._numbered(ropes, found, failed)
-        if again or unnumbered:
-            failed = {k: error for k, error in failed.items() if k not in again} | unnumbered
-            first = found.take(np.flatnonzero(~np.isin(found.rows, [*again, *unnumbered])))
-            second, refused = self._fitted(ropes, np.array(again, dtype=np.intp))
-            found, failed = first.with_others(second), failed | refused
         reasons = {k: (type(error).__name__, str(error)) for k, error in failed.items()}
-        return Filled(found.rows, (found.record, ropes[found.rows]), reasons)
+        return Filled(found.rows, (found.record,), reasons)
 
     def _fitted(self, ropes: Ropes, rows: Index) -> tuple[Solution, dict[int, RopedynError]]:
         """Fit some of the ropes; return also why others of them have no solution."""
@@ -133,38 +125,3 @@ class Identification:
         failed |= {int(rows[kept[k]]): error for k, error in refused.items()}
         solved = np.delete(np.arange(len(kept)), list(refused))
         return found.take(solved) if refused else found, failed
-
-    def _numbered(
-        self, ropes: Ropes, found: Solution, failed: Mapping[int, RopedynError]
-    ) -> tuple[list[int], dict[int, RopedynError]]:
-        """Search orders where the lowest modes do not suffice; return these ropes, and failures."""
-        again, unnumbered = [], {}
-        best = dict(zip(found.rows.tolist(), found.record))
-        for row in np.flatnonzero(ropes["searched"]).tolist():
-            rope = ropes[row]
-            k, centres = rope["peaks"], [rope["guess"]]
-            frequency, weight = rope["measured"][:k], rope["weight"][:k]
-            std = None if np.isnan(rope["noise"]) else weight
-            if row in best:
-                off = best[row]["residual"][:k] * weight
-                freedom = int(k) - len(self.how.paths)
-                if self.how.orders and lowest_suffice(off, frequency, std, freedom):
-                    continue
-                centres.append(best[row]["u"])
-            elif not isinstance(failed[row], SolveError):
-                continue
-            try:
-                orders, ropes["runner_up"][row] = found_orders(
-                    self.calculated,
-                    centres,
-                    frequency,
-                    std,
-                    missing=self.how.missing,
-                    spurious=self.how.spurious,
-                )
-            except RopedynError as error:
-                unnumbered[row] = error
-            else:
-                ropes["orders"][row, :k] = orders
-                again.append(row)
-        return again, unnumbered

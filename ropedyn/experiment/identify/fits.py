@@ -3,28 +3,100 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, overload
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol, overload
 
 import numpy as np
 
 from ...base.answer import TRANSIENT, Answer, Cost, axes
 from ...base.array import Real
-from ...base.computed import computed
+from ...base.computed import Lazy, computed, lazy
 from ...base.drawing import draw
-from ...base.errors import RopedynError, SceneError
+from ...base.errors import RopedynError, SceneError, SolveError
+from ...base.progress import Progress
 from ...base.table import Table, numbers
+from ...curves.peaks import Peaks
+from ...family.rows import Filled, Means, Shared, one_by_one
+from ...response.question import workers_of
 from .fit import Fit
-from .found import Found
-from .identified import intervals
+from .found import Found, teller
+from .known import LEVELS, METHODS, checked_level, kept_bounds
 from .notes import notes_of, noteworthy
+from .one_rope import RopeTask
 from .solution import Solution
+from .told import Told
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-STATES = {"NotConverged": "not converged"}  # By the kind of the error.
 NAMED = 5  # Ropes of which the same is noted are named up to so many.
+
+
+class Batch(Protocol):
+    """Fits of many ropes."""
+
+    def fit(self, i: int) -> Fit | None:
+        """Return that of one rope, None where it has none."""
+
+    def errors(self) -> Mapping[int, RopedynError]:
+        """Return why ropes have none, by their number."""
+
+    def interval(self, level: float, method: str) -> Real:
+        """Return intervals of all, NaN of those that have none, shape (n, p, 2)."""
+
+
+class SideBySide:
+    """Fits by least squares, made of the solution of all when they are asked for."""
+
+    def __init__(self, found: Found, measured: Sequence[Peaks]) -> None:
+        self.found, self.measured = found, measured
+
+    def fit(self, i: int) -> Fit | None:
+        """Return that of one rope, None where it has none."""
+        if i in self.found.reasons:
+            return None
+        identification, peaks = self.found.identification, self.measured[i]
+        k = self.found.ropes["peaks"][i]
+        how = identification.how._replace(orders=self.found.ropes["orders"][i, :k])
+        return RopeTask(identification.scene, how, peaks, partial(self._tell, i)).fit()
+
+    def _tell(self, i: int, orders: Any, scene: Any) -> Told:
+        if scene is self.found.identification.scene:
+            return self.found.told(i)
+        return teller(self.measured[i], self.found.identification.how)(orders, scene)
+
+    def errors(self) -> Mapping[int, RopedynError]:
+        """Return why ropes have none, by their number."""
+        return {i: self.found.error(i) for i in sorted(self.found.reasons)}
+
+    def interval(self, level: float, method: str) -> Real:
+        """Return intervals of all, NaN of those that have none, shape (n, p, 2)."""
+        return self.found.interval(level, method)
+
+
+class EachAlone:
+    """Fits that were made one by one."""
+
+    def __init__(self, fits: Sequence[Fit | None], failed: Mapping[int, RopedynError]) -> None:
+        self.fits, self.failed = fits, failed
+
+    def fit(self, i: int) -> Fit | None:
+        """Return that of one rope, None where it has none."""
+        return self.fits[i]
+
+    def errors(self) -> Mapping[int, RopedynError]:
+        """Return why ropes have none, by their number."""
+        return self.failed
+
+    def interval(self, level: float, method: str) -> Real:
+        """Return intervals of all, NaN of those that have none, shape (n, p, 2)."""
+        there = [one for one in self.fits if one is not None]
+        blank = np.full((len(there[0].unknown) if there else 1, 2), np.nan)
+        return np.array(
+            [blank if one is None else one.interval(level, method=method) for one in self.fits]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +114,8 @@ class Fits(Answer, Sequence[Fit | None]):
     rms : ndarray, shape (ropes,)
         Root mean square of relative residuals.
     status : tuple of str
-        Of each rope: "converged", "at a bound" where a number went to 0 or infinity,
-        "not converged" or "failed".
+        Of each rope: "trusted", "ambiguous" or "refused", as `Fit.status`; what has no solution is
+        refused.
     failure : tuple of str
         Why one has no solution; empty of the others.
     notes : tuple of str
@@ -56,9 +128,9 @@ class Fits(Answer, Sequence[Fit | None]):
     >>> import ropedyn as rd
     >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
     >>> peaks = [rd.Peaks([f, 2 * f], std=0.1) for f in (25.0, 30.0)]
-    >>> fits = rd.identify(scene, peaks, "tension")
+    >>> fits = rd.identify(scene, peaks, "tension", orders=[1, 2])
     >>> len(fits), fits.value.round(3).tolist(), fits.status
-    (2, [[1000.0], [1440.0]], ('converged', 'converged'))
+    (2, [[1000.0], [1440.0]], ('trusted', 'trusted'))
     """
 
     unknown: tuple[str, ...]
@@ -69,18 +141,19 @@ class Fits(Answer, Sequence[Fit | None]):
     failure: tuple[str, ...]
     notes: tuple[str, ...]
     cost: Cost
-    found: Found | None = field(default=None, repr=False, metadata=TRANSIENT)
+    bounds: Lazy[Real] = lazy(np.ndarray, axes("level", "rope", "unknown", "bound"))
+    batch: Batch | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @computed
     def failed(self) -> Mapping[int, RopedynError]:
         """Why ropes have no solution, by their number from 0."""
-        return {i: self._found.error(i) for i in sorted(self._found.reasons)}
+        return self._batch.errors()
 
     @property
-    def _found(self) -> Found:
-        if self.found is None:
+    def _batch(self) -> Batch:
+        if self.batch is None:
             raise SceneError("fits from a file have no scene: identify again")
-        return self.found
+        return self.batch
 
     def __len__(self) -> int:
         return len(self.rms)
@@ -92,8 +165,8 @@ class Fits(Answer, Sequence[Fit | None]):
     def __getitem__(self, at: int | slice) -> Fit | tuple[Fit | None, ...] | None:
         """Return the fit of a rope; those of a file have only what the table shows."""
         if isinstance(at, slice):
-            return tuple(self._found.fit(i) for i in range(len(self))[at])
-        return self._found.fit(range(len(self))[at])
+            return tuple(self._batch.fit(i) for i in range(len(self))[at])
+        return self._batch.fit(range(len(self))[at])
 
     def __iter__(self) -> Iterator[Fit | None]:
         return (self[i] for i in range(len(self)))
@@ -121,13 +194,19 @@ class Fits(Answer, Sequence[Fit | None]):
         >>> import ropedyn as rd
         >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
         >>> peaks = [rd.Peaks([f, 2 * f], std=0.1) for f in (25.0, 30.0)]
-        >>> rd.identify(scene, peaks, "tension").interval(method="linear").round(1).tolist()
+        >>> fits = rd.identify(scene, peaks, "tension", orders=[1, 2])
+        >>> fits.interval(method="linear").round(1).tolist()
         [[[993.0, 1007.0]], [[1431.6, 1448.4]]]
         """
-        found = np.full((*self.value.shape, 2), np.nan)
-        solution = self._found.solution
-        found[solution.rows] = intervals(solution, level, method)
-        return found
+        level = checked_level(level, method)
+        if self.batch is not None:
+            return self.batch.interval(level, method)
+        if level not in LEVELS or method != METHODS[0]:
+            raise SceneError(
+                f'level must be one of {", ".join(map(str, LEVELS))} and method "{METHODS[0]}" of '
+                f"fits from a file, got {level!r} and {method!r}: identify again"
+            )
+        return np.asarray(self.bounds[LEVELS.index(level)])
 
     def report(self) -> str:
         """Return how many ropes came to which state, and why others did not, as text.
@@ -137,7 +216,7 @@ class Fits(Answer, Sequence[Fit | None]):
         >>> import ropedyn as rd
         >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
         >>> print(rd.identify(scene, [rd.Peaks([25.0, 50.0], std=0.1)], "tension").report())
-        1 ropes: 1 converged
+        1 ropes: 1 trusted
         """
         states = {one: self.status.count(one) for one in dict.fromkeys(self.status)}
         said = [f"{count} {one}" for one, count in states.items()]
@@ -165,8 +244,8 @@ class Fits(Answer, Sequence[Fit | None]):
         return draw(self, "plot", ax, unknown=unknown)
 
 
-def fits_of(found: Found) -> Fits:
-    """Gather the numbers."""
+def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
+    """Gather what was found side by side."""
     solution, ropes, n = found.solution, found.ropes, len(found.ropes)
     how, at = found.identification.how, solution.rows
     p = len(how.paths)
@@ -175,31 +254,94 @@ def fits_of(found: Found) -> Fits:
     relative = (ropes["weight"] / ropes["measured"])[at]
     off = solution.record["residual"][:, : solution.peaks] * relative
     rms[at] = np.sqrt(np.sum(off**2, axis=1) / (ropes["orders"][at] > 0).sum(axis=1))
-    state, failure = np.full(n, "converged", dtype=object), np.full(n, "", dtype=object)
-    state[at[solution.side.any(axis=1)]] = "at a bound"
-    for i, (kind, text) in found.reasons.items():
-        state[i], failure[i] = STATES.get(kind, "failed"), text
     evaluations = int(solution.record["evaluations"].sum())
     seconds, elements = n * found.seconds, how.elements or 0
+    batch = SideBySide(found, measured)
+    status = np.full(n, "refused", dtype=object)
+    status[at] = "trusted"
     return Fits(
         unknown=how.paths,
         value=value,
         std=std,
         rms=rms,
-        status=tuple(state.tolist()),
-        failure=tuple(failure.tolist()),
+        status=tuple(status.tolist()),
+        failure=tuple(found.reasons[i][1] if i in found.reasons else "" for i in range(n)),
         notes=_notes(solution),
         cost=Cost(seconds, "least squares", elements, n * p, factorisations=evaluations),
-        found=found,
+        bounds=partial(kept_bounds, batch.interval),
+        batch=batch,
     )
 
 
+def each_alone(
+    tasks: Sequence[RopeTask],
+    refused: Mapping[int, SceneError],
+    *,
+    threads: int | None,
+    executor: Executor | None,
+    progress: Progress,
+) -> Fits:
+    """Identify ropes one by one."""
+    n, how = len(tasks), tasks[0].how
+    rows, fits = np.empty(n, dtype=object), np.empty(n, dtype=object)
+    rows[:] = [None if i in refused else task for i, task in enumerate(tasks)]
+    shared = Shared(rows, workers_of(threads), executor, progress)
+    reasons, _ = shared.fill([fits], [Means(_fit_rows, 1)])
+    failed: dict[int, RopedynError] = {
+        i: SceneError(text) if kind == "SceneError" else SolveError(text)
+        for i, kind, text in reasons
+        if i not in refused
+    }
+    failed |= refused
+    there: list[Fit | None] = fits.tolist()
+    nan = np.full(len(how.paths), np.nan)
+    batch = EachAlone(there, dict(sorted(failed.items())))
+    costs = [one.cost for one in there if one is not None]
+    return Fits(
+        unknown=how.paths,
+        value=np.array([nan if one is None else one.value for one in there]),
+        std=np.array([nan if one is None else one.std for one in there]),
+        rms=np.array([np.nan if one is None else one.rms for one in there]),
+        status=tuple("refused" if one is None else one.status for one in there),
+        failure=tuple(str(failed[i]) if i in failed else "" for i in range(n)),
+        notes=_gathered({i: one.notes for i, one in enumerate(there) if one is not None}),
+        cost=Cost(
+            sum(one.seconds for one in costs),
+            costs[0].method if costs else "none",
+            how.elements or 0,
+            n * len(how.paths),
+            factorisations=sum(one.factorisations for one in costs),
+        ),
+        bounds=partial(kept_bounds, batch.interval),
+        batch=batch,
+    )
+
+
+def _fit_rows(tasks: Any) -> Filled:
+    """Identify some ropes; None stands for one that is refused."""
+    return one_by_one(_fit_row, tasks)
+
+
+def _fit_row(task: Any) -> tuple[Fit]:
+    if task is None:
+        raise SceneError("refused")
+    return (task.fit(),)
+
+
 def _notes(solution: Solution) -> tuple[str, ...]:
-    """Return what was not told, equal sentences once, with the ropes."""
+    """Return what was not told."""
+    at = np.flatnonzero(noteworthy(solution))
+    return _gathered(
+        {int(solution.rows[k]): notes_of(solution.take(np.array([k]))) for k in at.tolist()}
+    )
+
+
+def _gathered(notes: Mapping[int, Sequence[str]]) -> tuple[str, ...]:
+    """Return equal sentences once, with the ropes."""
     ropes: dict[str, list[int]] = {}
-    for k in np.flatnonzero(noteworthy(solution)):
-        for note in notes_of(solution.take(np.array([k]))):
-            ropes.setdefault(note, []).append(int(solution.rows[k]))
+    for i, some in notes.items():
+        for note in some:
+            ropes.setdefault(note, []).append(i)
     return tuple(f"{_named(some)}: {note}" for note, some in ropes.items())
 
 

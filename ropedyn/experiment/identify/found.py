@@ -1,25 +1,26 @@
-"""What was identified of many ropes, and what each of them tells when it is asked."""
+"""Identify ropes whose orders and ends are said, side by side, by least squares."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
+from ...base.array import Flags, Integer, Real
 from ...base.errors import RopedynError, SceneError, SolveError
 from ...base.progress import Progress
+from ...curves.peaks import Peaks
 from ...family.rows import Means, Shared
 from ...response.question import workers_of
 from ...scene.scene import Scene
-from .fit import Fit, alternatives_of
-from .fit_peaks import Identification, Options, Ropes
-from .identified import found_by
-from .notes import notes_of
+from .fit_peaks import Identification, Options, Ropes, kind_of_ropes
+from .known import intervals
 from .solution import Solution, kind_of_solution
+from .told import Told, by_least_squares, by_posterior
 
 ROPES = 1024  # Sent together.
 
@@ -32,7 +33,7 @@ class Found:
     """What was identified of many ropes."""
 
     identification: Identification
-    ropes: Ropes  # with the orders that were found
+    ropes: Ropes
     solution: Solution  # of the ropes that have one
     reasons: Reasons  # of the others
     seconds: float  # wall time of each
@@ -42,39 +43,28 @@ class Found:
         kind, text = self.reasons[i]
         return SceneError(text) if kind == "SceneError" else SolveError(text)
 
-    def fit(self, i: int) -> Fit | None:
-        """Return what was found of a rope, None where that is nothing."""
-        if i in self.reasons:
-            return None
+    def told(self, i: int) -> Told:
+        """Return what was found of a rope that has a solution."""
         ropes, row, how = self.ropes[i : i + 1], np.zeros(1, np.intp), self.identification.how
         record = self.solution.record[self.solution.rows == i]
         solution = Solution(self.identification.task(ropes), row, record)
         k = ropes["peaks"][0]
         measured, weight, orders = (ropes[name][0, :k] for name in ("measured", "weight", "orders"))
-        frequency = measured + record["residual"][0, :k] * weight
-        other = partial(instead, how, ropes.copy())
-        return Fit(
-            orders=orders,
-            measured=measured,
-            measured_std=solution.noise[0] * weight,
-            calculated=np.where(orders > 0, frequency, np.nan),
-            runner_up=ropes["runner_up"][0],
-            notes=notes_of(solution),
-            alternatives_source=partial(alternatives_of, self.identification.scene, other),
-            **found_by(
-                solution,
-                seconds=self.seconds,
-                elements=how.elements,
-                evaluations=int(record["evaluations"][0]),
-            ),
-        )
+        return by_least_squares(solution, how, measured, weight, orders)
+
+    def interval(self, level: float, method: str) -> Real:
+        """Return intervals of all ropes, NaN of those without a solution, shape (n, p, 2)."""
+        bounds = np.full((len(self.ropes), len(self.identification.how.paths), 2), np.nan)
+        bounds[self.solution.rows] = intervals(self.solution, level, method)
+        return bounds
 
 
 def find(
     scene: Scene,
     how: Options,
-    ropes: Ropes,
-    refused: Reasons,
+    measured: Sequence[Peaks],
+    orders: Sequence[Integer],
+    refused: Mapping[int, SceneError],
     *,
     threads: int | None = 1,
     executor: Executor | None = None,
@@ -82,12 +72,14 @@ def find(
 ) -> Found:
     """Identify ropes that a scene describes alike, but those that are refused."""
     began = time.perf_counter()
+    ropes = _rows(measured, orders, refused, how)
     identification = Identification.of(scene, how, ropes)
     (n, k), p = ropes["measured"].shape, len(how.paths)
-    ropes, record = ropes.copy(), np.zeros(n, kind_of_solution(k + len(how.prior), p))
-    shared = Shared(ropes.copy(), workers_of(threads), executor, progress)
-    failed, _ = shared.fill([record, ropes], [Means(identification.solve, ROPES)])
-    reasons = {**{row: (kind, text) for row, kind, text in failed}, **refused}
+    record = np.zeros(n, kind_of_solution(k + len(how.prior), p))
+    shared = Shared(ropes, workers_of(threads), executor, progress)
+    failed, _ = shared.fill([record], [Means(identification.solve, ROPES)])
+    reasons = {row: (kind, text) for row, kind, text in failed}
+    reasons |= {i: ("SceneError", str(error)) for i, error in refused.items()}
     rows = np.delete(np.arange(n), list(reasons))
     return Found(
         identification=identification,
@@ -98,11 +90,44 @@ def find(
     )
 
 
-def instead(how: Options, ropes: Ropes, scene: Scene) -> Fit:
-    """Fit another scene to the same peaks of one rope."""
-    ropes["guess"], ropes["searched"], ropes["runner_up"] = 0.0, False, None
-    found = find(scene, how, ropes, {})
-    fit = found.fit(0)
-    if fit is None:
+def teller(peaks: Peaks, how: Options) -> Callable[[Integer, Scene], Told]:
+    """Return what tells the numbers of one rope by orders and a scene."""
+    return partial(_least_squares if how.ends == "given" else by_posterior, peaks, how)
+
+
+def _least_squares(peaks: Peaks, how: Options, orders: Integer, scene: Scene) -> Told:
+    """Return what least squares tell of one rope."""
+    found = find(scene, how, [peaks], [orders], {})
+    if found.reasons:
         raise found.error(0)
-    return fit
+    return found.told(0)
+
+
+def _rows(
+    measured: Sequence[Peaks],
+    orders: Sequence[Integer],
+    refused: Mapping[int, SceneError],
+    how: Options,
+) -> Ropes:
+    """Return what was measured as rows; a rope that is refused has no peak that is a mode."""
+    count = np.array([np.size(one.frequency) for one in measured], dtype=np.int64)
+    known = np.array([one.std is not None for one in measured], dtype=bool)
+    inside = np.arange(count.max(initial=1)) < count[:, None]
+    frequency = _filled(inside, [one.frequency for one in measured], 1.0)
+    std = _filled(inside & known[:, None], [one.std for one in measured], 0.0)
+    weight = np.where(inside & known[:, None], np.hypot(std, how.model_std * frequency), frequency)
+    ropes = np.zeros(len(measured), kind_of_ropes(inside.shape[1], len(how.paths)))
+    ropes["peaks"], ropes["measured"], ropes["weight"] = count, frequency, weight
+    ropes["orders"] = _filled(inside, orders, 0).astype(np.int64)
+    ropes["noise"] = np.where(known, 1.0, np.nan)
+    none = list(refused)
+    ropes["measured"][none], ropes["weight"][none], ropes["orders"][none] = 1.0, 1.0, 0
+    return ropes
+
+
+def _filled(where: Flags, rows: Sequence[object], fill: float) -> Real:
+    """Return rows of different lengths, None among them, in an array."""
+    filled = np.full(where.shape, fill)
+    if where.any():
+        filled[where] = np.concatenate([np.asarray(one) for one in rows if one is not None])
+    return filled

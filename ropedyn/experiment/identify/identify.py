@@ -11,26 +11,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base import check
-from ...base.array import Flags, Real
+from ...base.array import Integer, Real
 from ...base.errors import IdentifyWarning, SceneError
 from ...base.progress import Progress
 from ...curves.measured import Measured, above_zero
 from ...curves.peaks import Peaks
+from ...curves.record.record import Record
 from ...curves.resonance import Resonances
 from ...scene.path import with_values
 from ...scene.prior import Prior
 from ...scene.scene import Scene
 from ..fitting.misfit import PriorMisfit, Response
-from ..fitting.unknown import Unknowns
-from ..orders.orders import given_orders, lowest_orders
+from ..fitting.unknown import CALIBRATION, Unknowns
+from ..orders.orders import given_orders
 from .fit import Fit
 from .fit_frf import fit_response
-from .fit_peaks import Options, Ropes, kind_of_ropes
-from .fits import Fits, fits_of
-from .found import find
+from .fit_peaks import Options
+from .fits import Fits, each_alone, fits_of
+from .found import find, teller
+from .one_rope import RopeTask
 from .response_fit import ResponseFit
 
-MOST = 64  # A search lets at most so many modes be missing, and so many peaks be none.
+ENDS = ("unknown", "given")
 # Peaks [Hz], their relative standard deviations and what is known beforehand relative to the guess
 # are between these: squares of all that is between do not overflow.
 SIZES = (1e-50, 1e50)
@@ -42,7 +44,6 @@ def identify(
     measured: Measured,
     unknown: str | Sequence[str],
     *,
-    scale: bool = False,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
     element: str | None = None,
@@ -52,13 +53,14 @@ def identify(
 @overload
 def identify(
     scene: Scene,
-    measured: Peaks | Resonances | Sequence[Resonances] | ArrayLike,
+    measured: Record | Peaks | Resonances | Sequence[Resonances] | ArrayLike,
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
-    missing: int | None = None,
-    spurious: int = 1,
+    ends: str | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
+    model_std: float = 0.0,
+    seed: int = 0,
     elements: int | None = None,
     element: str | None = None,
     threads: int | None = None,
@@ -70,13 +72,14 @@ def identify(
 @overload
 def identify(
     scene: Scene,
-    measured: Sequence[Peaks | Measured],
+    measured: Sequence[Record | Peaks | Measured],
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
-    missing: int | None = None,
-    spurious: int = 1,
+    ends: str | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
+    model_std: float = 0.0,
+    seed: int = 0,
     elements: int | None = None,
     element: str | None = None,
     threads: int | None = None,
@@ -91,10 +94,10 @@ def identify(
     unknown: str | Sequence[str],
     *,
     orders: str | Sequence[int] | None = "auto",
-    missing: int | None = None,
-    spurious: int = 1,
-    scale: bool = False,
+    ends: str | None = None,
     prior: Mapping[str, tuple[float, float]] | None = None,
+    model_std: float = 0.0,
+    seed: int = 0,
     elements: int | None = None,
     element: str | None = None,
     threads: int | None = None,
@@ -103,38 +106,42 @@ def identify(
 ) -> Fit | Fits | ResponseFit:
     """Find the numbers of a scene that make its answers those that were measured.
 
-    Weighted least squares with exact derivatives, of natural frequencies or of a whole frequency
-    response. Numbers keep the sign of their guess, which may be wrong by powers of ten.
+    Which modes peaks are is decided by evidence, and where the rope bends the rotational stiffness
+    of its ends is taken to be unknown: both are in the interval and in `Fit.status`. With ends and
+    orders given it is weighted least squares with exact derivatives, of natural frequencies or of a
+    whole frequency response. Numbers keep the sign of their guess.
 
     Parameters
     ----------
     scene : Scene
         With what is known, and guesses of what is not; of peaks, a tension of 0 is no guess.
-    measured : Peaks, Resonances, array_like of shape (k,), a list of Peaks, or Measured
-        Peaks [Hz]. Their standard deviations are weights; without any the relative noise is taken
-        to be the same for all and estimated from the residuals. A list has one for each of many
-        ropes, which the scene describes alike; responses in it stand for their peaks. Or one whole
-        response, which tells damping too, without its line at 0 Hz (for its peaks alone give
-        `Peaks.of` it). Its noise is estimated from the residuals, for each point a part equal on
-        all lines, or what measured coherence tells, and one in proportion to the amplitude.
+    measured : Record, Peaks, Resonances, array_like of shape (k,), a list of these, or Measured
+        A recorded time series, whose peaks are found first. Or peaks [Hz]; their standard
+        deviations are weights, without any the relative noise is taken to be the same for all and
+        estimated from the residuals. A list has one for each of many ropes, which the scene
+        describes alike; responses in it stand for their peaks. Or one whole response, which tells
+        damping too, without its line at 0 Hz (for its peaks alone give `Peaks.of` it). Its noise is
+        estimated from the residuals, for each point a part equal on all lines, or what measured
+        coherence tells, and one in proportion to the amplitude.
     unknown : str or sequence of str
         Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
         ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
-        takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``.
+        takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``, and
+        ``"calibration"``, a real factor of either sign on all of it.
     orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
-        where they do not the lowest modes, if these explain the peaks as well as their noise lets
-        them; else they are searched. None: they are searched in any case. A search moves all but
-        positions by a factor of 30, about their guesses and about what the lowest modes tell.
-    missing : int, optional
-        Of a search: at most so many modes below the highest peak are not among the peaks, as many
-        as there are peaks but no more than 32 where left out.
-    spurious : int
-        Of a search: at most so many peaks are no modes.
-    scale : bool
-        Whether the calibration of a whole response is unknown too, a real factor of either sign.
+        where they do not by evidence. None: by evidence in any case.
+    ends : {"unknown", "given"}, optional
+        Whether the rotational stiffness of both ends is unknown, from pinned to clamped, and in the
+        intervals, or as the scene says. Unknown where left out if the rope bends and no such
+        stiffness is sought. A whole response takes them as given.
     prior : Prior or mapping from str to (float, float), optional
-        What is known beforehand: value and std by path; more than what is sought in a `Prior` only.
+        What is known beforehand: value and std by path, also of what is not sought, whose
+        uncertainty then is in the intervals.
+    model_std : float
+        Relative standard deviation of what the model itself is off, of each frequency.
+    seed : int
+        Of the random numbers of a posterior.
     elements, element
         As `Scene.compile` takes them: continuous spans where left out.
     threads : int, optional
@@ -164,7 +171,8 @@ def identify(
     -----
     IdentifyWarning
         If what was measured does not tell all numbers, as tension and linear density from peaks
-        alone; it names what is told. And if a response differs from the model beyond noise.
+        alone; it names what is told. If the fit is ambiguous or refused. And if a response differs
+        from the model beyond noise.
 
     Examples
     --------
@@ -172,91 +180,94 @@ def identify(
     >>> rope = rd.Rope(2.0, 0.5, bending_stiffness=1.0)
     >>> scene = rd.Scene(rope, tension=100.0, ends=("pinned", "pinned"))
     >>> peaks = rd.Peaks([11.21, 22.58, 34.29, 46.49], std=0.01)
-    >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"])
+    >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"], ends="given")
     >>> print(fit)
     identified
-    unknown              value        std
-    -----------------  -------  ---------
-    tension            999.615   0.867523
-    bending_stiffness  2.05243  0.0277407
+    unknown              value        std  95 % from       to
+    -----------------  -------  ---------  ---------  -------
+    tension            999.615   0.867523    997.914  1001.31
+    bending_stiffness  2.05243  0.0277407    1.99806   2.1068
     """
     check.instance(scene, "scene", Scene, "a Scene")
-    check.instance(scale, "scale", bool, "True or False")
-    checked = Unknowns.of(_tensed(scene, 1.0), unknown)
+    whole = isinstance(measured, Measured)
+    sought, calibrated = _calibrated(unknown, whole=whole)
+    checked = Unknowns.of(_tensed(scene, 1.0), sought)
     how = Options(
         paths=checked.paths,
         orders=orders,
-        missing=None if missing is None else check.count(missing, "missing", least=0, most=MOST),
-        spurious=check.count(spurious, "spurious", least=0, most=MOST),
+        ends=_ends(ends, scene, checked.paths, whole=whole),
         prior=_prior(prior, checked),
+        model_std=check.number(model_std, "model_std", sign="nonnegative"),
         elements=elements,
         element=element,
+        seed=check.count(seed, "seed", least=0, most=np.iinfo(np.int64).max),
     )
-    if isinstance(measured, Measured):
-        whole = _response(scene, measured, how, scale=scale)
-        _warn(whole.notes)
-        return whole
-    if scale:
-        raise SceneError("scale must be False of peaks, which have no amplitude, got True")
+    if whole:
+        found = _response(scene, measured, how, scale=calibrated)
+        _warn(found.notes)
+        return found
     workers: dict[str, Any] = {"threads": threads, "executor": executor, "progress": progress}
     listed = isinstance(measured, (list, tuple))
-    if listed and any(isinstance(one, (Peaks, Measured)) for one in measured):
+    if listed and any(isinstance(one, (Peaks, Measured, Record)) for one in measured):
         given = [_peaks(one, f"measured[{i}]") for i, one in enumerate(measured)]
-        fits = fits_of(find(scene, how, *_ropes(given, how), **workers))
+        fits = _many(scene, how, given, workers)
         _warn(fits.notes)
         return fits
-    ropes = _ropes([_peaks(measured, "measured")], how)
-    found = find(scene, how, *ropes, **workers)
-    fit = found.fit(0)
-    if fit is None:
-        raise found.error(0)
+    peaks = _peaks(measured, "measured")
+    _weigh(peaks)
+    fit = RopeTask(scene, how, peaks, teller(peaks, how)).fit()
     _warn(fit.notes)
     return fit
 
 
-def _ropes(measured: Sequence[Peaks], how: Options) -> tuple[Ropes, dict[int, tuple[str, str]]]:
-    """Return what was measured as rows, and why some of them are refused."""
-    count = np.array([np.size(one.frequency) for one in measured], dtype=np.int64)
-    known = np.array([one.std is not None for one in measured])
-    inside = np.arange(count.max(initial=1)) < count[:, None]
-    frequency = _filled(inside, [one.frequency for one in measured], 1.0)
-    std = _filled(inside & known[:, None], [one.std for one in measured], 0.0)
-    weight = np.where(inside & known[:, None], std, frequency)
-    ropes = np.zeros(len(measured), kind_of_ropes(inside.shape[1], len(how.paths)))
-    orders = lowest_orders(np.where(inside, frequency, np.inf))
-    ropes["orders"], ropes["searched"] = np.where(inside, orders, 0), True
+def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
+    """Part the calibration from what is sought of the scene."""
+    if isinstance(unknown, str) or CALIBRATION not in unknown:
+        return unknown, False
+    if not whole:
+        raise SceneError(
+            f"unknown must not have {CALIBRATION!r} of peaks, which have no amplitude, got {unknown}"
+        )
+    return [path for path in unknown if path != CALIBRATION], True
+
+
+def _ends(ends: Any, scene: Scene, paths: Sequence[str], *, whole: bool) -> str:
+    """Return whether the ends are unknown; they are where that is not said and acts."""
+    sought = any(path.startswith("ends[") and path.endswith("spring.beta") for path in paths)
+    free = "beta" in scene.coordinates and not sought and not whole
+    if ends is None:
+        return ENDS[0] if free else ENDS[1]
+    check.one_of(ends, "ends", ENDS)
+    if ends == ENDS[0] and not free:
+        why = "a whole response" if whole else "ends that are sought" if sought else "a string"
+        raise SceneError(f'ends must be "given" of {why}, got "unknown"')
+    return str(ends)
+
+
+def _many(
+    scene: Scene, how: Options, measured: Sequence[Peaks], workers: Mapping[str, Any]
+) -> Fits:
+    """Identify ropes, side by side where only least squares are asked."""
     refused: dict[int, SceneError] = {}
-    for i in np.flatnonzero(~_weighable(frequency, weight).all(axis=1)).tolist():
+    weighable = _all_weighable(measured)
+    orders: list[Integer | None] = [None] * len(measured)
+    said: dict[tuple[int, Any], Any] = {}
+    for i, one in enumerate(measured):
+        key = np.size(one.frequency), one.order
         try:
-            _weigh(measured[i])
+            if not weighable:
+                _weigh(one)
+            if key not in said:
+                said[key] = given_orders(how.orders, one)
+            orders[i] = said[key]
         except SceneError as error:
             refused[i] = error
-    alike: dict[tuple[int, Any], list[int]] = {}
-    for i, (k, peaks) in enumerate(zip(count.tolist(), measured)):
-        alike.setdefault((k, peaks.order), []).append(i)
-    for (k, _), some in alike.items():
-        try:
-            said = given_orders(how.orders, measured[some[0]])
-        except SceneError as error:
-            refused = dict.fromkeys(some, error) | refused
-        else:
-            if said is not None:
-                ropes["orders"][some, :k], ropes["searched"][some] = said, False
-    ropes["peaks"], ropes["measured"], ropes["weight"] = count, frequency, weight
-    ropes["noise"], ropes["runner_up"] = np.where(known, 1.0, np.nan), None
-    for i in refused:
-        # none of its peaks is one, so that nothing overflows
-        ropes["measured"][i], ropes["weight"][i], ropes["orders"][i] = 1.0, 1.0, 0
-        ropes["searched"][i] = False
-    return ropes, {i: ("SceneError", str(error)) for i, error in refused.items()}
-
-
-def _filled(where: Flags, rows: Sequence[Any], fill: float) -> Real:
-    """Return rows of different lengths, None among them, in an array."""
-    filled = np.full(where.shape, fill)
-    if where.any():
-        filled[where] = np.concatenate([one for one in rows if one is not None])
-    return filled
+            orders[i] = np.zeros(key[0], dtype=np.int64)
+    numbered = [one for one in orders if one is not None]
+    if how.ends == "given" and len(numbered) == len(measured):
+        return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
+    tasks = [RopeTask(scene, how, one, teller(one, how)) for one in measured]
+    return each_alone(tasks, refused, **workers)
 
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
@@ -285,6 +296,8 @@ def _peaks(measured: Any, name: str) -> Peaks:
     """Return peaks from what they may be given as."""
     if isinstance(measured, Peaks):
         return measured
+    if isinstance(measured, Record):
+        return measured.peaks() if measured.force is None else Peaks.of(measured.frf())
     many = isinstance(measured, (list, tuple)) and any(isinstance(m, Resonances) for m in measured)
     if many or isinstance(measured, (Measured, Resonances)):
         return Peaks.of(measured)
@@ -304,12 +317,17 @@ def _within(values: Real, name: str, unit: str, scale: Real | float = 1.0) -> No
         )
 
 
-def _weighable(frequency: Real, weight: Real) -> Flags:
-    """Say which peaks have squares that are numbers, and weights."""
+def _all_weighable(measured: Sequence[Peaks]) -> bool:
+    """Say whether all peaks have squares that are numbers, and weights."""
+    if not measured:
+        return True
     least, most = SIZES
+    given = [one.frequency if one.std is None else one.std for one in measured]
+    frequency = np.concatenate([np.asarray(one.frequency) for one in measured])
+    std = np.concatenate([np.asarray(one) for one in given])
     inside = (frequency >= least) & (frequency <= most)
     with np.errstate(over="ignore"):
-        return inside & (weight >= least * frequency) & (weight <= most * frequency)
+        return bool((inside & (std >= least * frequency) & (std <= most * frequency)).all())
 
 
 def _weigh(peaks: Peaks) -> None:

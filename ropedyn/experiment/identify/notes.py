@@ -7,10 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Flags, Index, Real
-from .solution import LEAST_FREEDOM, Solution, freedom_of
+from .solution import Solution
 
 INVOLVED = 1e-6  # A number takes part in a direction from this share on.
-UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability are no noise.
 
 
 class Data(NamedTuple):
@@ -28,7 +27,7 @@ RESPONSE = Data("the response", "does", "tells")
 def noteworthy(solution: Solution) -> Flags:
     """Say of which ropes something was not told, shape (n,)."""
     silent = (solution.side != 0) | solution.uncertainty.blind
-    return silent.any(axis=1) | np.isinf(solution.noise) | (_too_far_off(solution) > 0)
+    return silent.any(axis=1) | np.isinf(solution.noise) | solution.refuted
 
 
 def notes_of(solution: Solution, data: Data = PEAKS) -> tuple[str, ...]:
@@ -118,31 +117,12 @@ def _noise(solution: Solution) -> list[str]:
     """Say where nothing tells the noise, or where there is more of it than was said."""
     if not np.isfinite(solution.noise[0]):
         return ["as many unknown as peaks, and no std: nothing tells how uncertain they are"]
-    freedom = _too_far_off(solution)[0]
-    if not freedom:
+    if not solution.refuted[0]:
         return []
+    freedom, off = solution.record["freedom"][0], solution.off[0] / solution.nominal[0] ** 2
+    wider = solution.noise[0] / solution.nominal[0]
     return [
-        f"the peaks are off by more than their std: chi-square {solution.off[0]:.3g} of "
-        f"{freedom:.3g} degrees of freedom; something else acts, the orders are wrong, or their "
-        "std is larger"
+        f"the peaks are off by more than their std: chi-square {off:.3g} of {freedom:.3g} degrees "
+        "of freedom; something else acts, the orders are wrong, or their std is larger: intervals "
+        f"are {wider:.3g} times as wide as their std says, and of Student's t"
     ]
-
-
-def _too_far_off(solution: Solution) -> Real:
-    """Return degrees of freedom of ropes whose peaks are off by more than they say, else 0."""
-    from scipy.special import chdtrc
-
-    def unlikely(freedom: Real, off: Real) -> Flags:
-        # of very few degrees of freedom nothing is said
-        return chdtrc(np.maximum(freedom, LEAST_FREEDOM), off) <= UNLIKELY
-
-    slope, off = solution.record["slope"], solution.off
-    # there are at least as many as peaks less unknowns
-    least = slope[:, : solution.peaks].any(axis=2).sum(axis=1) - slope.shape[2]
-    at = np.flatnonzero(np.isnan(solution.record["freedom"]) & unlikely(least, off))
-    found = np.zeros(len(off))
-    if len(at):
-        freedom = freedom_of(slope[at], solution.peaks)
-        told = (freedom >= LEAST_FREEDOM) & unlikely(freedom, off[at])
-        found[at] = np.where(told, freedom, 0.0)
-    return found

@@ -9,12 +9,12 @@ import numpy as np
 
 from ...base.answer import TRANSIENT, Cost, axes
 from ...base.array import Complex, Real
+from ...base.computed import Lazy, lazy
 from ...base.named import Named
 from ...base.table import Table
 from ...base.unit import label
 from ...chain.port import Point
-from .identified import Identified
-from .solution import Solution
+from .known import Identified, Known
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class ResponseFit(Identified):
     Attributes
     ----------
     unknown : tuple of str
-        Paths of the numbers; the last is ``"scale"`` where the calibration was sought.
+        Paths of the numbers; the last is ``"calibration"`` where that was sought.
     value, std : Named, shape (p,)
         Each number, ``fit.value["tension"]``, and its standard deviation by the exact derivatives;
         infinite where the response does not tell it.
@@ -36,7 +36,7 @@ class ResponseFit(Identified):
     frequency : ndarray, shape (f,)
         [Hz].
     measured, calculated : ndarray of complex, shape (responses, f)
-        [as `Measured.value`]; the calculated one with the scale that was found.
+        [as `Measured.value`]; the calculated one with the calibration that was found.
     measured_std : ndarray, shape (responses, f)
         Of either part of each line, estimated from what is left; infinite where it was not used.
     freedom : float
@@ -80,7 +80,8 @@ class ResponseFit(Identified):
     chi_square: float
     notes: tuple[str, ...]
     cost: Cost
-    solution: Solution | None = field(default=None, repr=False, metadata=TRANSIENT)
+    bounds: Lazy[Real] = lazy(np.ndarray, axes("level", "unknown", "bound"))
+    known: Known | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @property
     def residual(self) -> Complex:

@@ -26,6 +26,7 @@ FAR = 2.0  # Such a number has gone at least so far from its start, as a logarit
 APART = 1e-6  # A number with more than this share in directions that nothing tells is not told.
 TURNS = 50  # Noise and fit take turns so often at most.
 LEAST_FREEDOM = 0.5  # Of fewer degrees of freedom nothing tells the noise.
+UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability are no noise.
 
 
 def freedom_of(slope: Real, peaks: int) -> Real:
@@ -98,7 +99,10 @@ def kind_of_solution(m: int, p: int) -> np.dtype[np.void]:
             ("slope", float, (m, p)),
             ("evaluations", np.int64),
             ("noise", float),  # standard deviation of residuals; infinite where nothing tells it
-            ("freedom", float),  # degrees of freedom it was estimated with; NaN where it was given
+            (
+                "freedom",
+                float,
+            ),  # degrees of freedom it was estimated with; NaN where it is as given
             ("side", np.int64, (p,)),  # -1 of numbers that went to 0, 1 to infinity, else 0
             ("weight", float),  # of what was known beforehand
         ]
@@ -131,6 +135,17 @@ class Solution:
     def noise(self) -> Real:
         """Standard deviation of residuals, infinite where nothing tells it, shape (n,)."""
         return self.record["noise"]
+
+    @property
+    def nominal(self) -> Real:
+        """The same as it was given, where it was, shape (n,)."""
+        given = self.task.noise[self.rows]
+        return np.where(np.isnan(given), self.noise, given)
+
+    @property
+    def refuted(self) -> Flags:
+        """Where residuals are larger than the noise that was given, and told another, (n,)."""
+        return ~np.isnan(self.task.noise[self.rows]) & ~np.isnan(self.record["freedom"])
 
     @property
     def side(self) -> NDArray[np.int64]:
@@ -168,8 +183,9 @@ class Solution:
 
     @property
     def std(self) -> Real:
-        """Standard deviations of the numbers, shape (n, p)."""
-        return self.uncertainty.std * np.abs(self.unknowns.slope(self.u))
+        """Standard deviations of the numbers, NaN of those that have one bound, shape (n, p)."""
+        std = self.uncertainty.std * np.abs(self.unknowns.slope(self.u))
+        return np.where(self.side == 0, std, np.nan)
 
     def interval(self, level: float) -> Real:
         """Return profile likelihood bounds of the numbers in increasing order, shape (n, p, 2)."""
@@ -229,12 +245,24 @@ class Task:
             return self.measured
         return JointMisfit(self.measured, self.known, weight)
 
-    def solve(
-        self, rows: Index, start: Point, guess: Real | None = None
-    ) -> tuple[Solution, dict[int, RopedynError]]:
+    def solve(self, rows: Index, start: Point) -> tuple[Solution, dict[int, RopedynError]]:
         """Make what was measured fit best; return also why some of the rows have no solution."""
-        origin = start.u if guess is None else guess
-        best, failed = self._attempt(rows, start, origin)
+        best, failed = self._best(rows, start, start.u, self.noise[rows])
+        # where residuals refute the noise that was given they tell it, and an interval is as wide
+        wide = np.setdiff1d(_refuted(best), list(failed))
+        if len(wide):
+            there = Point(*(best.record[name][wide] for name in ("u", "residual", "slope")))
+            unknown = np.full(len(wide), np.nan)
+            found, refused = self._best(rows[wide], there, start.u[wide], unknown)
+            told = np.delete(np.arange(len(wide)), list(refused))
+            best.record[wide[told]] = found.record[told]
+        return best, failed
+
+    def _best(
+        self, rows: Index, start: Point, origin: Real, noise: Real
+    ) -> tuple[Solution, dict[int, RopedynError]]:
+        """Solve from a start, and again from elsewhere where numbers went to 0 or infinity."""
+        best, failed = self._attempt(rows, start, origin, noise)
         gone = np.setdiff1d(np.flatnonzero(best.side.any(axis=1)), list(failed))
         if not len(gone):
             return best, failed
@@ -246,17 +274,16 @@ class Task:
             at, again = gone[there], again.take(there)
             if not len(at):
                 continue
-            found, refused = self._attempt(rows[at], again, again.u if guess is None else guess[at])
+            found, refused = self._attempt(rows[at], again, again.u, noise[at])
             better = found.off < best.off[at]
             better[list(refused)] = False
             best.record[at[better]] = found.record[better]
         return best, failed
 
     def _attempt(
-        self, rows: Index, start: Point, origin: Real
+        self, rows: Index, start: Point, origin: Real, given: Real
     ) -> tuple[Solution, dict[int, RopedynError]]:
         """Solve from a start; where the noise has to be known too both take turns."""
-        given = self.noise[rows]
         sought = np.isnan(given)
         weight = np.full(len(self.noise), NOMINAL)
         weight[rows] = np.where(sought, NOMINAL, given)
@@ -320,6 +347,24 @@ class Task:
             "measured must have a std where what is known beforehand is needed to tell the "
             f"unknown, got {self.peaks} peaks without: nothing is left to estimate it from"
         )
+
+
+def _refuted(solution: Solution) -> Index:
+    """Return the ropes whose peaks are off by more than the noise that was given lets them."""
+    from scipy.special import chdtrc
+
+    def unlikely(freedom: Real, off: Real) -> Flags:
+        # of very few degrees of freedom nothing is said
+        return chdtrc(np.maximum(freedom, LEAST_FREEDOM), off) <= UNLIKELY
+
+    slope, off = solution.record["slope"], solution.off / solution.nominal**2
+    # there are at least as many as peaks less unknowns
+    least = slope[:, : solution.peaks].any(axis=2).sum(axis=1) - slope.shape[2]
+    at = np.flatnonzero(np.isnan(solution.record["freedom"]) & unlikely(least, off))
+    if not len(at):
+        return at
+    freedom = freedom_of(slope[at], solution.peaks)
+    return at[(freedom >= LEAST_FREEDOM) & unlikely(freedom, off[at])]
 
 
 def _back(solution: Solution) -> Real:

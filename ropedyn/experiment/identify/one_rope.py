@@ -1,0 +1,197 @@
+"""Identify one rope: which modes its peaks are, unless that is said, then its numbers."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ...base.answer import Cost
+from ...base.array import Integer, Real
+from ...base.errors import RopedynError
+from ...base.named import Named
+from ...curves.peaks import Peaks
+from ...scene.scene import Scene
+from ..orders.evidence import Numbering, decided, numberings
+from ..orders.orders import given_orders
+from .candidates import Candidates
+from .cross_checks import cross_checks
+from .fit import Fit
+from .fit_peaks import Options
+from .known import LEVELS, kept_bounds
+from .other_ends import Remarks, other_ends
+from .told import Told
+
+MOST = 6
+"""Numberings are named up to so many."""
+NAMEABLE = 1e-6
+"""Less likely ones are not named."""
+
+NO_MODES = (
+    "no numbering explains the peaks better than that all are strays, or fewer than two are modes: "
+    "give orders, a prior of the tension, or a record with more modes"
+)
+
+AMBIGUOUS = (
+    "ambiguous: the peaks do not tell which modes they are, see the candidates; a prior of the "
+    "tension, sensors that tell shapes (one at 0.15 of the length) or more modes would decide"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class RopeTask:
+    """One rope, and how it is identified."""
+
+    scene: Scene
+    how: Options
+    peaks: Peaks
+    tell: Callable[[Integer, Scene], Told]  # what peaks of given orders tell of a scene
+
+    def fit(self) -> Fit:
+        """Find its orders and its numbers."""
+        began = time.perf_counter()
+        found, status = self._numbered()
+        if status == "refused":
+            return self._refused(time.perf_counter() - began)
+        orders = np.array(found[0].orders, dtype=np.int64)
+        told = self.tell(orders, self.scene)
+        candidates: Any = partial(self._candidates, found, told)
+        intervals: Callable[[float, str], Real] = told.known.interval
+        if status == "ambiguous":
+            candidates = candidates()
+            intervals = candidates.hull
+        seconds = time.perf_counter() - began
+        return self._fit(told, orders, status, candidates, intervals, seconds)
+
+    def _numbered(self) -> tuple[Sequence[Numbering], str]:
+        """Return the numberings worth naming, the likeliest first, and what they decide."""
+        said = given_orders(self.how.orders, self.peaks)
+        if said is not None:
+            return [Numbering(tuple(said.tolist()), 1.0, 0.0, ())], "trusted"
+        peaks, how = self.peaks, self.how
+        found = numberings(
+            self.scene,
+            how.paths,
+            np.asarray(peaks.frequency),
+            None if peaks.std is None else np.asarray(peaks.std),
+            prior=how.prior,
+            ends=how.ends,
+            sensors=peaks.sensors,
+            shape=peaks.shape,
+            kind=peaks.kind,
+            model_std=how.model_std,
+            seed=how.seed,
+        )
+        status = decided(found)
+        named = [one for one in found[:MOST] if one.probability > NAMEABLE]
+        return named or found[:1], status
+
+    def _candidates(self, found: Sequence[Numbering], first: Told) -> Candidates:
+        """Return what each numbering tells; one that has no numbers is not named."""
+        each = []
+        for i, one in enumerate(found):
+            orders = np.array(one.orders, dtype=np.int64)
+            try:
+                told = self.tell(orders, self.scene) if i else first
+            except RopedynError:
+                continue
+            each.append((one.probability, orders, told.value, told.known))
+        return Candidates.of(self.how.paths, each)
+
+    def _fit(
+        self,
+        told: Told,
+        orders: Integer,
+        status: str,
+        candidates: Any,
+        intervals: Callable[[float, str], Real],
+        seconds: float,
+    ) -> Fit:
+        how, k, p = self.how, len(orders), len(told.value)
+        return Fit(
+            unknown=how.paths,
+            value=Named(told.value, how.paths),
+            std=Named(told.std if status == "trusted" else np.full(p, np.nan), how.paths),
+            correlation=told.correlation,
+            orders=orders,
+            measured=np.asarray(self.peaks.frequency),
+            measured_std=told.measured_std,
+            calculated=told.calculated,
+            freedom=told.freedom,
+            chi_square=told.chi_square,
+            probability=told.probability,
+            status=status,
+            budget=told.budget,
+            ends=how.ends,
+            assumed=told.assumed,
+            notes=told.notes if status == "trusted" else (AMBIGUOUS, *told.notes),
+            seed=how.seed,
+            cost=Cost(seconds, told.method, how.elements or 0, k, factorisations=told.evaluations),
+            candidates=candidates,
+            bounds=partial(kept_bounds, intervals),
+            remarks=partial(self._remarks, told, orders),
+            details=details_of(self.peaks),
+            known=told.known,
+        )
+
+    def _remarks(self, told: Told, orders: Integer) -> Remarks:
+        """Return what costs something to say."""
+        ends = told.ends
+        if self.how.ends == "given":
+            ends = tuple(other_ends(self.scene, self.how.paths, partial(self.tell, orders)))
+        return Remarks(ends, cross_checks(self.scene, np.asarray(self.peaks.frequency), orders))
+
+    def _refused(self, seconds: float) -> Fit:
+        """Return a fit without numbers."""
+        how, frequency = self.how, np.asarray(self.peaks.frequency)
+        p, k = len(how.paths), len(frequency)
+        nan = np.full(k, np.nan)
+        blank = np.full((p, 2), np.nan)
+        empty = Candidates(
+            how.paths,
+            np.zeros(0),
+            np.zeros((0, k), dtype=np.int64),
+            np.zeros((0, p)),
+            np.zeros((0, len(LEVELS), p, 2)),
+        )
+        return Fit(
+            unknown=how.paths,
+            value=Named(np.full(p, np.nan), how.paths),
+            std=Named(np.full(p, np.nan), how.paths),
+            correlation=np.full((p, p), np.nan),
+            orders=np.zeros(k, dtype=np.int64),
+            measured=frequency,
+            measured_std=nan if self.peaks.std is None else np.asarray(self.peaks.std),
+            calculated=nan,
+            freedom=None,
+            chi_square=float("nan"),
+            probability=float("nan"),
+            status="refused",
+            budget={},
+            ends=how.ends,
+            assumed=(),
+            notes=(NO_MODES,),
+            seed=how.seed,
+            cost=Cost(seconds, "evidence", how.elements or 0, k),
+            candidates=empty,
+            bounds=np.broadcast_to(blank, (len(LEVELS), p, 2)).copy(),
+            remarks=Remarks(),
+            details=details_of(self.peaks),
+        )
+
+
+def details_of(peaks: Peaks) -> tuple[dict[str, Any], ...]:
+    """Return what a record says of each peak beside its frequency, as JSON knows it."""
+    columns = {
+        "damping": peaks.damping_ratio,
+        "snr": peaks.snr,
+        "band": peaks.band,
+        "kind": peaks.kind,
+        "shape": None if peaks.shape is None else np.real(peaks.shape),
+    }
+    there = {name: np.asarray(each).tolist() for name, each in columns.items() if each is not None}
+    return tuple(dict(zip(there, row)) for row in zip(*there.values()))
