@@ -190,6 +190,7 @@ class Model(Compiled):
         quantity: str = "receptance",
         solver: str = "sweep",
         threads: int | None = None,
+        decay: float = 0.0,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment, or motion of an end.
 
@@ -218,11 +219,14 @@ class Model(Compiled):
         threads : int, optional
             Of sweep and band: frequencies are shared out over so many threads; the environment
             variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
+        decay : float, optional
+            [1/s], >= 0: the response at s = i omega + decay, which is that of force and motion
+            both times exp(-decay t), as of hits whose records were given an exponential window.
 
         Returns
         -------
         FRF
-            Motion is Re(value exp(+i omega t)).
+            Motion is Re(value exp(+i omega t)), times exp(decay t).
 
         Raises
         ------
@@ -245,6 +249,9 @@ class Model(Compiled):
         move as a rigid body. A bound of what is left out is part of `FRF.mesh_error`; no other
         damping may act beside it, and internal forces are refused.
 
+        With `decay` the dynamic stiffness is K + s C + s^2 M at the complex s, and velocities and
+        accelerations are s and s^2 times the displacement. A loss factor stays 1 + i eta.
+
         Examples
         --------
         >>> import ropedyn as rd
@@ -261,6 +268,7 @@ class Model(Compiled):
             quantity=quantity,
             solver=solver,
             threads=threads,
+            decay=decay,
         )
 
     def static(

@@ -29,6 +29,12 @@ class Curves(Answer):
     quantity: str
     frequency: Real
     value: Complex
+    decay: float  # 1/s
+
+    @property
+    def s(self) -> Complex:
+        """Where the value is the response, i omega + decay, shape (f,) [1/s]."""
+        return np.asarray(2j * np.pi * self.frequency + self.decay, dtype=np.complex128)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -78,11 +84,11 @@ class Curves(Answer):
         """
         check.one_of(quantity, "quantity", QUANTITIES)
         times = QUANTITIES[quantity] - QUANTITIES[self.quantity]
-        if times < 0 and (self.frequency == 0).any():
+        if times < 0 and (self.s == 0).any():
             raise SceneError(
                 f"quantity must be {self.quantity!r} where a frequency is 0, got {quantity!r}"
             )
-        value = self.value * (2j * np.pi * self.frequency) ** times
+        value = self.value * self.s**times
         return changed(self, quantity=quantity, value=value)
 
     def peaks(self, drive: int = 0) -> tuple[Resonances, ...]:
@@ -97,7 +103,8 @@ class Curves(Answer):
         -------
         tuple of Resonances
             Frequency [Hz] with its standard uncertainty, amplitude and damping ratio of each peak.
-            Of a measurement only what stands out of the noise is a peak.
+            Of a measurement only what stands out of the noise is a peak. Frequency and damping are
+            those of the rope: what an exponential window adds, `decay`, is taken off.
 
         Raises
         ------
@@ -123,6 +130,7 @@ class Curves(Answer):
                 label(self.response[r], self.drive[drive], self.quantity),
                 self._noise_around(r),
                 known=self._noise(r),
+                decay=self.decay,
             )
             for r in range(len(self.response))
         )
@@ -148,6 +156,7 @@ class Curves(Answer):
         binary : bool, optional
             Whether a universal file is binary and keeps every bit, or is ASCII with 12 digits of
             each value and, where start and step do not say them all, 6 of each frequency.
+            Notes of a measurement are kept in text alone.
 
         Raises
         ------
@@ -181,6 +190,9 @@ class Curves(Answer):
             self.quantity,
             coherence=getattr(self, "coherence", None),
             averages=getattr(self, "averages", None),
+            std=getattr(self, "std", None),
+            decay=self.decay,
+            notes=getattr(self, "notes", ()),
         )
         write(content, path, binary)
 

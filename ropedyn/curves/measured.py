@@ -17,6 +17,7 @@ from ..base.errors import SceneError
 from ..base.unit import QUANTITIES, curve_unit, is_quantity
 from ..chain.port import Point
 from .curves import Curves
+from .files import Content
 from .files.formats import read
 
 ROWS = "response and frequency"
@@ -45,6 +46,14 @@ class Measured(Curves):
         averaged.
     averages : float, optional
         How many independent records were averaged, where that is known.
+    std : array_like, as value, optional
+        Standard uncertainty of the real and of the imaginary part of each line, where it is known;
+        `coherence` and `averages` tell one too.
+    decay : float, optional
+        [1/s], >= 0, of the window exp(-decay t) that force and motion both carry: the value is the
+        response at s = i omega + decay, and a model is asked for it there.
+    notes : sequence of str, optional
+        What was left out or mended on the way to it.
 
     Raises
     ------
@@ -69,6 +78,9 @@ class Measured(Curves):
     quantity: str = "receptance"
     coherence: Real | None = field(default=None, metadata=axes("response", "frequency"))
     averages: float | None = None
+    std: Real | None = field(default=None, metadata=axes("response", "frequency"))
+    decay: float = 0.0
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         frequency = check.frequencies(self.frequency)
@@ -90,8 +102,18 @@ class Measured(Curves):
                     f"coherence must lie between 0 and 1, got {check.shown(self.coherence)}"
                 )
             object.__setattr__(self, "coherence", coherence)
+        if self.std is not None:
+            std = check.matrix(self.std, "std", shape, ROWS, np.float64)
+            if (std < 0).any():
+                raise SceneError(f"std must be >= 0, got {check.shown(self.std)}")
+            object.__setattr__(self, "std", std)
         averages = check.optional(self.averages, "averages", sign="positive")
         object.__setattr__(self, "averages", averages)
+        decay = check.number(self.decay, "decay", "1/s", sign="nonnegative")
+        object.__setattr__(self, "decay", decay)
+        check.instance(self.notes, "notes", (list, tuple), "a sequence of texts")
+        notes = (check.instance(n, f"notes[{k}]", str, "a text") for k, n in enumerate(self.notes))
+        object.__setattr__(self, "notes", tuple(notes))
         super().__post_init__()
 
     @classmethod
@@ -107,6 +129,7 @@ class Measured(Curves):
         coordinate: str | Mapping[str, str] | None = None,
         reciprocal: bool = False,
         records: int | Sequence[int] | None = None,
+        decay: float | None = None,
         columns: Mapping[str, Any] | None = None,
         delimiter: str | None = None,
         decimal: str = ".",
@@ -145,6 +168,9 @@ class Measured(Curves):
             response of a passive rope (Maxwell, Betti); for a hammer that roves.
         records : int or list of int, optional
             Of a universal file: numbers of the datasets to be read, from 0.
+        decay : float, optional
+            Of the exponential window that force and motion were given [1/s]; files that `write`
+            has written say it.
         columns : dict, optional
             Of text: names or numbers, from 0, of the columns "frequency" [Hz], "real" and "imag" or
             "amplitude" and "phase" [deg], and "coherence"; a list has one for each response.
@@ -204,7 +230,7 @@ class Measured(Curves):
             },
         )
         try:
-            return cls(**given._asdict())
+            return cls(**_decayed(given, decay)._asdict())
         except SceneError as error:
             raise SceneError(f"{path}: {error}") from error
 
@@ -212,6 +238,8 @@ class Measured(Curves):
         return by_differences(self.value[response])
 
     def _noise(self, response: int) -> Real | None:
+        if self.std is not None:
+            return self.std[response]
         if self.coherence is None or self.averages is None:
             return None
         return by_coherence(self.value[response], self.coherence[response], self.averages)
@@ -221,6 +249,9 @@ class Measured(Curves):
         if self.coherence is not None:
             for name, values in zip(self.labels, self.coherence):
                 columns[f"coherence of {name}"] = values
+        if self.std is not None:
+            for name, values in zip(self.labels, self.std):
+                columns[f"std of {name}"] = values
         return columns
 
 
@@ -246,9 +277,12 @@ def by_differences(value: Complex) -> Real | None:
 
 def lines_of(measured: Measured, which: NDArray[Any]) -> Measured:
     """Return some of the lines, by numbers or as True and False."""
-    coherence = None if measured.coherence is None else measured.coherence[:, which]
-    frequency, value = measured.frequency[which], measured.value[:, which]
-    return replace(measured, frequency=frequency, value=value, coherence=coherence)
+    kept: dict[str, Any] = {
+        name: None if of_lines is None else of_lines[:, which]
+        for name in ("value", "coherence", "std")
+        for of_lines in [getattr(measured, name)]
+    }
+    return replace(measured, frequency=measured.frequency[which], **kept)
 
 
 def above_zero(measured: Measured) -> Measured:
@@ -259,6 +293,11 @@ def above_zero(measured: Measured) -> Measured:
     if not lines.any():
         raise SceneError("measured must have lines above 0 Hz, got none")
     return lines_of(measured, lines)
+
+
+def _decayed(content: Content, decay: float | None) -> Content:
+    """Return the same with the decay of the user, where there is one."""
+    return content if decay is None else content._replace(decay=decay)
 
 
 def _points(given: Any, name: str) -> tuple[Any, ...]:

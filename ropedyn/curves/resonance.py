@@ -82,6 +82,7 @@ def resonances(
     noise: Real | None = None,
     *,
     known: Real | None = None,
+    decay: float = 0.0,
 ) -> Resonances:
     """Find local maxima of the amplitude and fit one mode to each."""
     from scipy.signal import find_peaks
@@ -99,11 +100,12 @@ def resonances(
         if is_enough:
             each = None if known is None else known[lines]
             mode = one_mode.fit(omega[lines], value[lines], each)
+            mode = mode and mode.without(decay)
         if mode is not None:
             if noise is None or _stands_out(mode, noise[k] / size[lines].max()):
                 found.append((k, mode))
         elif noise is None or not is_enough:
-            found.append((k, _by_three(omega, value, quantity, k)))
+            found.append((k, _by_three(omega, value, quantity, k, decay)))
     return Resonances(
         label=label,
         frequency=np.array([peak.omega for _, peak in found]) / (2 * np.pi),
@@ -134,15 +136,15 @@ def _stands_out(mode: one_mode.OneMode, noise: float) -> bool:
     return mode.gain > GAIN * noise**2 and mode.ratio >= NEGATIVE * mode.ratio_std
 
 
-def _by_three(omega: Real, value: Complex, quantity: str, k: int) -> _Peak:
+def _by_three(omega: Real, value: Complex, quantity: str, k: int, decay: float) -> _Peak:
     """Return the mode through line k and its neighbours."""
     # of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
     # omega: the one through the three lines about the maximum has its root there at the pole
     # omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact
     # for one mode; others tilt it a little
     with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = (1j * omega) ** QUANTITIES[quantity] / value
-    pole = _pole(omega, inverse, k)
+        inverse = (1j * omega + decay) ** QUANTITIES[quantity] / value
+    pole = _pole(omega, inverse, k) - 1j * decay
     spacing = (omega[k + 1] - omega[k - 1]) / 2
     return _Peak(abs(pole), pole.imag / abs(pole), spacing / np.sqrt(12), np.inf)
 

@@ -62,6 +62,8 @@ class FRF(Curves):
         give that were left out.
     cost : Cost
         What it cost.
+    decay : float
+        The value is the response at s = i omega + decay [1/s]; 0 unless it was asked for.
     """
 
     drive: tuple[Point, ...]
@@ -75,6 +77,7 @@ class FRF(Curves):
     solve_rates: Callable[[], ResponseRates] | None = field(
         default=None, repr=False, metadata=TRANSIENT
     )
+    decay: float = 0.0
 
     mesh_error = Read[Real]("mesh", "Relative error that the elements cause, as value.")
 

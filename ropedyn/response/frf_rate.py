@@ -200,7 +200,7 @@ class FrequencyRates:
     """How a frequency response changes."""
 
     model: Compiled  # that was asked
-    frequency: Real  # (f,) [Hz]
+    omega: Real | Complex  # (f,) -i s [rad/s]
     drives: tuple[Point, ...]  # that were asked for
     responses: tuple[Point, ...]  # that were asked for
     answered: Sequence[Answered]  # of the components that take part
@@ -265,8 +265,7 @@ class FrequencyRates:
         spread = tip.spread(self.model, self.responses)
         for (question, parts), component in zip(self.answered, self.components):
             lines = component.fields.question
-            omega = 2 * np.pi * lines.frequency
-            by_p = (damping.factors(own, omega) - damping.factors([], omega)).T
+            by_p = (damping.factors(own, lines.omega) - damping.factors([], lines.omega)).T
             found = component.receptance(weights, by_p)
             if parts is not None:
                 found = sum_slope(parts, found, float(damping.ratios(own, 1)[0]))
@@ -279,7 +278,7 @@ class FrequencyRates:
         """Take roots together to tips, t^T u/e of which both change."""
         if not any(map(tip.is_tip, self.responses)):
             return value
-        omega = 2 * np.pi * self.frequency
+        omega = self.omega
         factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
         more = (damping.factors(own, omega) - damping.factors([], omega))[:, damping.INERTIA]
         inertia = factor[damping.INERTIA]
@@ -299,4 +298,4 @@ class FrequencyRates:
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
         times = QUANTITIES[quantity]
-        return self.receptance(path) * (2j * np.pi * self.frequency) ** times
+        return self.receptance(path) * (1j * self.omega) ** times

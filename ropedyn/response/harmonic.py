@@ -27,7 +27,7 @@ from .frf import FRF, MeshOfResponse
 from .frf_rate import Answered, FrequencyRates
 from .modal_sum import Summed, modal_sum, refuse_other_damping
 from .moved_end import moves_ends
-from .question import Question, Solver, workers_of
+from .question import Question, Solver, angular, workers_of
 from .solvers import SOLVERS
 
 
@@ -40,6 +40,7 @@ def solve_harmonic(
     quantity: str = "receptance",
     solver: str = "sweep",
     threads: int | None = None,
+    decay: float = 0.0,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
     solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
@@ -51,12 +52,14 @@ def solve_harmonic(
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     responses = observed(model, response, drives)
     asked = tip.spread(model, responses)
-    factor = damping.factors(model.scene.dampings, 2 * np.pi * f).T
+    decay = check.number(decay, "decay", "1/s", sign="nonnegative")
+    omega = angular(f, decay)
+    factor = damping.factors(model.scene.dampings, omega).T
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
         refuse_other_damping(model, drives, responses)
     start = time.perf_counter()
-    whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers)
+    whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers, decay)
     got = _by_components(whole, partial(modal_sum if is_modal else _line_by_line, solver=solve))
     value, error, truncation = got.value.copy(), got.error, got.truncation
     if any(map(tip.is_tip, responses)):
@@ -65,11 +68,12 @@ def solve_harmonic(
     _refuse_overflow(f, value, error)
     seconds = time.perf_counter() - start
     if QUANTITIES[quantity] > 0:
-        value *= (2j * np.pi * f) ** QUANTITIES[quantity]
+        value *= (1j * omega) ** QUANTITIES[quantity]
     if not several:
         value, error, truncation = value[0], error[0], truncation[0]
     mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
+    mesh = partial(mesh, decay=decay)
     if model.element == "continuous":
         mesh = MeshOfResponse(truncation)
     return FRF(
@@ -88,7 +92,10 @@ def solve_harmonic(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh=mesh,
-        solve_rates=partial(FrequencyRates, model, f, drives, responses, got.answered, got.value),
+        solve_rates=partial(
+            FrequencyRates, model, omega, drives, responses, got.answered, got.value
+        ),
+        decay=decay,
     )
 
 
@@ -148,10 +155,13 @@ def mesh_of_frf(
     *,
     quantity: str,
     value: Complex,
+    decay: float = 0.0,
 ) -> MeshOfResponse:
     """Compare the response of a chain with that of continuous spans."""
     try:
-        true, uncertain = _response(compile_scene(scene), frequency, drives, responses, quantity)
+        ask = partial(solve_harmonic, compile_scene(scene), drive=drives, response=responses)
+        ask = partial(ask, quantity=quantity, decay=decay)
+        true, uncertain = _response(ask, frequency, (len(drives), len(responses)))
     except SceneError:
         return MeshOfResponse(np.full(value.shape, np.inf))
     true, uncertain = true.reshape(value.shape), uncertain.reshape(value.shape)
@@ -165,28 +175,19 @@ def mesh_of_frf(
 
 
 def _response(
-    model: Compiled,
-    frequency: Real,
-    drives: tuple[Point, ...],
-    responses: tuple[Point, ...],
-    quantity: str,
+    ask: Callable[[Real], FRF], frequency: Real, pairs: tuple[int, int]
 ) -> tuple[Complex, Real]:
     """Return value and relative error, (drives, responses, f); NaN where there is no answer."""
     # one frequency without an answer refuses all: halves are asked until it is alone
     try:
-        answer = solve_harmonic(
-            model, frequency, drive=drives, response=responses, quantity=quantity
-        )
+        answer = ask(frequency)
         # a sum over modes has an error beside rounding, continuous spans or not
         return answer.value, answer.rounding_error + answer.mesh_error
     except SolveError:
-        shape = (len(drives), len(responses), len(frequency))
+        shape = (*pairs, len(frequency))
         if len(frequency) == 1:
             return np.full(shape, np.nan, dtype=np.complex128), np.full(shape, np.nan)
     half = len(frequency) // 2
-    parts = [
-        _response(model, part, drives, responses, quantity)
-        for part in (frequency[:half], frequency[half:])
-    ]
+    parts = [_response(ask, part, pairs) for part in (frequency[:half], frequency[half:])]
     value, error = zip(*parts)
     return np.concatenate(value, axis=2), np.concatenate(error, axis=2)

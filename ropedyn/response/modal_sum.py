@@ -1,6 +1,6 @@
 """Harmonic response as a sum over the modes of the undamped model, each with its damping ratio.
 
-With z = omega^2, H(z) the undamped response and r_k its residues at the eigenvalues,
+With z = omega^2 = -s^2, H(z) the undamped response and r_k its residues at the eigenvalues,
 
     h = H(-s) + sum r_k g_k,   g_k = 1/(lambda_k - z + 2 i zeta_k omega sqrt(lambda_k))
                                       - 1/(lambda_k + s)
@@ -107,7 +107,7 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     own = _left_out(question, solver, poles)
     d, r = ([own[point] for point in some] for some in (question.drives, question.responses))
     size = np.sqrt(np.multiply.outer(d, r))  # the sum over modes is bounded as an inner product
-    omega = 2 * np.pi * question.frequency
+    omega = question.omega
     shape = (len(question.drives), len(question.responses), len(omega))
     value, error = np.empty(shape, dtype=np.complex128), np.empty(shape)
     most = max(1, (1 << 20) // max(len(poles.eigenvalue), 1))
@@ -118,7 +118,7 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
         error[..., part] = static.error[..., None] + residue.error @ np.abs(g)
         error[..., part] += np.abs(residue.value) @ slope
     missing = _missing(poles, static, residue, probed)[..., None]
-    share = (omega**2 + poles.shift) / (poles.probe - poles.shift)
+    share = (np.abs(omega) ** 2 + poles.shift) / (poles.probe - poles.shift)
     neglected = np.maximum(size[..., None] * _most(poles, omega), missing * share)
     lines = (2 + ROUND // 2 * len(poles.eigenvalue)) * (1 + -(-len(own) // TOGETHER))
     parts = ModalParts(question, undamped_lines(question, poles), poles, residue.value)
@@ -137,7 +137,7 @@ def sum_slope(parts: ModalParts, by_p: Complex, ratio: float) -> Complex:
     residue = (-step * around).real.mean(axis=-1)
     moved = -(step**2 * around).real.mean(axis=-1)
     value = np.empty((*by_p.shape[:2], len(question.frequency)), dtype=np.complex128)
-    omega = 2 * np.pi * question.frequency
+    omega = question.omega
     most = max(1, (1 << 20) // max(len(poles.eigenvalue), 1))
     for first in range(0, len(omega), most):
         part = slice(first, first + most)
@@ -148,7 +148,7 @@ def sum_slope(parts: ModalParts, by_p: Complex, ratio: float) -> Complex:
     return value
 
 
-def _weight_slopes(poles: UndampedPoles, omega: Real) -> tuple[Complex, Complex, Complex]:
+def _weight_slopes(poles: UndampedPoles, omega: Real | Complex) -> tuple[Complex, Complex, Complex]:
     """Return g of `_weights`, dg/dlambda and dg/dzeta, each (k, f)."""
     own, ratio = poles.eigenvalue[:, None], poles.ratio[:, None]
     root, soft = np.sqrt(np.maximum(own, 0.0)), 1 / (own + poles.shift)
@@ -272,7 +272,7 @@ def undamped_lines(question: Question, poles: UndampedPoles) -> Question:
     circles = poles.eigenvalue[:, None] + _steps(poles)
     z = np.concatenate([circles.ravel(), [-poles.shift, -poles.probe]])
     hertz = np.sqrt(np.abs(z)) / (2 * np.pi)
-    return dataclasses.replace(question, factor=undamped_factors(z), frequency=hertz)
+    return dataclasses.replace(question, factor=undamped_factors(z), frequency=hertz, decay=0.0)
 
 
 def _taken_apart(
@@ -316,7 +316,7 @@ def _missing(
 
 
 def _weights(
-    question: Question, poles: UndampedPoles, omega: Real, part: slice
+    question: Question, poles: UndampedPoles, omega: Real | Complex, part: slice
 ) -> tuple[Complex, Real]:
     """Return g and what rounding of the eigenvalue makes of it, each (k, f)."""
     # g = (z + s - 2 i zeta omega sqrt(lambda))/((lambda + s) (lambda - z + the same)), without the
@@ -333,19 +333,22 @@ def _weights(
     g = (z + poles.shift - lost) * soft / pole
     # lambda in the pole, in what it loses and in the static part; ratios of equal modes
     change = 1 + np.abs(lost) / np.maximum(2 * np.abs(own), np.finfo(float).tiny)
-    moved = poles.error[:, None] * change + poles.unlike[:, None] * twice
+    moved = poles.error[:, None] * change + poles.unlike[:, None] * np.abs(twice)
     slope = moved / np.abs(pole) ** 2 + poles.error[:, None] * soft**2
     slope += 4 * np.finfo(float).eps * np.abs(g)
     return np.asarray(g, dtype=np.complex128), slope
 
 
-def _most(poles: UndampedPoles, omega: Real) -> Real:
+def _most(poles: UndampedPoles, omega: Real | Complex) -> Real:
     """Return the largest (lambda + s) |g| of the modes that are left out, shape (f,)."""
-    # |z + s - 2 i zeta omega sqrt(lambda)|/|lambda - z + the same| falls where lambda > z
+    # |z + s - 2 i zeta omega sqrt(lambda)|/|lambda - z + the same| falls where lambda > Re z. The
+    # sizes of both parts of omega = w - i d: what d adds below only makes it larger
     if not np.isfinite(poles.beyond):
         return np.zeros(len(omega))
-    lost = 2 * poles.largest * omega * np.sqrt(poles.beyond)
-    return np.hypot(omega**2 + poles.shift, lost) / (poles.beyond - omega**2)
+    w, d = omega.real, -omega.imag
+    lost = 2 * poles.largest * np.sqrt(poles.beyond)
+    above = np.hypot(np.abs(w**2 - d**2 + poles.shift) + lost * d, (lost + 2 * d) * w)
+    return np.asarray(above / (poles.beyond - w**2))
 
 
 def _over(error: Real, value: Complex) -> Real:

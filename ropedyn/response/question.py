@@ -32,6 +32,12 @@ class Question:
     drives: list[Point]  # on these coordinates
     responses: list[Point]  # on these coordinates
     workers: int  # threads
+    decay: float = 0.0  # the response is that at i omega + decay [1/s]
+
+    @property
+    def omega(self) -> Real | Complex:
+        """-i s, shape (f,): real where nothing decays [rad/s]."""
+        return angular(self.frequency, self.decay)
 
     @property
     def is_damped(self) -> Flags:
@@ -81,6 +87,12 @@ class Question:
 
 Solver = Callable[[Question], tuple[Complex, Real]]
 """What answers it: motion per force, (drives, responses, f), with estimated errors."""
+
+
+def angular(frequency: Real, decay: float) -> Real | Complex:
+    """Return omega = -i s of s = i 2 pi frequency + decay, real where nothing decays [rad/s]."""
+    omega = 2 * np.pi * frequency
+    return np.asarray(omega - 1j * decay, dtype=np.complex128) if decay else omega
 
 
 def damped_lines(chain: Chain, factor: Complex) -> Flags:

@@ -5,8 +5,8 @@ The dynamic stiffness at the angular frequency omega is
     section K_elastic + tension K_tension + spring K_springs + inertia M + dashpot C
 
 with section = tension = spring = 1, inertia = -omega^2 and dashpot = i omega where nothing else is
-damped. A kind of damping is what it adds to these factors, to C along the rope, and to the ratios
-of modes.
+damped; omega = -i s is complex for the one at any s. A kind of damping is what it adds to these
+factors, to C along the rope, and to the ratios of modes.
 """
 
 from __future__ import annotations

@@ -16,19 +16,26 @@ FEWEST = 3  # So many lines at least are fitted: a mode and what all others add 
 
 
 def residues(
-    frequency: Real, value: Complex, quantity: str, peak: Real, damping_ratio: Real
+    frequency: Real,
+    value: Complex,
+    quantity: str,
+    peak: Real,
+    damping_ratio: Real,
+    *,
+    decay: float = 0.0,
 ) -> Complex:
     """Return what each response shows of the mode of each peak: its shape there."""
-    # around a peak receptances are A/(w0^2 - w^2 + 2 i zeta w0 w) + R with the same pole for all
-    # responses, and A in proportion to the shape; R is what other modes add. Both follow by least
-    # squares from the lines within three half widths, and not beyond the middle to another peak
-    omega = 2 * np.pi * frequency
-    receptance = value / (1j * omega) ** QUANTITIES[quantity]
+    # around a peak receptances are A/(w0^2 + s^2 + 2 zeta w0 s) + R, s = i w + decay, with the same
+    # pole for all responses, and A in proportion to the shape; R is what other modes add. Both
+    # follow by least squares from the lines within three half widths, and not beyond the middle to
+    # another peak
+    s = 2j * np.pi * frequency + decay
+    receptance = value / s ** QUANTITIES[quantity]
     found = np.empty((len(peak), len(value)), dtype=np.complex128)
     for k, (f0, ratio) in enumerate(zip(peak.tolist(), damping_ratio.tolist())):
         lines = _around(frequency, f0, BROAD * abs(ratio) * f0, np.delete(peak, k))
-        w, w0 = omega[lines], 2 * np.pi * f0
-        one = w0 * w0 / (w0 * w0 - w * w + 2j * ratio * w0 * w)
+        p, w0 = s[lines], 2 * np.pi * f0
+        one = w0 * w0 / (w0 * w0 + p * p + 2 * ratio * w0 * p)
         parts = np.stack([one, np.ones_like(one)], axis=1)
         size = np.abs(parts).max(axis=0)
         found[k] = np.linalg.lstsq(parts / size, receptance[:, lines].T)[0][0] / size[0]

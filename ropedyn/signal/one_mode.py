@@ -30,6 +30,16 @@ class OneMode(NamedTuple):
     # square of the largest line
     gain: float
 
+    def without(self, decay: float) -> OneMode:
+        """Return it without the window e^(-decay t), which moves a pole by -decay [1/s]."""
+        # with a = zeta omega and the same omega^2 - a^2: omega' = sqrt(omega^2 - a^2 + (a - d)^2)
+        if decay == 0:
+            return self
+        loss = self.ratio * self.omega - decay
+        omega = float(np.hypot(self.omega * np.sqrt(max(1 - self.ratio**2, 0.0)), loss))
+        spread = np.hypot(self.ratio_std * self.omega, self.ratio * self.omega_std)
+        return self._replace(omega=omega, ratio=loss / omega, ratio_std=float(spread / omega))
+
 
 class _Window(NamedTuple):
     """Lines about a peak in units of their own."""

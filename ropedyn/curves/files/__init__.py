@@ -18,3 +18,6 @@ class Content(NamedTuple):
     quantity: str
     coherence: Real | None = None  # (responses, f)
     averages: float | None = None
+    std: Real | None = None  # (responses, f) of real and imaginary part
+    decay: float = 0.0  # the value is the response at i omega + decay [1/s]
+    notes: Sequence[str] = ()

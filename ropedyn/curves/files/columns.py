@@ -44,6 +44,9 @@ class Head(NamedTuple):
     quantity: str
     has_coherence: bool
     averages: float | None
+    has_std: bool
+    decay: float
+    notes: tuple[str, ...]
 
 
 class Sheet(NamedTuple):
@@ -257,7 +260,7 @@ def _own(file: Path, text: str, drive: Any) -> Content:
     if wanted not in head.drives:
         raise SceneError(f"drive must be {there}, got {drive!r}")
     sheet = _sheet(file, rest, Layout(",", ".", "", 0))
-    each = 3 if head.has_coherence else 2
+    each = 2 + head.has_coherence + head.has_std
     if sheet.numbers.shape[1] != 1 + each * len(head.responses) * len(head.drives):
         raise SceneError(
             f"path must be a file that nobody changed, got {str(file)!r} with "
@@ -273,6 +276,9 @@ def _own(file: Path, text: str, drive: Any) -> Content:
         quantity=head.quantity,
         coherence=block[:, 2] if head.has_coherence else None,
         averages=head.averages,
+        std=block[:, -1] if head.has_std else None,
+        decay=head.decay,
+        notes=head.notes,
     )
 
 
@@ -287,18 +293,24 @@ def _head(text: str) -> Head:
         check.one_of(given["quantity"], "quantity", QUANTITIES),
         check.instance(given["coherence"], "coherence", bool, "true or false"),
         check.optional(given["averages"], "averages", sign="positive"),
+        check.instance(given["std"], "std", bool, "true or false"),
+        check.number(given["decay"], "decay", "1/s", sign="nonnegative"),
+        tuple(check.instance(note, "note", str, "text") for note in given["notes"]),
     )
 
 
 def write(content: Content, path: Path) -> None:
-    """Write responses, and their coherences, with every digit; see `Curves.write`."""
-    coherence = content.coherence
+    """Write responses, and what is known of them, with every digit; see `Curves.write`."""
+    coherence, std = content.coherence, content.std
     head = {
         "drive": content.drive,
         "response": content.response,
         "quantity": content.quantity,
         "coherence": coherence is not None,
         "averages": content.averages,
+        "std": std is not None,
+        "decay": content.decay,
+        "notes": list(content.notes),
     }
     names, columns = ["frequency [Hz]"], [content.frequency]
     for name, r, d in named(content.response, content.drive, content.quantity):
@@ -307,6 +319,9 @@ def write(content: Content, path: Path) -> None:
         if coherence is not None:
             names.append(f"coherence of {name}")
             columns.append(coherence[r])
+        if std is not None:
+            names.append(f"std of {name}")
+            columns.append(std[r])
     text = io.StringIO()
     text.write(f"{OWN}{json.dumps(head)}\n")
     writer = csv.writer(text, lineterminator="\n")

@@ -22,7 +22,7 @@ from . import Content
 FUNCTION = 58
 NODES = (15, 2411)
 UNITS = 164
-FRF, COHERENCE = 4, 6
+FRF, COHERENCE, GENERAL = 4, 6, 0
 """Types of functions."""
 FREQUENCY = 18  # The type of an abscissa over frequency.
 MOTION = {8: 0, 11: 1, 12: 2}
@@ -33,6 +33,10 @@ DIRECTIONS = ("scalar", "X", "Y", "Z", "RX", "RY", "RZ")
 """Directions by their codes without sign; R is rotation."""
 OWN = re.compile(r"ropedyn (?P<r>[a-z]+) (?P<rx>\S+) per (?P<d>[a-z]+) (?P<dx>\S+)$")
 """The second line of a function that was written here: its points."""
+DECAY = re.compile(r"ropedyn decay (\S+)$")
+"""The fourth line of a function that was written here."""
+SPREAD = "Standard deviation"
+"""The ordinate of a general function that was written here."""
 AVERAGES = re.compile(r"ropedyn averages (\S+)$")
 """The fifth line of a function that was written here."""
 MARK = re.compile(rb"(?=    -1(?:[\r\n]|\Z| {74}.))", re.DOTALL)
@@ -203,7 +207,7 @@ CODE = {"x": 1, "z": 3, "alpha": 4, "beta": -5}
 
 
 def write(content: Content, path: Path, binary: bool) -> None:
-    """Write responses, and their coherences, as datasets 58 in SI; see `Curves.write`."""
+    """Write responses, and what is known of them, as datasets 58 in SI; see `Curves.write`."""
     _refuse(content)
     points = [*content.drive, *content.response]
     nodes = {x: k for k, x in enumerate(sorted({x for _, x in points}), start=1)}
@@ -214,6 +218,8 @@ def write(content: Content, path: Path, binary: bool) -> None:
             datasets.append(common | _ordinate(content, drive, response, content.value[d, r]))
             if content.coherence is not None:
                 datasets.append(common | _share(content.coherence[r]))
+            if content.std is not None:
+                datasets.append(common | _spread(content.std[r]))
     _write_all(path, datasets)
 
 
@@ -254,6 +260,7 @@ def _common(
         "binary": int(binary),
         "id1": label(response, drive, content.quantity),
         "id2": f"ropedyn {r} {float(rx)!r} per {d} {float(dx)!r}",
+        "id4": f"ropedyn decay {content.decay!r}" if content.decay else "NONE",
         "id5": "NONE" if averages is None else f"ropedyn averages {averages!r}",
         "rsp_node": nodes[rx],
         "rsp_dir": CODE[r],
@@ -303,6 +310,10 @@ def _ordinate(content: Content, drive: Point, response: Point, curve: Complex) -
 
 def _share(coherence: Real) -> Fields:
     return {"func_type": COHERENCE, "data": coherence, "ordinate_axis_lab": "Coherence"}
+
+
+def _spread(std: Real) -> Fields:
+    return {"func_type": GENERAL, "data": std, "ordinate_axis_lab": SPREAD}
 
 
 def _write_all(path: Path, datasets: Sequence[Fields]) -> None:

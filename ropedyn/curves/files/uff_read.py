@@ -20,12 +20,15 @@ from . import Content, uff
 from .uff import (
     AVERAGES,
     COHERENCE,
+    DECAY,
     DIRECTIONS,
     FORCE,
     FREQUENCY,
     FRF,
+    GENERAL,
     MOTION,
     OWN,
+    SPREAD,
     UNSAID,
     Record,
     label_of,
@@ -58,7 +61,9 @@ def read(
     records: Any,
 ) -> Content:
     """Read what a `Measured` is made of; see `Measured.read`."""
-    found = uff.read(file, lambda fields: fields["func_type"] in (FRF, COHERENCE))
+    found = uff.read(
+        file, lambda fields: _is_spread(fields) or fields["func_type"] in (FRF, COHERENCE)
+    )
     found = _numbered(found, records, file)
     functions = [r for r in found if r.fields["func_type"] == FRF]
     lines = located(functions, file, positions, coordinate)
@@ -88,8 +93,10 @@ def read(
         drive=lines[0].drive,
         response=[line.response for line in lines],
         quantity=names.pop(),
-        coherence=_coherence(lines, found, file),
-        averages=_averages(lines),
+        coherence=_beside(lines, [r for r in found if r.fields["func_type"] == COHERENCE], file),
+        averages=_noted(lines, "id5", AVERAGES),
+        std=_spread(lines, [r for r in found if _is_spread(r.fields)], factor, file),
+        decay=_noted(lines, "id4", DECAY) or 0.0,
     )
 
 
@@ -141,33 +148,50 @@ def _alike(a: Real, b: Real) -> bool:
     return len(a) == len(b) and np.allclose(a, b, rtol=SAME, atol=0.0)
 
 
-def _coherence(lines: Sequence[Located], found: Sequence[Record], file: Path) -> Real | None:
-    """Return the coherence of each response, by its nodes and directions; None without any."""
+def _is_spread(fields: uff.Fields) -> bool:
+    """Whether a function is the standard deviation that `write` has written."""
+    return bool(fields["func_type"] == GENERAL and fields["ordinate_axis_lab"].strip() == SPREAD)
+
+
+def _spread(
+    lines: Sequence[Located], found: Sequence[Record], factor: Sequence[float], file: Path
+) -> Real | None:
+    """Return the standard deviation of each response in SI; None without any."""
+    std = _beside(lines, found, file)
+    return None if std is None else std * np.abs(np.reshape(factor, (-1, 1)))
+
+
+def _beside(lines: Sequence[Located], found: Sequence[Record], file: Path) -> Real | None:
+    """Return what else is known of each response, by nodes and directions; None without any."""
     frequency = _frequency(lines[0].record, file)
     rows = []
     for line in lines:
         key = _key(line.record)
-        same = [r for r in found if r.fields["func_type"] == COHERENCE and _key(r) == key]
+        same = [r for r in found if _key(r) == key]
         if len(same) > 1:
             raise SceneError(
                 f"records must leave one of datasets {[r.number for r in same]} of {str(file)!r}: "
-                f"all are the coherence of dataset {line.record.number}"
+                f"all are the {_kind(same[0])} of dataset {line.record.number}"
             )
         rows += same
     if not rows:
         return None
     if len(rows) < len(lines):
         raise SceneError(
-            f"path must hold a coherence for each response or for none, got {str(file)!r} with "
-            f"{len(rows)} for {len(lines)}: choose by response= or records="
+            f"path must hold a {_kind(rows[0])} for each response or for none, got {str(file)!r} "
+            f"with {len(rows)} for {len(lines)}: choose by response= or records="
         )
     for row in rows:
         if np.iscomplexobj(row.fields["data"]) or not _alike(frequency, _frequency(row, file)):
             raise SceneError(
-                f"path must hold real coherences at the frequencies of the response, got "
+                f"path must hold real {_kind(row)}s at the frequencies of the response, got "
                 f"{str(file)!r} with others in dataset {row.number}"
             )
     return np.array([row.fields["data"] for row in rows])
+
+
+def _kind(record: Record) -> str:
+    return SPREAD.lower() if _is_spread(record.fields) else "coherence"
 
 
 def _key(record: Record) -> tuple[int, ...]:
@@ -176,9 +200,9 @@ def _key(record: Record) -> tuple[int, ...]:
     return (*nodes, abs(fields["rsp_dir"]), abs(fields["ref_dir"]))
 
 
-def _averages(lines: Sequence[Located]) -> float | None:
-    """Return the number of averages that `write` has written down."""
-    said = {match[1] for line in lines if (match := AVERAGES.match(line.record.fields["id5"]))}
+def _noted(lines: Sequence[Located], field: str, words: re.Pattern[str]) -> float | None:
+    """Return a number that `write` has written down for all of them."""
+    said = {match[1] for line in lines if (match := words.match(line.record.fields[field]))}
     try:
         return float(said.pop()) if len(said) == 1 else None
     except ValueError:

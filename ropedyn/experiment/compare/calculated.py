@@ -68,6 +68,7 @@ class CalculatedPeaks:
             self.frf.quantity,
             self.frequency,
             self.damping_ratio,
+            decay=self.frf.decay,
         )
 
     def visible(self, drive: Point, response: tuple[Point, ...]) -> Flags:

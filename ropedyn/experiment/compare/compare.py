@@ -367,6 +367,7 @@ def _mac(
             curves.quantity,
             peaks.frequency,
             peaks.damping_ratio,
+            decay=curves.decay,
         )
     calculated = found.shapes(where, drive)
     return None if calculated is None else mac(measured, calculated)

@@ -72,6 +72,7 @@ def calculated_at(calculated: Model | FRF, measured: Measured) -> Complex:
             drive=measured.drive[0],
             response=list(measured.response),
             quantity=measured.quantity,
+            decay=measured.decay,
         ).value
     drive = drive_of(calculated, measured)
     lines = _lines(calculated, measured)
@@ -84,9 +85,14 @@ def calculated_at(calculated: Model | FRF, measured: Measured) -> Complex:
                 + ", ".join(map(place, calculated.response))
             )
         rows.append(calculated.curve(at, drive)[lines])
+    if calculated.decay != measured.decay:
+        raise SceneError(
+            f"calculated must be a Model or have the decay of measured, {measured.decay:g} 1/s, "
+            f"got {calculated.decay:g} 1/s"
+        )
     # at lines above 0 Hz motion can be integrated
     times = QUANTITIES[measured.quantity] - QUANTITIES[calculated.quantity]
-    return np.asarray(np.stack(rows) * (2j * np.pi * measured.frequency) ** times)
+    return np.asarray(np.stack(rows) * measured.s**times)
 
 
 def _lines(calculated: FRF, measured: Measured) -> Index:

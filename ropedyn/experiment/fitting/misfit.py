@@ -152,6 +152,7 @@ class Response:
             drive=measured.drive[0],
             response=list(measured.response),
             quantity=measured.quantity,
+            decay=measured.decay,
         )
         factor = unknowns.calibration(u)
         slope = [
