@@ -10,11 +10,11 @@ from ..base import check
 from ..base.array import Complex, Flags, Real
 from ..base.errors import SceneError
 from .spectrum import time_step, window_weights
+from .transfer import ESTIMATORS, Spectra, coherence_of, forced
 
 OVERLAPPING = 0.53
 """Segments of Hann's window that half overlap count so many times as independent ones: Bendat and
 Piersol (2010), section 11.5.2.2."""
-FLOOR = 1e-3  # Lines where the force is less than this part of its largest line are left out.
 
 
 class Estimate(NamedTuple):
@@ -36,6 +36,7 @@ def estimate(
     window: str | None,
     band: Any,
     at_rest: bool,
+    estimator: str = "H1",
 ) -> Estimate:
     """Estimate responses (responses, t) per force of one of the drives (drives, t)."""
     # see `History.frf`; the line at 0 Hz is left out unless it says what holds at rest
@@ -57,13 +58,14 @@ def estimate(
     }
     frequency, cross = signal.csd(push, value, **how)
     _, power = signal.welch(push, **how)
+    _, motion = signal.welch(value, **how)
     kept = _kept(frequency, power, _band(band), at_rest)
+    spectra = Spectra(power[kept], cross[:, kept], motion[:, kept])
     coherence = averages = None
     if segments > 1:
-        # rounding may lift it above 1
-        coherence = np.minimum(signal.coherence(push, value, **how)[1][:, kept], 1.0)
+        coherence = coherence_of(spectra)
         averages = OVERLAPPING * segments if window == "hann" else None
-    return Estimate(frequency[kept], cross[:, kept] / power[kept], coherence, averages)
+    return Estimate(frequency[kept], ESTIMATORS[estimator](spectra), coherence, averages)
 
 
 def _alone(force: Real, drive: int) -> Real:
@@ -97,7 +99,7 @@ def _band(given: Any) -> Real | None:
 def _kept(frequency: Real, power: Real, band: Real | None, at_rest: bool) -> Flags:
     """Return which lines are told: those of the band, or where the force is not small."""
     if band is None:
-        kept = power > FLOOR**2 * power.max()
+        kept = forced(power)
     else:
         kept = (frequency >= band[0]) & (frequency <= band[1]) & (power > 0)
     # a velocity at 0 Hz says nothing of the displacement there

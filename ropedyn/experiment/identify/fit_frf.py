@@ -12,6 +12,7 @@ from ...base.array import Complex, Real
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...curves.measured import Measured
+from ...signal.hits import alike
 from ..fitting.minimum import Point
 from ..fitting.misfit import LineMisfit, LogMisfit, OneByOne, PriorMisfit, Response, unseen_of
 from ..fitting.unknown import Unknowns
@@ -35,7 +36,7 @@ def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
     """Fit logarithms, in which peaks at wrong places are decades off, then lines over noise."""
     started = time.perf_counter()
     measured = response.measured
-    lines = int((measured.value != 0).sum())
+    lines, together = int((measured.value != 0).sum()), alike(_long(measured))
     _refuse_few(response.unknowns, lines, known)
     response, u = start_of_response(response)
     unknowns, logarithm = response.unknowns, LogMisfit(response)
@@ -45,8 +46,8 @@ def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
     for _ in range(ROUNDS):
         value, _ = response(u)
         std = line_std(measured, value - measured.value)
-        misfit = OneByOne(LineMisfit(response, std))
-        task = Task(unknowns, misfit, 2 * measured.value.size, known, np.full(1, np.nan))
+        misfit = OneByOne(LineMisfit(response, std * np.sqrt(together)))
+        task = Task(unknowns, misfit, 2 * measured.value.size, known, np.full(1, np.nan), together)
         start = Point(u[None], *(one[None] for one in misfit.function(u)))
         solution, failed = task.solve(ROW, start)
         if failed:
@@ -102,23 +103,32 @@ def _answer(
         measured=measured.value,
         calculated=value,
         measured_std=solution.noise[0] * std,
-        notes=(*notes_of(solution, RESPONSE), *_systematic(measured.value, value, std)),
+        notes=(*notes_of(solution, RESPONSE), *_systematic(measured, value, std)),
     )
 
 
-def _systematic(measured: Complex, calculated: Complex, std: Real) -> list[str]:
+def _long(measured: Measured) -> float:
+    """Return decay times the duration of records, by the distance of lines."""
+    if measured.decay == 0 or len(measured.frequency) < 2:
+        return 0.0
+    return measured.decay / float(np.median(np.diff(measured.frequency)))
+
+
+def _systematic(measured: Measured, calculated: Complex, std: Real) -> list[str]:
     """Say where neighbouring lines are off alike: that is the model, not noise."""
     found = []
-    for r, (true, off, each) in enumerate(zip(measured, calculated - measured, std)):
+    long = _long(measured)
+    by_window = long**2 / (long**2 + np.pi**2)
+    for r, (true, off, each) in enumerate(zip(measured.value, calculated - measured.value, std)):
         if np.linalg.norm(off) <= EXACT * np.linalg.norm(true):
             continue
         one = off / each
         size = float(np.vdot(one, one).real)
-        alike = float(np.vdot(one[:-1], one[1:]).real) / size if size > 0 else 0.0
-        if alike > ALIKE:
+        near = float(np.vdot(one[:-1], one[1:]).real) / size if size > 0 else 0.0
+        if near > by_window + ALIKE * (1 - by_window):
             found.append(
                 f"response {r} differs from the model by more than noise: its residuals of "
-                f"neighbouring lines are correlated by {alike:.2f}, and the std are too small"
+                f"neighbouring lines are correlated by {near:.2f}, and the std are too small"
             )
     return found
 
@@ -126,14 +136,16 @@ def _systematic(measured: Complex, calculated: Complex, std: Real) -> list[str]:
 def line_std(measured: Measured, off: Complex) -> Real:
     """Estimate the standard deviation of either part of each line, a^2 + b^2 |H|^2.
 
-    Measured coherence C tells the first kind, (1 - C)/C |H|^2/2n of n averages (Bendat, Piersol,
-    Random Data, 2010, section 9.2).
+    The measured std tell the first kind, or coherence C, (1 - C)/C |H|^2/2n of n averages (Bendat,
+    Piersol, Random Data, 2010, section 9.2).
     """
     std = np.empty(off.shape)
     for r, value in enumerate(measured.value):
         power = np.abs(value) ** 2
         first = np.full(power.shape, power.mean())
-        if measured.coherence is not None:
+        if measured.std is not None:
+            first = measured.std[r] ** 2
+        elif measured.coherence is not None:
             share = measured.coherence[r]
             with np.errstate(divide="ignore"):
                 first = power * np.where(share > 0, (1 - share) / share, np.inf)

@@ -238,6 +238,7 @@ class Task:
     peaks: int  # residuals of each
     known: PriorMisfit | None
     noise: Real  # (n,) standard deviation of residuals, of each row of the misfit; NaN: to estimate
+    alike: float = 1.0  # so many of the residuals count as one
 
     def misfit(self, weight: Real) -> Misfit:
         """Return what is made small, with what was known in units of a noise of each row."""
@@ -334,7 +335,7 @@ class Task:
         sought = np.flatnonzero(np.isnan(given))
         noise, freedom = given.copy(), np.full(len(given), np.nan)
         if len(sought):
-            free = freedom_of(minimum.slope[sought], self.peaks)
+            free = freedom_of(minimum.slope[sought], self.peaks) / self.alike
             size = np.linalg.norm(minimum.residual[sought, : self.peaks], axis=1)
             told = free >= LEAST_FREEDOM
             each = np.maximum(size / np.sqrt(np.where(told, free, 1.0)), LEAST_NOISE)

@@ -1,0 +1,1 @@
+"""Records over time, and what they tell."""
