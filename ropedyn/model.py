@@ -220,8 +220,7 @@ class Model(Compiled):
             Of sweep and band: frequencies are shared out over so many threads; the environment
             variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
         decay : float, optional
-            [1/s], >= 0: the response at s = i omega + decay, which is that of force and motion
-            both times exp(-decay t), as of hits whose records were given an exponential window.
+            [1/s]: the response at i omega + decay, of force and motion both times exp(-decay t).
 
         Returns
         -------
@@ -248,9 +247,6 @@ class Model(Compiled):
         2 i zeta_k w_k w) - 1/w_k^2), about an imaginary frequency instead of 0 where the rope can
         move as a rigid body. A bound of what is left out is part of `FRF.mesh_error`; no other
         damping may act beside it, and internal forces are refused.
-
-        With `decay` the dynamic stiffness is K + s C + s^2 M at the complex s, and velocities and
-        accelerations are s and s^2 times the displacement. A loss factor stays 1 + i eta.
 
         Examples
         --------

@@ -33,7 +33,15 @@ class Curves(Answer):
 
     @property
     def s(self) -> Complex:
-        """Where the value is the response, i omega + decay, shape (f,) [1/s]."""
+        """Where the value is the response, i omega + decay, shape (f,) [1/s].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> model.frf([0.0, 1.0], drive=("z", 0.5), decay=0.5).s.round(3)
+        array([0.5+0.j   , 0.5+6.283j])
+        """
         return np.asarray(2j * np.pi * self.frequency + self.decay, dtype=np.complex128)
 
     @property

@@ -63,7 +63,9 @@ class FRF(Curves):
     cost : Cost
         What it cost.
     decay : float
-        The value is the response at s = i omega + decay [1/s]; 0 unless it was asked for.
+        The value is the response at s = i omega + decay [1/s], 0 unless it was asked for: that of
+        K + s C + s^2 M, with s and s^2 times the displacement as velocity and acceleration. A loss
+        factor stays 1 + i eta.
     """
 
     drive: tuple[Point, ...]

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.array import Complex, Flags, Index, Real
-from .cut import PARTS, Cut, carried, lacking
+from .leak import PARTS, Leak, carried, lacking
 from .transfer import ESTIMATORS, Spectra, coherence_of, forced
 
 BRIEF = 0.1  # Hits are seen, at a tenth of the largest, for less than this share of the time.
@@ -218,7 +218,7 @@ def response_of_hits(
     each = _spectra(push, moved, np.exp(-decay * np.arange(n) / rate), lines)
     whole = each.total
     less = float(np.exp(-decay * n / rate))
-    behind = Cut(less * behind.share, less * behind.size)
+    behind = Leak(less * behind.share, less * behind.size)
     several = len(used) > 1
     std = jackknifed(each, estimator, alike(decay * n / rate)) if several else None
     return FromHits(
@@ -232,7 +232,7 @@ def response_of_hits(
     )
 
 
-def _widened(std: Real, *cuts: Cut) -> Real:
+def _widened(std: Real, *cuts: Leak) -> Real:
     """Add what is alike in all hits, which do not scatter by it, where it is not small."""
     square = std**2
     for cut in cuts:

@@ -21,14 +21,14 @@ TINY = float(np.finfo(float).tiny)
 SLOWEST = 0.9  # The motion is said to decay by this factor at least from part to part.
 
 
-class Cut(NamedTuple):
+class Leak(NamedTuple):
     """What records have too little or too much."""
 
     share: float  # the most at a peak, in parts of the response
     size: Real  # (responses, lines) at each line, as the response
 
 
-def lacking(force: Complex, moved: Real, lines: Index) -> Cut:
+def lacking(force: Complex, moved: Real, lines: Index) -> Leak:
     """Return what comes behind records of motion, (hits, responses, t).
 
     The force is the transform of each hit, (hits, f), of which some lines are looked at.
@@ -46,10 +46,10 @@ def lacking(force: Complex, moved: Real, lines: Index) -> Cut:
         more = max(more, float((q / (1 - q)).max(initial=0.0)))
         lost = end[peaks] / row[peaks] * q / (1 - q)
         share = max(share, float(lost.max(initial=0.0)))
-    return Cut(min(share, 1.0), (more * last / power)[:, lines])
+    return Leak(min(share, 1.0), (more * last / power)[:, lines])
 
 
-def carried(force: Complex, moved: Real, prior: Sequence[Real], lines: Index) -> Cut:
+def carried(force: Complex, moved: Real, prior: Sequence[Real], lines: Index) -> Leak:
     """Return what of the motion was there before, (responses, t) before each hit."""
     n = moved.shape[-1]
     part = n // PARTS
@@ -61,7 +61,7 @@ def carried(force: Complex, moved: Real, prior: Sequence[Real], lines: Index) ->
     for peaks, one, row in zip(_peaks(whole, power, lines), early, first):
         share = max(share, float((one[peaks] / row[peaks]).max(initial=0.0)))
     size = early / np.sqrt(power / len(moved))
-    return Cut(min(share, 1.0), size[:, lines])
+    return Leak(min(share, 1.0), size[:, lines])
 
 
 def _rms(each: Complex) -> Real:
