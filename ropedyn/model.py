@@ -213,9 +213,8 @@ class Model(Compiled):
         solver : {"sweep", "lapack", "band"}
             ``"sweep"``: along the chain in scattering form (see csrc/sweep/sweep.h), right to
             nearly the last digits whatever n. ``"lapack"``: complex band LU of the assembled
-            dynamic stiffness; loses digits with n as `modes` does. ``"band"``: complex band LU of
-            the mixed form (see csrc/mixed/mixed.h); its error grows as n at most, it shares no step
-            with the sweep, and it takes hundreds of times as long.
+            stiffness; loses digits with n as `modes` does. ``"band"``: that of the mixed form (see
+            csrc/mixed/mixed.h), hundreds of times as long; its error grows as n at most.
         threads : int, optional
             Of sweep and band: frequencies are shared out over so many threads; the environment
             variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
@@ -232,8 +231,7 @@ class Model(Compiled):
         TypeError
             If an argument is of the wrong type.
         SceneError
-            If a value has no meaning, such as a position off the rope, or modal damping stands
-            beside another or lacks a ratio.
+            If a value has no meaning, or modal damping stands beside another or lacks a ratio.
         SolveError
             If a frequency lies on an undamped resonance; the message names it.
 
