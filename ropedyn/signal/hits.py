@@ -83,6 +83,8 @@ def is_of_hits(force: Real) -> bool:
 def find_hits(rate: float, force: Real, value: Real, length: int | None) -> Hits:
     """Find hits in a force (t,) and say which of them the motion (responses, t) can be used of."""
     pulses = find_pulses(force)
+    if not pulses:
+        return Hits(0, ())
     groups = _grouped(pulses, len(force), rate, length)
     start = [max(group[0].start - _beside(group[0]), 0) for group in groups]
     room = np.diff(np.append(start, len(force)))

@@ -223,6 +223,23 @@ def test_a_record_without_a_usable_hit_is_refused_with_every_reason():
         measured_response(record)
 
 
+def test_a_hit_at_the_first_sample_is_used():
+    record = hammer.record(STRING, hits=((0.0, 1.0),), duration=16.0)
+    measured = measured_response(record)
+    assert measured.averages == 1
+    # half of what the filter rings before the hit is cut
+    assert off(measured) < 10 * FORWARD
+
+
+def test_a_force_of_which_nothing_stands_out_is_refused():
+    record = hammer.record(STRING, **ALL)
+    record.force = np.where(np.arange(len(record.force)) % 2, 0.09, -0.09)
+    record.force[:1000] = 0.0
+    record.force[5000:5003] = 1.0
+    with pytest.raises(rd.SceneError, match="got 0: none out of the noise"):
+        measured_response(record)
+
+
 # --- a force that acts all the time -------------------------------------------------------------
 
 

@@ -95,7 +95,7 @@ def _of_hits(record: Recorded, force: Real, length: float | None, **how: Any) ->
     if not hits.used or hits.length < LEAST:
         raise SceneError(
             f"force must have a hit that can be used, got {len(hits.each)}: "
-            + "; ".join(_said(record, hit) for hit in hits.each)
+            + ("; ".join(_said(record, hit) for hit in hits.each) or "none out of the noise")
         )
     found = response_of_hits(rate, force, record.value, hits, **how)
     return {
