@@ -78,6 +78,18 @@ class Family:
     def _closed(self) -> tuple[Component, ...]:
         return components_of(self._template)
 
+    @property
+    def closed(self) -> bool:
+        """Whether rows are solved in closed form, some microseconds each.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).family(["tension"]).closed
+        True
+        """
+        return bool(self._closed)
+
     def modes(
         self,
         values: ArrayLike,

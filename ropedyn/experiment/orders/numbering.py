@@ -1,0 +1,139 @@
+"""Which mode each peak is: numberings by their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...base import check
+from ...base.array import Index, Real
+from ...scene.scene import Scene
+from .chances import AS_MODE, Chances
+from .evidence import Evidence
+from .search import SortedPeaks, search
+from .sensed import Sensed
+from .standardised import Standardised
+
+SAME = 0.05  # Numberings whose tensions differ by less mean the same.
+SURE = 0.95  # An order that a smaller share of these has is left out.
+MODES, MOST_MODES = 20, 80  # Each peak may be one of so many, at least and at most,
+BEYOND = 6  # and so many more may be there unseen.
+FINER = 1.5  # Modes are at most so many times closer than peaks are.
+TRUSTED, RIVAL, ENOUGH = 0.95, 0.05, 3
+"""Of what is trusted: its probability, the share of it no other has, and peaks that are modes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Numbering:
+    """One way to see peaks as modes."""
+
+    orders: tuple[int, ...]  # of each peak from 1; 0 where it is no mode, or which is not certain
+    probability: float  # with all numberings that mean the same tension
+    ln_evidence: float  # of these together
+    value: tuple[float, ...]  # rough numbers of the unknown paths: the start of a fit
+
+
+def numberings(
+    scene: Scene,
+    unknown: Sequence[str],
+    frequency: ArrayLike,
+    std: ArrayLike | None,
+    *,
+    prior: Mapping[str, tuple[float, float]] | None = None,
+    ends: str = "unknown",
+    sensors: Sequence[tuple[str, float]] | None = None,
+    shape: ArrayLike | None = None,
+    kind: Sequence[str] | None = None,
+    model_std: float = 0.0,
+) -> tuple[Numbering, ...]:
+    """Find which mode each peak is, the likeliest first; none where peaks show no modes.
+
+    `frequency` and `std` [Hz], `kind` and rows of `shape`, a column for each sensor, are of peaks.
+    """
+    check.one_of(ends, "ends", ("unknown", "given"))
+    measured = np.asarray(frequency, dtype=float)
+    if len(measured) < 2:
+        return ()
+    order = np.argsort(measured, kind="stable")
+    kinds = np.array(["mode"] * len(order) if kind is None else list(kind))[order]
+    noise = None if std is None else np.asarray(std, dtype=float)[order]
+    peaks = SortedPeaks.of(measured[order], noise, kinds == "double", model_std)
+    shapes = None if shape is None else np.asarray(shape)[order]
+    chances = _chances(scene, measured[order], kinds, sensors, shapes)
+    standardised = Standardised.of(scene, unknown, prior or {}, any_ends=ends == "unknown")
+    found = search(standardised, peaks, chances)
+    none = float(chances(np.zeros((1, len(order)), dtype=np.int64))[0])
+    return _clusters(found, standardised, none, len(unknown), np.argsort(order))
+
+
+def decided(found: Sequence[Numbering]) -> str:
+    """Say whether one numbering can be trusted, several are possible, or peaks show no modes.
+
+    "trusted" has three modes, more than 95 % of the probability, and no rival of a twentieth of it.
+    """
+    if not found or sum(n > 0 for n in found[0].orders) < 2:
+        return "refused"
+    best, *others = found
+    alone = all(one.probability < RIVAL * best.probability for one in others)
+    enough = sum(n > 0 for n in best.orders) >= ENOUGH
+    return "trusted" if best.probability > TRUSTED and alone and enough else "ambiguous"
+
+
+def _chances(
+    scene: Scene,
+    frequency: Real,
+    kinds: np.ndarray[Any, Any],
+    sensors: Sequence[tuple[str, float]] | None,
+    shapes: np.ndarray[Any, Any] | None,
+) -> Chances:
+    """Return what is known of modes and strays before frequencies are compared."""
+    count = _modes(frequency)
+    visible, of_mode = np.ones(count), np.zeros((len(frequency), count))
+    if sensors:
+        sensed = Sensed.of(scene, sensors, count)
+        visible = sensed.visible
+        if shapes is not None:
+            of_mode = sensed.likeness(shapes)
+    of_mode = of_mode + np.log([AS_MODE[kind] for kind in kinds.tolist()])[:, None]
+    return Chances.of(visible, frequency, of_mode)
+
+
+def _modes(frequency: Real) -> int:
+    """Return how many modes to look at: the usual distance of peaks may be that of modes."""
+    gap = float(np.median(np.diff(frequency)))
+    asked = FINER * float(frequency[-1]) / max(gap, float(frequency[-1]) / MOST_MODES)
+    return int(np.clip(np.ceil(asked), MODES, MOST_MODES)) + BEYOND
+
+
+def _clusters(
+    found: Evidence, standardised: Standardised, none: float, unknown: int, back: Index
+) -> tuple[Numbering, ...]:
+    """Join what means the same; drop what is less likely than that no peak is a mode."""
+    if not len(found.orders) or found.likelihood[0] <= none:
+        return ()
+    total = np.logaddexp(np.logaddexp.reduce(found.likelihood), none)
+    u, value = standardised.lead_of(found.v), standardised.value(found.v)
+    left = np.ones(len(u), dtype=bool)
+    numbered: list[Numbering] = []
+    while left.any():
+        first = int(left.argmax())
+        same = left & (np.abs(u - u[first]) < SAME)
+        left &= ~same
+        share = np.exp(found.likelihood[same] - np.logaddexp.reduce(found.likelihood[same]))
+        agreed = share @ (found.orders[same] == found.orders[first]) >= SURE
+        if numbered and (agreed & (found.orders[first] > 0)).sum() < 2:
+            continue
+        ln = float(np.logaddexp.reduce(found.likelihood[same]))
+        numbered.append(
+            Numbering(
+                orders=tuple(np.where(agreed, found.orders[first], 0)[back].tolist()),
+                probability=float(np.exp(ln - total)),
+                ln_evidence=ln,
+                value=tuple(value[first, :unknown].tolist()),
+            )
+        )
+    return tuple(sorted(numbered, key=lambda one: -one.ln_evidence))
