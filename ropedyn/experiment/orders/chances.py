@@ -57,7 +57,7 @@ class Chances:
         np.put_along_axis(seen, orders, True, axis=1)
         seen = seen[:, 1:]
         odd = np.arange(1, len(self.visible) + 1) % 2 == 1
-        chance = (1 - 2 * HIDDEN) * _seen(seen, self.visible)
+        chance = (1 - 2 * HIDDEN - LOW) * _seen(seen, self.visible)
         for shown in odd, ~odd:
             # of modes that are hidden none is seen, and the others are excited as if all were there
             there = ~(seen & ~shown).any(axis=1)

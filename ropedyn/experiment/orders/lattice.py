@@ -20,7 +20,7 @@ from .chances import EXCITED, Chances
 from .standardised import Standardised
 
 REACH = 3.3  # Standard deviations to either side.
-STEP = 0.18  # Between points, of the logarithm of a stiffness relative to the tension;
+STEP = 0.18  # Between points, of the logarithm of bending stiffness relative to the tension;
 ALONG = 0.25  # of the tension, where frequencies do not scale with it.
 CERTAIN = 0.1  # What is known to so much, relatively, has one point.
 FEW = 1.2  # Any other number has three, so many standard deviations apart,
@@ -171,7 +171,7 @@ def _line(
         return step * np.arange(-1.0, 2.0), step / math.sqrt(12)
     if spread[i] < CERTAIN:
         return np.zeros(1), 1.0
-    if not standardised.stiff[i]:
+    if not standardised.main[i]:
         return FEW * np.arange(-1.0, 2.0), FEW / math.sqrt(12)
     # the tension is left to the common factor, so that another varies relative to it
     size = spread[i] if common is None else math.hypot(spread[i], spread[lead])

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.array import Index, Real
+from ...base.errors import SceneError
 from ...scene.scene import Scene
 from .chances import AS_MODE, Chances
 from .evidence import Evidence
@@ -91,14 +92,20 @@ def _chances(
     shapes: np.ndarray[Any, Any] | None,
 ) -> Chances:
     """Return what is known of modes and strays before frequencies are compared."""
-    count = _modes(frequency)
-    visible, of_mode = np.ones(count), np.zeros((len(frequency), count))
+    count, k = _modes(frequency), len(frequency)
+    visible, of_mode = np.ones(count), np.zeros((k, count))
+    if shapes is not None and shapes.shape != (k, len(sensors or ())):
+        raise SceneError(
+            f"shape must have a row for each of {k} peaks and a column for each of "
+            f"{len(sensors or ())} sensors, got shape {shapes.shape}"
+        )
     if sensors:
         sensed = Sensed.of(scene, sensors, count)
         visible = sensed.visible
         if shapes is not None:
             of_mode = sensed.likeness(shapes)
-    of_mode = of_mode + np.log([AS_MODE[kind] for kind in kinds.tolist()])[:, None]
+    for i, kind in enumerate(kinds.tolist()):
+        of_mode[i] += np.log(AS_MODE[check.one_of(kind, f"kind[{i}]", tuple(AS_MODE))])
     return Chances.of(visible, frequency, of_mode)
 
 

@@ -41,6 +41,7 @@ class Standardised:
     spread: Real  # (p,) of ln p, or of ln c
     spring: Flags  # (p,) which are rotational springs at ends
     stiff: Flags  # (p,) which are other stiffnesses
+    main: Flags  # (p,) which are the tension and the bending stiffness
     lead: int  # the variable whose number makes numberings differ: the tension, where it is sought
 
     @classmethod
@@ -64,7 +65,8 @@ class Standardised:
         stiff = np.array([unit_of(path).startswith("N") for path in paths]) & ~spring
         lead = paths.index(TENSION) if TENSION in unknown else 0
         calculated = NaturalFrequencies.of(unknowns)
-        return cls(calculated, mean, mixing, spread, spring, stiff, lead)
+        main = np.array([path in {TENSION, BENDING} for path in paths])
+        return cls(calculated, mean, mixing, spread, spring, stiff, main, lead)
 
     def __len__(self) -> int:
         return len(self.centre)
@@ -93,7 +95,8 @@ class Standardised:
 
         So does a common factor of all that is stiff, where all of it is sought.
         """
-        direction: Real = np.linalg.solve(self.mixing, np.where(self.stiff | self.spring, 1.0, 0.0))
+        stiff = (self.stiff | self.spring).astype(np.float64)
+        direction: Real = np.asarray(np.linalg.solve(self.mixing, stiff), dtype=np.float64)
         _, slope = self(np.zeros((1, len(self))), count)
         same = np.abs(slope[0] @ direction - 0.5) < HOMOGENEOUS
         return direction if bool(same.all()) and self.stiff[self.lead] else None
