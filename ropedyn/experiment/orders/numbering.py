@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base import check
-from ...base.array import Index, Real
+from ...base.array import Flags, Index, Integer, Real
 from ...base.errors import SceneError
 from ...scene.scene import Scene
 from .chances import AS_MODE, Chances
@@ -21,6 +21,8 @@ from .standardised import Standardised
 
 SAME = 0.05  # Numberings whose tensions differ by less mean the same.
 SURE = 0.95  # An order that a smaller share of these has is left out.
+LEAST = 2  # Orders tell a tension if they are so many.
+UNLIKELY = 1e-6  # What is less probable is not named.
 MODES, MOST_MODES = 20, 80  # Each peak may be one of so many, at least and at most,
 BEYOND = 6  # and so many more may be there unseen.
 FINER = 1.5  # Modes are at most so many times closer than peaks are.
@@ -57,7 +59,7 @@ def numberings(
     """
     check.one_of(ends, "ends", ("unknown", "given"))
     measured = np.asarray(frequency, dtype=float)
-    if len(measured) < 2:
+    if len(measured) < LEAST:
         return ()
     order = np.argsort(measured, kind="stable")
     kinds = np.array(["mode"] * len(order) if kind is None else list(kind))[order]
@@ -76,7 +78,7 @@ def decided(found: Sequence[Numbering]) -> str:
 
     "trusted" has three modes, more than 95 % of the probability, and no rival of a twentieth of it.
     """
-    if not found or sum(n > 0 for n in found[0].orders) < 2:
+    if not found or sum(n > 0 for n in found[0].orders) < LEAST:
         return "refused"
     best, *others = found
     alone = all(one.probability < RIVAL * best.probability for one in others)
@@ -119,7 +121,11 @@ def _modes(frequency: Real) -> int:
 def _clusters(
     found: Evidence, standardised: Standardised, none: float, unknown: int, back: Index
 ) -> tuple[Numbering, ...]:
-    """Join what means the same; drop what is less likely than that no peak is a mode."""
+    """Join what means the same, and drop what is unlikely; none if that no peak is a mode is not.
+
+    Of an order that not all of these share it is the share that counts: a peak that is perhaps a
+    stray does not divide them, and is left out.
+    """
     if not len(found.orders) or found.likelihood[0] <= none:
         return ()
     total = np.logaddexp(np.logaddexp.reduce(found.likelihood), none)
@@ -128,19 +134,29 @@ def _clusters(
     numbered: list[Numbering] = []
     while left.any():
         first = int(left.argmax())
-        same = left & (np.abs(u - u[first]) < SAME)
+        orders, likelihood = found.orders[first], found.likelihood
+        same = left & ((np.abs(u - u[first]) < SAME) | _nested(found.orders, orders))
+        share = np.exp(likelihood[same] - np.logaddexp.reduce(likelihood[same]))
+        certain = share @ (found.orders[same] == orders) >= SURE
+        if np.count_nonzero(orders[certain]) < LEAST:
+            # these do not agree: each is named alone
+            same, certain = np.arange(len(u)) == first, np.ones(len(orders), dtype=bool)
         left &= ~same
-        share = np.exp(found.likelihood[same] - np.logaddexp.reduce(found.likelihood[same]))
-        agreed = share @ (found.orders[same] == found.orders[first]) >= SURE
-        if numbered and (agreed & (found.orders[first] > 0)).sum() < 2:
-            continue
-        ln = float(np.logaddexp.reduce(found.likelihood[same]))
+        ln = float(np.logaddexp.reduce(likelihood[same]))
         numbered.append(
             Numbering(
-                orders=tuple(np.where(agreed, found.orders[first], 0)[back].tolist()),
+                orders=tuple(np.where(certain, orders, 0)[back].tolist()),
                 probability=float(np.exp(ln - total)),
                 ln_evidence=ln,
                 value=tuple(value[first, :unknown].tolist()),
             )
         )
-    return tuple(sorted(numbered, key=lambda one: -one.ln_evidence))
+    ranked = sorted(numbered, key=lambda one: -one.ln_evidence)
+    return tuple(one for one in ranked if one is ranked[0] or one.probability > UNLIKELY)
+
+
+def _nested(orders: Integer, one: Integer) -> Flags:
+    """Say which orders differ from one only by peaks that either leaves out, shape (h,)."""
+    seen, there = orders > 0, one > 0
+    more, fewer = (seen >= there).all(axis=1), (seen <= there).all(axis=1)
+    return (more | fewer) & ((orders == one) | ~(seen & there)).all(axis=1)
