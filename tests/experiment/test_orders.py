@@ -281,6 +281,23 @@ def test_a_prior_of_the_mass_is_in_the_number_of_the_tension():
     assert found[0].orders == (2, 4, 6, 8)
 
 
+@pytest.mark.parametrize("ends", ["unknown", "given"])
+def test_a_known_stiffness_is_kept_where_the_tension_is_far_from_its_guess(ends):
+    peaks, prior = np.delete(noisy(exact(8)), 3), {"bending_stiffness": (BENDING, 0.02 * BENDING)}
+    found = numbered(peaks, SCENE.replace(tension=TENSION / 8), ends=ends, prior=prior)
+    assert found[0].orders == (1, 2, 3, 5, 6, 7, 8)
+    assert found[0].value[1] == pytest.approx(BENDING, rel=0.06)
+
+
+@pytest.mark.parametrize("ends", ["unknown", "given"])
+def test_a_known_tension_is_kept_where_the_stiffness_is_far_from_its_guess(ends):
+    peaks, prior = np.delete(noisy(exact(8)), 3), {"tension": (TENSION, 0.02 * TENSION)}
+    rope = ROPE.replace(bending_stiffness=8 * BENDING)
+    found = numbered(peaks, SCENE.replace(rope=rope), ends=ends, prior=prior)
+    assert found[0].orders == (1, 2, 3, 5, 6, 7, 8)
+    assert found[0].value[0] == pytest.approx(TENSION, rel=0.06)
+
+
 def test_a_sensor_at_midspan_explains_every_second_mode():
     found = numbered(noisy(exact(9))[::2], sensors=[("z", LENGTH / 2)])
     assert decided(found) == "trusted"
@@ -342,6 +359,7 @@ def test_what_is_trusted_has_no_rival(found, status):
         ({"kind": ["mode", "mode", "tone"]}, r'kind\[2\] must be one of "mode"'),
         ({"sensors": [("z", 21.0)]}, r"sensors\[0\] must be a coordinate of .* got \('z', 21.0\)"),
         ({"shape": np.ones((3, 2))}, "shape must have a row for each of 3 peaks and a column"),
+        ({"prior": {"tensoin": (1e5, 1e4)}}, "path must be that of a number .* got 'tensoin'"),
         ({"prior": {"tension": (-1.0, 1.0)}}, r"prior\['tension'\] must have a mean of the sign"),
     ],
 )

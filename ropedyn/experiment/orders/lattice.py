@@ -111,7 +111,7 @@ class Lattice:
 def nearest(
     at: Real, open_: Real, log_measured: Real, std: Real, chances: Chances
 ) -> tuple[Integer, Real]:
-    """Return the nearest modes of peaks that increase, (h, k), and about how likely they are."""
+    """Return the nearest modes of peaks, each of one at most, (h, k), and about how likely."""
     h, k = len(at), len(log_measured)
     each = np.arange(h)
     orders, gain = np.zeros((h, k), dtype=np.int64), np.zeros((h, k))
@@ -123,16 +123,23 @@ def nearest(
         price = -0.5 * off**2 / square - 0.5 * np.log(2 * np.pi * square) + chances.of_mode[j, n]
         gain[:, j] = price - none
         orders[:, j] = np.where(gain[:, j] > -GENEROUS, n + 1, 0)
-    for j in range(1, k):
-        # of two peaks the likelier is the mode
-        for i in range(max(0, j - 2), j):
-            same = (orders[:, i] == orders[:, j]) & (orders[:, j] > 0)
-            first = gain[:, i] >= gain[:, j]
-            orders[same & first, j] = 0
-            orders[same & ~first, i] = 0
+    orders = _without_rivals(orders, gain)
     used, highest = orders > 0, orders.max(axis=1, initial=0)
     score = np.where(used, gain, 0.0).sum(axis=1) + highest * np.log(EXCITED)
     return orders, score + np.maximum((highest - used.sum(axis=1)) * SKIPPED, CUT)
+
+
+def _without_rivals(orders: Integer, gain: Real) -> Integer:
+    """Leave a mode to the likeliest of the peaks that have its order: they are neighbours."""
+    each, last, kept = np.arange(len(orders)), np.zeros(len(orders), dtype=np.intp), orders.copy()
+    for j in range(1, orders.shape[1]):
+        same = (kept[:, j] > 0) & (kept[each, last] == kept[:, j])
+        better = gain[:, j] > gain[each, last]
+        kept[same & ~better, j] = 0
+        loser = same & better
+        kept[loser, last[loser]] = 0
+        last = np.where(kept[:, j] > 0, j, last)
+    return kept
 
 
 def _axes(standardised: Standardised, common: Real | None, most: int) -> _Axes:
@@ -151,10 +158,11 @@ def _axes(standardised: Standardised, common: Real | None, most: int) -> _Axes:
     width, lead = np.array([width for _, width in lines]), standardised.lead
     if common is not None:
         return _Axes(offsets, width, (REACH + 1) * float(standardised.spread[lead]))
-    # between its points the tension is found by the slopes
-    step = width[lead] * math.sqrt(12)
+    # between its points, or about the only one, the tension is found by the slopes
+    alone = len(lines[lead][0]) == 1
+    reach = REACH + 1 if alone else FARTHER * math.sqrt(12) * float(width[lead])
     width[lead] = 0.0
-    return _Axes(offsets, width, FARTHER * float(step))
+    return _Axes(offsets, width, reach)
 
 
 def _line(
@@ -169,12 +177,13 @@ def _line(
         if not standardised.closed:
             return np.zeros(1), 3 * step / math.sqrt(12)
         return step * np.arange(-1.0, 2.0), step / math.sqrt(12)
-    if spread[i] < CERTAIN:
+    # the tension is left to the common factor, so that what is stiff varies relative to it
+    relative = common is not None and bool(standardised.stiff[i])
+    ratio = math.hypot(spread[i], spread[lead]) / spread[i] if relative else 1.0
+    if ratio * spread[i] < CERTAIN:
         return np.zeros(1), 1.0
     if not standardised.main[i]:
-        return FEW * np.arange(-1.0, 2.0), FEW / math.sqrt(12)
-    # the tension is left to the common factor, so that another varies relative to it
-    size = spread[i] if common is None else math.hypot(spread[i], spread[lead])
+        return FEW * ratio * np.arange(-1.0, 2.0), FEW * ratio / math.sqrt(12)
     step = coarser * (ALONG if i == lead else STEP) / spread[i]
-    halves = math.ceil(REACH * size / spread[i] / step - 0.5)
+    halves = math.ceil(REACH * ratio / step - 0.5)
     return step * np.arange(-halves, halves + 1), step / math.sqrt(12)

@@ -21,8 +21,8 @@ from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import Unknowns
 
 TENSION, BENDING = "tension", "bending_stiffness"
-SPREAD = {TENSION: 1.1}  # Of the logarithm of a number about its guess, where nobody says more;
-OTHERS = 1.2  # of others,
+SPREAD = 1.1  # Of the logarithm of a tension about its guess, where nobody says more;
+OTHERS = 1.2  # of any other number,
 SPRING = 3.0  # and of springs at ends, which nobody guesses well.
 PLACE = 0.1  # Of a position, in lengths of the rope.
 HOMOGENEOUS = 1e-9  # Slopes of frequencies that scale are 1/2 but for rounding.
@@ -41,7 +41,7 @@ class Standardised:
     spread: Real  # (p,) of ln p, or of ln c
     spring: Flags  # (p,) which are rotational springs at ends
     stiff: Flags  # (p,) which are other stiffnesses
-    main: Flags  # (p,) which are the tension and the bending stiffness
+    main: Flags  # (p,) which numberings feel most: tension, bending stiffness and the lead
     lead: int  # the variable whose number makes numberings differ: the tension, where it is sought
 
     @classmethod
@@ -65,7 +65,7 @@ class Standardised:
         stiff = np.array([unit_of(path).startswith("N") for path in paths]) & ~spring
         lead = paths.index(TENSION) if TENSION in unknown else 0
         calculated = NaturalFrequencies.of(unknowns)
-        main = np.array([path in {TENSION, BENDING} for path in paths])
+        main = np.array([path in {TENSION, BENDING, paths[lead]} for path in paths])
         return cls(calculated, mean, mixing, spread, spring, stiff, main, lead)
 
     def __len__(self) -> int:
@@ -112,10 +112,14 @@ def _free_ends(scene: Scene) -> tuple[str, ...]:
 
 
 def _sprung(scene: Scene, ends: Sequence[str]) -> Scene:
-    """Return a scene with springs sqrt(T B), half-way between pinned and clamped, at these ends."""
+    """Return a scene with springs sqrt(T B), half-way between pinned and clamped, at these ends.
+
+    Where there is hardly a tension the half wave pi/L of a beam stands for it.
+    """
     if not ends:
         return scene
-    stiffness = math.sqrt(abs(value_at(scene, TENSION)) * value_at(scene, BENDING))
+    tension, bending = abs(value_at(scene, TENSION)), value_at(scene, BENDING)
+    stiffness = math.sqrt(bending * (tension + bending * (math.pi / scene.rope.length) ** 2))
     return scene.family(ends).scene_of(np.full(len(ends), stiffness))
 
 
@@ -125,7 +129,8 @@ def _told(unknowns: Unknowns, i: int, prior: Known) -> tuple[float, float]:
     if path not in prior:
         if scale:
             return 0.0, PLACE
-        return 0.0, SPRING if path.startswith("ends[") else SPREAD.get(path, OTHERS)
+        is_spring = path.startswith("ends[")
+        return 0.0, SPREAD if path == TENSION else SPRING if is_spring else OTHERS
     mean, std = prior[path]
     if scale:
         return (mean - start) / scale, std / scale
@@ -138,10 +143,15 @@ def _told(unknowns: Unknowns, i: int, prior: Known) -> tuple[float, float]:
 
 
 def _felt(scene: Scene, path: str) -> bool:
-    """Say whether a number changes the first frequencies."""
+    """Say whether the scene has a number and the first frequencies feel it."""
     try:
-        family = scene.family([path])
-        slope = family.modes([[value_at(scene, path)]], 3, derivative=True, threads=1).derivative
+        value = value_at(scene, path)
+    except SceneError:
+        if unit_of(path):
+            return False
+        raise
+    try:
+        found = scene.family([path]).modes([[value]], 3, derivative=True, threads=1)
     except RopedynError:
         return False
-    return slope is not None and bool((np.abs(slope) > 0).any())
+    return found.derivative is not None and bool((np.abs(found.derivative) > 0).any())
