@@ -386,21 +386,37 @@ def test_no_order_of_some_ropes_is_silently_wrong():
     assert tally([made(rng, step=2) for _ in range(8)]).wrong == 0
 
 
+MIXED = (
+    "orders of 2000 ropes, T L^2/B 50 to 1e7, any ends, noise 0.05 to 1 %, 4 to 10 modes, 0 to 3 "
+    "strays, hum, 0 to 3 modes missing, tension guessed within a factor of 3: "
+)
+
+
 @pytest.fixture(scope="module")
 def ropes():
-    rng = np.random.default_rng(31)
+    rng = np.random.default_rng(41)
     return [any_rope(rng) for _ in range(2000)]
 
 
 @pytest.mark.slow
 @pytest.mark.claim(
-    "orders of 2000 ropes, T L^2/B 50 to 1e7, any ends, noise 0.05 to 1 %, 4 to 10 modes, 0 to 3 "
-    "strays, hum, 0 to 3 modes missing: trusted and an order wrong, share",
+    MIXED + "trusted and an order wrong that could be told, share",
     reference="the modes the peaks were made of",
     accepted=0.005,
 )
 def test_orders_are_rarely_silently_wrong(claim, ropes):
     claim(tally(ropes).wrong)
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    MIXED + "ambiguous though at most one mode is missing, share",
+    reference="the modes the peaks were made of",
+    accepted=0.13,
+    limit=True,
+)
+def test_orders_are_seldom_ambiguous_where_one_mode_is_missing_at_most(claim, ropes):
+    claim(tally([one for one in ropes if one.missing <= 1]).ambiguous)
 
 
 @pytest.mark.slow
@@ -411,5 +427,5 @@ def test_orders_are_rarely_silently_wrong(claim, ropes):
     accepted=0.02,
 )
 def test_every_second_mode_is_rarely_trusted_to_be_every_mode(claim):
-    rng = np.random.default_rng(32)
+    rng = np.random.default_rng(42)
     claim(tally([made(rng, step=2) for _ in range(500)]).wrong)

@@ -32,6 +32,11 @@ class Case:
     orders: np.ndarray  # from 1; 0 of strays
     exact: np.ndarray  # of all modes up to the highest [Hz]
 
+    @property
+    def missing(self):
+        """How many modes below the highest that is seen are not."""
+        return self.orders.max() - np.count_nonzero(self.orders)
+
 
 def made(rng, *, seen=None, strays=0, hum=False, missing=0, step=1):
     """Every `step`-th of the lowest modes but some, with noise, strays and hum or its alias."""
