@@ -17,6 +17,8 @@ from .experiment.identify.identify import identify
 from .experiment.identify.response_fit import ResponseFit
 from .experiment.plan.plan import Plan
 from .experiment.plan.planning import plan_measurement
+from .experiment.track.track import Track
+from .experiment.track.tracking import track
 from .family.family import Family
 from .family.frf import FamilyFRF
 from .family.modes import FamilyModes
@@ -117,6 +119,7 @@ __all__ = [
     "Table",
     "Tension",
     "TorsionTest",
+    "Track",
     "ViscousDamping",
     "accuracy_cost",
     "ask",
@@ -127,4 +130,5 @@ __all__ = [
     "plan_measurement",
     "study2015",
     "sweep",
+    "track",
 ]

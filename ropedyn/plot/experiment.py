@@ -13,6 +13,7 @@ from ..experiment.compare.compare import Comparison
 from ..experiment.identify.fit import Fit
 from ..experiment.identify.fits import Fits
 from ..experiment.identify.response_fit import ResponseFit
+from ..experiment.track.track import Track
 from ..scene.bench.static_test import StaticTest
 from .figure import light_grid, plots
 
@@ -175,6 +176,27 @@ def plot_fits(fits: Fits, ax: Axes, unknown: str | None) -> None:
     ax.errorbar(np.arange(len(fits)), fits.value[:, at], yerr=error, fmt="o", capsize=3)
     ax.set(xlabel="rope", ylabel=path)
     light_grid(ax)
+
+
+@plots(Track)
+def plot_track(track: Track, ax: Axes) -> None:
+    """Plot tension over time, the band that is certain and the one of changes, and each record."""
+    time = track.dates()
+    for common, alpha, label in ((True, 0.2, "95 %"), (False, 0.4, "95 % of changes")):
+        low, high = track.interval(0.95, common=common).T
+        ax.fill_between(time, low, high, color="C0", alpha=alpha, linewidth=0, label=label)
+    ax.plot(time, track.tension, color="C0", label="all records")
+    told = np.isfinite(track.measured)
+    alone, half = track.measured[told], 1.96 * track.measured_std[told]
+    ax.errorbar(
+        time[told], alone, half, fmt="o", markersize=4, color="C1", label="each alone, 95 %"
+    )
+    out = "x" if (~told).any() else ""
+    ax.plot(time[~told], track.tension[~told], out, color=ALONE, label="left out" if out else None)
+    ax.set(xlabel="time" if track.since else "time [day]", ylabel="tension [N]")
+    ax.set_title(f"tension over time, {told.sum()} of {len(time)} records")
+    light_grid(ax)
+    ax.legend(fontsize="small")
 
 
 @plots(ResponseFit)

@@ -1,0 +1,1 @@
+"""Tension over time, from many records."""
