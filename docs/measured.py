@@ -1,6 +1,7 @@
-"""What a measurement and the model say of each other: docs/measured.png.
+"""What a measurement and the model say of each other: docs/measured.png and docs/measured.md.
 
-Left: first frequencies of 35 tubes of known tension, nothing fitted (source in
+The page has every rope of known tension, what is identified of it, and which intervals miss. Of the
+figure, left: first frequencies of 35 tubes of known tension, nothing fitted (source in
 tests/support/measured_ropes.py). Right: a made measurement with noise, the scene as it was drawn
 and as identified.
 
@@ -21,6 +22,7 @@ import ropedyn as rd
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "tests" / "support"))
+from measured_cases import ENDS, answers, table_of  # noqa: E402 - beside the tests
 from measured_ropes import (  # noqa: E402 - beside the tests
     STRAW_FREQUENCY,
     STRAW_LENGTH,
@@ -36,6 +38,23 @@ DRAWN = rd.Scene(
 LINES = np.linspace(20.0, 400.0, 761)
 NOISE = 0.03
 """Of each line, relative."""
+PAGE = """# Ropes of known tension
+
+What others measured and published with the tension, by a weight that hung on it: a cord (M. Ali,
+D. Broggi, G. Cantarini; five peaks, its stiffness unknown) and 35 tubes that are glued at both ends
+(J. Bono, Fermilab; the first peak of each). Facts, sources and what is taken as known beforehand
+stand in tests/support/measured_ropes.py and tests/support/measured_cases.py, and
+`python docs/measured.py` writes this page. Nothing is left out: "inside" says whether the 95 %
+interval holds the tension, the last column whether it reaches what the weight, to 10 g, may be.
+"""
+SECTION = """## Ends {ends}
+
+{inside} of {count} intervals hold the tension, {reached} reach what the weight may be.
+
+```
+{table}
+```
+"""
 
 
 def measured() -> rd.Measured:
@@ -76,8 +95,19 @@ def draw_rope(ax: plt.Axes) -> None:
     ax.legend(fontsize="small")
 
 
+def page() -> str:
+    """Return the page of ropes of known tension, a table for each that is said of their ends."""
+    parts = [PAGE]
+    for ends in ENDS:
+        found = answers(ends)
+        held = {of: sum(getattr(one, of) for one in found) for of in ("inside", "reached")}
+        parts.append(SECTION.format(ends=ends, count=len(found), table=table_of(found), **held))
+    return "\n".join(parts)
+
+
 def main() -> None:
-    """Draw both."""
+    """Write the page, and draw both sides of the figure."""
+    (HERE / "measured.md").write_text(page(), encoding="utf-8")
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2))
     draw_tubes(left)
     draw_rope(right)
