@@ -86,15 +86,17 @@ def _groups(seen: Sequence[_ResponsePeak]) -> list[list[_ResponsePeak]]:
 
 def _mean(group: Sequence[_ResponsePeak]) -> tuple[float, float, float]:
     """Return the weighted mean of frequency, its uncertainty, and that of the damping ratio."""
+    if len(group) == 1:
+        (one,) = group
+        return one.frequency, one.std, one.ratio
     f, std = np.array([s.frequency for s in group]), np.array([s.std for s in group])
     # what a fit of clean numbers leaves is 0
     std = np.maximum(std, np.finfo(float).eps * f)
     weight = 1 / std**2
     mean = float(np.average(f, weights=weight))
     error = 1 / np.sqrt(weight.sum())
-    if len(group) > 1:
-        scatter = float(np.sum(weight * (f - mean) ** 2)) / (len(group) - 1)
-        error *= max(1.0, np.sqrt(scatter))
+    scatter = float(np.sum(weight * (f - mean) ** 2)) / (len(group) - 1)
+    error *= max(1.0, np.sqrt(scatter))
     return mean, float(error), _ratio(group)
 
 

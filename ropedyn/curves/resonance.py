@@ -20,8 +20,10 @@ STANDING = 8.0
 """Prominence of a measured peak in standard deviations of the noise at least: what noise alone
 shows among a million lines."""
 GAIN = 50.0  # What a pole explains at least and a smooth curve does not, in variances of the noise.
-NEGATIVE = -3.0
-"""Damping ratio of a measured peak in its standard errors at least: what rests does not grow."""
+SMOOTH = 2e-3  # What a pole explains and a smooth curve does not, chance does more seldom.
+NEGATIVE = -3.0  # Damping ratio in its standard uncertainties at least: what rests does not grow.
+ROUNDING = 1e-12  # Damping ratios as far below 0 are 0.
+UNCERTAIN = 0.5  # A frequency is known to this part of half the lines that are fitted.
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +46,9 @@ class Resonances(Answer):
         lines, which grows with their spacing, with the noise and with what other modes bend. Where
         lines are too few for a fit, that of a frequency anywhere between two lines, their distance
         over sqrt(12) (JCGM 100:2008, 4.3.7), and infinite.
+    left_out : tuple of str
+        Maxima that stand out and are no resonances, each with the reason: no mode fits them, a
+        smooth curve fits as well, their damping is negative, or their frequency is not told.
     """
 
     label: str
@@ -52,6 +57,7 @@ class Resonances(Answer):
     damping_ratio: Real = field(metadata=axes("peak"))
     std: Real = field(metadata=axes("peak", unit="Hz"))
     damping_ratio_std: Real = field(metadata=axes("peak"))
+    left_out: tuple[str, ...] = ()
 
     def table(self) -> Table:
         """Return one row for each peak."""
@@ -92,20 +98,21 @@ def resonances(
     noise, known = (None if each is None else each[first] for each in (noise, known))
     omega, size = 2 * np.pi * frequency, np.abs(value)
     at, _ = find_peaks(size, prominence=None if noise is None else (STANDING * noise, None))
-    found: list[tuple[int, _Peak | one_mode.OneMode]] = []
+    found: list[tuple[int, _Peak]] = []
+    left_out: list[str] = []
     for k, (start, stop) in zip(at.tolist(), _windows(size, at)):
         lines = slice(start, stop + 1)
-        is_enough = stop - start + 1 >= one_mode.LEAST
-        mode = None
-        if is_enough:
-            each = None if known is None else known[lines]
-            mode = one_mode.fit(omega[lines], value[lines], each)
+        if stop - start + 1 >= one_mode.LEAST:
+            mode = one_mode.fit(omega[lines], value[lines], None if known is None else known[lines])
             mode = mode and mode.without(decay)
-        if mode is not None:
-            if noise is None or _stands_out(mode, noise[k] / size[lines].max()):
-                found.append((k, mode))
-        elif noise is None or not is_enough:
-            found.append((k, _by_three(omega, value, quantity, k, decay)))
+            share = 0.0 if noise is None else noise[k] / size[lines].max()
+            peak = _checked(mode, omega[lines], share)
+        else:
+            peak = _by_three(omega, value, quantity, k, decay)
+        if isinstance(peak, str):
+            left_out.append(f"the maximum at {frequency[k]:.6g} Hz of {label} is no peak: {peak}")
+        else:
+            found.append((k, peak))
     return Resonances(
         label=label,
         frequency=np.array([peak.omega for _, peak in found]) / (2 * np.pi),
@@ -113,6 +120,7 @@ def resonances(
         damping_ratio=np.array([peak.ratio for _, peak in found]),
         std=np.array([peak.omega_std for _, peak in found]) / (2 * np.pi),
         damping_ratio_std=np.array([peak.ratio_std for _, peak in found]),
+        left_out=tuple(left_out),
     )
 
 
@@ -131,13 +139,23 @@ def _windows(size: Real, at: Index) -> list[tuple[int, int]]:
     return windows
 
 
-def _stands_out(mode: one_mode.OneMode, noise: float) -> bool:
-    """Whether a mode explains more than noise, in parts of the largest line, may be."""
-    return mode.gain > GAIN * noise**2 and mode.ratio >= NEGATIVE * mode.ratio_std
+def _checked(mode: one_mode.OneMode | None, omega: Real, noise: float) -> _Peak | str:
+    """Return the peak that a mode is, or why it is none; noise in parts of the largest line."""
+    if mode is None:
+        return "no mode fits it"
+    if mode.chance > SMOOTH or not mode.gain > GAIN * noise**2:
+        return "a smooth curve fits it as well as a mode"
+    if mode.ratio < min(NEGATIVE * mode.ratio_std, -ROUNDING):
+        return f"its damping ratio would be {mode.ratio:.3g} (std {mode.ratio_std:.2g})"
+    if mode.omega_std > UNCERTAIN * (omega[-1] - omega[0]) / 2:
+        return f"its frequency is not told (std {mode.omega_std / (2 * np.pi):.2g} Hz)"
+    return _Peak(mode.omega, max(mode.ratio, 0.0), mode.omega_std, mode.ratio_std)
 
 
-def _by_three(omega: Real, value: Complex, quantity: str, k: int, decay: float) -> _Peak:
-    """Return the mode through line k and its neighbours."""
+def _by_three(
+    omega: Real, value: Complex, quantity: str, k: int, decay: float
+) -> _Peak | str:
+    """Return the mode through line k and its neighbours, or why it is none."""
     # of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
     # omega: the one through the three lines about the maximum has its root there at the pole
     # omega_0 (sqrt(1 - zeta^2) + i zeta), whose modulus and argument are the two unknowns. Exact
@@ -145,8 +163,11 @@ def _by_three(omega: Real, value: Complex, quantity: str, k: int, decay: float) 
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = (1j * omega + decay) ** QUANTITIES[quantity] / value
     pole = _pole(omega, inverse, k) - 1j * decay
+    ratio = pole.imag / abs(pole)
+    if not ratio >= -ROUNDING:
+        return f"its damping ratio would be {ratio:.3g}"
     spacing = (omega[k + 1] - omega[k - 1]) / 2
-    return _Peak(abs(pole), pole.imag / abs(pole), spacing / np.sqrt(12), np.inf)
+    return _Peak(abs(pole), max(ratio, 0.0), spacing / np.sqrt(12), np.inf)
 
 
 def _pole(omega: Real, inverse: Complex, k: int) -> complex:
