@@ -85,7 +85,8 @@ class Measured(Curves):
     def __post_init__(self) -> None:
         frequency = check.frequencies(self.frequency)
         if (np.diff(frequency) <= 0).any():
-            raise SceneError(f"frequency must increase, got {check.shown(self.frequency)}")
+            how = ": reverse it and the values" if (np.diff(frequency) < 0).all() else ""
+            raise SceneError(f"frequency must increase, got {check.shown(self.frequency)}{how}")
         drive, response = _points(self.drive, "drive"), _points(self.response, "response")
         if len(drive) != 1:
             raise SceneError(f"drive must be one point, got {check.shown(self.drive)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,6 +25,10 @@ OWN = "# ropedyn "
 PAIRS = (("real", "imag"), ("amplitude", "phase"))
 KEYS = ("frequency", "real", "imag", "amplitude", "phase", "coherence")
 """What columns may be; phases in degrees."""
+COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+TWO = re.compile(r"\d+([eE][+-]?\d+)?\s+[+-]?\d+")
+"""A number with a decimal comma, and what lies between the commas of two."""
+COMMAS = ': its numbers have decimal commas; say decimal="," and, if it is a comma, the delimiter'
 SUCH = '{"frequency": 0, "real": 1, "imag": 2}'
 
 
@@ -121,16 +126,21 @@ def _sheet(file: Path, text: str, layout: Layout) -> Sheet:
     rows = [(k, _cells(line, separator)) for k, line in lines]
     names = None
     if any(_number(cell, layout) is None for cell in rows[0][1]):
+        if _has_commas(rows[0][1], layout, 0):
+            raise SceneError(f"{what} with {check.shown(lines[0][1])} in line {rows[0][0]}{COMMAS}")
         names = tuple(rows.pop(0)[1])
     if not rows:
         raise SceneError(f"{what} with one line and no numbers: {check.shown(names)}")
     numbers = np.empty((len(rows), len(names or rows[0][1])))
     for at, (k, cells) in enumerate(rows):
         found = [_number(cell, layout) for cell in cells]
+        hint = COMMAS if _has_commas(cells, layout, numbers.shape[1]) else ""
         if None in found:
-            raise SceneError(f"{what} with {check.shown(cells[found.index(None)])} in line {k}")
+            wrong = check.shown(cells[found.index(None)])
+            raise SceneError(f"{what} with {wrong} in line {k}{hint}")
         if len(cells) != numbers.shape[1]:
-            raise SceneError(f"{what} with {len(cells)} of {numbers.shape[1]} columns in line {k}")
+            wrong = f"{len(cells)} of {numbers.shape[1]} columns"
+            raise SceneError(f"{what} with {wrong} in line {k}{hint}")
         numbers[at] = found
     return Sheet(names, numbers)
 
@@ -157,6 +167,15 @@ def _number(cell: str, layout: Layout) -> float | None:
         return float(cell.replace(",", ".") if layout.decimal == "," else cell)
     except ValueError:
         return None
+
+
+def _has_commas(cells: list[str], layout: Layout, columns: int) -> bool:
+    """Whether numbers were written with decimal commas, that were not said."""
+    # in cells of their own, or split at them: into cells of two numbers, or twice as many cells
+    if layout.decimal == ",":
+        return False
+    split = len(cells) == 2 * columns and all(_number(cell, layout) is not None for cell in cells)
+    return split or any(COMMA.fullmatch(cell) or TWO.fullmatch(cell) for cell in cells)
 
 
 def _columns(file: Path, sheet: Sheet, columns: Any) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,10 @@ import numpy as np
 from ...base import check
 from ...base.array import Complex, Flags, Index, Real
 from ...base.check import COORDINATES, NEAR
-from ...base.errors import SceneError
+from ...base.errors import SceneError, SolveError
+from ...base.unit import FAMILY
 from ...chain.port import Point
+from ...eigen.damped.damped import solve_damped
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
 from ...eigen.vectors import shapes_at
@@ -20,6 +22,8 @@ from ...response.frf import FRF
 from ...signal.likeness import residues
 from .measured import peaks_in
 
+ROUNDING = 1e-9  # Rates whose imaginary part is a smaller share do not oscillate.
+CHANGED = ("frequency", "damping_ratio", "error")  # What damping changes.
 UNSEEN = 1e-9  # Smaller products of a shape at drive and response are rounding at a node.
 
 
@@ -27,12 +31,13 @@ UNSEEN = 1e-9  # Smaller products of a shape at drive and response are rounding 
 class CalculatedPeaks:
     """Calculated frequencies."""
 
-    frequency: Real  # (m,) [Hz], increasing, each > 0
+    frequency: Real  # (m,) natural, |s|/2 pi where damped modes are known [Hz], each > 0
     error: Real  # (m,) of modes by mesh and rounding, of peaks that of the fit to them [Hz]
     damping_ratio: Real  # (m,) NaN where nothing damps
     number: Index  # (m,) which of `modes` each is, from 0
     modes: Modes | None = None  # rigid motion and growth among them
     frf: FRF | None = None  # that shows the peaks
+    notes: tuple[str, ...] = ()  # what a reader must know of them
 
     @property
     def has_shapes(self) -> bool:
@@ -105,14 +110,19 @@ def calculated_peaks(
     """Return the calculated frequencies that measured ones may be."""
     if isinstance(given, FRF):
         found = _of_frf(given, drive)
+    elif isinstance(given, Model):
+        found = _with_damping(given, undamped_peaks(given, highest, more, least))
     else:
-        if isinstance(given, Model):
-            number = max(given.count(below=highest) + more, least) + len(given.coordinates) + 1
-            given = solve_modes(given, number, below=None, solver="sweep", strict=False)
         found = _of_modes(given)
     if len(found.frequency) == 0:
         raise SceneError("calculated must have at least one peak, got none")
     return found
+
+
+def undamped_peaks(model: Model, highest: float, more: int, least: int = 0) -> CalculatedPeaks:
+    """Return the natural frequencies up to the highest measured one, and some more."""
+    number = max(model.count(below=highest) + more, least) + len(model.coordinates) + 1
+    return _of_modes(solve_modes(model, number, below=None, solver="sweep", strict=False))
 
 
 def _of_modes(modes: Modes) -> CalculatedPeaks:
@@ -125,6 +135,38 @@ def _of_modes(modes: Modes) -> CalculatedPeaks:
         number=number,
         modes=modes,
     )
+
+
+def _with_damping(model: Model, found: CalculatedPeaks) -> CalculatedPeaks:
+    """Return natural frequencies and damping ratios of the damped modes, in their order."""
+    # of each component the k-th that oscillates is the k-th undamped one
+    modes = found.modes
+    if modes is None or not modes.damping_ratio.any():
+        return found
+    try:
+        damped = solve_damped(model, len(modes.frequency), below=None, solver="sweep", points=None)
+    except SolveError as refusal:
+        return replace(found, notes=(f"undamped frequencies are compared: {refusal}",))
+    oscillates = np.flatnonzero(damped.eigenvalue.imag > ROUNDING * np.abs(damped.eigenvalue))
+    own = _components(model, modes.family[found.number])
+    theirs = _components(model, damped.family[oscillates])
+    new = replace(found, **{name: getattr(found, name).copy() for name in CHANGED})
+    for one in range(len(model.components)):
+        of = oscillates[theirs == one]
+        mine = np.flatnonzero(own == one)[: len(of)]
+        of = of[: len(mine)]
+        new.frequency[mine] = damped.natural_frequency[of]
+        new.damping_ratio[mine] = damped.damping_ratio[of]
+        new.error[mine] += damped.rounding_error[of]
+    rising = np.argsort(new.frequency, kind="stable")
+    return replace(new, **{name: getattr(new, name)[rising] for name in (*CHANGED, "number")})
+
+
+def _components(model: Model, family: Any) -> Index:
+    """Return which component modes of these families move."""
+    coordinate = {name: c for c, name in FAMILY.items()}
+    number = {c: k for k, component in enumerate(model.components) for c in component}
+    return np.array([number[coordinate[name]] for name in family.tolist()], dtype=np.intp)
 
 
 def _of_frf(frf: FRF, drive: int) -> CalculatedPeaks:

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Index, Integer, Real
-from ...base.computed import computed
-from ...base.errors import SceneError, SolveError
-from ...base.unit import FAMILY
-from ...chain.compile import remeshed
-from ...chain.compiled import Compiled
+from ...base.array import Integer, Real
 from ...chain.rate import rates_of
-from ...eigen.modes import Modes
-from ...eigen.spectrum import spectrum
-from ...scene.path import value_at, with_values
 from .calculated import CalculatedPeaks
+from .ends import Give, fitted_ends
+from .tracked import Tracked
 
 LIKELY = 0.05  # What explains differences leaves some that chance exceeds at least so often.
 EXCLUDED = 1e-3  # What leaves some that chance exceeds more rarely does not explain them.
@@ -38,6 +31,10 @@ class Cause(NamedTuple):
     factor: float  # of the number, as the measurement has it over the scene's
     std: float  # relative, of the factor
     chi2: float  # what is left, in squares of standard uncertainties
+    unknowns: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.path} {self.factor:.5g} times the scene's (std {self.factor * self.std:.1g})"
 
 
 def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Real) -> str:
@@ -54,21 +51,43 @@ def likely_cause(found: CalculatedPeaks, order: Integer, measured: Real, std: Re
     at, target = at[known], measured[order > 0][known]
     wanted = np.log(target / found.frequency[at])
     weight = (target / spread[known]) ** 2
-    rest = len(wanted) - 1
     before = float((weight * wanted**2).sum())
     if chance(len(wanted), before) > EXCLUDED:
         return ""
     tracked = Tracked(found.modes, found.number[at])
     paths = rates_of(found.modes.sensitivity.places)
     causes = [one for path in paths if (one := _fitted(tracked, path, wanted, weight))]
-    possible = [one for one in causes if chance(rest, one.chi2) >= EXCLUDED]
-    best = min(possible, key=lambda one: one.chi2, default=None)
-    if best is None or len(possible) > MOST or chance(rest, best.chi2) < LIKELY:
+    give = fitted_ends(tracked, wanted, weight)
+    tried: list[Cause | Give] = [*causes, *([] if give is None else [give])]
+    possible = [one for one in tried if _chance_of(one, len(wanted)) >= EXCLUDED]
+    best = max(possible, key=lambda one: _chance_of(one, len(wanted)), default=None)
+    numbers = [one for one in possible if isinstance(one, Cause)]
+    if best is None or len(numbers) > MOST or _chance_of(best, len(wanted)) < LIKELY:
         return ""
-    gain = (before - best.chi2) / max(best.chi2, NOTHING * before) * rest
-    if fdtrc(1, rest, gain) * len(causes) > EXCLUDED:
+    rest = len(wanted) - best.unknowns
+    gain = (before - best.chi2) / max(best.chi2, NOTHING * before) * rest / best.unknowns
+    if fdtrc(best.unknowns, rest, gain) * len(tried) > EXCLUDED:
         return ""
-    return _words(possible, wanted, weight)
+    return f"{_start(wanted, weight)} {_words(numbers, give, gives=give in possible)}"
+
+
+def tension_alone(found: CalculatedPeaks, order: Integer, measured: Real) -> str:
+    """Say which tension would do where no uncertainties are known, with what it would leave."""
+    at = order[order > 0] - 1
+    if found.modes is None or not found.has_shapes:
+        return ""
+    tracked = Tracked(found.modes, found.number[at])
+    wanted = np.log(measured[order > 0] / found.frequency[at])
+    cause = _fitted(tracked, "tension", wanted, np.ones(len(at)))
+    if cause is None:
+        return ""
+    left = 100 * math.sqrt(cause.chi2 / len(at))
+    return f"a tension {cause.factor:.3g} times the scene's would leave {left:.2g} %"
+
+
+def _chance_of(cause: Cause | Give, pairs: int) -> float:
+    """Return how often chance alone leaves more than a cause does."""
+    return chance(pairs - cause.unknowns, cause.chi2)
 
 
 def chance(freedom: int, chi2: float) -> float:
@@ -78,23 +97,26 @@ def chance(freedom: int, chi2: float) -> float:
     return float(chdtrc(freedom, chi2))
 
 
-def _words(causes: list[Cause], wanted: Real, weight: Real) -> str:
-    """Say what the shifts are like and what explains them."""
+def _start(wanted: Real, weight: Real) -> str:
+    """Say what the shifts are like."""
     mean = float((weight * wanted).sum() / weight.sum())
     if chance(len(wanted) - 1, float((weight * (wanted - mean) ** 2).sum())) >= LIKELY:
         alike = f"measured are {math.exp(mean):.5g} times the calculated frequencies"
-        start = f"All shifts are alike within their uncertainty: {alike}."
-    elif (np.diff(np.abs(wanted)) > 0).all():
-        start = "The shifts grow with the order."
-    else:
-        start = "The shifts are beyond their uncertainty."
-    each = [
-        f"{c.path} {c.factor:.5g} times the scene's (std {c.factor * c.std:.1g})" for c in causes
-    ]
-    return (
-        f"{start} One number alone explains them: {', or '.join(each)}; no other number of the "
-        "scene does."
-    )
+        return f"All shifts are alike within their uncertainty: {alike}."
+    if (np.diff(np.abs(wanted)) > 0).all():
+        return "The shifts grow with the order."
+    return "The shifts are beyond their uncertainty."
+
+
+def _words(causes: list[Cause], give: Give | None, *, gives: bool) -> str:
+    """Say what explains the shifts."""
+    numbers = f"One number alone explains them: {', or '.join(map(str, causes))}"
+    if not gives:
+        nor = "" if give is None else ", nor do springs at its ends"
+        return f"{numbers}; no other number of the scene does{nor}."
+    if not causes:
+        return f"No number of the scene explains them alone: {give} do."
+    return f"{numbers}; but {give} do as well: these peaks cannot tell them apart."
 
 
 def _fitted(tracked: Tracked, path: str, wanted: Real, weight: Real) -> Cause | None:
@@ -116,54 +138,3 @@ def _fitted(tracked: Tracked, path: str, wanted: Real, weight: Real) -> Cause | 
             return Cause(path, math.exp(log), 1 / math.sqrt(size), left)
         slope = shift / log
     return None
-
-
-@dataclass(frozen=True, eq=False)
-class Tracked:
-    """Some modes while a number of the scene changes, known by their numbers in their component."""
-
-    modes: Modes  # of a model
-    number: Index  # (k,) which of them, from 0
-
-    @computed
-    def model(self) -> Compiled:
-        """That the modes are of, of continuous spans a finer one."""
-        return self.modes.sensitivity.shapes.model
-
-    @computed
-    def parts(self) -> list[tuple[tuple[str, ...], Index, Index]]:
-        """Components, which of the tracked modes are theirs, and their numbers in them."""
-        coordinate = {name: c for c, name in FAMILY.items()}
-        own = [self.model.component_of(coordinate[name]) for name in self.modes.family]
-        found = []
-        for component in self.model.components:
-            mine = np.array([one == component for one in own])
-            at = np.flatnonzero(mine[self.number])
-            if len(at):
-                found.append((component, at, np.cumsum(mine)[self.number[at]] - 1))
-        return found
-
-    def slope(self, path: str) -> Real | None:
-        """Return d log f/d log p, shape (k,), or None where there is no such derivative."""
-        try:
-            value = value_at(self.model.scene, path)
-            change = self.modes.derivative(path, of="eigenvalue")[self.number]
-            return value * change / (2 * self.modes.eigenvalue[self.number])
-        except (SceneError, SolveError):
-            return None
-
-    def shift(self, path: str, factor: float) -> Real | None:
-        """Return log f of the number times a factor less log f, or None where there is none."""
-        model = self.model
-        try:
-            scene = with_values(model.scene, {path: factor * value_at(model.scene, path)})
-            changed = remeshed(model, scene)
-            frequency = np.zeros(len(self.number))
-            for component, at, number in self.parts:
-                eigenvalue, _ = spectrum(changed, component, int(number.max()) + 1)
-                frequency[at] = np.sqrt(np.maximum(eigenvalue[number], 0.0)) / (2 * np.pi)
-        except (SceneError, SolveError, IndexError):
-            return None
-        if not (frequency > 0).all():
-            return None
-        return np.asarray(np.log(frequency / self.modes.frequency[self.number]))

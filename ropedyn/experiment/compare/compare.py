@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -24,9 +25,11 @@ from ...model import Model
 from ...response.frf import FRF
 from ...signal.likeness import frac, frac_over, mac, residues
 from .calculated import CalculatedPeaks, calculated_peaks, is_motion
-from .cause import likely_cause
+from .cause import likely_cause, tension_alone
 from .measured import MeasuredPeaks, measured_peaks
+from .numbering import Numbering, Verdict, common_factor, numbered, verdict, weighed
 from .pairing import calculated_at, drive_of, paired
+from .slips import ANGULAR, slips, slips_of_peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,8 +63,21 @@ class Comparison(Answer):
     visible : ndarray of bool, shape (m,)
         Whether the drive of a measured response shows anything of it in any of them; True where
         peaks alone were compared.
+    status : {"trusted", "ambiguous", "refused"}
+        Whether the pairs are the right ones: ambiguous where other pairs have a twentieth of the
+        probability or there are less than three, refused where there are none.
+    reason : str
+        Why, in words.
+    factor : float
+        Common factor of measured over calculated frequencies that the pairs were found with, the
+        median of all; NaN without pairs.
     hint : str
-        What the differences show of their cause, where they prove it; else empty.
+        What the differences show of their cause, where pairs are trusted and prove it: numbers of
+        the scene of which one alone explains them, rotational springs at the ends, and whether
+        these can be told apart. Else empty.
+    notes : tuple of str
+        What a reader must know: a factor that all peaks have in common, slips in what was
+        measured, maxima of responses that are no peaks.
     response : tuple of str
         What each response is; empty where peaks alone were compared.
     frequency : ndarray, shape (f,), or None
@@ -98,7 +114,11 @@ class Comparison(Answer):
     calculated_damping_ratio: Real = field(metadata=axes("peak"))
     all_calculated: Real = field(metadata=axes("calculated", unit="Hz"))
     visible: Flags = field(metadata=axes("calculated"))
+    status: str = "trusted"
+    reason: str = ""
+    factor: float = math.nan
     hint: str = ""
+    notes: tuple[str, ...] = ()
     response: tuple[str, ...] = ()
     frequency: Real | None = field(default=None, metadata=axes("frequency", unit="Hz"))
     measured_value: Complex | None = field(default=None, metadata=axes("response", "frequency"))
@@ -150,14 +170,15 @@ class Comparison(Answer):
             if name in always or not np.isnan(values).all()
         }
         columns["mode"] = tuple(None if n else k for n, k in zip(none, self.order.tolist()))
-        return Table.of("calculated against measured peaks", columns)
+        why = "" if self.status == "trusted" else f": {self.reason}"
+        return Table.of(f"calculated against measured peaks, {self.status}{why}", columns)
 
     def table(self) -> Table:
         """Return the pairs with their differences."""
         return self.peaks
 
     def report(self) -> str:
-        """Return as text the pairs, FRAC of each response and the hint, as far as there are any.
+        """Return as text the pairs, FRAC of each response, notes and hint, as far as there are any.
 
         Examples
         --------
@@ -170,7 +191,8 @@ class Comparison(Answer):
         lines = [str(self.peaks)]
         if self.frac is not None:
             lines += [f"FRAC of {r}: {value:.4g}" for r, value in zip(self.response, self.frac)]
-        return "\n".join([*lines, self.hint] if self.hint else lines)
+        lines += [*self.notes, *([self.hint] if self.hint else [])]
+        return "\n".join(lines)
 
     def plot(self, ax: Axes | None = None, *, of: str | None = None) -> Axes:
         """Plot what was compared.
@@ -211,26 +233,29 @@ def compare(
     """Compare what was calculated with a measurement.
 
     Each measured peak has the calculated partner that makes the sum of d^2, d = log(measured/
-    calculated), over all pairs smallest, where a pair that is left out costs the square of half the
-    distance to the next calculated one, in the same measure: a peak in the middle between two modes
-    says nothing about which of them it is. So a peak that is no mode and a mode that shows no peak
-    stay alone, and pairs never cross. Of a whole response, modes of which the drive shows nothing
-    in any response have no peak.
+    calculated) less a factor that all have in common, over all pairs smallest, where a pair that is
+    left out costs the square of half the distance to the next calculated one, in the same measure:
+    a peak in the middle between two modes says nothing about which of them it is. So a peak that is
+    no mode and a mode that shows no peak stay alone, and pairs never cross. The factor is the one
+    that makes the pairs most probable, by how they scatter, what they leave out and how far it is
+    from 1; the status says whether others are possible. Of a whole response, modes of which the
+    drive shows nothing in any response have no peak.
 
-    Where the uncertainties of the peaks prove that one number of the scene explains all
-    differences, and which, the `hint` of the comparison says so.
+    Where the uncertainties of the peaks prove that one number of the scene, or the give of its
+    ends, explains all differences, and which, the `hint` of the comparison says so.
 
     Parameters
     ----------
     calculated : Model, Modes or FRF
-        Of a model the modes that are needed are computed, and the response at the measured lines.
+        Of a model the modes that are needed are computed, damped ones where the scene damps, whose
+        natural frequencies are compared, and the response at the measured lines.
         Of an FRF its peaks count, to the drive of the measurement or else the first one.
     measured : Peaks, Measured, Resonances or array_like of frequencies [Hz]
         Of a whole response the peaks of all its responses are merged, as by `Peaks.of`; its line at
         0 Hz is not compared. With orders of `Peaks` each is compared with that mode in any case.
     within : float, optional
         Largest relative error that the calculated frequencies may have: no pair is farther apart
-        than that and three standard uncertainties of the peak.
+        than that and three standard uncertainties of the peak, and no common factor is sought.
     band : float, optional
         Width of the band around each line that `Comparison.frac_over_frequency` is taken over [Hz];
         a tenth of the measured range, or ten lines where that is wider, where left out.
@@ -279,12 +304,19 @@ def compare(
     visible = np.ones(len(found.frequency), dtype=np.bool_)
     if peaks.curves is not None:
         visible = found.visible(peaks.curves.drive[0], peaks.curves.response)
-    order = _order(found.frequency, visible, peaks, within)
+    numbering, (status, reason) = _numbering(found.frequency, visible, peaks, within)
+    slipped = _slips(calculated, peaks)
+    if status == "trusted" and any(ANGULAR in note for note in slipped):
+        status, reason = "ambiguous", "the frequencies may be rad/s"
+    order = numbering.order
     mine = np.where(order > 0, order - 1, len(found.frequency))
     partner, error, damping = (
         np.append(column, np.nan)[mine]
         for column in (found.frequency, found.error, found.damping_ratio)
     )
+    hint = ""
+    if status == "trusted":
+        hint = likely_cause(found, order, peaks.frequency, peaks.std)
     return Comparison(
         order=order,
         measured=peaks.frequency,
@@ -296,23 +328,60 @@ def compare(
         calculated_damping_ratio=damping,
         all_calculated=found.frequency,
         visible=visible,
-        hint=likely_cause(found, order, peaks.frequency, peaks.std),
+        status=status,
+        reason=reason,
+        factor=math.exp(numbering.shift) if order.any() else math.nan,
+        hint=hint,
+        notes=(*_alike(found, numbering, peaks, hint), *slipped, *found.notes, *peaks.left_out),
         mac=_mac(found, peaks, shapes, points, drive),
         **_responses(calculated, peaks.curves, band),
     )
 
 
-def _order(calculated: Real, visible: Flags, peaks: MeasuredPeaks, within: float | None) -> Integer:
-    """Return which calculated peak each measured one is."""
+def _numbering(
+    calculated: Real, visible: Flags, peaks: MeasuredPeaks, within: float | None
+) -> tuple[Numbering, Verdict]:
+    """Return which calculated peak each measured one is, and what that is worth."""
     if peaks.order is not None:
         if peaks.last > len(calculated):
             raise SceneError(
                 f"measured.order must be at most {len(calculated)}, the calculated peaks there "
                 f"are, got {peaks.last}"
             )
-        return peaks.order
-    order = paired(peaks.frequency, calculated[visible], std=peaks.std, within=within)
-    return np.append(0, np.flatnonzero(visible) + 1)[order]
+        one = weighed(peaks.frequency, calculated, peaks.std, peaks.order)
+        return one, Verdict("trusted", "the orders are given")
+    seen = calculated[visible]
+    if within is None:
+        found = numbered(peaks.frequency, seen, peaks.std)
+    else:
+        order = paired(peaks.frequency, seen, std=peaks.std, within=within)
+        found = [weighed(peaks.frequency, seen, peaks.std, order)]
+    number = np.append(0, np.flatnonzero(visible) + 1)
+    found = [one._replace(order=number[one.order]) for one in found]
+    return found[0], verdict(found)
+
+
+def _alike(
+    found: CalculatedPeaks, numbering: Numbering, peaks: MeasuredPeaks, hint: str
+) -> list[str]:
+    """Say which factor all peaks have in common, if any, and what would explain it."""
+    common = common_factor(numbering, peaks.frequency, found.frequency)
+    if common is None:
+        return []
+    where = "above" if common > 1 else "below"
+    said = f"all peaks lie {100 * abs(common - 1):.3g} % {where} the calculated ones: one factor"
+    by_tension = "" if hint else tension_alone(found, numbering.order, peaks.frequency)
+    return [f"{said}; {by_tension}" if by_tension else said]
+
+
+def _slips(calculated: Model | Modes | FRF, peaks: MeasuredPeaks) -> tuple[str, ...]:
+    """Name slips in what was measured."""
+    model = calculated if isinstance(calculated, Model) else None
+    if peaks.curves is not None:
+        return slips(peaks.curves, model)
+    if model is None or peaks.order is not None:
+        return ()
+    return slips_of_peaks(peaks.frequency, model)
 
 
 def _responses(

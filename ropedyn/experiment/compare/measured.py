@@ -27,6 +27,7 @@ class MeasuredPeaks(NamedTuple):
     damping_ratio: Real  # (k,) NaN where it is not known
     order: Integer | None  # (k,) where it is given
     curves: Measured | None  # without a line at 0 Hz
+    left_out: tuple[str, ...] = ()  # maxima that are no peaks, in words
 
     @property
     def highest(self) -> float:
@@ -49,9 +50,11 @@ def measured_peaks(measured: Any) -> MeasuredPeaks:
         check.instance(measured, "measured", given, what)
     if isinstance(measured, Measured):
         curves = above_zero(measured)
-        return MeasuredPeaks(*peaks_in(curves), None, curves)
+        found = curves.peaks()
+        left_out = tuple(text for one in found for text in one.left_out)
+        return MeasuredPeaks(*peaks_in(curves), None, curves, left_out)
     if isinstance(measured, Resonances):
-        return MeasuredPeaks(*peaks_in([measured]), None, None)
+        return MeasuredPeaks(*peaks_in([measured]), None, None, measured.left_out)
     if not isinstance(measured, Peaks):
         frequency = check.numbers(measured, "measured", "Hz", sign="positive")
         unknown = np.full(len(frequency), np.nan)
