@@ -12,6 +12,29 @@ from ...family.family import Family
 from .unknown import Unknowns
 
 
+def vibrating(family: Family, value: Real, count: int) -> tuple[Real, Real]:
+    """Find the lowest frequencies of rows that vibrate, (n, count), and their slopes by values.
+
+    Rigid motion and growth are left out; NaN as of `NaturalFrequencies`.
+    """
+    asked = count
+    while True:
+        found = family.modes(value, asked, derivative=True, threads=1)
+        grows = found.eigenvalue <= 0
+        still = int(grows.sum(axis=1).max()) if grows.any() else 0
+        if asked >= count + still:
+            break
+        asked = count + still
+    assert found.derivative is not None
+    frequency, slope = found.frequency, found.derivative
+    if still:
+        last = ~(found.eigenvalue > 0)
+        order = np.argsort(last, axis=1, kind="stable")[:, :count]
+        frequency = np.take_along_axis(np.where(last, np.nan, frequency), order, axis=1)
+        slope = np.take_along_axis(slope, order[:, :, None], axis=1)
+    return frequency, slope
+
+
 @dataclass(frozen=True, eq=False)
 class NaturalFrequencies:
     """Natural frequencies of scenes with unknown numbers, for rows of variables."""
@@ -37,21 +60,7 @@ class NaturalFrequencies:
             # as at the start of many ropes
             frequency, slope = self(u[:1], count)
             return np.repeat(frequency, len(u), axis=0), np.repeat(slope, len(u), axis=0)
-        asked = count
-        while True:
-            found = self.family.modes(value, asked, derivative=True, threads=1)
-            grows = found.eigenvalue <= 0
-            still = int(grows.sum(axis=1).max()) if grows.any() else 0
-            if asked >= count + still:
-                break
-            asked = count + still
-        assert found.derivative is not None
-        frequency, slope = found.frequency, found.derivative
-        if still:
-            last = ~(found.eigenvalue > 0)
-            order = np.argsort(last, axis=1, kind="stable")[:, :count]
-            frequency = np.take_along_axis(np.where(last, np.nan, frequency), order, axis=1)
-            slope = np.take_along_axis(slope, order[:, :, None], axis=1)
+        frequency, slope = vibrating(self.family, value, count)
         return frequency, slope * self.unknowns.slope(u)[:, None, :]
 
     def lowest(self, u: Real, count: int) -> tuple[Real, Real]:

@@ -1,0 +1,1 @@
+"""What peaks tell of a tension whose ends, mass and length are not known exactly."""
