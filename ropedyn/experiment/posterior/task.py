@@ -10,6 +10,8 @@ import numpy as np
 from ...base import check
 from ...base.array import Flags, Integer, Real
 from ...base.errors import SceneError
+from ...family.template import SPRING
+from ...scene.prior import Prior
 from ...scene.scene import Scene
 from ..fitting.unknown import Unknowns
 
@@ -42,7 +44,11 @@ class PosteriorTask:
 
     def __post_init__(self) -> None:
         check.instance(self.scene, "scene", Scene, "a Scene")
-        Unknowns.of(self.scene, [path for path in self.unknown if not path.startswith("ends[")])
+        others = [path for path in self.unknown if not SPRING.fullmatch(path)]
+        if others or not self.unknown:
+            Unknowns.of(self.scene, others)
+        if len(self.prior):
+            Prior(self.prior)
         frequency = check.numbers(self.frequency, "frequency", "Hz", sign="positive")
         orders = np.asarray(self.orders)
         if orders.shape != frequency.shape or orders.dtype.kind not in "iu" or orders.min() < 0:
