@@ -22,6 +22,7 @@ class Parameter(NamedTuple):
     turning: str = ""  # the unit on a coordinate that is an angle, where that is another
     is_position: bool = False
     is_late: bool = False  # whether its check asks for other parameters, checked before it
+    sign: str = "any"  # of a number, one of `check.SIGNS`
 
     def units(self) -> tuple[str, ...]:
         """Return the units it can have."""
@@ -55,7 +56,7 @@ def number(
         own = parameter.unit_on(thing.coordinate) if turning else unit
         return check.number(value, name, own, sign=sign)
 
-    parameter = Parameter(checked, unit, turning, is_position, is_late=bool(turning))
+    parameter = Parameter(checked, unit, turning, is_position, bool(turning), sign)
     return _declared(parameter, default)
 
 
@@ -91,7 +92,7 @@ def per_coordinate(unit: str, *, turning: str, sign: str, default: Mapping[str, 
             }
         )
 
-    parameter = Parameter(checked, unit, turning)
+    parameter = Parameter(checked, unit, turning, sign=sign)
     return _declared(parameter, default)
 
 

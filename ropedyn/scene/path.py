@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from ..base import check
 from ..base.errors import SceneError
-from ..base.parameter import parameters
+from ..base.parameter import Parameter, parameters
 from . import damping
 from .end import STANDING, End, end_of
 from .gravity import Gravity
@@ -93,13 +93,27 @@ def unit_of(path: str) -> str:
     place = _place(path)
     if place.kind:
         return parameters(End)[place.kind].unit_on(place.name)
+    units = dict.fromkeys(unit for one in _declared(place) for unit in one.units())
+    return " or ".join(unit or "1" for unit in units) if len(units) > 1 else "".join(units)
+
+
+def signs_of(path: str) -> set[str]:
+    """Return the signs that are asked of the number at a path, one for each thing that has it.
+
+    >>> signs_of("bending_stiffness"), signs_of("ends[0].spring.beta"), signs_of("tension")
+    ({'positive'}, {'nonzero'}, {'any'})
+    """
+    place = _place(path)
+    declared = [parameters(End)[place.kind]] if place.kind else _declared(place)
+    return {one.sign for one in declared}
+
+
+def _declared(place: _Place) -> list[Parameter]:
+    """Return what is declared of a number of this name, one for each kind of thing that has it."""
     kinds = {"damping": damping.KINDS, "parts": part.KINDS}
     alone = {"tension": Tension, "gravity": Gravity, "rope": Rope}
-    declared = [
-        parameters(kind).get(place.name) for kind in kinds.get(place.of) or (alone[place.of],)
-    ]
-    units = dict.fromkeys(unit for one in declared if one for unit in one.units())
-    return " or ".join(unit or "1" for unit in units) if len(units) > 1 else "".join(units)
+    among = (parameters(kind) for kind in kinds.get(place.of) or (alone[place.of],))
+    return [declared[place.name] for declared in among if place.name in declared]
 
 
 def _owner(scene: Scene, place: _Place, path: str) -> Any:

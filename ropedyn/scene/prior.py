@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ..base import check
+from ..base.array import Real
+from ..base.computed import computed
 from ..base.errors import SceneError
-from ..base.parameter import Description, given
+from ..base.parameter import Description, depending, given
 from ..base.table import Table
 from .bench.bending_test import BendingTest
 from .bench.static_test import StaticTest
 from .bench.torsion_test import TorsionTest
-from .path import unit_of
+from .joint_normal import EPS, JointNormal
+from .path import signs_of, unit_of
 from .rope import given_tests
+
+NORMAL, LOG_NORMAL = DISTRIBUTIONS = ("normal", "log-normal")
+
+POSITIVE = {"positive", "nonnegative", "nonzero"}  # Signs of what is positive by its nature.
+MOST_FACTOR = 1e10  # Of what is known to a factor.
+SIZES = (1e-150, 1e150)  # Relative std of log-normal numbers, whose squares are numbers.
+EQUAL = 1e-6  # What is said twice agrees to this share.
+MOST_DRAWN = 100_000_000  # Rows that are drawn at once.
 
 
 def _checked(known: Any) -> dict[str, tuple[float, float]]:
@@ -28,34 +43,109 @@ def _path(path: Any) -> str:
     return str(check.instance(path, "path", str, 'a string such as "tension"'))
 
 
-def _pair(path: str, pair: Any) -> tuple[float, float]:
-    what = "a value and its standard uncertainty such as (300.0, 15.0)"
-    name = f"prior[{path!r}]"
+def _two(name: str, pair: Any, what: str) -> None:
     check.instance(pair, name, (tuple, list), what)
     if len(pair) != 2:
         raise SceneError(f"{name} must be {what}, got {check.shown(pair)}")
-    unit = unit_of(path)
-    value = check.number(pair[0], f"{name}[0]", unit)
+
+
+def _pair(path: str, pair: Any) -> tuple[float, float]:
+    name, unit = f"prior[{path!r}]", unit_of(path)
+    _two(name, pair, "a value and its standard uncertainty such as (300.0, 15.0)")
+    sign = "positive" if signs_of(path) == {"positive"} else "any"
+    value = check.number(pair[0], f"{name}[0]", unit, sign=sign)
     return value, check.number(pair[1], f"{name}[1]", unit, sign="positive")
 
 
+def _covariance(value: Any, name: str, prior: Prior) -> Real | None:
+    """Return a covariance whose diagonal is that of the standard uncertainties."""
+    if value is None:
+        return None
+    p, std = len(prior), prior.std
+    covariance: Real = check.matrix(value, name, (p, p), "a row for each path", np.float64)
+    share = covariance / np.outer(std, std)
+    for i, path in enumerate(prior):
+        if not abs(share[i, i] - 1) <= EQUAL:
+            raise SceneError(
+                f"{name}[{i}][{i}] must be the square of prior[{path!r}][1], "
+                f"{std[i] ** 2:g}, got {covariance[i, i]:g}"
+            )
+    uneven = np.abs(share - share.T) > EQUAL
+    if uneven.any():
+        i, j = np.argwhere(uneven)[0]
+        raise SceneError(
+            f"{name} must be symmetric, got {covariance[i, j]:g} at [{i}][{j}] and "
+            f"{covariance[j, i]:g} at [{j}][{i}]"
+        )
+    least = float(np.linalg.eigvalsh(share)[0])
+    if least <= EPS:
+        raise SceneError(
+            f"{name} must be positive definite, got one whose correlations have the eigenvalue "
+            f"{least:.3g}"
+        )
+    covariance.flags.writeable = False
+    return covariance
+
+
+def _distribution(value: Any, name: str, prior: Prior) -> dict[str, str]:
+    """Return a word for each path, that of its nature where none is said."""
+    if value is None or isinstance(value, Mapping):
+        said = value or {}
+    else:
+        said = dict.fromkeys(prior, check.one_of(value, name, DISTRIBUTIONS))
+    for path in said:
+        check.one_of(path, f"key of {name}", tuple(prior))
+        check.one_of(said[path], f"{name}[{path!r}]", DISTRIBUTIONS)
+        if said[path] == LOG_NORMAL and not _may_be_log_normal(*prior[path]):
+            raise SceneError(
+                f"prior[{path!r}] must have a mean > 0 and a std between {SIZES[0]:g} and "
+                f"{SIZES[1]:g} of it to be log-normal, got {prior[path]}"
+            )
+    return {path: said.get(path, _natural(path, pair)) for path, pair in prior.items()}
+
+
+def _natural(path: str, pair: tuple[float, float]) -> str:
+    """Return log-normal of tensions, stiffnesses, masses, lengths and the like, which are > 0."""
+    signs = signs_of(path)
+    positive = path == "tension" or (signs and signs <= POSITIVE)
+    return LOG_NORMAL if positive and _may_be_log_normal(*pair) else NORMAL
+
+
+def _may_be_log_normal(mean: float, std: float) -> bool:
+    return mean > 0 and SIZES[0] < std / mean < SIZES[1]
+
+
 class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False):
-    """Values of numbers of a scene with their standard uncertainties: independent and normal.
+    """What is known of numbers of a scene: values with standard uncertainties, correlated or not.
 
     A mapping from path to (value, std), which `identify` takes.
 
     Parameters
     ----------
     known : mapping from str to (float, float)
-        Paths as ``"tension"`` or ``"bending_stiffness"``, and for each its value and standard
-        uncertainty > 0, in the units of the scene.
+        Paths as ``"tension"`` or ``"bending_stiffness"``, and for each its mean and standard
+        deviation > 0, in the units of the scene.
+    covariance : array_like, shape (p, p), optional
+        Of the numbers, in the order of the paths, with the squares of the standard deviations on
+        its diagonal; independent where left out.
+    distribution : {"normal", "log-normal"}, or mapping of it by path, optional
+        Where left out log-normal of what is positive by its nature, as tension, stiffness, mass,
+        length and damping, if its mean is; normal of the others, as positions and inclinations.
 
     Raises
     ------
     TypeError
         If something is of the wrong type.
     SceneError
-        If there is nothing, a value is not finite or an uncertainty not positive.
+        If there is nothing, a value is not finite or an uncertainty not positive; if a covariance
+        is not symmetric, positive definite and one of these uncertainties, or none that log-normal
+        numbers can have.
+
+    Notes
+    -----
+    A log-normal number has the mean and the standard deviation that are given:
+    ln p ~ N(ln m - s^2/2, s^2) with s^2 = ln(1 + (std/m)^2). One as uncertain as it is large has
+    its median at 0.71 m; what is known to a factor is better said by `Prior.by_factor`.
 
     Examples
     --------
@@ -66,13 +156,19 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
     >>> bent = rd.BendingTest(0.5, [0.0, 2.0, 4.0], [1.0e-3, 2.5e-3, 4.1e-3])
     >>> print(prior | rd.Prior.of(bending=bent))
     known before
-    path                 value     std
-    -----------------  -------  ------
-    tension                300      15
-    bending_stiffness  53.7634  1.0013
+    path                 value     std  distribution
+    -----------------  -------  ------  ------------
+    tension                300      15  log-normal
+    bending_stiffness  53.7634  1.0013  log-normal
     """
 
     known: Mapping[str, tuple[float, float]] = given(_checked)
+    covariance: Any = depending(_covariance, default=None)
+    distribution: Any = depending(_distribution, default=None)
+
+    def _agree(self) -> None:
+        """Refuse covariances that there are not."""
+        self._law  # noqa: B018
 
     @staticmethod
     def of(*, bending: BendingTest | None = None, torsion: TorsionTest | None = None) -> Prior:
@@ -98,6 +194,40 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         """
         return Prior({test.stiffness_name: _told(test) for test in given_tests(bending, torsion)})
 
+    @staticmethod
+    def by_factor(known: Mapping[str, tuple[float, float]]) -> Prior:
+        """Return what is known to a factor: log-normal numbers by median and factor.
+
+        Parameters
+        ----------
+        known : mapping from str to (float, float)
+            For each path a median > 0 and a factor > 1: ln p ~ N(ln median, (ln factor)^2), so that
+            with 68 % the number is between median/factor and median*factor.
+
+        Returns
+        -------
+        Prior
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If there is nothing, a median is not positive or a factor not above 1.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> prior = rd.Prior.by_factor({"tension": (3.9e6, 1.1)})
+        >>> [round(number) for number in prior["tension"]]
+        [3917754, 374251]
+        """
+        check.instance(known, "known", Mapping, 'a mapping such as {"tension": (3.9e6, 1.5)}')
+        return Prior(
+            {_path(path): _by_factor(path, pair) for path, pair in known.items()},
+            distribution=LOG_NORMAL,
+        )
+
     def __getitem__(self, path: str) -> tuple[float, float]:
         return self.known[path]
 
@@ -107,14 +237,33 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
     def __len__(self) -> int:
         return len(self.known)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Prior):
+            return Mapping.__eq__(self, other)
+        return (
+            dict(self.known) == dict(other.known)
+            and dict(self.distribution) == dict(other.distribution)
+            and list(self) == list(other)
+            and np.array_equal(self.correlation, other.correlation)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __or__(self, other: Mapping[str, tuple[float, float]]) -> Prior:
         """Return both, of a path that both have what the right one says."""
         if not isinstance(other, Mapping):
             return NotImplemented
-        return Prior({**self, **other})
+        right = other if isinstance(other, Prior) else Prior(other)
+        kept = [path for path in self if path not in right]
+        return _joined([self.marginal(kept), right] if kept else [right], {**self, **right})
 
     def __repr__(self) -> str:
-        return f"Prior({self.known!r})"
+        told = [repr(dict(self.known))]
+        if self.covariance is not None:
+            told.append(f"covariance={self.covariance.tolist()!r}")
+        if any(self.distribution[path] != _natural(path, self[path]) for path in self):
+            told.append(f"distribution={dict(self.distribution)!r}")
+        return f"Prior({', '.join(told)})"
 
     def __str__(self) -> str:
         return str(self.table())
@@ -122,8 +271,31 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()
 
+    @property
+    def mean(self) -> Real:
+        """Means of the numbers, shape (p,)."""
+        return np.array([value for value, _ in self.known.values()])
+
+    @property
+    def std(self) -> Real:
+        """Standard deviations of the numbers, shape (p,)."""
+        return np.array([std for _, std in self.known.values()])
+
+    @property
+    def correlation(self) -> Real:
+        """Between the numbers, shape (p, p)."""
+        if self.covariance is None:
+            return np.eye(len(self))
+        return np.asarray(self.covariance / np.outer(self.std, self.std))
+
+    @computed
+    def _law(self) -> JointNormal:
+        by_log = np.array([self.distribution[path] == LOG_NORMAL for path in self])
+        correlation = None if self.covariance is None else self.correlation
+        return JointNormal.of(self.mean, self.std, by_log, correlation)
+
     def table(self) -> Table:
-        """Return one row for each number.
+        """Return one row for each number, with correlations where there are any.
 
         Examples
         --------
@@ -131,8 +303,177 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         >>> rd.Prior({"tension": (300.0, 15.0)}).table().column("std")
         (15.0,)
         """
-        value, std = zip(*self.known.values())
-        return Table.of("known before", {"path": tuple(self.known), "value": value, "std": std})
+        columns: dict[str, Any] = {
+            "path": tuple(self),
+            "value": tuple(self.mean.tolist()),
+            "std": tuple(self.std.tolist()),
+            "distribution": tuple(self.distribution.values()),
+        }
+        if self.covariance is not None:
+            for path, column in zip(self, self.correlation.T.tolist()):
+                columns[f"correlation with {path}"] = tuple(column)
+        return Table.of("known before", columns)
+
+    def marginal(self, paths: Iterable[str]) -> Prior:
+        """Return what is known of some of the numbers, in another order if asked.
+
+        Parameters
+        ----------
+        paths : iterable of str
+            Some of the paths.
+
+        Returns
+        -------
+        Prior
+
+        Raises
+        ------
+        SceneError
+            If there is none of these paths, or they are none.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Prior({"tension": (300.0, 15.0), "length": (2.0, 0.01)}).marginal(["length"])
+        Prior({'length': (2.0, 0.01)})
+        """
+        paths = [check.one_of(path, "path", tuple(self)) for path in paths]
+        at = np.array([list(self).index(path) for path in paths], dtype=np.intp)
+        return Prior(
+            {path: self[path] for path in paths},
+            covariance=None if self.covariance is None else self.covariance[np.ix_(at, at)],
+            distribution={path: self.distribution[path] for path in paths},
+        )
+
+    def residual(self, values: ArrayLike) -> tuple[Real, Real]:
+        """Return independent residuals of variance 1, as least squares add them, and their slopes.
+
+        Of one independent normal number (p - mean)/std, of a log-normal one
+        (ln p - ln median)/s; of correlated numbers combinations of these.
+
+        Parameters
+        ----------
+        values : array_like, shape (n, p)
+            Rows of numbers, in the order of the paths.
+
+        Returns
+        -------
+        residual : ndarray, shape (n, p)
+            NaN or infinite where a log-normal number is not positive.
+        slope : ndarray, shape (n, p, p)
+            Derivatives of the residuals by the numbers.
+
+        Raises
+        ------
+        SceneError
+            If the rows have not a number for each path.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> prior = rd.Prior({"tension": (300.0, 15.0)}, distribution="normal")
+        >>> residual, slope = prior.residual([[330.0]])
+        >>> residual.round(9).tolist(), slope.round(9).tolist()
+        ([[2.0]], [[[0.066666667]]])
+        """
+        return self._law.residual(self._rows(values))
+
+    def log_density(self, values: ArrayLike) -> Real:
+        """Return the logarithm of the density of numbers.
+
+        Parameters
+        ----------
+        values : array_like, shape (n, p)
+            Rows of numbers, in the order of the paths.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Minus infinity where a log-normal number is not positive.
+
+        Raises
+        ------
+        SceneError
+            If the rows have not a number for each path.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> prior = rd.Prior({"tension": (300.0, 15.0)}, distribution="normal")
+        >>> prior.log_density([[300.0], [330.0]]).round(4).tolist()
+        [-3.627, -5.627]
+        """
+        return self._law.log_density(self._rows(values))
+
+    def draw(self, rng: np.random.Generator, n: int) -> Real:
+        """Draw numbers at random.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            What draws; of the same seed the same numbers.
+        n : int
+            How many rows.
+
+        Returns
+        -------
+        ndarray, shape (n, p)
+            In the order of the paths.
+
+        Raises
+        ------
+        TypeError
+            If `rng` is no generator or `n` no whole number.
+        SceneError
+            If `n` is not positive.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> prior = rd.Prior({"tension": (300.0, 15.0)})
+        >>> prior.draw(np.random.default_rng(1), 2).round(2).tolist()
+        [[304.84], [312.18]]
+        """
+        what = "a numpy.random.Generator such as numpy.random.default_rng(1)"
+        check.instance(rng, "rng", np.random.Generator, what)
+        n = check.count(n, "n", most=MOST_DRAWN)
+        return self._law.colour(rng.standard_normal((n, len(self))))
+
+    def _rows(self, values: ArrayLike) -> Real:
+        rows = np.asarray(values, dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] != len(self):
+            raise SceneError(
+                f"values must be rows of {len(self)} numbers, in the order of the paths, got an "
+                f"array of shape {rows.shape}"
+            )
+        return rows
+
+
+def _joined(priors: list[Prior], order: Iterable[str]) -> Prior:
+    """Return priors that know nothing of each other as one, in an order of the paths."""
+    known = {path: pair for prior in priors for path, pair in prior.items()}
+    covariance = None
+    if any(prior.covariance is not None for prior in priors):
+        covariance, at = np.zeros((len(known), len(known))), 0
+        for prior in priors:
+            block = slice(at, at := at + len(prior))
+            covariance[block, block] = prior.correlation * np.outer(prior.std, prior.std)
+    distribution = {path: word for prior in priors for path, word in prior.distribution.items()}
+    return Prior(known, covariance=covariance, distribution=distribution).marginal(order)
+
+
+def _by_factor(path: str, pair: Any) -> tuple[float, float]:
+    """Return mean and standard deviation of a log-normal number by its median and its factor."""
+    name = f"known[{path!r}]"
+    _two(name, pair, "a median and a factor such as (3.9e6, 1.5)")
+    median = check.number(pair[0], f"{name}[0]", unit_of(path), sign="positive")
+    factor = check.number(pair[1], f"{name}[1]", sign="positive")
+    if factor <= 1 or factor > MOST_FACTOR:
+        raise SceneError(f"{name}[1] must be a factor > 1 and <= {MOST_FACTOR:g}, got {factor!r}")
+    variance = math.log(factor) ** 2
+    mean = median * math.exp(variance / 2)
+    return mean, mean * math.sqrt(math.expm1(variance))
 
 
 def _told(test: StaticTest) -> tuple[float, float]:

@@ -1,0 +1,80 @@
+"""Joint normal distribution of numbers, of some by their logarithms."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base import check
+from ..base.array import Flags, Real
+from ..base.errors import SceneError
+
+STRAIGHT = 1e-8  # Below this relative std a logarithm is a straight line.
+EPS = 1e-14  # Eigenvalues of correlations that are no larger are rounding of 0.
+
+
+class JointNormal(NamedTuple):
+    """Of g, the logarithms of some numbers and the others themselves."""
+
+    by_log: Flags  # (p,)
+    centre: Real  # (p,) of g
+    spread: Real  # (p, p) g = centre + spread z with z independent and of variance 1
+    whiten: Real  # (p, p) z = whiten (g - centre)
+
+    @classmethod
+    def of(cls, mean: Real, std: Real, by_log: Flags, correlation: Real | None) -> JointNormal:
+        """Match what is given of the numbers; None: they are independent."""
+        size = np.where(by_log, mean, 1.0)
+        share = std / size
+        # sqrt(ln(1 + share^2)) without overflow, and share itself where that is rounding
+        curved = np.sqrt(np.logaddexp(0.0, 2 * np.log(share)))
+        s = np.where(by_log & (share > STRAIGHT), curved, share)
+        centre = np.where(by_log, np.log(size) - s**2 / 2, mean)
+        of_g = (
+            np.eye(len(s)) if correlation is None else _correlation(correlation, by_log, share, s)
+        )
+        factor = np.linalg.cholesky(of_g)
+        return cls(by_log, centre, s[:, None] * factor, np.linalg.inv(factor) / s)
+
+    def colour(self, z: Real) -> Real:
+        """Return numbers of independent normal z, (n, p)."""
+        g = self.centre + z @ self.spread.T
+        return np.where(self.by_log, np.exp(np.where(self.by_log, g, 0.0)), g)
+
+    def residual(self, rows: Real) -> tuple[Real, Real]:
+        """Return z of numbers, (n, p), and its slopes (n, p, p); not finite where there is none."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            by_number = np.where(self.by_log, 1 / np.where(self.by_log, rows, 1.0), 1.0)
+            z = (self._logarithms(rows) - self.centre) @ self.whiten.T
+        return z, self.whiten * by_number[:, None, :]
+
+    def log_density(self, rows: Real) -> Real:
+        """Return the logarithm of the density of numbers, (n,)."""
+        there = np.asarray((~self.by_log | (rows > 0)).all(axis=1))
+        g = self._logarithms(np.where(there[:, None], rows, 1.0))
+        z = (g - self.centre) @ self.whiten.T
+        size = np.log(np.diagonal(self.whiten)).sum() - len(self.centre) * math.log(math.tau) / 2
+        density = size - (z * z).sum(axis=1) / 2 - g[:, self.by_log].sum(axis=1)
+        return np.where(there, density, -np.inf)
+
+    def _logarithms(self, rows: Real) -> Real:
+        return np.where(self.by_log, np.log(np.where(self.by_log, rows, 1.0)), rows)
+
+
+def _correlation(correlation: Real, by_log: Flags, share: Real, s: Real) -> Real:
+    """Return that of g, whose standard deviations are s, of that of the numbers, (p, p)."""
+    # of g_i = ln p_i: cov(p_i, p_j) = m_i m_j (exp S_ij - 1), with a normal p_j m_i S_ij
+    both, covariance = np.outer(by_log, by_log), correlation * np.outer(share, share)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        logarithm = np.log1p(np.where(both, covariance, 0.0))
+    of_g: Real = np.where(both, logarithm, covariance) / np.outer(s, s)
+    np.fill_diagonal(of_g, 1.0)
+    if not (np.isfinite(of_g).all() and np.linalg.eigvalsh(of_g)[0] > EPS):
+        raise SceneError(
+            "covariance must be one that log-normal numbers can have, whose logarithms are "
+            f"correlated by less than 1, got {check.shown(of_g.round(3).tolist())}: say "
+            'distribution="normal"'
+        )
+    return of_g
