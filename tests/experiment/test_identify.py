@@ -301,10 +301,13 @@ def test_what_is_known_beforehand_tells_the_rest():
     for peaks in (rd.Peaks(f, order=SIX), rd.Peaks(f, std=1e-3 * f, order=SIX)):
         fit = fitted(scene(900.0, 1.0), peaks, ["linear_density", *BOTH], prior=prior)
         alone = fitted(scene(900.0, 1.0), peaks, BOTH)
-        np.testing.assert_allclose(fit.value, [DENSITY, *alone.value], rtol=1e-6)
-        assert fit.std["linear_density"] == pytest.approx(0.01, rel=1e-6)
+        # a density is log-normal: of its mean and std the median, and the std of its logarithm
+        median, s = DENSITY / np.hypot(1, 0.02), np.sqrt(np.log1p(0.02**2))
+        expected = np.array([DENSITY, *alone.value]) * median / DENSITY
+        np.testing.assert_allclose(fit.value, expected, rtol=1e-6)
+        assert fit.std["linear_density"] == pytest.approx(s * median, rel=1e-6)
         # relative variances add: of the ratio, and of the density
-        relative = np.sqrt((alone.std / alone.value) ** 2 + 0.02**2)
+        relative = np.sqrt((alone.std / alone.value) ** 2 + s**2)
         np.testing.assert_allclose(fit.std[1:] / fit.value[1:], relative, rtol=1e-3)
 
 

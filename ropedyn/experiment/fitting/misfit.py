@@ -13,6 +13,7 @@ from ...base.errors import RopedynError, SceneError, SolveError
 from ...curves.measured import Measured
 from ...model import Model
 from ...response.frf import FRF
+from ...scene.prior import LOG_NORMAL, Prior
 from .natural_frequencies import NaturalFrequencies
 from .unknown import CALIBRATION, Unknowns
 
@@ -29,28 +30,34 @@ class Misfit(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class PriorMisfit:
-    """What is known beforehand: values and their standard deviations."""
+    """What is known beforehand of some of the numbers."""
 
     unknowns: Unknowns  # what is sought
     at: Index  # (q,) which of it
-    value: Real  # (q,)
-    std: Real  # (q,)
+    prior: Prior  # of q numbers
 
     @classmethod
     def of(cls, unknowns: Unknowns, prior: Mapping[str, tuple[float, float]]) -> PriorMisfit | None:
         """Return what is known of these unknowns, if anything is."""
-        at = [i for i, path in enumerate(unknowns.paths) if path in prior]
-        if not at:
+        known = [path for path in prior if path in unknowns.at_place]
+        if not known:
             return None
-        value, std = zip(*(prior[unknowns.paths[i]] for i in at))
-        return cls(unknowns, np.array(at, dtype=np.intp), np.array(value), np.array(std))
+        whole = prior if isinstance(prior, Prior) else Prior(prior)
+        at = np.array([unknowns.at_place[path] for path in known], dtype=np.intp)
+        for path, i in zip(known, at.tolist()):
+            if whole.distribution[path] == LOG_NORMAL and unknowns.start[i] < 0:
+                raise SceneError(
+                    f"prior[{path!r}] must be of the sign of the scene's guess, which is kept: "
+                    f"{unknowns.start[i]:g}, got a log-normal one of {whole[path]}"
+                )
+        return cls(unknowns, at, whole.marginal(known))
 
     def of_rows(self, u: Real) -> tuple[Real, Real]:
-        """Return (p - value)/std, (n, q), and its slopes (n, q, p)."""
-        residual = (self.unknowns.value(u)[:, self.at] - self.value) / self.std
-        slope = np.zeros((*residual.shape, u.shape[1]))
-        slope[:, np.arange(len(self.at)), self.at] = self.unknowns.slope(u)[:, self.at] / self.std
-        return residual, slope
+        """Return independent residuals of variance 1, (n, q), and their slopes (n, q, p)."""
+        residual, by_number = self.prior.residual(self.unknowns.value(u)[:, self.at])
+        slope = by_number * self.unknowns.slope(u)[:, None, self.at]
+        of_number = self.at[:, None] == np.arange(u.shape[1])
+        return residual, slope @ of_number.astype(np.float64)
 
 
 def unseen_of(slope: Real, known: PriorMisfit | None) -> Flags:
@@ -157,9 +164,10 @@ class Response:
         factor = unknowns.calibration(u)
         slope = [
             frf.value if path == CALIBRATION else factor * _derivative(frf, path, i)
-            for i, path in enumerate(unknowns.paths)
+            for path, i in unknowns.at_place.items()
         ]
-        return factor * frf.value, np.stack(slope, axis=-1) * unknowns.slope(u)
+        by_number = unknowns.of_numbers(np.stack(slope, axis=-1))
+        return factor * frf.value, by_number * unknowns.slope(u)
 
 
 def _derivative(frf: FRF, path: str, i: int) -> Complex:

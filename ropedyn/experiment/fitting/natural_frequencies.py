@@ -47,7 +47,7 @@ class NaturalFrequencies:
         cls, unknowns: Unknowns, elements: int | None = None, element: str | None = None
     ) -> NaturalFrequencies:
         """Compile the family; `elements` and `element` as `Scene.compile` takes them."""
-        family = unknowns.scene.family(unknowns.paths, elements=elements, element=element)
+        family = unknowns.scene.family(list(unknowns.at_place), elements=elements, element=element)
         return cls(unknowns, family)
 
     def __call__(self, u: Real, count: int) -> tuple[Real, Real]:
@@ -60,7 +60,8 @@ class NaturalFrequencies:
             # as at the start of many ropes
             frequency, slope = self(u[:1], count)
             return np.repeat(frequency, len(u), axis=0), np.repeat(slope, len(u), axis=0)
-        frequency, slope = vibrating(self.family, value, count)
+        frequency, slope = vibrating(self.family, self.unknowns.at_places(value), count)
+        slope = self.unknowns.of_numbers(slope)
         return frequency, slope * self.unknowns.slope(u)[:, None, :]
 
     def lowest(self, u: Real, count: int) -> tuple[Real, Real]:
@@ -86,9 +87,10 @@ class NaturalFrequencies:
         return SolveError(f"the scene must have {count} modes for these orders, got {existing}")
 
     def _refusal(self, u: Real, count: int) -> RopedynError:
-        failed = self.family.modes(self.unknowns.value(u)[None], count, derivative=True).failed
+        value = self.unknowns.at_places(self.unknowns.value(u))
+        failed = self.family.modes(value[None], count, derivative=True).failed
         error = failed.get(0, SolveError("the scene must have modes that vibrate, got none"))
-        for i, path in enumerate(self.unknowns.paths):
+        for path, i in self.unknowns.at_place.items():
             if isinstance(error, SceneError) and str(error).endswith(f"got {path!r}"):
                 return SceneError(
                     f"unknown[{i}] must change natural frequencies, as damping does not, which a "

@@ -350,20 +350,21 @@ def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:
     """Return what is known beforehand."""
     if prior is None:
         return {}
-    paths = unknowns.paths
+    paths = tuple(unknowns.at_place)
     if not isinstance(prior, Prior):
         check.instance(prior, "prior", Mapping, 'a mapping such as {"tension": (300.0, 15.0)}')
         for path in prior:
             check.one_of(path, "key of prior", paths)
         prior = Prior(prior)
-    for path, size in zip(paths, np.abs(unknowns.start) + unknowns.scale):
+    for path, size in zip(paths, unknowns.at_places(np.abs(unknowns.start) + unknowns.scale)):
         value, std = prior.get(path, (size, size))
         if abs(value) > SIZES[1] * size or std < SIZES[0] * size:
             raise SceneError(
                 f"prior[{path!r}] must be of at most {SIZES[1] * size:g} and have a std of at "
                 f"least {SIZES[0] * size:g}, got {(value, std)}: the scene's guess is {size:g}"
             )
-    return {path: prior[path] for path in prior if path in paths}
+    known = [path for path in prior if path in paths]
+    return prior.marginal(known) if known else {}
 
 
 def _tensed(scene: Scene, tension: float) -> Scene:

@@ -126,7 +126,7 @@ def _candidates(response: Response, peaks_seen: Callable[[], Real]) -> Iterator[
     yield guess
     model = response.model(guess)
     rates = rates_of(Places(model))
-    shifts = np.array([path in rates for path in unknowns.paths])
+    shifts = np.array([all(path in rates for path in some) for some in unknowns.places])
     peaks = peaks_seen()
     if not shifts.any() or len(peaks) < shifts.sum():
         return
