@@ -152,9 +152,7 @@ def _checked(mode: one_mode.OneMode | None, omega: Real, noise: float) -> _Peak 
     return _Peak(mode.omega, max(mode.ratio, 0.0), mode.omega_std, mode.ratio_std)
 
 
-def _by_three(
-    omega: Real, value: Complex, quantity: str, k: int, decay: float
-) -> _Peak | str:
+def _by_three(omega: Real, value: Complex, quantity: str, k: int, decay: float) -> _Peak | str:
     """Return the mode through line k and its neighbours, or why it is none."""
     # of one mode 1/receptance = (omega_0^2 - omega^2 + 2 i zeta omega_0 omega)/A, a parabola in
     # omega: the one through the three lines about the maximum has its root there at the pole

@@ -168,7 +168,7 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
 
     def _agree(self) -> None:
         """Refuse covariances that there are not."""
-        self._law  # noqa: B018
+        self.law  # noqa: B018
 
     @staticmethod
     def of(*, bending: BendingTest | None = None, torsion: TorsionTest | None = None) -> Prior:
@@ -289,7 +289,8 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         return np.asarray(self.covariance / np.outer(self.std, self.std))
 
     @computed
-    def _law(self) -> JointNormal:
+    def law(self) -> JointNormal:
+        """The joint distribution."""
         by_log = np.array([self.distribution[path] == LOG_NORMAL for path in self])
         correlation = None if self.covariance is None else self.correlation
         return JointNormal.of(self.mean, self.std, by_log, correlation)
@@ -376,7 +377,7 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         >>> residual.round(9).tolist(), slope.round(9).tolist()
         ([[2.0]], [[[0.066666667]]])
         """
-        return self._law.residual(self._rows(values))
+        return self.law.residual(self._rows(values))
 
     def log_density(self, values: ArrayLike) -> Real:
         """Return the logarithm of the density of numbers.
@@ -403,7 +404,7 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         >>> prior.log_density([[300.0], [330.0]]).round(4).tolist()
         [-3.627, -5.627]
         """
-        return self._law.log_density(self._rows(values))
+        return self.law.log_density(self._rows(values))
 
     def draw(self, rng: np.random.Generator, n: int) -> Real:
         """Draw numbers at random.
@@ -438,7 +439,7 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         what = "a numpy.random.Generator such as numpy.random.default_rng(1)"
         check.instance(rng, "rng", np.random.Generator, what)
         n = check.count(n, "n", most=MOST_DRAWN)
-        return self._law.colour(rng.standard_normal((n, len(self))))
+        return self.law.colour(rng.standard_normal((n, len(self))))
 
     def _rows(self, values: ArrayLike) -> Real:
         rows = np.asarray(values, dtype=np.float64)

@@ -25,7 +25,7 @@ _ANGLE = "gravity.inclination"
 Slopes = TypeVar("Slopes", Real, Complex)
 
 _WHAT = 'paths such as ["tension", "bending_stiffness"]'
-_TIE = " = "  # Between the places of one number in its name.
+TIE = " = "  # Between the places of one number in its name.
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Unknowns:
             raise SceneError(f"unknown must be different {_WHAT}, got {check.shown(unknown)}")
         start = np.array([_start(scene, some, i) for i, some in enumerate(places)])
         scale = np.array([_scale(scene, some[0]) for some in places])
-        paths = tuple(map(_TIE.join, places))
+        paths = tuple(map(TIE.join, places))
         for i, path in enumerate(paths):
             if start[i] == 0 and scale[i] == 0:
                 raise SceneError(

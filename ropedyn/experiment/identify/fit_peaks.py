@@ -44,7 +44,8 @@ class Options(NamedTuple):
     paths: tuple[str, ...]
     orders: Any
     ends: str  # "unknown" or "given"
-    prior: Mapping[str, tuple[float, float]]
+    numbers: int  # how many are sought, with those that a prior alone knows
+    prior: Mapping[str, tuple[float, float]]  # a Prior, where there is one
     model_std: float
     elements: int | None
     element: str | None
@@ -70,7 +71,7 @@ class Identification:
             wave = 2 * scene.rope.length * np.where(inside, ropes["measured"], np.inf).min(axis=1)
             guess = np.log(scene.rope.linear_density * wave**2)
             ropes["guess"][:, how.paths.index("tension")] = guess
-        unknowns = Unknowns.of(tensed, how.paths)
+        unknowns = Unknowns.of(tensed, how.paths).with_nuisances(how.prior)
         return cls(scene, how, NaturalFrequencies.of(unknowns, how.elements, how.element))
 
     def misfit(self, ropes: Ropes) -> PeakMisfit:
@@ -91,7 +92,7 @@ class Identification:
 
     def _fitted(self, ropes: Ropes, rows: Index) -> tuple[Solution, dict[int, RopedynError]]:
         """Fit some of the ropes; return also why others of them have no solution."""
-        task, paths = self.task(ropes), self.how.paths
+        task, paths = self.task(ropes), self.calculated.unknowns.paths
         prior = 0 if task.known is None else len(task.known.at)
         peaks = (ropes["orders"][rows] > 0).sum(axis=1)
         few = peaks + prior < len(paths)

@@ -250,7 +250,7 @@ def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
     how, at = found.identification.how, solution.rows
     p = len(how.paths)
     value, std, rms = np.full((n, p), np.nan), np.full((n, p), np.nan), np.full(n, np.nan)
-    value[at], std[at] = solution.value, solution.std
+    value[at], std[at] = solution.value[:, :p], solution.std[:, :p]
     relative = (ropes["weight"] / ropes["measured"])[at]
     off = solution.record["residual"][:, : solution.peaks] * relative
     rms[at] = np.sqrt(np.sum(off**2, axis=1) / (ropes["orders"][at] > 0).sum(axis=1))

@@ -55,7 +55,7 @@ class Found:
     def interval(self, level: float, method: str) -> Real:
         """Return intervals of all ropes, NaN of those without a solution, shape (n, p, 2)."""
         bounds = np.full((len(self.ropes), len(self.identification.how.paths), 2), np.nan)
-        bounds[self.solution.rows] = intervals(self.solution, level, method)
+        bounds[self.solution.rows] = intervals(self.solution, level, method)[:, : bounds.shape[1]]
         return bounds
 
 
@@ -74,7 +74,8 @@ def find(
     began = time.perf_counter()
     ropes = _rows(measured, orders, refused, how)
     identification = Identification.of(scene, how, ropes)
-    (n, k), p = ropes["measured"].shape, len(how.paths)
+    n, k = ropes["measured"].shape
+    p = len(identification.calculated.unknowns)
     record = np.zeros(n, kind_of_solution(k + len(how.prior), p))
     shared = Shared(ropes, workers_of(threads), executor, progress)
     failed, _ = shared.fill([record], [Means(identification.solve, ROPES)])
@@ -116,7 +117,7 @@ def _rows(
     frequency = _filled(inside, [one.frequency for one in measured], 1.0)
     std = _filled(inside & known[:, None], [one.std for one in measured], 0.0)
     weight = np.where(inside & known[:, None], np.hypot(std, how.model_std * frequency), frequency)
-    ropes = np.zeros(len(measured), kind_of_ropes(inside.shape[1], len(how.paths)))
+    ropes = np.zeros(len(measured), kind_of_ropes(inside.shape[1], how.numbers))
     ropes["peaks"], ropes["measured"], ropes["weight"] = count, frequency, weight
     ropes["orders"] = _filled(inside, orders, 0).astype(np.int64)
     ropes["noise"] = np.where(known, 1.0, np.nan)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
@@ -33,6 +34,7 @@ from .one_rope import RopeTask
 from .response_fit import ResponseFit
 
 ENDS = ("unknown", "given")
+ROTATIONAL = re.compile(r"ends\[[01]\]\.spring\.beta")
 # Peaks [Hz], their relative standard deviations and what is known beforehand relative to the guess
 # are between these: squares of all that is between do not overflow.
 SIZES = (1e-50, 1e50)
@@ -192,11 +194,14 @@ def identify(
     whole = isinstance(measured, Measured)
     sought, calibrated = _calibrated(unknown, whole=whole)
     checked = Unknowns.of(_tensed(scene, 1.0), sought)
+    taken = _ends(ends, scene, checked, whole=whole)
+    known = _prior(prior, checked)
     how = Options(
         paths=checked.paths,
         orders=orders,
-        ends=_ends(ends, scene, checked.paths, whole=whole),
-        prior=_prior(prior, checked),
+        ends=taken,
+        numbers=len(checked.with_nuisances(known) if taken == ENDS[1] else checked),
+        prior=known,
         model_std=check.number(model_std, "model_std", sign="nonnegative"),
         elements=elements,
         element=element,
@@ -215,7 +220,7 @@ def identify(
         return fits
     peaks = _peaks(measured, "measured")
     _weigh(peaks)
-    fit = RopeTask(scene, how, peaks, teller(peaks, how)).fit()
+    fit = RopeTask(_guessed(scene, peaks), how, peaks, teller(peaks, how)).fit()
     _warn(fit.notes)
     return fit
 
@@ -231,16 +236,16 @@ def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
     return [path for path in unknown if path != CALIBRATION], True
 
 
-def _ends(ends: Any, scene: Scene, paths: Sequence[str], *, whole: bool) -> str:
+def _ends(ends: Any, scene: Scene, unknowns: Unknowns, *, whole: bool) -> str:
     """Return whether the ends are unknown; they are where that is not said and acts."""
-    sought = any(path.startswith("ends[") and path.endswith("spring.beta") for path in paths)
+    sought = any(map(ROTATIONAL.fullmatch, unknowns.at_place))
     free = "beta" in scene.coordinates and not sought and not whole
-    if ends is None:
-        return ENDS[0] if free else ENDS[1]
-    check.one_of(ends, "ends", ENDS)
+    ends = (ENDS[0] if free else ENDS[1]) if ends is None else check.one_of(ends, "ends", ENDS)
     if ends == ENDS[0] and not free:
         why = "a whole response" if whole else "ends that are sought" if sought else "a string"
         raise SceneError(f'ends must be "given" of {why}, got "unknown"')
+    if unknowns.tied and ends == ENDS[0]:
+        raise SceneError(f'ends must be "given" where numbers are tied, got "unknown"')
     return str(ends)
 
 
@@ -266,7 +271,7 @@ def _many(
     numbered = [one for one in orders if one is not None]
     if how.ends == "given" and len(numbered) == len(measured):
         return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
-    tasks = [RopeTask(scene, how, one, teller(one, how)) for one in measured]
+    tasks = [RopeTask(_guessed(scene, one), how, one, teller(one, how)) for one in measured]
     return each_alone(tasks, refused, **workers)
 
 
@@ -278,6 +283,7 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
             f"{check.shown(how.orders)}: give its peaks to say which modes they are"
         )
     unknowns = Unknowns.of(scene, how.paths)
+    _refuse_beside(how.prior, unknowns)
     if scale:
         unknowns = unknowns.with_calibration(1.0)
     response = Response(unknowns, above_zero(measured), how.elements, how.element)
@@ -350,12 +356,10 @@ def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:
     """Return what is known beforehand."""
     if prior is None:
         return {}
-    paths = tuple(unknowns.at_place)
     if not isinstance(prior, Prior):
         check.instance(prior, "prior", Mapping, 'a mapping such as {"tension": (300.0, 15.0)}')
-        for path in prior:
-            check.one_of(path, "key of prior", paths)
-        prior = Prior(prior)
+        prior = Prior(prior) if prior else {}
+    paths = tuple(unknowns.at_place)
     for path, size in zip(paths, unknowns.at_places(np.abs(unknowns.start) + unknowns.scale)):
         value, std = prior.get(path, (size, size))
         if abs(value) > SIZES[1] * size or std < SIZES[0] * size:
@@ -363,8 +367,23 @@ def _prior(prior: Any, unknowns: Unknowns) -> Mapping[str, tuple[float, float]]:
                 f"prior[{path!r}] must be of at most {SIZES[1] * size:g} and have a std of at "
                 f"least {SIZES[0] * size:g}, got {(value, std)}: the scene's guess is {size:g}"
             )
-    known = [path for path in prior if path in paths]
-    return prior.marginal(known) if known else {}
+    return prior
+
+
+def _refuse_beside(prior: Mapping[str, tuple[float, float]], unknowns: Unknowns) -> None:
+    """Refuse what is known of numbers that a whole response is not asked for."""
+    for path in prior:
+        if path not in unknowns.at_place:
+            raise SceneError(
+                f"prior must be of what is unknown where a whole response is fitted, got {path!r}: "
+                "let it be unknown too"
+            )
+
+
+def _guessed(scene: Scene, peaks: Peaks) -> Scene:
+    """Return a scene with a tension: of a string whose lowest peak is its first mode, if it lacks one."""
+    wave = 2 * scene.rope.length * float(np.min(peaks.frequency))
+    return _tensed(scene, scene.rope.linear_density * wave**2)
 
 
 def _tensed(scene: Scene, tension: float) -> Scene:

@@ -46,7 +46,7 @@ class Solved:
 
     def interval(self, level: float, method: str) -> Real:
         """Return their intervals, shape (p, 2)."""
-        return intervals(self.solution, level, method)[0]
+        return intervals(self.solution, level, method)[0, : self.solution.unknowns.shown]
 
 
 def intervals(solution: Solution, level: float, method: str) -> Real:

@@ -16,7 +16,8 @@ from ...base.errors import RopedynError
 from ...base.named import Named
 from ...curves.peaks import Peaks
 from ...scene.scene import Scene
-from ..orders.evidence import Numbering, decided, numberings
+from ..fitting.unknown import TIE
+from ..orders.numbering import Numbering, decided, numberings
 from ..orders.orders import given_orders
 from .candidates import Candidates
 from .cross_checks import cross_checks
@@ -75,7 +76,7 @@ class RopeTask:
         peaks, how = self.peaks, self.how
         found = numberings(
             self.scene,
-            how.paths,
+            [place for path in how.paths for place in path.split(TIE)],
             np.asarray(peaks.frequency),
             None if peaks.std is None else np.asarray(peaks.std),
             prior=how.prior,
@@ -84,7 +85,6 @@ class RopeTask:
             shape=peaks.shape,
             kind=peaks.kind,
             model_std=how.model_std,
-            seed=how.seed,
         )
         status = decided(found)
         named = [one for one in found[:MOST] if one.probability > NAMEABLE]
@@ -143,7 +143,19 @@ class RopeTask:
         ends = told.ends
         if self.how.ends == "given":
             ends = tuple(other_ends(self.scene, self.how.paths, partial(self.tell, orders)))
-        return Remarks(ends, cross_checks(self.scene, np.asarray(self.peaks.frequency), orders))
+        return Remarks(ends, self._cross_checks(orders))
+
+    def _cross_checks(self, orders: Integer) -> tuple[str, ...]:
+        """Say what closed formulas give, of one rope alone."""
+        scene = self.scene
+        if scene.parts or scene.gravity is not None or "tension" not in self.how.paths:
+            return ()
+        found = cross_checks(scene.rope, np.asarray(self.peaks.frequency), orders)
+        return tuple(
+            f"{one.name} {one.tension:.4g} N" + ("" if one.applies else " (out of its range)")
+            for one in found
+            if one.tension is not None
+        )
 
     def _refused(self, seconds: float) -> Fit:
         """Return a fit without numbers."""

@@ -9,13 +9,19 @@ import numpy as np
 from ...base.array import Integer, Real
 from ...base.errors import SceneError
 from ...curves.peaks import Peaks
-from ...scene.path import with_values
+from ...scene.path import unit_of, with_values
 from ...scene.scene import Scene
-from ..posterior.posterior import Posterior, PosteriorTask, posterior
+from ..fitting.outliers import outliers
+from ..posterior.answer import Posterior
+from ..posterior.posterior import posterior
+from ..posterior.task import PosteriorTask
 from .fit_peaks import Options
 from .known import METHODS, Known, Solved, intervals
 from .notes import notes_of
 from .solution import Solution
+
+CAUSES = {"linear_density": "mass"}
+"""Words of causes that are not the paths of the numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +53,12 @@ def by_least_squares(
     k, freedom = len(measured), float(solution.record["freedom"][0])
     calculated = measured + solution.record["residual"][0, :k] * weight
     square = float(solution.off[0] / solution.nominal[0] ** 2)
+    shown = solution.unknowns.shown
     return Told(
         known=Solved(solution),
-        value=solution.value[0],
-        std=solution.std[0],
-        correlation=solution.uncertainty.correlation[0],
+        value=solution.value[0, :shown],
+        std=solution.std[0, :shown],
+        correlation=solution.uncertainty.correlation[0, :shown, :shown],
         calculated=np.where(orders > 0, calculated, np.nan),
         residual=calculated - measured,
         measured_std=solution.nominal[0] * weight,
@@ -61,7 +68,7 @@ def by_least_squares(
         budget=_budget(solution),
         ends=(),
         assumed=assumed_of(how),
-        notes=notes_of(solution),
+        notes=(*notes_of(solution), *_outliers(solution, measured)),
         method="least squares",
         evaluations=int(solution.record["evaluations"][0]),
     )
@@ -71,16 +78,37 @@ def _probability(solution: Solution, square: float, peaks: int) -> float:
     """Return how often chance alone is off by as much."""
     from scipy.special import chdtrc
 
-    freedom = peaks - len(solution.unknowns)
+    freedom = peaks - solution.unknowns.shown
     given = not np.isnan(solution.task.noise[solution.rows[0]])
     return float(chdtrc(freedom, square)) if given and freedom > 0 else float("nan")
 
 
+def _outliers(solution: Solution, measured: Real) -> list[str]:
+    """Name peaks that are off what the others say."""
+    record, given = solution.record, ~np.isnan(solution.task.noise[solution.rows])
+    over = solution.nominal[:, None] if given[0] else np.ones((1, 1))
+    residual, slope = record["residual"] / over, record["slope"] / over[:, :, None]
+    if solution.side.any() or not np.isfinite(residual).all():
+        return []
+    found = outliers(residual, slope, given, peaks=len(measured))
+    return [one.sentence(measured, solution.unknowns, solution.u[0]) for one in found]
+
+
 def _budget(solution: Solution) -> dict[str, float]:
-    """Return the relative half-width of the first number, which peaks alone make."""
+    """Return relative half-widths of 95 % of the first number, by what is not known beside it."""
     low, high = intervals(solution, 0.95, "linear")[0, 0]
-    value = abs(float(solution.value[0, 0]))
-    return {"peaks": float((high - low) / (2 * value)) if 0 < value < np.inf else float("inf")}
+    value, std = abs(float(solution.value[0, 0])), float(solution.std[0, 0])
+    if not (0 < value < np.inf and 0 < std < np.inf):
+        return {"peaks": float("inf")}
+    half, shown = float(high - low) / (2 * value), solution.unknowns.shown
+    # of a joint normal distribution: the share of the variance that a nuisance explains
+    correlation = solution.uncertainty.correlation[0]
+    shares = {
+        CAUSES.get(path, path): float(correlation[0, shown + i] ** 2)
+        for i, path in enumerate(solution.unknowns.paths[shown:])
+    }
+    left = max(1.0 - sum(shares.values()), 0.0)
+    return {cause: half * share**0.5 for cause, share in {**shares, "peaks": left}.items()}
 
 
 def assumed_of(how: Options) -> tuple[str, ...]:
@@ -125,19 +153,28 @@ def by_posterior(peaks: Peaks, how: Options, orders: Integer, scene: Scene) -> T
     )
     return Told(
         known=Sampled(found, scene),
-        value=found.value,
-        std=found.std,
+        value=np.asarray(found.value),
+        std=np.asarray(found.std),
         correlation=found.correlation,
-        calculated=np.where(orders > 0, found.calculated, np.nan),
+        calculated=found.calculated,
         residual=found.calculated - measured,
-        measured_std=found.measured_std,
-        freedom=found.freedom,
+        measured_std=_std_of_peaks(peaks, found),
+        freedom=found.freedom if peaks.std is None else None,
         chi_square=found.chi_square,
         probability=found.probability,
         budget=dict(found.budget),
-        ends=found.ends_said,
+        ends=(found.ends.words(unit_of(how.paths[0])),),
         assumed=found.assumed,
         notes=found.notes,
         method="posterior",
-        evaluations=found.evaluations,
+        evaluations=found.cost.factorisations,
     )
+
+
+def _std_of_peaks(peaks: Peaks, found: Posterior) -> Real:
+    """Return the standard deviations of peaks, as residuals show them where they have none [Hz]."""
+    measured = np.asarray(peaks.frequency)
+    if peaks.std is not None:
+        return np.asarray(peaks.std)
+    off = (found.calculated / measured - 1)[found.orders > 0]
+    return measured * float(np.sqrt(np.sum(off**2) / max(found.freedom, 1.0)))

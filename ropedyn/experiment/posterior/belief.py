@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base import check
 from ...base.array import Flags, Real
 from ...base.errors import SceneError
 from ...scene.path import unit_of, value_at
+from ...scene.prior import Prior
 from ...scene.scene import Scene
 
 WEAK = 1.2
@@ -34,16 +34,28 @@ class Belief:
     def of(
         cls, scene: Scene, prior: Mapping[str, tuple[float, float]], weak: Sequence[str]
     ) -> Belief:
-        """Return that of a mapping to means and standard deviations, weak of some more paths.
+        """Return that of a prior, or a mapping to means and standard deviations, and weak ones.
 
-        A log-normal variable has the mean and the standard deviation that are given.
+        Of the paths of `weak` that it lacks a guess is right within a factor.
         """
-        each = [_given(path, *pair) for path, pair in prior.items()]
-        each += [_weak(scene, path) for path in weak if path not in prior]
-        by_factor, mean, std, said = zip(*each) if each else ((), (), (), ())
-        paths = (*prior, *(path for path in weak if path not in prior))
-        covariance = np.diag(np.square(np.array(std, dtype=float)))
-        return cls(paths, np.array(by_factor, dtype=bool), np.array(mean), covariance, said)
+        more = [path for path in weak if path not in prior]
+        each = [_weak(scene, path) for path in more]
+        mean, said = [one for one, _ in each], [words for _, words in each]
+        covariance = WEAK**2 * np.eye(len(more))
+        by_factor = np.ones(len(more), dtype=bool)
+        if not len(prior):
+            return cls(tuple(more), by_factor, np.array(mean), covariance, tuple(said))
+        given = prior if isinstance(prior, Prior) else Prior(prior)
+        law, q = given.law, len(given)
+        whole = np.zeros((q + len(more),) * 2)
+        whole[:q, :q], whole[q:, q:] = law.spread @ law.spread.T, covariance
+        return cls(
+            (*given, *more),
+            np.append(law.by_log, by_factor),
+            np.append(law.centre, mean),
+            whole,
+            (*(_words(given, path) for path in given), *said),
+        )
 
     def only(self, paths: Sequence[str]) -> Belief:
         """Return what is known of some of them, whatever the others are."""
@@ -81,19 +93,16 @@ class Belief:
         return mean, float(np.sqrt(self.covariance[i, i] - cross @ gain))
 
 
-def _given(path: str, mean: float, std: float) -> tuple[bool, float, float, str]:
-    name, unit = f"prior[{path!r}]", unit_of(path)
-    check.number(mean, f"{name}[0]", unit)
-    check.number(std, f"{name}[1]", unit, sign="positive")
-    words = f"{path} {mean:.6g} +- {std:.3g} {unit}".rstrip()
-    if _OF_EITHER_SIGN.fullmatch(path) or mean <= 0:
-        return False, mean, std, f"{words}, normal"
-    # log-normal of the same mean and standard deviation
-    square = float(np.log1p((std / mean) ** 2))
-    return True, float(np.log(mean)) - square / 2, float(np.sqrt(square)), f"{words}, log-normal"
+def _words(prior: Prior, path: str) -> str:
+    """Say what is known of a number."""
+    mean, std = prior[path]
+    known = f"{path} {mean:.6g} +- {std:.3g} {unit_of(path)}".rstrip()
+    alone = prior.covariance is None or len(prior) == 1
+    return f"{known}, {prior.distribution[path]}{'' if alone else ', correlated'}"
 
 
-def _weak(scene: Scene, path: str) -> tuple[bool, float, float, str]:
+def _weak(scene: Scene, path: str) -> tuple[float, str]:
+    """Return the mean of the logarithm of a number that nobody says more of, and words."""
     guess = value_at(scene, path)
     if _OF_EITHER_SIGN.fullmatch(path) or guess <= 0:
         raise SceneError(
@@ -101,4 +110,4 @@ def _weak(scene: Scene, path: str) -> tuple[bool, float, float, str]:
             f"positive number that a factor changes, got a guess of {guess:g} alone"
         )
     words = f"{path} about {guess:.6g} {unit_of(path)}".rstrip()
-    return True, float(np.log(guess)), WEAK, f"{words} within a factor {np.exp(WEAK):.1f}"
+    return float(np.log(guess)), f"{words} within a factor {np.exp(WEAK):.1f}"

@@ -47,7 +47,7 @@ class PosteriorTask:
         others = [path for path in self.unknown if not SPRING.fullmatch(path)]
         if others or not self.unknown:
             Unknowns.of(self.scene, others)
-        if len(self.prior):
+        if len(self.prior) and not isinstance(self.prior, Prior):
             Prior(self.prior)
         frequency = check.numbers(self.frequency, "frequency", "Hz", sign="positive")
         orders = np.asarray(self.orders)
