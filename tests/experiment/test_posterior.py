@@ -267,6 +267,23 @@ def test_a_mass_on_the_rope_is_sampled():
     assert "parts[0].mass about 20 kg within a factor 3.3" in found.assumed
 
 
+@pytest.mark.slow
+def test_a_rope_that_sags_has_a_posterior_by_the_general_family():
+    scene = rd.Scene(
+        rd.Rope(LENGTH, MASS, bending_stiffness=1e4, axial_stiffness=2e7),
+        tension=1e5,
+        gravity=rd.Gravity(),
+        ends=("pinned", "clamped"),
+    )
+    made = scene.replace(tension=1.2e5), scene.compile().modes(6).frequency
+    found = posterior(task_of(made=made))
+    low, high = found.interval()["tension"]
+    assert low < 1e5 < high
+    # xi is 95
+    assert half_width(found) * 95 / 2 < 1.5
+    assert any("no closed form: 150 points" in note for note in found.notes)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

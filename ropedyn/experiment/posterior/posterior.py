@@ -19,7 +19,7 @@ from .task import PosteriorTask
 from .tempering import tempered
 from .words import assumed, limit_shares, notes_of
 
-POINTS, POINTS_ALONE = 1200, 300
+POINTS, POINTS_ALONE = 1200, 150
 """Points of scenes in closed form, and of those that are solved one by one."""
 
 
@@ -59,7 +59,7 @@ def posterior(task: PosteriorTask) -> Posterior:
         freedom=fit.freedom,
         probability=fit.probability,
         assumed=assumed(task, space),
-        notes=notes_of(task, found, space, reaches, fit.probability),
+        notes=notes_of(task, found, ridge, reaches, fit.probability),
         ends=ends_told(task, ridge, cloud, rng),
         cost=Cost(time.perf_counter() - start, "tempered points", 0, space.size),
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...base.array import Real
 from ...scene.path import unit_of, value_at
-from .ridge import Cloud
+from .ridge import Cloud, Ridge
 from .space import LIMITS, SOFTEST, SPRINGS, STIFFNESS, TENSION, TIED, Space
 from .task import FLOOR, NOISE, PosteriorTask
 from .tempering import Tempered
@@ -71,7 +71,7 @@ def _of_noise(task: PosteriorTask) -> str:
 
 
 def notes_of(
-    task: PosteriorTask, found: Tempered, space: Space, reaches: Real, probability: float
+    task: PosteriorTask, found: Tempered, ridge: Ridge, reaches: Real, probability: float
 ) -> tuple[str, ...]:
     """Return what the peaks cannot tell, and where the answer is doubtful."""
     notes = []
@@ -86,10 +86,15 @@ def notes_of(
             f"the peaks fit worse than their std allow (probability {probability:.1g}): "
             "the interval is wider for it"
         )
-    if space.size and found.accepted < SLUGGISH:
+    if ridge.space.size and found.accepted < SLUGGISH:
         notes.append(
             f"the points moved little at last ({100 * found.accepted:.1g} % of the moves): "
             "the interval may be too narrow"
+        )
+    if not ridge.family.is_closed:
+        notes.append(
+            f"the scene has no closed form: {len(found.cloud)} points alone, bounds that are off "
+            "by some percent of the interval by chance"
         )
     if found.refused > 0:
         share = f"{100 * found.refused:.2g} %"
