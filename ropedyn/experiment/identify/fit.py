@@ -72,8 +72,6 @@ class Fit(Identified):
         ``"shape"``.
     record : dict or None
         What was done to the record that the peaks are of.
-    damping : tuple of str
-        What the widths of the peaks tell, where damping was sought.
     seed : int
         Of the random numbers; the same gives the same bits.
     cost : Cost
@@ -118,7 +116,6 @@ class Fit(Identified):
     remarks: Lazy[Remarks] = lazy(Remarks)
     details: tuple[dict[str, Any], ...] = ()
     record: dict[str, Any] | None = None
-    damping: tuple[str, ...] = ()
     known: Known | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     said_of_ends = Read[tuple[str, ...]]("remarks", "What the peaks, or other ends, say of ends.")
@@ -150,11 +147,6 @@ class Fit(Identified):
     def value_is_bound(self) -> bool:
         """Whether a number went to 0 or infinity."""
         return bool(((self.value == 0) | np.isinf(self.value)).any())
-
-    def _interval(self, level: float, method: str) -> Real:
-        if self.status == "ambiguous":
-            return self.candidates.hull(level, method)
-        return super()._interval(level, method)
 
     def table(self) -> Table:
         """Return one row for each number, with its interval and the status of the fit."""

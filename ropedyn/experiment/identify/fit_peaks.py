@@ -42,6 +42,7 @@ class Options(NamedTuple):
     """How it is identified, checked; see `identify`."""
 
     paths: tuple[str, ...]
+    damping: tuple[str, ...]  # of numbers that the widths of peaks tell
     orders: Any
     ends: str  # "unknown" or "given"
     numbers: int  # how many are sought, with those that a prior alone knows

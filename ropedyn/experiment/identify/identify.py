@@ -31,6 +31,7 @@ from .fit_peaks import Options
 from .fits import Fits, each_alone, fits_of
 from .found import find, teller
 from .one_rope import RopeTask
+from .peak_damping import OF_DAMPING
 from .response_fit import ResponseFit
 
 ENDS = ("unknown", "given")
@@ -193,11 +194,14 @@ def identify(
     check.instance(scene, "scene", Scene, "a Scene")
     whole = isinstance(measured, Measured)
     sought, calibrated = _calibrated(unknown, whole=whole)
+    given = None if whole else _given(measured)
+    sought, damping = _damped(sought, given)
     checked = Unknowns.of(_tensed(scene, 1.0), sought)
     taken = _ends(ends, scene, checked, whole=whole)
     known = _prior(prior, checked)
     how = Options(
         paths=checked.paths,
+        damping=damping,
         orders=orders,
         ends=taken,
         numbers=len(checked.with_nuisances(known) if taken == ENDS[1] else checked),
@@ -207,22 +211,38 @@ def identify(
         element=element,
         seed=check.count(seed, "seed", least=0, most=np.iinfo(np.int64).max),
     )
-    if whole:
+    if given is None:
         found = _response(scene, measured, how, scale=calibrated)
         _warn(found.notes)
         return found
     workers: dict[str, Any] = {"threads": threads, "executor": executor, "progress": progress}
-    listed = isinstance(measured, (list, tuple))
-    if listed and any(isinstance(one, (Peaks, Measured, Record)) for one in measured):
-        given = [_peaks(one, f"measured[{i}]") for i, one in enumerate(measured)]
+    if isinstance(given, list):
         fits = _many(scene, how, given, workers)
         _warn(fits.notes)
         return fits
-    peaks = _peaks(measured, "measured")
-    _weigh(peaks)
-    fit = RopeTask(_guessed(scene, peaks), how, peaks, teller(peaks, how)).fit()
+    _weigh(given)
+    fit = RopeTask(_guessed(scene, given), how, given, teller(given, how)).fit()
     _warn(fit.notes)
     return fit
+
+
+def _given(measured: Any) -> Peaks | list[Peaks]:
+    """Return the peaks of a rope, or of each of several."""
+    listed = isinstance(measured, (list, tuple))
+    if listed and any(isinstance(one, (Peaks, Measured, Record)) for one in measured):
+        return [_peaks(one, f"measured[{i}]") for i, one in enumerate(measured)]
+    return _peaks(measured, "measured")
+
+
+def _damped(unknown: Any, given: Peaks | list[Peaks] | None) -> tuple[Any, tuple[str, ...]]:
+    """Part what the widths of peaks tell from what is sought by frequencies."""
+    if isinstance(unknown, str) or not isinstance(unknown, (list, tuple)) or given is None:
+        return unknown, ()
+    each = given if isinstance(given, list) else [given]
+    if any(one.damping_ratio is None for one in each):
+        return unknown, ()
+    damping = [path for path in unknown if isinstance(path, str) and OF_DAMPING.fullmatch(path)]
+    return [path for path in unknown if path not in damping], tuple(damping)
 
 
 def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
@@ -269,7 +289,7 @@ def _many(
             refused[i] = error
             orders[i] = np.zeros(key[0], dtype=np.int64)
     numbered = [one for one in orders if one is not None]
-    if how.ends == "given" and len(numbered) == len(measured):
+    if how.ends == "given" and len(numbered) == len(measured) and not how.damping:
         return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
     tasks = [RopeTask(_guessed(scene, one), how, one, teller(one, how)) for one in measured]
     return each_alone(tasks, refused, **workers)

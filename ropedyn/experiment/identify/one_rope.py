@@ -23,8 +23,9 @@ from .candidates import Candidates
 from .cross_checks import cross_checks
 from .fit import Fit
 from .fit_peaks import Options
-from .known import LEVELS, kept_bounds
+from .known import LEVELS, Known, kept_bounds
 from .other_ends import Remarks, other_ends
+from .peak_damping import PeakDamping, beside, damping_of_peaks
 from .told import Told
 
 MOST = 6
@@ -41,6 +42,41 @@ AMBIGUOUS = (
     "ambiguous: the peaks do not tell which modes they are, see the candidates; a prior of the "
     "tension, sensors that tell shapes (one at 0.15 of the length) or more modes would decide"
 )
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """Numbers whose intervals hold those of all rival numberings."""
+
+    first: Known
+    candidates: Candidates
+
+    @property
+    def scene(self) -> Scene:
+        """Return the scene of the likeliest."""
+        return self.first.scene
+
+    def interval(self, level: float, method: str) -> Real:
+        """Return their intervals, shape (p, 2)."""
+        return self.candidates.hull(level, method)
+
+
+@dataclass(frozen=True, eq=False)
+class WithDamping:
+    """Numbers by the frequencies of peaks, then those of damping by their widths."""
+
+    first: Known
+    damping: PeakDamping
+
+    @property
+    def scene(self) -> Scene:
+        """Return the scene with them."""
+        return self.damping.scene
+
+    def interval(self, level: float, method: str) -> Real:
+        """Return their intervals, shape (p, 2)."""
+        by_width = self.damping.interval(level, method=method)
+        return np.concatenate([self.first.interval(level, method), by_width])
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +97,30 @@ class RopeTask:
         orders = np.array(found[0].orders, dtype=np.int64)
         told = self.tell(orders, self.scene)
         candidates: Any = partial(self._candidates, found, told)
-        intervals: Callable[[float, str], Real] = told.known.interval
+        known = told.known
         if status == "ambiguous":
             candidates = candidates()
-            intervals = candidates.hull
+            known = Hull(known, candidates)
+        damped = self._damping(told, orders)
+        known = known if damped is None else WithDamping(known, damped)
         seconds = time.perf_counter() - began
-        return self._fit(told, orders, status, candidates, intervals, seconds)
+        return self._fit(told, damped, orders, status, candidates, known, seconds)
+
+    def _damping(self, told: Told, orders: Integer) -> PeakDamping | None:
+        """Return what the damping ratios of the peaks tell, where that is asked."""
+        if not self.how.damping:
+            return None
+        peaks, how = self.peaks, self.how
+        std = None if peaks.damping_ratio_std is None else np.asarray(peaks.damping_ratio_std)
+        return damping_of_peaks(
+            told.known.scene,
+            how.damping,
+            orders,
+            np.asarray(peaks.damping_ratio),
+            std,
+            elements=how.elements,
+            element=how.element,
+        )
 
     def _numbered(self) -> tuple[Sequence[Numbering], str]:
         """Return the numberings worth naming, the likeliest first, and what they decide."""
@@ -105,18 +159,25 @@ class RopeTask:
     def _fit(
         self,
         told: Told,
+        damped: PeakDamping | None,
         orders: Integer,
         status: str,
         candidates: Any,
-        intervals: Callable[[float, str], Real],
+        known: Known,
         seconds: float,
     ) -> Fit:
         how, k, p = self.how, len(orders), len(told.value)
+        std = told.std if status == "trusted" else np.full(p, np.nan)
+        paths, value, correlation, notes = how.paths, told.value, told.correlation, told.notes
+        if damped is not None:
+            paths, value = (*paths, *damped.unknown), np.append(value, damped.value)
+            std, notes = np.append(std, damped.std), (*notes, *damped.notes)
+            correlation = beside(correlation, damped.correlation)
         return Fit(
-            unknown=how.paths,
-            value=Named(told.value, how.paths),
-            std=Named(told.std if status == "trusted" else np.full(p, np.nan), how.paths),
-            correlation=told.correlation,
+            unknown=paths,
+            value=Named(value, paths),
+            std=Named(std, paths),
+            correlation=correlation,
             orders=orders,
             measured=np.asarray(self.peaks.frequency),
             measured_std=told.measured_std,
@@ -128,14 +189,14 @@ class RopeTask:
             budget=told.budget,
             ends=how.ends,
             assumed=told.assumed,
-            notes=told.notes if status == "trusted" else (AMBIGUOUS, *told.notes),
+            notes=notes if status == "trusted" else (AMBIGUOUS, *notes),
             seed=how.seed,
             cost=Cost(seconds, told.method, how.elements or 0, k, factorisations=told.evaluations),
             candidates=candidates,
-            bounds=partial(kept_bounds, intervals),
+            bounds=partial(kept_bounds, known.interval),
             remarks=partial(self._remarks, told, orders),
             details=details_of(self.peaks),
-            known=told.known,
+            known=known,
         )
 
     def _remarks(self, told: Told, orders: Integer) -> Remarks:

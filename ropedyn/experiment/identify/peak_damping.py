@@ -19,7 +19,7 @@ from ...scene.scene import Scene
 from ..fitting.minimum import Point
 from ..fitting.misfit import OneByOne
 from ..fitting.unknown import Unknowns
-from .identified import intervals
+from .known import checked_level, intervals
 from .notes import Data, notes_of
 from .solution import Solution, Task
 
@@ -31,7 +31,7 @@ MOST_TRIES = 40
 MOST_ORDER = 10_000
 RATIOS = Data("the damping ratios", "do", "tell")
 
-_OF_DAMPING = re.compile(r"damping(\[\d+\])?\..+|.*\.dashpot\..+|.*\.damping(_ratio)?")
+OF_DAMPING = re.compile(r"damping(\[\d+\])?\..+|.*\.dashpot\..+|.*\.damping(_ratio)?")
 _OF_MODES = re.compile(r"damping(?:\[(\d+)\])?\.ratio")
 
 
@@ -42,6 +42,7 @@ class PeakDamping:
     unknown: tuple[str, ...]  # paths; "damping.ratio[0]" is that of the first mode
     value: Named  # (p,)
     std: Named  # (p,) infinite where nothing tells it
+    correlation: Real  # (p, p)
     freedom: float | None  # of Student's t, None where the std was given
     chi_square: float
     orders: Integer  # (k,) from 1; 0 of a peak that is no mode
@@ -54,7 +55,14 @@ class PeakDamping:
 
     def interval(self, level: float = 0.95, *, method: str = "profile") -> Named:
         """Return bounds (p, 2), as those of `identify`."""
+        level = checked_level(level, method)
         return Named(intervals(self.solution, level, method)[0], self.unknown)
+
+
+def beside(first: Real, second: Real) -> Real:
+    """Return correlations of numbers that are told apart, (p, p) and (q, q)."""
+    p, q = len(first), len(second)
+    return np.block([[first, np.zeros((p, q))], [np.zeros((q, p)), second]])
 
 
 def damping_of_peaks(
@@ -104,6 +112,7 @@ def _answer(solution: Solution, model: _Model, misfit: _RatioMisfit) -> PeakDamp
         unknown=paths,
         value=Named(solution.value[0], paths),
         std=Named(solution.std[0], paths),
+        correlation=solution.uncertainty.correlation[0],
         freedom=None if np.isnan(freedom) else freedom,
         chi_square=float(solution.off[0] / solution.noise[0] ** 2),
         orders=model.orders,
@@ -246,7 +255,7 @@ def _model(
     check.instance(scene, "scene", Scene, "a Scene")
     wanted = [paths] if isinstance(paths, str) else list(paths)
     for path in wanted:
-        if isinstance(path, str) and _OF_DAMPING.fullmatch(path) is None:
+        if isinstance(path, str) and OF_DAMPING.fullmatch(path) is None:
             raise SceneError(
                 f'unknown must be paths of damping such as "damping.gamma", got {path!r}'
             )

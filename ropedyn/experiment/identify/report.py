@@ -32,7 +32,6 @@ def report_of(fit: Fit) -> str:
     lines.append(f"  fit: {_goodness(fit)}; rms residual {100 * fit.rms:.3g} %")
     if fit.cross_checks:
         lines.append(f"  cross-checks: {', '.join(fit.cross_checks)}")
-    lines += [f"  {one}" for one in fit.damping]
     lines += ["", str(fit.table()), "", str(fit.peaks)]
     lines += [f"assumed: {'; '.join(fit.assumed)}"] if fit.assumed else []
     notes = (*fit.left_out, *fit.notes[fit.status == "ambiguous" :])
@@ -149,7 +148,6 @@ def sheet_of(fit: Fit) -> str:
         },
         "ends": {"taken": fit.ends, "said": list(fit.said_of_ends)},
         "cross_checks": list(fit.cross_checks),
-        "damping": list(fit.damping),
         "record": fit.record,
         "assumed": list(fit.assumed),
         "notes": [*fit.left_out, *fit.notes],

@@ -91,7 +91,7 @@ def notes_of(
             f"the points moved little at last ({100 * found.accepted:.1g} % of the moves): "
             "the interval may be too narrow"
         )
-    if not ridge.family.is_closed:
+    if not ridge.family.closed:
         notes.append(
             f"the scene has no closed form: {len(found.cloud)} points alone, bounds that are off "
             "by some percent of the interval by chance"
