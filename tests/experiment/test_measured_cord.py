@@ -28,8 +28,10 @@ def test_tension_of_a_cord_is_identified(claim):
 
 def test_missing_mode_of_the_cord_is_seen():
     without_second = [CORD_FREQUENCY[k] for k in (0, 2, 3, 4)]
-    fit = fitted(cord("pinned"), without_second, UNKNOWN, orders=None)
-    assert fit.orders.tolist() == [1, 3, 4, 5]
+    fit = rd.identify(
+        cord("pinned"), without_second, UNKNOWN, ends="given", prior={"tension": (2.0, 0.5)}
+    )
+    assert (fit.status, fit.orders.tolist()) == ("trusted", [1, 3, 4, 5])
     assert abs(fit.value["tension"] / CORD_TENSION - 1) < 0.005
 
 

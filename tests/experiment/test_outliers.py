@@ -144,19 +144,24 @@ def test_an_outlier_of_a_rope_is_said_in_words():
     f = scene.compile().modes(7).frequency.copy()
     std = 1e-4 * f
     f[3] += 10 * std[3]
-    with pytest.warns(rd.IdentifyWarning, match="off by more than their std"):
-        fit = rd.identify(scene, rd.Peaks(f, std=std, order=orders), paths)
-    record = fit.solution.record
+    with pytest.warns(rd.IdentifyWarning, match="off by more than their std") as told:
+        fit = rd.identify(scene, rd.Peaks(f, std=std, order=orders), paths, ends="given")
+    solution = fit.known.solution
+    record = solution.record
     (one,) = outliers(record["residual"], record["slope"], np.array([True]), peaks=7)
-    text = one.sentence(f, fit.solution.unknowns, record["u"][0])
+    text = one.sentence(f, solution.unknowns, record["u"][0])
     off = np.delete(np.arange(7), 3)
-    alone = rd.identify(scene, rd.Peaks(f[off], std=std[off], order=off + 1), paths)
+    alone = rd.identify(scene, rd.Peaks(f[off], std=std[off], order=off + 1), paths, ends="given")
     np.testing.assert_allclose(
-        fit.solution.unknowns.value(record["u"][0] + one.change), alone.value, rtol=1e-6
+        solution.unknowns.value(record["u"][0] + one.change), alone.value, rtol=1e-6
     )
-    assert text == (
-        f"peak 4 ({f[3]:.6g} Hz) is {abs(one.off):.2g} standard deviations off what the others "
-        "say; without it tension is 1000 N"
+    assert (
+        text
+        == str(told[1].message)
+        == (
+            f"peak 4 ({f[3]:.6g} Hz) is {abs(one.off):.2g} standard deviations off what the others "
+            "say; without it tension is 1000 N"
+        )
     )
     # the others are exact: their spread adds to its own std
     assert 8 < abs(one.off) < 10

@@ -112,7 +112,7 @@ def test_a_mass_that_is_not_sought_widens_the_tension():
     assert unknowns.paths == (*BOTH, "linear_density")
     assert (unknowns.shown, unknowns.hidden) == (2, 1)
     f = PINNED.compile().modes(8).frequency
-    alone = rd.identify(PINNED, rd.Peaks(f, std=1e-4 * f, order=range(1, 9)), BOTH)
+    alone = rd.identify(PINNED, rd.Peaks(f, std=1e-4 * f, order=range(1, 9)), BOTH, ends="given")
     s = np.sqrt(np.log1p(0.02**2))
     expected = np.hypot(alone.std / alone.value, s)
     found = (solution.std / solution.value)[0, : unknowns.shown]
@@ -158,4 +158,11 @@ def test_a_nuisance_that_is_not_there_is_named():
 def test_a_log_normal_prior_of_a_negative_guess_is_refused():
     strut = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=10.0), tension=-5.0)
     with pytest.raises(rd.SceneError, match="must be of the sign of the scene's guess"):
-        rd.identify(strut, [40.0, 150.0], "tension", prior={"tension": (5.0, 1.0)})
+        rd.identify(
+            strut,
+            [40.0, 150.0],
+            "tension",
+            ends="given",
+            orders=[1, 2],
+            prior={"tension": (5.0, 1.0)},
+        )

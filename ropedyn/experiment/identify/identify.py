@@ -45,7 +45,7 @@ SIZES = (1e-50, 1e50)
 def identify(
     scene: Scene,
     measured: Measured,
-    unknown: str | Sequence[str],
+    unknown: str | Sequence[str | tuple[str, ...]],
     *,
     prior: Mapping[str, tuple[float, float]] | None = None,
     elements: int | None = None,
@@ -57,7 +57,7 @@ def identify(
 def identify(
     scene: Scene,
     measured: Record | Peaks | Resonances | Sequence[Resonances] | ArrayLike,
-    unknown: str | Sequence[str],
+    unknown: str | Sequence[str | tuple[str, ...]],
     *,
     orders: str | Sequence[int] | None = "auto",
     ends: str | None = None,
@@ -76,7 +76,7 @@ def identify(
 def identify(
     scene: Scene,
     measured: Sequence[Record | Peaks | Measured],
-    unknown: str | Sequence[str],
+    unknown: str | Sequence[str | tuple[str, ...]],
     *,
     orders: str | Sequence[int] | None = "auto",
     ends: str | None = None,
@@ -94,7 +94,7 @@ def identify(
 def identify(
     scene: Scene,
     measured: Any,
-    unknown: str | Sequence[str],
+    unknown: str | Sequence[str | tuple[str, ...]],
     *,
     orders: str | Sequence[int] | None = "auto",
     ends: str | None = None,
@@ -126,8 +126,8 @@ def identify(
         damping too, without its line at 0 Hz (for its peaks alone give `Peaks.of` it). Its noise is
         estimated from the residuals, for each point a part equal on all lines, or what measured
         coherence tells, and one in proportion to the amplitude.
-    unknown : str or sequence of str
-        Paths of what is sought, such as ``"tension"``, ``"bending_stiffness"``,
+    unknown : str or sequence of str or tuple of str
+        Paths of what is sought, a tuple of several where they have one number, such as ``"tension"``, ``"bending_stiffness"``,
         ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
         takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``, and
         ``"calibration"``, a real factor of either sign on all of it.
@@ -221,7 +221,7 @@ def identify(
         _warn(fits.notes)
         return fits
     _weigh(given)
-    fit = RopeTask(_guessed(scene, given), how, given, teller(given, how)).fit()
+    fit = RopeTask(_guessed(scene, how, given), how, given, teller(given, how)).fit()
     _warn(fit.notes)
     return fit
 
@@ -291,7 +291,7 @@ def _many(
     numbered = [one for one in orders if one is not None]
     if how.ends == "given" and len(numbered) == len(measured) and not how.damping:
         return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
-    tasks = [RopeTask(_guessed(scene, one), how, one, teller(one, how)) for one in measured]
+    tasks = [RopeTask(_guessed(scene, how, one), how, one, teller(one, how)) for one in measured]
     return each_alone(tasks, refused, **workers)
 
 
@@ -400,8 +400,10 @@ def _refuse_beside(prior: Mapping[str, tuple[float, float]], unknowns: Unknowns)
             )
 
 
-def _guessed(scene: Scene, peaks: Peaks) -> Scene:
-    """Return a scene with a tension: of a string whose lowest peak is its first mode, if it lacks one."""
+def _guessed(scene: Scene, how: Options, peaks: Peaks) -> Scene:
+    """Guess a tension that is sought and lacks one: of a string whose lowest peak is mode 1."""
+    if "tension" not in how.paths:
+        return scene
     wave = 2 * scene.rope.length * float(np.min(peaks.frequency))
     return _tensed(scene, scene.rope.linear_density * wave**2)
 

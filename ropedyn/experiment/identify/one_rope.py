@@ -12,11 +12,12 @@ import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Integer, Real
-from ...base.errors import RopedynError
+from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
 from ...scene.scene import Scene
-from ..fitting.unknown import TIE
+from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.unknown import TIE, Unknowns
 from ..orders.numbering import Numbering, decided, numberings
 from ..orders.orders import given_orders
 from .candidates import Candidates
@@ -128,6 +129,7 @@ class RopeTask:
         if said is not None:
             return [Numbering(tuple(said.tolist()), 1.0, 0.0, ())], "trusted"
         peaks, how = self.peaks, self.how
+        self._refuse_unseen()
         found = numberings(
             self.scene,
             [place for path in how.paths for place in path.split(TIE)],
@@ -143,6 +145,24 @@ class RopeTask:
         status = decided(found)
         named = [one for one in found[:MOST] if one.probability > NAMEABLE]
         return named or found[:1], status
+
+    def _refuse_unseen(self) -> None:
+        """Refuse numbers that natural frequencies do not depend on, and more of them than peaks."""
+        how, k = self.how, len(np.asarray(self.peaks.frequency))
+        if k + len(how.prior) < how.numbers:
+            raise SceneError(
+                f"measured must have at least {how.numbers - len(how.prior)} peaks for "
+                f"{how.numbers} unknown and {len(how.prior)} prior values, got {k}"
+            )
+        unknowns = Unknowns.of(self.scene, how.paths)
+        calculated = NaturalFrequencies.of(unknowns, how.elements, how.element)
+        _, slope = calculated.lowest(np.zeros(len(unknowns)), k)
+        for i in np.flatnonzero(~slope.any(axis=0)).tolist():
+            if how.paths[i] not in how.prior:
+                raise SceneError(
+                    f"unknown[{i}] must change the natural frequencies, got {how.paths[i]!r}, "
+                    "which does not"
+                )
 
     def _candidates(self, found: Sequence[Numbering], first: Told) -> Candidates:
         """Return what each numbering tells; one that has no numbers is not named."""
