@@ -283,10 +283,20 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
 
     @property
     def correlation(self) -> Real:
-        """Between the numbers, shape (p, p)."""
-        if self.covariance is None:
-            return np.eye(len(self))
-        return np.asarray(self.covariance / np.outer(self.std, self.std))
+        """Between the numbers, shape (p, p).
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> known = {"tension": (300.0, 10.0), "length": (2.0, 0.1)}
+        >>> rd.Prior(known, covariance=[[100.0, 0.5], [0.5, 0.01]]).correlation.tolist()
+        [[1.0, 0.5], [0.5, 1.0]]
+        """
+        correlation = np.eye(len(self))
+        if self.covariance is not None:
+            correlation = self.covariance / np.outer(self.std, self.std)
+            np.fill_diagonal(correlation, 1.0)
+        return correlation
 
     @computed
     def law(self) -> JointNormal:
