@@ -5,6 +5,8 @@ import pytest
 from given_ends import fitted
 from measured_ropes import CORD_FREQUENCY, CORD_TENSION, cord
 
+import ropedyn as rd
+
 SOURCE = "M. Ali, D. Broggi, G. Cantarini, laboratory report: tests/support/measured_ropes.py"
 UNKNOWN = ["tension", "bending_stiffness"]
 

