@@ -1,1 +1,1 @@
-"""Records over time, and what they tell."""
+"""Recorded motion over time, and what it shows."""

@@ -1,0 +1,255 @@
+"""Bayesian fit of one mode to the Fourier lines of a band of recorded motion."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.array import Complex, Real
+from ..base.unit import MOTIONS
+
+USUAL_RATIO, RATIO_SPREAD = 0.004, 1.5
+"""Before anything is measured ln zeta is normal about the logarithm of the first, with the second
+as standard deviation."""
+SLOPE_SPREAD = 2.0
+"""Standard deviation of the power of frequency that the load may have more than a white one."""
+USUAL_REST, REST_SPREAD = 1e-3, 3.0
+"""The same of what other modes have of the density at the peak."""
+NOISE_SPREAD = 4.0  # The same of the noise: one channel does not tell it from what others have.
+STEP = 1e-3  # Of the differences that give the Hessian, in standard deviations of the minimum.
+FEWEST = 8  # Lines that a fit needs.
+FARTHEST = 30.0  # No logarithm goes farther from where it starts.
+SETTLED = 1e-4  # Slope by standard deviations at the minimum.
+
+
+class Lines(NamedTuple):
+    """Fourier lines of all pieces of a record, by rising frequency."""
+
+    frequency: Real  # (k,) [Hz]
+    duration: Real  # (k,) of the piece that each is of [s]
+    value: Complex  # (channels, k): the mean square of its modulus is half a one-sided density
+
+    def within(self, low: float, high: float) -> Lines:
+        """Return the lines of a band."""
+        start, stop = np.searchsorted(self.frequency, [low, high])
+        return Lines(
+            self.frequency[start:stop], self.duration[start:stop], self.value[:, start:stop]
+        )
+
+
+class BandMode(NamedTuple):
+    """The mode that a band of lines shows."""
+
+    frequency: float  # [Hz]
+    ratio: float  # of damping
+    log_std: tuple[float, float]  # of the logarithms of both
+    signal: float  # density of the mode at its frequency over that of the noise
+    rise: float  # density at the frequency over the larger at the ends of the band
+    gain: float  # of the logarithm of the likelihood by the mode
+    shape: Real  # (channels,) of unit length
+    second: float  # what the second direction has more than noise, over what the first has
+
+
+def fit_band(lines: Lines, quantity: str, frequency: float, ratio: float) -> BandMode | None:
+    """Fit one mode to the lines of a band, from a guess; None where there is none.
+
+    The load is S f^p, the noise Se in every channel, and motion of the same shape that other modes
+    have here is R: E_k = (S D_k + R) phi phi^T + Se I, where D_k is the dynamic amplification of
+    the quantity, "displacement", "velocity" or "acceleration".
+    """
+    # the function that is least at the best numbers, S. K. Au, Mechanical Systems and Signal
+    # Processing 25 (2011) 2000-2017, and 36 (2013) 15-29 with noise that is not small,
+    #   (n - 1) N ln Se + sum_k ln(S_k + Se) + (d - lambda_max(A))/Se,
+    #   S_k = S D_k + R,  A = sum_k S_k/(S_k + Se) Re F_k F_k^*,  d = sum_k F_k^* F_k,
+    # and the squares of the priors; phi is the eigenvector of lambda_max. Its slopes are those with
+    # phi held, since it is least with respect to phi
+    if len(lines.frequency) < FEWEST:
+        return None
+    band = _Band.of(lines, quantity)
+    start = np.array(
+        [np.log(frequency), np.log(ratio), band.loud(frequency), band.quiet, 0, np.log(USUAL_REST)]
+    )
+    best = _least(band, start)
+    if best is None:
+        return None
+    covariance = _covariance(band, best)
+    return None if covariance is None else _mode(band, best, covariance)
+
+
+class _Band(NamedTuple):
+    """Lines as the likelihood takes them."""
+
+    frequency: Real  # (k,) [Hz]
+    log_frequency: Real
+    duration: Real  # (k,) [s]
+    square: Real  # (k, channels, channels): Re F F^*
+    power: float  # sum of F^* F
+    quiet: float  # guess of ln Se
+    order: int  # how often the displacement is differentiated
+
+    @classmethod
+    def of(cls, lines: Lines, quantity: str) -> _Band:
+        f, value = lines.frequency, lines.value.T
+        square = np.real(value[:, :, np.newaxis] * value[:, np.newaxis].conj())
+        total = np.sum(np.abs(value) ** 2, axis=1)
+        # the quietest lines, or what the other directions have
+        quiet = np.quantile(total, 0.2)
+        if value.shape[1] > 1:
+            quiet = np.linalg.eigvalsh(square.mean(axis=0))[:-1].mean()
+        least = np.log(max(float(quiet), 1e-12 * float(total.max())))
+        order = MOTIONS[quantity]
+        return cls(f, np.log(f), lines.duration, square, float(total.sum()), least, order)
+
+    @property
+    def channels(self) -> int:
+        """How many there are."""
+        return self.square.shape[1]
+
+    def loud(self, frequency: float) -> float:
+        """Guess the logarithm of the density at the peak."""
+        total = np.trace(self.square, axis1=1, axis2=2)
+        near = np.argsort(np.abs(self.frequency - frequency))[: max(3, len(total) // 20)]
+        return float(np.log(total[near].mean()))
+
+    def amplified(self, x: Real) -> tuple[Real, Real, Real]:
+        """Return 4 zeta^2 D_k and the slopes of its logarithm by ln f_0 and ln zeta, (k,) each."""
+        ratio = np.exp(2 * x[1])
+        away = x[0] - self.log_frequency  # ln(f_0/f)
+        sign = 1.0 if self.order == 2 else -1.0
+        b2 = np.exp(sign * 2 * away)
+        below = (b2 - 1) ** 2 + 4 * ratio * b2
+        # of a velocity two powers more than of a displacement
+        power = x[4] + (2.0 if self.order == 1 else 0.0)
+        by_frequency = -sign * (4 * b2 * (b2 - 1) + 8 * ratio * b2) / below - power
+        blur, more, wider = self.blurred(x)
+        shape = 4 * ratio * np.exp(-power * away) / below * blur
+        return shape, by_frequency + more, 2 - 8 * ratio * b2 / below + wider
+
+    def blurred(self, x: Real) -> tuple[Real, Real, Real]:
+        """Return what a finite duration makes of a resonance, and the slopes of its logarithm."""
+        # a decay exp(-u |t|), u = zeta omega_0 + i (omega - omega_0), seen through a duration T:
+        # Re[1/u - (1 - exp(-u T))/(u^2 T)] in place of Re 1/u (A. M. Sykulski and others,
+        # Biometrika 106 (2019) 251-266, "debiased Whittle likelihood")
+        omega, ratio = 2 * np.pi * np.exp(x[0]), np.exp(x[1])
+        u = ratio * omega + 1j * (2 * np.pi * self.frequency - omega)
+        ut = u * self.duration
+        fade = np.exp(-ut)
+        seen = 1 / u - (1 - fade) / (u * ut)
+        by_u = -1 / u**2 - fade / (u * u) * 1.0 + 2 * (1 - fade) / (u**2 * ut)
+        whole, by_whole = np.real(1 / u), -1 / u**2
+        slopes = []
+        for turn in (ratio * omega - 1j * omega, ratio * omega):
+            slopes.append(
+                np.real(by_u * turn) / np.real(seen) - np.real(by_whole * turn) / whole
+            )
+        return np.real(seen) / whole, slopes[0], slopes[1]
+
+
+def _value(band: _Band, x: Real) -> tuple[float, Real]:
+    """Return the negative logarithm of the posterior and its slopes by the six numbers."""
+    # x = ln f_0, ln zeta, ln of S/(4 zeta^2), ln Se, p, ln of R over the third
+    shape, by_frequency, by_ratio = band.amplified(x)
+    top, noise, rest = np.exp(x[2]), np.exp(x[3]), np.exp(x[5])
+    mode = top * shape
+    signal = mode + top * rest
+    whole = signal + noise
+    share = signal / whole
+    count, n = len(shape), band.channels
+    weighted = np.tensordot(share, band.square, axes=1)
+    values, vectors = np.linalg.eigh(weighted)
+    along = np.einsum("i,kij,j->k", vectors[:, -1], band.square, vectors[:, -1])
+    left = (band.power - float(values[-1])) / noise
+    priors = np.array(
+        [
+            (x[1] - np.log(USUAL_RATIO)) / RATIO_SPREAD,
+            x[4] / SLOPE_SPREAD,
+            (x[5] - np.log(USUAL_REST)) / REST_SPREAD,
+            (x[3] - band.quiet) / NOISE_SPREAD,
+        ]
+    )
+    value = (n - 1) * count * x[3] + float(np.log(whole).sum()) + left
+    # by the signal of a line: 1/(S_k + Se) - |phi^T F_k|^2/(S_k + Se)^2
+    each = (1 - along / whole) / whole
+    slopes = np.array(
+        [
+            float(each @ (mode * by_frequency)),
+            float(each @ (mode * by_ratio)) + priors[0] / RATIO_SPREAD,
+            float(each @ signal),
+            (n - 1) * count - left + float((noise + share * along) @ (1 / whole))
+            + priors[3] / NOISE_SPREAD,
+            float(each @ (mode * (band.log_frequency - x[0]))) + priors[1] / SLOPE_SPREAD,
+            float(each.sum() * top * rest) + priors[2] / REST_SPREAD,
+        ]
+    )
+    return value + 0.5 * float(priors @ priors), slopes
+
+
+def _least(band: _Band, start: Real) -> Real | None:
+    """Return the numbers of the least value."""
+    from scipy.optimize import minimize
+
+    # in steps of about a standard deviation each
+    few = 1 / np.sqrt(band.channels * len(band.frequency))
+    unit = np.array([0.3 * np.exp(start[1]), 0.3, 0.3, few, 0.5, 1.0])
+
+    def scaled(y: Real) -> tuple[float, Real]:
+        x = start + unit * y
+        if np.abs(x - start).max() > FARTHEST:
+            return np.inf, np.zeros(len(unit))
+        value, slopes = _value(band, x)
+        return value, slopes * unit
+
+    found = minimize(
+        scaled, np.zeros(len(unit)), jac=True, method="BFGS", options={"gtol": SETTLED}
+    )
+    best = start + unit * found.x
+    inside = band.log_frequency[0] < best[0] < band.log_frequency[-1]
+    return best if np.isfinite(found.fun) and inside else None
+
+
+def _covariance(band: _Band, best: Real) -> Real | None:
+    """Return the inverse of the Hessian, by differences of the slopes."""
+    width = np.full(len(best), STEP)
+    width[0] *= np.exp(best[1])
+    hessian = np.empty((len(best), len(best)))
+    for k, step in enumerate(width):
+        ahead, behind = best.copy(), best.copy()
+        ahead[k] += step
+        behind[k] -= step
+        hessian[k] = (_value(band, ahead)[1] - _value(band, behind)[1]) / (2 * step)
+    # in units of the diagonal: the frequency is known far better than the rest
+    diagonal = np.diag(hessian)
+    if not (diagonal > 0).all():
+        return None
+    unit = np.sqrt(np.outer(diagonal, diagonal))
+    try:
+        inverse = np.linalg.inv((hessian + hessian.T) / 2 / unit) / unit
+    except np.linalg.LinAlgError:
+        return None
+    return inverse if (np.diag(inverse)[:2] > 0).all() else None
+
+
+def _mode(band: _Band, best: Real, covariance: Real) -> BandMode:
+    """Say what the best numbers mean."""
+    form = band.amplified(best)[0]
+    top, noise = np.exp(best[2]), np.exp(best[3])
+    other = top * np.exp(best[5]) + noise
+    share = 1 - noise / (top * form + other)
+    values, vectors = np.linalg.eigh(np.tensordot(share, band.square, axes=1))
+    shape = vectors[:, -1]
+    count, n = len(form), band.channels
+    flat = n * count * (np.log(band.power / (n * count)) + 1)
+    floor = noise * share.sum()
+    second = max(0.0, float(values[-2] - floor)) if n > 1 else 0.0
+    edge = top * max(form[0], form[-1])
+    return BandMode(
+        frequency=float(np.exp(best[0])),
+        ratio=float(np.exp(best[1])),
+        log_std=(float(np.sqrt(covariance[0, 0])), float(np.sqrt(covariance[1, 1]))),
+        signal=float(top * form.max() / other),
+        rise=float((top * form.max() + other) / (edge + other)),
+        gain=float(flat - _value(band, best)[0]),
+        shape=shape * np.sign(shape[np.abs(shape).argmax()]),
+        second=second / max(float(values[-1] - floor), np.finfo(float).tiny),
+    )
