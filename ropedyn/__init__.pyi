@@ -5,6 +5,8 @@ from .base.table import Table
 from .chain.mesh_choice import Choice
 from .curves.measured import Measured
 from .curves.peaks import Peaks
+from .curves.record.record import Record
+from .curves.record.spectrum import RecordSpectrum
 from .curves.resonance import Resonances
 from .eigen.animation import Animation
 from .eigen.damage import Damage
@@ -98,6 +100,8 @@ __all__ = [
     "PointMass",
     "Prior",
     "RayleighDamping",
+    "Record",
+    "RecordSpectrum",
     "Resonances",
     "Resonator",
     "ResponseFit",

@@ -16,7 +16,12 @@ SLOPE_SPREAD = 2.0
 """Standard deviation of the power of frequency that the load may have more than a white one."""
 USUAL_REST, REST_SPREAD = 1e-3, 3.0
 """The same of what other modes have of the density at the peak."""
+LEAN_SPREAD = 0.2
+"""Standard deviation of what other modes under the same load add to the amplitude of a peak, in
+its own: one point of a rope that is driven alone has such zeros beside its peaks."""
+FALL_SPREAD = 15.0  # The same of the power of frequency with which other modes fall.
 NOISE_SPREAD = 4.0  # The same of the noise: one channel does not tell it from what others have.
+HIGH, LOW = 0.5, 0.2  # Lines at the peak and beside it, over the power at the peak.
 STEP = 1e-3  # Of the differences that give the Hessian, in standard deviations of the minimum.
 FEWEST = 8  # Lines that a fit needs.
 FARTHEST = 30.0  # No logarithm goes farther from where it starts.
@@ -48,28 +53,27 @@ class BandMode(NamedTuple):
     rise: float  # density at the frequency over the larger at the ends of the band
     gain: float  # of the logarithm of the likelihood by the mode
     shape: Real  # (channels,) of unit length
-    second: float  # what the second direction has more than noise, over what the first has
+    second: float  # share of another direction at the peak
 
 
 def fit_band(lines: Lines, quantity: str, frequency: float, ratio: float) -> BandMode | None:
     """Fit one mode to the lines of a band, from a guess; None where there is none.
 
-    The load is S f^p, the noise Se in every channel, and motion of the same shape that other modes
-    have here is R: E_k = (S D_k + R) phi phi^T + Se I, where D_k is the dynamic amplification of
-    the quantity, "displacement", "velocity" or "acceleration".
+    E_k = (S f^p |H_k + A|^2 + R f^q) phi phi^T + Se I: the load is S f^p, H_k the amplification of the
+    quantity, "displacement", "velocity" or "acceleration"; A is what other modes add under the same
+    load, R under other loads, and Se the noise in every channel.
     """
     # the function that is least at the best numbers, S. K. Au, Mechanical Systems and Signal
     # Processing 25 (2011) 2000-2017, and 36 (2013) 15-29 with noise that is not small,
-    #   (n - 1) N ln Se + sum_k ln(S_k + Se) + (d - lambda_max(A))/Se,
-    #   S_k = S D_k + R,  A = sum_k S_k/(S_k + Se) Re F_k F_k^*,  d = sum_k F_k^* F_k,
+    #   (n - 1) N ln Se + sum_k ln(S_k + Se) + (d - lambda_max(M))/Se,
+    #   S_k = S f^p |H_k + A|^2 + R f^q,  M = sum_k S_k/(S_k + Se) Re F_k F_k^*,  d = sum_k F_k^* F_k,
     # and the squares of the priors; phi is the eigenvector of lambda_max. Its slopes are those with
     # phi held, since it is least with respect to phi
     if len(lines.frequency) < FEWEST:
         return None
     band = _Band.of(lines, quantity)
-    start = np.array(
-        [np.log(frequency), np.log(ratio), band.loud(frequency), band.quiet, 0, np.log(USUAL_REST)]
-    )
+    known = (np.log(frequency), np.log(ratio), band.loud(frequency), band.quiet)
+    start = np.array([*known, 0.0, np.log(USUAL_REST), 0.0, 0.0])
     best = _least(band, start)
     if best is None:
         return None
@@ -112,19 +116,36 @@ class _Band(NamedTuple):
         near = np.argsort(np.abs(self.frequency - frequency))[: max(3, len(total) // 20)]
         return float(np.log(total[near].mean()))
 
-    def amplified(self, x: Real) -> tuple[Real, Real, Real]:
-        """Return 4 zeta^2 D_k and the slopes of its logarithm by ln f_0 and ln zeta, (k,) each."""
-        ratio = np.exp(2 * x[1])
+    def amplified(self, x: Real) -> tuple[Real, Real]:
+        """Return the power of the mode over that at its peak, and its slopes (3, k).
+
+        They are those by ln f_0, ln zeta and A.
+        """
+        # |H + A|^2 with H = 2 zeta/(b^2 - 1 + 2 i zeta b), the largest of which is 1
+        ratio, lean = np.exp(x[1]), x[6]
         away = x[0] - self.log_frequency  # ln(f_0/f)
         sign = 1.0 if self.order == 2 else -1.0
         b2 = np.exp(sign * 2 * away)
-        below = (b2 - 1) ** 2 + 4 * ratio * b2
+        off = b2 - 1
+        below = off**2 + 4 * ratio**2 * b2
+        peak, leaning = 4 * ratio**2 / below, 1 + lean * off / ratio
+        by_frequency = -sign * (4 * b2 * off + 8 * ratio**2 * b2) / below
+        by_ratio = 2 - 8 * ratio**2 * b2 / below
+        power = peak * leaning + lean**2
+        slopes = np.array(
+            [
+                peak * (by_frequency * leaning + lean / ratio * sign * 2 * b2),
+                peak * (by_ratio * leaning - lean * off / ratio),
+                peak * off / ratio + 2 * lean,
+            ]
+        )
         # of a velocity two powers more than of a displacement
-        power = x[4] + (2.0 if self.order == 1 else 0.0)
-        by_frequency = -sign * (4 * b2 * (b2 - 1) + 8 * ratio * b2) / below - power
+        tilt = x[4] + (2.0 if self.order == 1 else 0.0)
         blur, more, wider = self.blurred(x)
-        shape = 4 * ratio * np.exp(-power * away) / below * blur
-        return shape, by_frequency + more, 2 - 8 * ratio * b2 / below + wider
+        factor = np.exp(-tilt * away) * blur
+        slopes[0] += power * (more - tilt)
+        slopes[1] += power * wider
+        return power * factor, slopes * factor
 
     def blurred(self, x: Real) -> tuple[Real, Real, Real]:
         """Return what a finite duration makes of a resonance, and the slopes of its logarithm."""
@@ -136,23 +157,23 @@ class _Band(NamedTuple):
         ut = u * self.duration
         fade = np.exp(-ut)
         seen = 1 / u - (1 - fade) / (u * ut)
-        by_u = -1 / u**2 - fade / (u * u) * 1.0 + 2 * (1 - fade) / (u**2 * ut)
+        by_seen = (2 * (1 - fade) / ut - 1 - fade) / u**2
         whole, by_whole = np.real(1 / u), -1 / u**2
-        slopes = []
-        for turn in (ratio * omega - 1j * omega, ratio * omega):
-            slopes.append(
-                np.real(by_u * turn) / np.real(seen) - np.real(by_whole * turn) / whole
-            )
-        return np.real(seen) / whole, slopes[0], slopes[1]
+        by_frequency, by_ratio = (
+            np.real(by_seen * turn) / np.real(seen) - np.real(by_whole * turn) / whole
+            for turn in ((ratio - 1j) * omega, ratio * omega)
+        )
+        return np.real(seen) / whole, by_frequency, by_ratio
 
 
 def _value(band: _Band, x: Real) -> tuple[float, Real]:
-    """Return the negative logarithm of the posterior and its slopes by the six numbers."""
-    # x = ln f_0, ln zeta, ln of S/(4 zeta^2), ln Se, p, ln of R over the third
-    shape, by_frequency, by_ratio = band.amplified(x)
-    top, noise, rest = np.exp(x[2]), np.exp(x[3]), np.exp(x[5])
-    mode = top * shape
-    signal = mode + top * rest
+    """Return the negative logarithm of the posterior and its slopes by the eight numbers."""
+    # x = ln f_0, ln zeta, ln of S/(4 zeta^2), ln Se, p, ln of R over the third, A, q
+    shape, by_mode = band.amplified(x)
+    top, noise = np.exp(x[2]), np.exp(x[3])
+    ahead = band.log_frequency - x[0]
+    mode, rest = top * shape, top * np.exp(x[5] + x[7] * ahead)
+    signal = mode + rest
     whole = signal + noise
     share = signal / whole
     count, n = len(shape), band.channels
@@ -166,6 +187,8 @@ def _value(band: _Band, x: Real) -> tuple[float, Real]:
             x[4] / SLOPE_SPREAD,
             (x[5] - np.log(USUAL_REST)) / REST_SPREAD,
             (x[3] - band.quiet) / NOISE_SPREAD,
+            x[6] / LEAN_SPREAD,
+            x[7] / FALL_SPREAD,
         ]
     )
     value = (n - 1) * count * x[3] + float(np.log(whole).sum()) + left
@@ -173,13 +196,17 @@ def _value(band: _Band, x: Real) -> tuple[float, Real]:
     each = (1 - along / whole) / whole
     slopes = np.array(
         [
-            float(each @ (mode * by_frequency)),
-            float(each @ (mode * by_ratio)) + priors[0] / RATIO_SPREAD,
+            float(each @ (top * by_mode[0] - x[7] * rest)),
+            top * float(each @ by_mode[1]) + priors[0] / RATIO_SPREAD,
             float(each @ signal),
-            (n - 1) * count - left + float((noise + share * along) @ (1 / whole))
+            (n - 1) * count
+            - left
+            + float((noise + share * along) @ (1 / whole))
             + priors[3] / NOISE_SPREAD,
-            float(each @ (mode * (band.log_frequency - x[0]))) + priors[1] / SLOPE_SPREAD,
-            float(each.sum() * top * rest) + priors[2] / REST_SPREAD,
+            float(each @ (mode * ahead)) + priors[1] / SLOPE_SPREAD,
+            float(each @ rest) + priors[2] / REST_SPREAD,
+            top * float(each @ by_mode[2]) + priors[4] / LEAN_SPREAD,
+            float(each @ (rest * ahead)) + priors[5] / FALL_SPREAD,
         ]
     )
     return value + 0.5 * float(priors @ priors), slopes
@@ -191,7 +218,7 @@ def _least(band: _Band, start: Real) -> Real | None:
 
     # in steps of about a standard deviation each
     few = 1 / np.sqrt(band.channels * len(band.frequency))
-    unit = np.array([0.3 * np.exp(start[1]), 0.3, 0.3, few, 0.5, 1.0])
+    unit = np.array([0.3 * np.exp(start[1]), 0.3, 0.3, few, 0.5, 1.0, 0.05, 5.0])
 
     def scaled(y: Real) -> tuple[float, Real]:
         x = start + unit * y
@@ -236,12 +263,9 @@ def _mode(band: _Band, best: Real, covariance: Real) -> BandMode:
     top, noise = np.exp(best[2]), np.exp(best[3])
     other = top * np.exp(best[5]) + noise
     share = 1 - noise / (top * form + other)
-    values, vectors = np.linalg.eigh(np.tensordot(share, band.square, axes=1))
-    shape = vectors[:, -1]
+    vectors = np.linalg.eigh(np.tensordot(share, band.square, axes=1))[1]
     count, n = len(form), band.channels
     flat = n * count * (np.log(band.power / (n * count)) + 1)
-    floor = noise * share.sum()
-    second = max(0.0, float(values[-2] - floor)) if n > 1 else 0.0
     edge = top * max(form[0], form[-1])
     return BandMode(
         frequency=float(np.exp(best[0])),
@@ -250,6 +274,28 @@ def _mode(band: _Band, best: Real, covariance: Real) -> BandMode:
         signal=float(top * form.max() / other),
         rise=float((top * form.max() + other) / (edge + other)),
         gain=float(flat - _value(band, best)[0]),
-        shape=shape * np.sign(shape[np.abs(shape).argmax()]),
-        second=second / max(float(values[-1] - floor), np.finfo(float).tiny),
+        shape=_turned(vectors[:, -1]),
+        second=_second(band.square, form),
     )
+
+
+def _second(square: Real, form: Real) -> float:
+    """Return what the second direction has at the peak more than beside it, over the first."""
+    near, far = form > HIGH, form < LOW
+    if square.shape[1] < 2 or not (near.any() and far.any()):
+        return 0.0
+    at, beside = (np.linalg.eigvalsh(square[these].mean(axis=0)) for these in (near, far))
+    return float(max(0.0, at[-2] - beside[-2]) / at[-1])
+
+
+def _turned(shape: Real) -> Real:
+    """Return a shape whose largest component is positive."""
+    return shape * np.sign(shape[np.abs(shape).argmax()])
+
+
+def unfitted(lines: Lines, frequency: float, width: float) -> BandMode:
+    """Return what is known where no mode could be fitted: no more than the place."""
+    value = lines.value[:, np.abs(lines.frequency - frequency) <= width]
+    shape = np.linalg.eigh(np.real(value @ value.conj().T))[1][:, -1]
+    relative = width / frequency
+    return BandMode(frequency, relative, (relative, 1.0), 0.0, 1.0, 0.0, _turned(shape), 0.0)

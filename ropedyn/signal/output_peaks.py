@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.array import Complex, Real
-from .band_fit import USUAL_RATIO, BandMode, Lines, fit_band
+from .band_fit import USUAL_RATIO, BandMode, Lines, fit_band, unfitted
 from .record_lines import Density, density, floor_of, lines_of, without_drift
-from .spectrum import window_weights
 from .steady_lines import BANDWIDTH, SteadyLine, take_lines
 
 SEGMENTS = 12  # Candidates are sought with segments of this part of the longest piece.
@@ -21,7 +20,17 @@ WIDTHS, RESOLUTIONS = 8.0, 12.0
 """Half a band is so many zeta f, or so many over the duration where that is more."""
 MOMENT = 40.0  # Amplitudes are compared that so many seconds have each.
 PASSES = 2  # The second knows the damping and the neighbours.
-KINDS = ("mode", "line", "weak", "double")
+STEADY, CALM = 0.12, 0.3
+"""Variation of the amplitudes of a line, and of one that is narrow besides; noise in a narrow band
+has 0.52 (Rayleigh)."""
+NARROW, NARROWEST = 3.0, 0.5
+"""Radians of 2 pi zeta f T that a line has less than: its amplitude hardly has the time to change,
+and has none."""
+LEAST_RISE, LEAST_GAIN = 2.5, 12.0
+"""Of a mode over the ends of its band, and of the logarithm of the likelihood."""
+WIDEST, QUIETEST, VAGUEST = 0.03, 2.0, 0.01
+"""A mode has less damping, more density over all else, and a smaller relative uncertainty."""
+TWO = 0.2  # Where the second direction has this share of the first, there are two modes.
 
 
 class OutputPeak(NamedTuple):
@@ -54,22 +63,26 @@ class OutputPeak(NamedTuple):
         return cls(f, line.std, 0.0, hidden, *seen)
 
 
+class Search(NamedTuple):
+    """Where peaks are sought, and of what."""
+
+    quantity: str  # "displacement", "velocity" or "acceleration"
+    lowest: float  # [Hz]
+    below: float  # [Hz]
+
+
 def output_peaks(
-    pieces: Sequence[Real],
-    rate: float,
-    quantity: str,
-    lowest: float,
-    below: float,
-    report: Callable[[float], object],
+    pieces: Sequence[Real], rate: float, search: Search, report: Callable[[float], object]
 ) -> list[OutputPeak]:
-    """Find the peaks of pieces (channels, t) of a record between two frequencies [Hz]."""
+    """Find the peaks of pieces (channels, t) of a record, by rising frequency."""
     longest = max(piece.shape[1] for piece in pieces)
     duration = longest / rate
-    steady, level = take_lines(without_drift(pieces, rate, lowest), rate, lowest, below)
+    span = (search.lowest, search.below)
+    steady, level = take_lines(without_drift(pieces, rate, search.lowest), rate, *span)
     averaged = density(level, rate, longest // SEGMENTS, "hann")
-    floor = floor_of(np.real(np.einsum("iif->if", averaged.value)), averaged.frequency[1])
-    candidates = _candidates(averaged, floor, lowest, below)
-    fitted = _fitted(lines_of(level, rate), quantity, candidates, duration, lowest, report)
+    floor = floor_of(averaged.power, averaged.frequency[1])
+    candidates = _candidates(averaged, floor, search)
+    fitted = _fitted(lines_of(level, rate), candidates, search, duration, report)
     moments = _Moments.of(level, rate)
     peaks = [OutputPeak.of(mode, band, _kind(mode, moments, duration)) for mode, band in fitted]
     return _merged([*peaks, *(OutputPeak.steady(line, duration) for line in steady)])
@@ -77,10 +90,9 @@ def output_peaks(
 
 def _fitted(
     lines: Lines,
-    quantity: str,
     candidates: Real,
+    search: Search,
     duration: float,
-    lowest: float,
     report: Callable[[float], object],
 ) -> list[tuple[BandMode, tuple[float, float]]]:
     """Return the modes at candidates with their bands."""
@@ -88,16 +100,15 @@ def _fitted(
     kept: list[tuple[BandMode, tuple[float, float]]] = []
     for turn in range(PASSES):
         kept = []
-        for k, (one, band) in enumerate(zip(guess, _bands(guess, duration, lowest))):
-            mode = fit_band(lines.within(*band), quantity, *one)
-            if mode is not None:
-                kept.append((mode, band))
+        for k, (one, band) in enumerate(zip(guess, _bands(guess, duration, search.lowest))):
+            mode = fit_band(lines.within(*band), search.quantity, *one)
+            kept.append((mode or unfitted(lines, one[0], 1 / duration), band))
             report((turn + (k + 1) / len(guess)) / PASSES)
         guess = [(mode.frequency, mode.ratio) for mode, _ in kept]
     return kept
 
 
-def _candidates(averaged: Density, floor: Real, lowest: float, below: float) -> Real:
+def _candidates(averaged: Density, floor: Real, search: Search) -> Real:
     """Return frequencies at which the first singular value of the densities has a maximum."""
     # frequency domain decomposition: R. Brincker, L. Zhang, P. Andersen, Smart Materials and
     # Structures 10 (2001) 441-445; each channel in units of its own floor
@@ -106,11 +117,12 @@ def _candidates(averaged: Density, floor: Real, lowest: float, below: float) -> 
     scale = np.sqrt(floor)
     whitened = averaged.value / (scale[:, np.newaxis] * scale[np.newaxis])
     size = np.log(np.linalg.eigvalsh(np.moveaxis(whitened, -1, 0))[:, -1])
-    inside = (averaged.frequency >= lowest) & (averaged.frequency <= below)
+    f = averaged.frequency
+    inside = (f >= search.lowest) & (f <= search.below)
     root = np.sqrt(averaged.averages)
     height = np.median(size[inside]) + np.log1p(STANDING / root)
     at, _ = find_peaks(size, height=height, prominence=np.log1p(PROMINENT / root))
-    return averaged.frequency[at[inside[at]]]
+    return f[at[inside[at]]]
 
 
 def _bands(
@@ -128,18 +140,19 @@ def _bands(
 def _kind(mode: BandMode, moments: _Moments, duration: float) -> str:
     """Say what a peak is."""
     turns = 2 * np.pi * mode.ratio * mode.frequency * duration
-    steady = moments.variation(mode)
-    if steady < 0.12 or (steady < 0.3 and turns < 3) or turns < 0.5:
+    varies = moments.variation(mode)
+    if turns < NARROWEST or varies < STEADY or (varies < CALM and turns < NARROW):
         return "line"
-    if (
-        mode.rise < 2.5
-        or mode.gain < 12
-        or mode.ratio > 0.03
-        or mode.signal < 2
-        or mode.log_std[0] > 0.01
-    ):
-        return "weak"
-    return "mode"
+    weak = (
+        mode.rise < LEAST_RISE,
+        mode.gain < LEAST_GAIN,
+        mode.ratio > WIDEST,
+        mode.signal < QUIETEST,
+        mode.log_std[0] > VAGUEST,
+    )
+    if mode.second > TWO and mode.gain >= LEAST_GAIN:
+        return "double"
+    return "weak" if any(weak) else "mode"
 
 
 class _Moments(NamedTuple):

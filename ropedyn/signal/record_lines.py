@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from .band_fit import Lines
 from .spectrum import window_weights
 
 DRIFT_CUT = 1 / 3  # Drift is taken away below this part of the lowest frequency.
+ENOUGH = 4.0  # Samples in a cycle of the highest frequency; fewer fold something onto it.
 FLOOR_SHARE, FLOOR_WIDTH, FLOOR_LINES = 35.0, 1.0, 31
 """Floor: this percentile of the lines around, over so many Hz, or lines where these are more."""
 
@@ -21,7 +22,12 @@ class Density(NamedTuple):
 
     frequency: Real  # (f,) [Hz]
     value: Complex  # (channels, channels, f)
-    averages: float  # segments that half overlap
+    averages: int  # segments that half overlap
+
+    @property
+    def power(self) -> Real:
+        """Densities of each channel, (channels, f)."""
+        return np.real(np.einsum("iif->if", self.value)).copy()
 
 
 def without_drift(pieces: Sequence[Real], rate: float, lowest: float) -> list[Real]:
@@ -32,6 +38,17 @@ def without_drift(pieces: Sequence[Real], rate: float, lowest: float) -> list[Re
     filtering = signal.butter(2, DRIFT_CUT * lowest, "highpass", fs=rate, output="sos")
     level = [signal.detrend(piece, axis=-1) for piece in pieces]
     return [signal.sosfiltfilt(filtering, piece, axis=-1) for piece in level]
+
+
+def resampled(pieces: Sequence[Real], rate: float, below: float) -> tuple[list[Real], float]:
+    """Return pieces with no more samples than frequencies up to a highest one need."""
+    from scipy import signal
+
+    fewer = int(rate / (ENOUGH * below))
+    if fewer < 2:
+        return list(pieces), rate
+    thin = [signal.resample_poly(piece, 1, fewer, axis=1, padtype="line") for piece in pieces]
+    return thin, rate / fewer
 
 
 def lines_of(pieces: Sequence[Real], rate: float) -> Lines:
@@ -50,17 +67,13 @@ def density(pieces: Sequence[Real], rate: float, length: int, window: str) -> De
     """Return the means over segments of so many samples that half overlap (Welch)."""
     from scipy import signal
 
-    total, count = 0.0, 0
     weights = window_weights(window, length)
-    for piece in pieces:
-        segments = (piece.shape[1] - length // 2) // (length - length // 2)
-        if segments < 1:
-            continue
-        frequency, value = signal.csd(
-            piece[:, np.newaxis], piece[np.newaxis], fs=rate, window=weights
-        )
-        total, count = total + segments * value, count + segments
-    return Density(frequency, total / count, count)
+    how: dict[str, Any] = {"fs": rate, "window": weights, "detrend": "constant"}
+    long = [piece for piece in pieces if piece.shape[1] >= length]
+    counts = [(piece.shape[1] - length // 2) // (length - length // 2) for piece in long]
+    each = [signal.csd(piece[:, np.newaxis], piece[np.newaxis], **how) for piece in long]
+    mean = np.average([value for _, value in each], axis=0, weights=counts)
+    return Density(each[0][0], mean, sum(counts))
 
 
 def floor_of(power: Real, step: float) -> Real:

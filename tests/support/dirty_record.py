@@ -61,7 +61,7 @@ def gaussian(rng, shape):
 
 
 def modal_motion(rng, f, frequency, ratio, shape):
-    """Return lines of accelerations of modes under a coloured load that they share, (sensors, f)."""
+    """Return lines (sensors, f) of accelerations of modes under a coloured load they share."""
     modes = len(frequency)
     mix = np.eye(modes) + rng.uniform(0.0, 0.3) * rng.standard_normal((modes, modes)) / 2
     load = (1 + (f / rng.uniform(2.0, 10.0)) ** 2) ** -rng.uniform(0.0, 0.5)

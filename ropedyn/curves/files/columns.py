@@ -72,7 +72,7 @@ def read(
     **layout: Any,
 ) -> Content:
     """Read what a `Measured` is made of; see `Measured.read`."""
-    text = _text(file)
+    text = text_of(file)
     if columns is None and text.startswith(OWN):
         for name, value in (("unit", unit), ("quantity", quantity), ("response", response)):
             if value is not None:
@@ -80,7 +80,7 @@ def read(
                     f"{name} must be left out for {str(file)!r}, which says it, got {value!r}"
                 )
         return _own(file, text, drive)
-    sheet = _sheet(file, text, _layout(**layout))
+    sheet = sheet_of(file, text, **layout)
     if columns is None:
         there = sheet.names or f"{sheet.numbers.shape[1]} without names"
         raise SceneError(
@@ -93,7 +93,8 @@ def read(
     return Content(**found, **meaning)
 
 
-def _text(file: Path) -> str:
+def text_of(file: Path) -> str:
+    """Return the text of a file."""
     try:
         text = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
@@ -101,6 +102,11 @@ def _text(file: Path) -> str:
     if "\0" in text:
         raise SceneError(f"path must be a text file, got {str(file)!r} with bytes 0")
     return text
+
+
+def sheet_of(file: Path, text: str, **layout: Any) -> Sheet:
+    """Return text as columns of numbers, split as the user says."""
+    return _sheet(file, text, _layout(**layout))
 
 
 def _layout(delimiter: Any, decimal: Any, comments: Any, skip: Any) -> Layout:

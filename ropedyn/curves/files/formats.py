@@ -27,14 +27,14 @@ def read(
 ) -> Content:
     """Read what a `Measured` is made of; options by the kind of file they are for."""
     file = check.path(path)
-    is_universal = _is_universal(file)
+    universal_file = is_universal(file)
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file, got {str(file)!r}")
-    for name, value in (text if is_universal else universal).items():
+    for name, value in (text if universal_file else universal).items():
         if value != DEFAULTS.get(name):
-            kind = "text in columns" if is_universal else "a universal file"
+            kind = "text in columns" if universal_file else "a universal file"
             raise SceneError(f"{name} is for {kind}, got {check.shown(value)} for {str(file)!r}")
-    if is_universal:
+    if universal_file:
         return uff_read.read(file, **anything, **universal)
     return columns.read(file, **anything, **text)
 
@@ -43,12 +43,12 @@ def write(content: Content, path: str | os.PathLike[str], binary: bool) -> None:
     """Write responses; see `Curves.write`."""
     file = check.path(path)
     check.instance(binary, "binary", bool, "True or False")
-    is_universal = _is_universal(file)
+    universal_file = is_universal(file)
     if not np.isfinite(content.value).all():
         raise SceneError("value must be finite to be written")
     if (np.diff(content.frequency) <= 0).any():
         raise SceneError("frequency must increase to be written")
-    if is_universal:
+    if universal_file:
         uff.write(content, file, binary)
     elif binary:
         raise SceneError(f"binary is for a universal file, got {binary!r} for {str(file)!r}")
@@ -56,7 +56,7 @@ def write(content: Content, path: str | os.PathLike[str], binary: bool) -> None:
         columns.write(content, file)
 
 
-def _is_universal(file: Path) -> bool:
+def is_universal(file: Path) -> bool:
     """Whether a file is universal, by its suffix; else it is text."""
     suffix = file.suffix.lower()
     if suffix not in (*UNIVERSAL, *TEXT):

@@ -211,7 +211,7 @@ def write(content: Content, path: Path, binary: bool) -> None:
     _refuse(content)
     points = [*content.drive, *content.response]
     nodes = {x: k for k, x in enumerate(sorted({x for _, x in points}), start=1)}
-    datasets: list[Fields] = [_si_units()]
+    datasets: list[Fields] = [si_units()]
     for d, drive in enumerate(content.drive):
         for r, response in enumerate(content.response):
             common = _common(content, nodes, drive, response, binary)
@@ -220,7 +220,7 @@ def write(content: Content, path: Path, binary: bool) -> None:
                 datasets.append(common | _share(content.coherence[r]))
             if content.std is not None:
                 datasets.append(common | _spread(content.std[r]))
-    _write_all(path, datasets)
+    write_all(path, datasets)
 
 
 def _refuse(content: Content) -> None:
@@ -236,7 +236,8 @@ def _refuse(content: Content) -> None:
         raise SceneError("frequency must have at least two lines for a universal file, got 1")
 
 
-def _si_units() -> Fields:
+def si_units() -> Fields:
+    """Return the dataset that says that what follows is in SI."""
     return {
         "type": UNITS,
         "units_code": 1,
@@ -316,7 +317,7 @@ def _spread(std: Real) -> Fields:
     return {"func_type": GENERAL, "data": std, "ordinate_axis_lab": SPREAD}
 
 
-def _write_all(path: Path, datasets: Sequence[Fields]) -> None:
+def write_all(path: Path, datasets: Sequence[Fields]) -> None:
     """Write datasets to a file, whole or not at all."""
     library = pyuff()
     with replacing(path) as draft:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...base.array import Flags, Real
+from ...base.array import Flags, Index, Real
 from ...base.errors import SceneError
 from ...base.unit import place
 
+SAME_RATE = 1e-3  # A rate within this relative distance is that of the times.
 GAP = 1.5  # Steps between two times from which samples are missing.
 EVEN, JITTER = 0.01, 0.25
 """Times off equal steps, in steps: up to the first they are equal, up to the second resampled."""
@@ -29,7 +31,7 @@ class Grid(NamedTuple):
 
     start: float  # [s]
     rate: float  # [Hz]
-    at: Sequence[int] | Real  # (samples,) which of the equal steps each is
+    at: Index  # (samples,) which of the equal steps each is
     moved: Real | None  # (samples,) how far each is from there, in steps; None where that is little
 
 
@@ -43,22 +45,19 @@ def grid_of(time: Real, rate: float | None) -> Grid:
         )
     usual = float(np.median(steps))
     whole = steps < GAP * usual
-    step = float(steps[whole].mean())
-    if rate is not None:
-        if abs(step * rate - 1) > 1e-3:
-            raise SceneError(
-                f"rate must be that of time, {1 / step:.6g} Hz, or time left out, got {rate!r}"
-            )
-        step = 1 / rate
-    ahead = np.where(whole, 1, np.maximum(np.round(steps / step), 2)).astype(int)
+    ahead = np.where(whole, 1, np.maximum(np.round(steps / usual), 2)).astype(int)
     at = np.concatenate([[0], np.cumsum(ahead)])
     if at[-1] + 1 > (MOST_MISSING + 1) * len(time):
         k = int(ahead.argmax())
         raise SceneError(
-            f"time must be of one record, got {ahead[k] * step:.6g} s between time[{k}] and "
+            f"time must be of one record, got {steps[k]:.6g} s between time[{k}] and "
             f"time[{k + 1}]: make a Record of each part"
         )
-    off = _off(time, step, at, whole)
+    step, off = _steps(time, at, whole)
+    if rate is not None and abs(step * rate - 1) > SAME_RATE:
+        raise SceneError(
+            f"rate must be that of time, {1 / step:.6g} Hz, or time left out, got {rate!r}"
+        )
     if np.abs(off).max() > JITTER:
         k = int(np.abs(off).argmax())
         raise SceneError(
@@ -69,21 +68,22 @@ def grid_of(time: Real, rate: float | None) -> Grid:
     return Grid(float(time[0]), exact, at, off if np.abs(off).max() > EVEN else None)
 
 
-def _off(time: Real, step: float, at: Real, whole: Flags) -> Real:
-    """Return how far times are from equal steps, in steps; of each part alone."""
+def _steps(time: Real, at: Index, whole: Flags) -> tuple[float, Real]:
+    """Return the step that fits all parts best, and how far times are from theirs, in steps."""
     part = np.concatenate([[0], np.cumsum(~whole)])
-    off = (time - time[0]) / step - at
-    mean = np.bincount(part, off) / np.bincount(part)
-    return off - mean[part]
+    samples = np.bincount(part)
+    t, k = (x - (np.bincount(part, x) / samples)[part] for x in (time - time[0], at))
+    step = float(k @ t / (k @ k))
+    return step, t / step - k
 
 
-def on_grid(grid: Grid, rows: Real, missing: Flags) -> tuple[Real, list[str]]:
+def on_grid(grid: Grid, rows: Real) -> tuple[Real, list[str]]:
     """Return rows (rows, t) at equal steps, NaN in gaps that are not bridged, and what was done."""
     from scipy.interpolate import CubicSpline
 
     total = int(grid.at[-1]) + 1
     value = np.full((len(rows), total), np.nan)
-    there = ~missing
+    there = ~np.isnan(rows).any(axis=0)
     at, moved = grid.at[there], None if grid.moved is None else grid.moved[there]
     value[:, at] = rows[:, there]
     notes = []
@@ -92,7 +92,9 @@ def on_grid(grid: Grid, rows: Real, missing: Flags) -> tuple[Real, list[str]]:
         value[:, at] = spline(at)
         most = float(np.abs(moved).max())
         notes.append(f"time is up to {most:.2g} steps off equal ones: resampled by cubic splines")
-    bridged = [(a, b) for a, b in gaps(value) if (b - a + 1) / grid.rate <= BRIDGED]
+    bridged = [
+        (a, b) for a, b in gaps(value) if a > 0 and b < total and (b - a + 1) <= BRIDGED * grid.rate
+    ]
     for a, b in bridged:
         value[:, a:b] = spline(np.arange(a, b))
     if bridged:
@@ -106,7 +108,7 @@ def gaps(value: Real) -> list[tuple[int, int]]:
     return runs(np.isnan(value).any(axis=0))
 
 
-def runs(flags: Flags) -> list[tuple[int, int]]:
+def runs(flags: Any) -> list[tuple[int, int]]:
     """Return where flags are set, as starts and stops."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return list(zip(edges[::2].tolist(), edges[1::2].tolist()))
@@ -149,7 +151,9 @@ def _motion(rows: Real) -> Real:
 
 def clipped_share(row: Real) -> float:
     """Return the share of samples on the exact extremes, 0 where these are less than four."""
-    count = [int((row == extreme).sum()) for extreme in (row.min(), row.max())]
+    # a sinusoid may come back to its extreme, but does not stay there
+    on = [row == extreme for extreme in (row.min(), row.max())]
+    count = [int(flags.sum()) for flags in on if (flags[1:] & flags[:-1]).any()]
     return sum(n for n in count if n >= CLIPPED) / len(row)
 
 
@@ -168,7 +172,7 @@ def pieces_of(value: Real, rate: float) -> tuple[tuple[tuple[int, int], ...], li
     whole = runs(~np.isnan(value).any(axis=0))
     notes = [
         f"{(start - stop) / rate:.3g} s are missing at {stop / rate:.6g} s after the start: split"
-        for (_, stop), (start, _) in zip(whole, whole[1:])
+        for (_, stop), (start, _) in pairwise(whole)
     ]
     return tuple(whole), notes
 
