@@ -59,14 +59,15 @@ class BandMode(NamedTuple):
 def fit_band(lines: Lines, quantity: str, frequency: float, ratio: float) -> BandMode | None:
     """Fit one mode to the lines of a band, from a guess; None where there is none.
 
-    E_k = (S f^p |H_k + A|^2 + R f^q) phi phi^T + Se I: the load is S f^p, H_k the amplification of the
-    quantity, "displacement", "velocity" or "acceleration"; A is what other modes add under the same
-    load, R under other loads, and Se the noise in every channel.
+    E_k = (S f^p |H_k + A|^2 + R f^q) phi phi^T + Se I: the load is S f^p, H_k the amplification of
+    the quantity, "displacement", "velocity" or "acceleration"; A is what other modes add under the
+    same load, R under other loads, and Se the noise in every channel.
     """
     # the function that is least at the best numbers, S. K. Au, Mechanical Systems and Signal
     # Processing 25 (2011) 2000-2017, and 36 (2013) 15-29 with noise that is not small,
     #   (n - 1) N ln Se + sum_k ln(S_k + Se) + (d - lambda_max(M))/Se,
-    #   S_k = S f^p |H_k + A|^2 + R f^q,  M = sum_k S_k/(S_k + Se) Re F_k F_k^*,  d = sum_k F_k^* F_k,
+    #   S_k = S f^p |H_k + A|^2 + R f^q,  d = sum_k F_k^* F_k,
+    #   M = sum_k S_k/(S_k + Se) Re F_k F_k^*,
     # and the squares of the priors; phi is the eigenvector of lambda_max. Its slopes are those with
     # phi held, since it is least with respect to phi
     if len(lines.frequency) < FEWEST:

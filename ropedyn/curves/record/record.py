@@ -18,9 +18,11 @@ from ...base.table import Table
 from ...base.unit import MOTIONS, label
 from ...chain.port import Point
 from ..files import records
+from ..measured import Measured
 from ..peaks import Peaks
 from .find_peaks import find_peaks
 from .given import channels_given, drive_of, force_given, points_of, times_given
+from .hits import measured_response
 from .repair import channels_of, grid_of, on_grid, pieces_of
 from .spectrum import RecordSpectrum, spectrum_of
 
@@ -331,6 +333,56 @@ class Record(Answer):
         [2.0, 4.0, 6.0, 8.0]
         """
         return find_peaks(self, below, progress)
+
+    def frf(
+        self,
+        estimator: str = "H1",
+        *,
+        decay: float | None = None,
+        gate: bool = True,
+        length: float | None = None,
+    ) -> Measured:
+        """Estimate the response per force, from hits or a force that acts all the time.
+
+        Parameters
+        ----------
+        estimator : {"H1", "H2", "Hv"}
+            Right where the motion is noisy, the force, or both in proportion to their size.
+        decay : float, optional
+            [1/s] of the window exp(-decay t) on force and motion of hits; what they need where left
+            out.
+        gate : bool
+            Whether the force of hits is set to 0 between its pulses.
+        length : float, optional
+            Of each record of a hit, or each segment of noise [s].
+
+        Returns
+        -------
+        Measured
+            With `decay`, `averages`, `coherence`; of several hits `std`; `notes` say what was left
+            out.
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If there is no force or no usable hit (each with its reason), or a value has no meaning.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(1.0, 1.0), tension=64.0, damping=rd.ModalDamping(0.01))
+        >>> time, drive = np.arange(2048) / 256.0, ("z", 0.3)
+        >>> force = 10 * np.sin(np.pi * np.clip((time - 0.5) / 0.03, 0.0, 1.0)) ** 2
+        >>> value = scene.compile(elements=32).transient(time, drive=drive, force=force).value
+        >>> how = {"response": [drive], "quantity": "displacement", "force": force, "drive": drive}
+        >>> (peaks,) = rd.Record(time, value, **how).frf(decay=0.5).peaks()
+        >>> print(peaks.frequency[:3].round(2), peaks.damping_ratio[:3].round(3))
+        [ 4.    7.99 11.96] [0.01 0.01 0.01]
+        """
+        return measured_response(self, estimator=estimator, decay=decay, gate=gate, length=length)
 
     def spectrum(self, segment: float | None = None, window: str = "hann") -> RecordSpectrum:
         """Return the power spectral density of each channel, by Welch's method.

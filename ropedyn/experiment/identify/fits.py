@@ -203,8 +203,8 @@ class Fits(Answer, Sequence[Fit | None]):
             return self.batch.interval(level, method)
         if level not in LEVELS or method != METHODS[0]:
             raise SceneError(
-                f'level must be one of {", ".join(map(str, LEVELS))} and method "{METHODS[0]}" of '
-                f"fits from a file, got {level!r} and {method!r}: identify again"
+                f'level must be one of {LEVELS} and method "{METHODS[0]}" of fits from a file, got '
+                f"{level!r} and {method!r}: identify again"
             )
         return np.asarray(self.bounds[LEVELS.index(level)])
 

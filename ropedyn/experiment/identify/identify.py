@@ -127,10 +127,11 @@ def identify(
         estimated from the residuals, for each point a part equal on all lines, or what measured
         coherence tells, and one in proportion to the amplitude.
     unknown : str or sequence of str or tuple of str
-        Paths of what is sought, a tuple of several where they have one number, such as ``"tension"``, ``"bending_stiffness"``,
-        ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or ``"parts[0].x"``: what `Modes.derivative`
-        takes, and of a whole response `FRF.derivative`, such as ``"damping.gamma"``, and
-        ``"calibration"``, a real factor of either sign on all of it.
+        Paths of what is sought, a tuple of several where they have one number, such as
+        ``"tension"``, ``"bending_stiffness"``, ``"ends[0].spring.beta"``, ``"parts[0].mass"`` or
+        ``"parts[0].x"``: what `Modes.derivative` takes. Numbers of damping, such as
+        ``"damping.gamma"``, are told by the damping ratios of peaks or by a whole response; of that
+        ``"calibration"`` is a real factor of either sign on all of it.
     orders : "auto", None or sequence of int, shape (k,)
         Which mode each peak is, from 1, and 0 where it is none. ``"auto"``: as the peaks say, and
         where they do not by evidence. None: by evidence in any case.
@@ -251,7 +252,8 @@ def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
         return unknown, False
     if not whole:
         raise SceneError(
-            f"unknown must not have {CALIBRATION!r} of peaks, which have no amplitude, got {unknown}"
+            f"unknown must not have {CALIBRATION!r} of peaks, which have no amplitude, got "
+            f"{check.shown(unknown)}"
         )
     return [path for path in unknown if path != CALIBRATION], True
 
@@ -265,7 +267,7 @@ def _ends(ends: Any, scene: Scene, unknowns: Unknowns, *, whole: bool) -> str:
         why = "a whole response" if whole else "ends that are sought" if sought else "a string"
         raise SceneError(f'ends must be "given" of {why}, got "unknown"')
     if unknowns.tied and ends == ENDS[0]:
-        raise SceneError(f'ends must be "given" where numbers are tied, got "unknown"')
+        raise SceneError('ends must be "given" where numbers are tied, got "unknown"')
     return str(ends)
 
 

@@ -86,8 +86,8 @@ def kept_interval(kept: Kept, level: float, method: str) -> Real:
         return kept.known.interval(level, method)
     if level not in LEVELS or method != METHODS[0]:
         raise SceneError(
-            f'level must be one of {", ".join(map(str, LEVELS))} and method "{METHODS[0]}" of a fit '
-            f"from a file, got {level!r} and {method!r}: identify again"
+            f'level must be one of {LEVELS} and method "{METHODS[0]}" of a fit from a file, got '
+            f"{level!r} and {method!r}: identify again"
         )
     return np.asarray(kept.bounds[LEVELS.index(level)])
 

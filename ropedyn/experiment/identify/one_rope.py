@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Integer, Real
+from ...base.computed import changed
 from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
@@ -80,6 +81,14 @@ class WithDamping:
         return np.concatenate([self.first.interval(level, method), by_width])
 
 
+class Decision(NamedTuple):
+    """What the peaks decide."""
+
+    status: str
+    candidates: Any  # or what computes them
+    known: Known
+
+
 @dataclass(frozen=True, eq=False)
 class RopeTask:
     """One rope, and how it is identified."""
@@ -97,15 +106,21 @@ class RopeTask:
             return self._refused(time.perf_counter() - began)
         orders = np.array(found[0].orders, dtype=np.int64)
         told = self.tell(orders, self.scene)
+        damped = self._damping(told, orders)
+        fit = self._fit(told, damped, orders, self._decision(status, found, told, damped))
+        return changed(fit, cost=replace(fit.cost, seconds=time.perf_counter() - began))
+
+    def _decision(
+        self, status: str, found: Sequence[Numbering], told: Told, damped: PeakDamping | None
+    ) -> Decision:
+        """Return what else the peaks may be, and how well numbers are known for it."""
         candidates: Any = partial(self._candidates, found, told)
         known = told.known
         if status == "ambiguous":
             candidates = candidates()
             known = Hull(known, candidates)
-        damped = self._damping(told, orders)
         known = known if damped is None else WithDamping(known, damped)
-        seconds = time.perf_counter() - began
-        return self._fit(told, damped, orders, status, candidates, known, seconds)
+        return Decision(status, candidates, known)
 
     def _damping(self, told: Told, orders: Integer) -> PeakDamping | None:
         """Return what the damping ratios of the peaks tell, where that is asked."""
@@ -177,17 +192,11 @@ class RopeTask:
         return Candidates.of(self.how.paths, each)
 
     def _fit(
-        self,
-        told: Told,
-        damped: PeakDamping | None,
-        orders: Integer,
-        status: str,
-        candidates: Any,
-        known: Known,
-        seconds: float,
+        self, told: Told, damped: PeakDamping | None, orders: Integer, decision: Decision
     ) -> Fit:
+        """Gather what was found."""
         how, k, p = self.how, len(orders), len(told.value)
-        std = told.std if status == "trusted" else np.full(p, np.nan)
+        std = told.std if decision.status == "trusted" else np.full(p, np.nan)
         paths, value, correlation, notes = how.paths, told.value, told.correlation, told.notes
         if damped is not None:
             paths, value = (*paths, *damped.unknown), np.append(value, damped.value)
@@ -205,18 +214,18 @@ class RopeTask:
             freedom=told.freedom,
             chi_square=told.chi_square,
             probability=told.probability,
-            status=status,
+            status=decision.status,
             budget=told.budget,
             ends=how.ends,
             assumed=told.assumed,
-            notes=notes if status == "trusted" else (AMBIGUOUS, *notes),
+            notes=notes if decision.status == "trusted" else (AMBIGUOUS, *notes),
             seed=how.seed,
-            cost=Cost(seconds, told.method, how.elements or 0, k, factorisations=told.evaluations),
-            candidates=candidates,
-            bounds=partial(kept_bounds, known.interval),
+            cost=Cost(0.0, told.method, how.elements or 0, k, factorisations=told.evaluations),
+            candidates=decision.candidates,
+            bounds=partial(kept_bounds, decision.known.interval),
+            known=decision.known,
             remarks=partial(self._remarks, told, orders),
             details=details_of(self.peaks),
-            known=known,
         )
 
     def _remarks(self, told: Told, orders: Integer) -> Remarks:

@@ -49,10 +49,8 @@ def _numbers(fit: Fit) -> list[str]:
     """Return a line for each number; of an ambiguous fit one for each candidate."""
     if fit.status == "ambiguous":
         rivals = fit.candidates.rivals
-        lines = [fit.notes[0]]
-        for one in rivals:
-            lines.append(f"  p = {_share(one.probability)}: {_candidate(one)}")
-        return lines
+        named = (f"  p = {_share(one.probability)}: {_candidate(one)}" for one in rivals)
+        return [fit.notes[0], *named]
     bounds = fit.interval()
     return [_number(path, fit.value[path], *bounds[path]) for path in fit.unknown]
 
