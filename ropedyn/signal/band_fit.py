@@ -21,7 +21,6 @@ LEAN_SPREAD = 0.2
 its own: one point of a rope that is driven alone has such zeros beside its peaks."""
 FALL_SPREAD = 15.0  # The same of the power of frequency with which other modes fall.
 NOISE_SPREAD = 4.0  # The same of the noise: one channel does not tell it from what others have.
-HIGH, LOW = 0.5, 0.2  # Lines at the peak and beside it, over the power at the peak.
 STEP = 1e-3  # Of the differences that give the Hessian, in standard deviations of the minimum.
 FEWEST = 8  # Lines that a fit needs.
 FARTHEST = 30.0  # No logarithm goes farther from where it starts.
@@ -53,7 +52,6 @@ class BandMode(NamedTuple):
     rise: float  # density at the frequency over the larger at the ends of the band
     gain: float  # of the logarithm of the likelihood by the mode
     shape: Real  # (channels,) of unit length
-    second: float  # share of another direction at the peak
 
 
 def fit_band(lines: Lines, quantity: str, frequency: float, ratio: float) -> BandMode | None:
@@ -276,17 +274,7 @@ def _mode(band: _Band, best: Real, covariance: Real) -> BandMode:
         rise=float((top * form.max() + other) / (edge + other)),
         gain=float(flat - _value(band, best)[0]),
         shape=_turned(vectors[:, -1]),
-        second=_second(band.square, form),
     )
-
-
-def _second(square: Real, form: Real) -> float:
-    """Return what the second direction has at the peak more than beside it, over the first."""
-    near, far = form > HIGH, form < LOW
-    if square.shape[1] < 2 or not (near.any() and far.any()):
-        return 0.0
-    at, beside = (np.linalg.eigvalsh(square[these].mean(axis=0)) for these in (near, far))
-    return float(max(0.0, at[-2] - beside[-2]) / at[-1])
 
 
 def _turned(shape: Real) -> Real:
@@ -299,4 +287,4 @@ def unfitted(lines: Lines, frequency: float, width: float) -> BandMode:
     value = lines.value[:, np.abs(lines.frequency - frequency) <= width]
     shape = np.linalg.eigh(np.real(value @ value.conj().T))[1][:, -1]
     relative = width / frequency
-    return BandMode(frequency, relative, (relative, 1.0), 0.0, 1.0, 0.0, _turned(shape), 0.0)
+    return BandMode(frequency, relative, (relative, 1.0), 0.0, 1.0, 0.0, _turned(shape))

@@ -30,7 +30,7 @@ LEAST_RISE, LEAST_GAIN = 2.5, 12.0
 """Of a mode over the ends of its band, and of the logarithm of the likelihood."""
 WIDEST, QUIETEST, VAGUEST = 0.03, 2.0, 0.01
 """A mode has less damping, more density over all else, and a smaller relative uncertainty."""
-TWO = 0.2  # Where the second direction has this share of the first, there are two modes.
+TWO = 0.2  # Where the second singular value has this share of the first, there are two modes.
 
 
 class OutputPeak(NamedTuple):
@@ -81,10 +81,13 @@ def output_peaks(
     steady, level = take_lines(without_drift(pieces, rate, search.lowest), rate, *span)
     averaged = density(level, rate, longest // SEGMENTS, "hann")
     floor = floor_of(averaged.power, averaged.frequency[1])
-    candidates = _candidates(averaged, floor, search)
+    candidates, second = _candidates(averaged, floor, search)
     fitted = _fitted(lines_of(level, rate), candidates, search, duration, report)
     moments = _Moments.of(level, rate)
-    peaks = [OutputPeak.of(mode, band, _kind(mode, moments, duration)) for mode, band in fitted]
+    peaks = [
+        OutputPeak.of(mode, band, _kind(mode, two, moments.variation(mode), duration))
+        for (mode, band), two in zip(fitted, (second > TWO).tolist())
+    ]
     return _merged([*peaks, *(OutputPeak.steady(line, duration) for line in steady)])
 
 
@@ -108,21 +111,28 @@ def _fitted(
     return kept
 
 
-def _candidates(averaged: Density, floor: Real, search: Search) -> Real:
-    """Return frequencies at which the first singular value of the densities has a maximum."""
+def _candidates(averaged: Density, floor: Real, search: Search) -> tuple[Real, Real]:
+    """Return where the first singular value of the densities has a maximum.
+
+    With it comes what the second has there of the first, 0 where it does not stand out.
+    """
     # frequency domain decomposition: R. Brincker, L. Zhang, P. Andersen, Smart Materials and
     # Structures 10 (2001) 441-445; each channel in units of its own floor
     from scipy.signal import find_peaks
 
-    scale = np.sqrt(floor)
+    f, scale = averaged.frequency, np.sqrt(floor)
     whitened = averaged.value / (scale[:, np.newaxis] * scale[np.newaxis])
-    size = np.log(np.linalg.eigvalsh(np.moveaxis(whitened, -1, 0))[:, -1])
-    f = averaged.frequency
+    size = np.linalg.eigvalsh(np.moveaxis(whitened, -1, 0))
+    first, second = size[:, -1], size[:, -2] if len(scale) > 1 else np.zeros(len(f))
     inside = (f >= search.lowest) & (f <= search.below)
     root = np.sqrt(averaged.averages)
-    height = np.median(size[inside]) + np.log1p(STANDING / root)
-    at, _ = find_peaks(size, height=height, prominence=np.log1p(PROMINENT / root))
-    return f[at[inside[at]]]
+    stands, leaps = 1 + STANDING / root, np.log1p(PROMINENT / root)
+    at, _ = find_peaks(
+        np.log(first), height=np.log(np.median(first[inside]) * stands), prominence=leaps
+    )
+    at = at[inside[at]]
+    seen = second[at] > np.median(second[inside]) * stands
+    return f[at], np.where(seen, second[at] / first[at], 0.0)
 
 
 def _bands(
@@ -137,10 +147,9 @@ def _bands(
     return list(zip(low.tolist(), high.tolist()))
 
 
-def _kind(mode: BandMode, moments: _Moments, duration: float) -> str:
+def _kind(mode: BandMode, two: bool, varies: float, duration: float) -> str:
     """Say what a peak is."""
     turns = 2 * np.pi * mode.ratio * mode.frequency * duration
-    varies = moments.variation(mode)
     if turns < NARROWEST or varies < STEADY or (varies < CALM and turns < NARROW):
         return "line"
     weak = (
@@ -150,9 +159,7 @@ def _kind(mode: BandMode, moments: _Moments, duration: float) -> str:
         mode.signal < QUIETEST,
         mode.log_std[0] > VAGUEST,
     )
-    if mode.second > TWO and mode.gain >= LEAST_GAIN:
-        return "double"
-    return "weak" if any(weak) else "mode"
+    return "double" if two else "weak" if any(weak) else "mode"
 
 
 class _Moments(NamedTuple):
