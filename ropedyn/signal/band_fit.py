@@ -61,11 +61,11 @@ def fit_band(lines: Lines, quantity: str, frequency: float, ratio: float) -> Ban
     the quantity, "displacement", "velocity" or "acceleration"; A is what other modes add under the
     same load, R under other loads, and Se the noise in every channel.
     """
-    # the function that is least at the best numbers, S. K. Au, Mechanical Systems and Signal
-    # Processing 25 (2011) 2000-2017, and 36 (2013) 15-29 with noise that is not small,
+    # the function that is least at the best numbers, S. K. Au, Journal of Engineering
+    # Mechanics 137 (2011) 214-226, here with noise that is not small and other modes beside,
     #   (n - 1) N ln Se + sum_k ln(S_k + Se) + (d - lambda_max(M))/Se,
-    #   S_k = S f^p |H_k + A|^2 + R f^q,  d = sum_k F_k^* F_k,
-    #   M = sum_k S_k/(S_k + Se) Re F_k F_k^*,
+    #   S_k = S f^p |H_k + A|^2 + R f^q,
+    #   M = sum_k S_k/(S_k + Se) Re F_k F_k^*,  d = sum_k F_k^* F_k,
     # and the squares of the priors; phi is the eigenvector of lambda_max. Its slopes are those with
     # phi held, since it is least with respect to phi
     if len(lines.frequency) < FEWEST:

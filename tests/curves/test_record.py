@@ -354,7 +354,7 @@ def test_density_is_that_of_scipy():
 
 def test_segments_that_do_not_fit_are_named():
     for given in (0.1, 100.0):
-        with pytest.raises(rd.SceneError, match="segment must last from 0.25 s, 16 samples, to"):
+        with pytest.raises(rd.SceneError, match=r"segment must last from 0\.25 s, 16 samples, to"):
             record().spectrum(given)
 
 
