@@ -11,6 +11,7 @@ from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
+from .tension import TENSION
 
 COMMANDS = (
     MODES,
@@ -19,6 +20,7 @@ COMMANDS = (
     ACCURACY,
     EFFECTS,
     IDENTIFY,
+    TENSION,
     TRANSIENT,
     FLOQUET,
     STABILITY,
@@ -32,12 +34,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
     try:
         options = _parser().parse_args(arguments)
-        options.run(options)
+        return options.run(options) or SOLVED
     except SolveError as error:
         return _complain(error, REFUSED)
     except (RopedynError, TypeError, OSError, ImportError) as error:
         return _complain(error, BAD_INPUT)
-    return SOLVED
 
 
 def _complain(error: Exception, status: int) -> int:
@@ -49,7 +50,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ropedyn",
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
-        epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad.",
+        epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad, 3 where "
+        "what was measured leaves several answers.",
     )
     parser.set_defaults(run=_study, folder=FOLDER)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")

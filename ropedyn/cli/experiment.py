@@ -12,12 +12,13 @@ from ..base.unit import QUANTITIES
 from ..curves.measured import Measured
 from ..curves.peaks import Peaks
 from ..experiment.compare.compare import compare
-from ..experiment.identify.identify import identify
+from ..experiment.identify.identify import ENDS, identify
 from ..scene.scene import Scene
 from . import text
 from .options import (
     DRIVE,
     RESPONSE,
+    STATUS,
     Command,
     OptionGroup,
     compiled,
@@ -70,7 +71,6 @@ FILE_TITLE = "of a FILE, where it does not say so itself"
 STD = "of the peaks, one number or a comma list [Hz]"
 
 ONLY_PEAKS = switch("--only-peaks", "of the FILE, not all of it", default=None)
-SCALE = switch("--scale", "seek the calibration of the FILE too", default=None)
 STD_OF_COMPARED = option("--std", STD, text.numbers)
 STD_OF_FITTED = option("--std", f"{STD}; estimated without it", text.numbers)
 ORDER = option(
@@ -133,23 +133,23 @@ COMPARE = Command(
 )
 
 
-def _identify(options: argparse.Namespace) -> None:
+def _identify(options: argparse.Namespace) -> int:
     measured: Any
+    whole = options.peaks is None and options.only_peaks is None
     if options.peaks is not None:
-        refuse(options, (*OF_FILE, ONLY_PEAKS, SCALE), "--measured")
+        refuse(options, (*OF_FILE, ONLY_PEAKS), "--measured")
         measured = Peaks(options.peaks, std=options.std)
     else:
         refuse(options, (STD_OF_FITTED,), "--peaks")
         measured = _read(options)
         measured = measured if options.only_peaks is None else Peaks.of(measured)
-    given: dict[str, Any] = {} if options.scale is None else {"scale": True}
+    given = {"ends": options.ends, "orders": options.orders}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", IdentifyWarning)
         found: Any = identify(
             Scene.load(options.scene),
             measured,
             options.unknown,
-            orders=options.orders,
             prior=dict(options.prior) or None,
             elements=options.elements,
             element=options.element,
@@ -160,6 +160,7 @@ def _identify(options: argparse.Namespace) -> None:
         for note in found.notes:
             print(f"ropedyn: {note}", file=sys.stderr)
     show(options, found, found.report())
+    return 0 if whole else STATUS[found.status]
 
 
 IDENTIFY = Command(
@@ -169,7 +170,6 @@ IDENTIFY = Command(
     (
         MEASURED,
         ONLY_PEAKS,
-        SCALE,
         STD_OF_FITTED,
         option(
             "--orders",
@@ -177,6 +177,7 @@ IDENTIFY = Command(
             text.orders,
             default="auto",
         ),
+        option("--ends", "whether they are known (unknown if the rope bends)", choices=ENDS),
         option(
             "--unknown",
             "comma list, such as tension,bending_stiffness,ends[0].spring.beta (%(default)s)",

@@ -13,6 +13,8 @@ from ..base.answer import Answer
 from ..base.atomic import replacing
 from ..base.errors import RopedynError, SceneError
 from ..chain.chain import KINDS
+from ..curves.peaks import Peaks
+from ..experiment.identify.fit import Fit
 from ..model import Model
 from ..scene.scene import Scene
 from .text import drive, point
@@ -53,7 +55,7 @@ class Command(NamedTuple):
     """
 
     name: str
-    run: Callable[[argparse.Namespace], None]
+    run: Callable[[argparse.Namespace], int | None]  # the exit status, None for 0
     text: str
     own: tuple[Option | OptionGroup, ...]
     description: str = ""
@@ -63,7 +65,8 @@ class Command(NamedTuple):
         """Add it to the commands of a parser."""
         about = self.description or f"{self.text[0].upper()}{self.text[1:]}."
         parser = commands.add_parser(self.name, help=self.text, description=about)
-        for one in (SCENE, *(self.elements or ELEMENTS), *self.own, *OUTPUT):
+        elements = ELEMENTS if self.elements is None else self.elements
+        for one in (SCENE, *elements, *self.own, *OUTPUT):
             one.add(parser)
         parser.set_defaults(run=self.run)
 
@@ -95,6 +98,9 @@ def _meant(parse: Callable[[str, str], Any], name: str, text: str) -> Any:
         raise RopedynError(str(error)) from None
 
 
+STATUS = {"trusted": 0, "refused": 1, "ambiguous": 3}
+"""Exit statuses of what was identified."""
+
 SCENE = option("scene", "the scene", metavar="SCENE.toml")
 ELEMENTS = (
     option("--elements", "over the rope; without it spans are continuous", type=int),
@@ -118,6 +124,17 @@ def compiled(options: argparse.Namespace) -> Model:
     return Scene.load(options.scene).compile(elements=options.elements, element=options.element)
 
 
+def shown_fit(options: argparse.Namespace, fit: Fit, peaks: Peaks | None = None) -> int:
+    """Print what was identified, as the JSON of its schema where that is asked."""
+    if options.json:
+        print(fit.to_json())
+        draw(options, fit)
+    else:
+        report = fit.report() if peaks is None else f"{peaks.table()}\n\n{fit.report()}"
+        show(options, fit, report)
+    return STATUS[fit.status]
+
+
 def show(options: argparse.Namespace, answer: Answer, report: str | None = None) -> None:
     """Print an answer, as its report or its table, and draw it where that is asked."""
     table = answer.table()
@@ -127,6 +144,11 @@ def show(options: argparse.Namespace, answer: Answer, report: str | None = None)
         print(table.to_csv(), end="")
     else:
         print(table if report is None else report)
+    draw(options, answer)
+
+
+def draw(options: argparse.Namespace, answer: Answer) -> None:
+    """Draw an answer where that is asked."""
     if options.plot is not None:
         figure = answer.plot().get_figure(root=True)
         assert figure is not None

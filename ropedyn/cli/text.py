@@ -146,10 +146,21 @@ def _of_node(text: str, kind: Callable[[str], _Number], option: str) -> _Number:
         raise SceneError(f"{option} must be NODE=X, such as 1=0.5, got {shown(text)}") from None
 
 
+def name_or_number(text: str, option: str) -> str | int:
+    """Return the name of a column, whole numbers as such."""
+    return int(text) if text.isdecimal() else text
+
+
+def channel(text: str, option: str) -> tuple[str | int, Point]:
+    """Return which channel it is and where, from ``name=coordinate@position``."""
+    name, where = pair(text, option)
+    return name_or_number(name, option), point(where, option)
+
+
 def column(text: str, option: str) -> tuple[str, str | int]:
     """Return a kind of column and which one it is: whole numbers are numbers."""
     kind, name = pair(text, option)
-    return kind, int(name) if name.isdecimal() else name
+    return kind, name_or_number(name, option)
 
 
 def force_words(kind: str) -> str:

@@ -77,6 +77,18 @@ def read(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
     return _universal(file, said, layout) if universal else _text(file, said, layout)
 
 
+def _in_order(file: Path, said: Said, channels: Sequence[Any], there: str) -> Said:
+    """Return the same with a list of points as those of all channels that are nothing else."""
+    if not isinstance(said.response, (list, tuple)):
+        return said
+    if len(said.response) != len(channels):
+        raise SceneError(
+            f"response must have a point for each of {len(channels)} channels of {str(file)!r} "
+            f"that are neither time nor force ({there}), got {len(said.response)}"
+        )
+    return said._replace(response=dict(zip(channels, said.response)))
+
+
 def _chosen(file: Path, said: Said, taken: Any, there: str) -> dict[str, Any]:
     """Return the motions and the force that the user names, in SI."""
     such = '{"a1": ("z", 3.5)}'
@@ -165,6 +177,9 @@ def _text(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
             "Hz, got None"
         )
     time = None if said.time is None else taken(said.time, "time").value
+    keys = [*([] if said.time is None else [said.time]), *(said.force or ())]
+    others = {_column(file, sheet, key, "time or force") for key in keys}
+    said = _in_order(file, said, [i for i in range(width) if i not in others], there)
     found = _chosen(file, said, taken, there)
     return Motion(time=time, rate=said.rate, missing=said.missing, **found)
 
@@ -285,6 +300,8 @@ def _foreign(file: Path, found: Sequence[uff.Record], said: Said) -> Motion:
 
     if said.time is not None:
         raise SceneError(f"time is for text in columns, got {said.time!r} for {str(file)!r}")
+    motions = [k for k, name in names.items() if not {k, name} & set(said.force or ())]
+    said = _in_order(file, said, motions, there)
     chosen = _chosen(file, said, taken, there)
     time = _times(file, used)
     return Motion(time=time, rate=said.rate, missing=said.missing, **chosen)

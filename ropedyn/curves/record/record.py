@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Any, Self
 
@@ -145,7 +145,7 @@ class Record(Answer):
         *,
         time: str | int | None = None,
         rate: float | None = None,
-        response: Mapping[str | int, Point] | None = None,
+        response: Mapping[str | int, Point] | Sequence[Point] | None = None,
         quantity: str | None = None,
         force: Mapping[str | int, Point] | None = None,
         unit: str | Mapping[str | int, str] | None = None,
@@ -168,10 +168,11 @@ class Record(Answer):
             Of text: name or number, from 0, of the column of times [s].
         rate : float, optional
             Samples a second [Hz]; of text in place of `time`.
-        response : dict
-            Which channel is where: ``{"a1": ("z", 3.5)}``. Channels are names or numbers of
-            columns, or first lines or numbers of datasets, both from 0; a dataset in the direction
-            -Z is turned round.
+        response : dict or list of points
+            Where all channels are, in their order, that are neither time nor force; or which
+            channel is where: ``{"a1": ("z", 3.5)}``. Channels are names or numbers of columns, or
+            first lines or numbers of datasets, both from 0; a dataset in the direction -Z is turned
+            round.
         quantity : {"acceleration", "velocity", "displacement"}, optional
             The unit, or the type of the ordinate of a universal file, says it too; acceleration
             where nothing does.

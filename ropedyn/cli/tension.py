@@ -1,0 +1,135 @@
+"""The command that goes from a record, or peaks, to a tension."""
+
+from __future__ import annotations
+
+import argparse
+import warnings
+from typing import Any
+
+from ..base.errors import IdentifyWarning, SceneError
+from ..base.unit import MOTIONS
+from ..curves.peaks import Peaks
+from ..curves.record.record import Record
+from ..experiment.identify.identify import ENDS, identify
+from ..scene.scene import Scene
+from . import text
+from .experiment import STD_OF_FITTED
+from .options import Command, Option, OptionGroup, option, refuse, repeated, shown_fit
+
+COORDINATE = "z"
+"""What sensors measure where only their positions are said."""
+
+OF_RECORD = (
+    option("--sensors", "positions of all channels in their order, comma list [m]", text.numbers),
+    repeated(
+        "--channel",
+        "which channel is where, in place of --sensors, such as a1=z@3.5",
+        text.channel,
+        metavar="NAME=COORDINATE@POSITION",
+    ),
+    option("--time", "column of the times of a CSV file, by name or number", text.name_or_number),
+    option("--rate", "samples a second, in place of --time [Hz]", type=float),
+    option("--quantity", "that was recorded (acceleration)", choices=tuple(MOTIONS)),
+    option("--unit", 'of the record, such as "g" or "mm/s" (SI)'),
+    option(
+        "--force",
+        "channel of the force and where it acts, such as hammer=z@9.0 or 0=z@9.0",
+        text.channel,
+        metavar="NAME=COORDINATE@POSITION",
+    ),
+    option("--below", "peaks below this frequency alone [Hz]", type=float),
+    option("--decimal", "of a CSV file", choices=(".", ",")),
+)
+"""What only a record takes."""
+
+RECORD = Option("record", {"help": "CSV or universal file", "nargs": "?", "metavar": "RECORD"})
+PEAKS = option("--peaks", "peaks in place of a record, comma list [Hz]", text.numbers)
+WIDE = ("tension", "bending_stiffness")
+"""What is sought of a rope that bends."""
+
+
+def _tension(options: argparse.Namespace) -> int:
+    scene = Scene.load(options.scene)
+    peaks = _peaks(options)
+    bends = "beta" in scene.coordinates
+    unknown = options.unknown or list(WIDE[: 1 + bends])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", IdentifyWarning)
+        fit = identify(
+            scene,
+            peaks,
+            unknown,
+            orders=options.orders,
+            ends=options.ends,
+            prior=dict(options.prior) or None,
+            model_std=options.model_std,
+            seed=options.seed,
+        )
+    return shown_fit(options, fit, None if options.peaks is not None else peaks)
+
+
+def _peaks(options: argparse.Namespace) -> Any:
+    """Return what was measured: peaks, or a record of which they are."""
+    if (options.record is None) == (options.peaks is None):
+        raise SceneError("either RECORD or --peaks must be given, got both or none")
+    if options.peaks is not None:
+        refuse(options, OF_RECORD, "RECORD")
+        return Peaks(options.peaks, std=options.std)
+    refuse(options, (STD_OF_FITTED,), "--peaks")
+    record = _record(options)
+    if record.force is not None:
+        return Peaks.of(record.frf())
+    return record.peaks(options.below)
+
+
+def _record(options: argparse.Namespace) -> Record:
+    """Read the record; a file that was written here says everything itself."""
+    if options.sensors is not None and options.channel is not None:
+        raise SceneError("--sensors must be left out with --channel, got both")
+    response: Any = dict(options.channel) if options.channel is not None else None
+    if options.sensors is not None:
+        response = [(COORDINATE, x) for x in options.sensors]
+    given = {
+        "time": options.time,
+        "rate": options.rate,
+        "response": response,
+        "quantity": options.quantity,
+        "unit": options.unit,
+        "force": None if options.force is None else dict([options.force]),
+        "decimal": options.decimal,
+    }
+    return Record.read(options.record, **{k: v for k, v in given.items() if v is not None})
+
+
+TENSION = Command(
+    "tension",
+    _tension,
+    "the tension of a rope from a recorded time series or its peaks",
+    (
+        RECORD,
+        PEAKS,
+        STD_OF_FITTED,
+        option("--unknown", "comma list (tension, and bending_stiffness if it bends)", text.words),
+        option(
+            "--orders",
+            'which mode each peak is, comma list, 0 for none, "auto" or "search" (%(default)s)',
+            text.orders,
+            default="auto",
+        ),
+        option("--ends", "whether they are known (unknown if the rope bends)", choices=ENDS),
+        repeated(
+            "--prior",
+            "what is known of a number beforehand",
+            text.known,
+            default=[],
+            metavar="PATH=VALUE:STD",
+        ),
+        option("--model-std", "what the model is off, relative", type=float, default=0.0),
+        option("--seed", "of the random numbers (%(default)s)", type=int, default=0),
+        OptionGroup(OF_RECORD, "of a RECORD that does not say so itself"),
+    ),
+    "The tension of a rope from a recorded time series, or from its peaks: which modes they are "
+    "and how the ends are held is found with it. Exit status 0 where the answer can be trusted, 3 "
+    "where the peaks leave several, 1 where there is none, 2 where the input was bad.",
+    elements=(),
+)
