@@ -15,6 +15,7 @@ from ..experiment.identify.fits import Fits
 from ..experiment.identify.response_fit import ResponseFit
 from ..experiment.track.track import Track
 from ..scene.bench.static_test import StaticTest
+from ..scene.path import unit_of
 from .figure import light_grid, plots
 
 if TYPE_CHECKING:
@@ -147,7 +148,12 @@ KINDS = {
 
 
 @plots(Fit)
-def plot_fit(fit: Fit, ax: Axes) -> None:
+def plot_fit(fit: Fit, ax: Axes, of: str) -> None:
+    """Plot what a fit says."""
+    OF_FIT[check.one_of(of, "of", OF_FIT)](fit, ax)
+
+
+def _residuals(fit: Fit, ax: Axes) -> None:
     """Plot residuals over orders, in per cent of the measured frequency."""
     used = fit.orders > 0
     per_cent = 100 / fit.measured[used]
@@ -164,6 +170,44 @@ def plot_fit(fit: Fit, ax: Axes) -> None:
     ax.set_xticks(np.unique(fit.orders[used]))
     ax.set_title(_found(fit))
     light_grid(ax)
+
+
+def _budget(fit: Fit, ax: Axes) -> None:
+    """Plot intervals of the first number of a few levels, and below them what makes them."""
+    path, levels = fit.unknown[0], (0.5, 0.8, 0.95, 0.99)
+    for level in levels:
+        low, high = fit.interval(level)[path]
+        if np.isfinite([low, high]).all():
+            ax.barh(0, high - low, left=low, height=0.8, color="C0", alpha=0.25)
+    value = float(fit.value[path])
+    ax.plot([value, value], [-0.4, 0.4], color="C0")
+    parts = sorted(fit.budget.items(), key=lambda part: -part[1])
+    parts = [(cause, half) for cause, half in parts if 0 < half < np.inf]
+    for k, (_, half) in enumerate(parts, 1):
+        ax.barh(k, 2 * half * value, left=value * (1 - half), height=0.5, color="0.6")
+    words = f"{path}, 50, 80, 95, 99 %"
+    ax.set_yticks(range(len(parts) + 1), [words, *(f"95 % by {cause}" for cause, _ in parts)])
+    ax.invert_yaxis()
+    ax.set(xlabel=f"{path} [{unit_of(path) or '1'}]", title=_found(fit))
+    light_grid(ax)
+
+
+def _ends(fit: Fit, ax: Axes) -> None:
+    """Plot how likely each fixity of the ends is."""
+    fixity, likelihood = fit.remarks.fixity, fit.remarks.likelihood_of_fixity
+    if fixity is None or likelihood is None or not len(fixity):
+        raise SceneError('of must be "residuals" or "budget" where ends are given, got "ends"')
+    for i, each in enumerate(likelihood):
+        ax.step(fixity, np.exp(each), where="mid", label=f"end {i}")
+    ax.set(xlabel="fixity: 0 pinned, 1 clamped", ylabel="likelihood", xlim=(0.0, 1.0))
+    ax.set_ylim(bottom=0.0)
+    ax.set_title("what the peaks say of the ends")
+    ax.legend(fontsize="small")
+    light_grid(ax)
+
+
+OF_FIT = {"residuals": _residuals, "budget": _budget, "ends": _ends}
+"""What draws each part of a fit."""
 
 
 @plots(Fits)

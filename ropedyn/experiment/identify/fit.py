@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...base.answer import TRANSIENT, Cost, axes
 from ...base.array import Integer, Real
 from ...base.computed import Lazy, Read, lazy
+from ...base.drawing import draw
 from ...base.named import Named
 from ...base.table import Table, numbers
 from .candidates import Candidates
@@ -17,7 +18,8 @@ from .known import Identified, Known
 from .other_ends import Remarks
 from .report import report_of, sheet_of
 
-STATUSES = ("trusted", "ambiguous", "refused")
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +140,10 @@ class Fit(Identified):
     def left_out(self) -> tuple[str, ...]:
         """The peaks that are taken for no mode, in words."""
         frequency, details = self.measured, self.details or ({},) * len(self.orders)
+        kinds = [one.get("kind", "mode") for one in details]
         return tuple(
-            f"peak {i} at {frequency[i]:.6g} Hz is no mode ({details[i].get('kind', 'stray')})"
+            f"peak {i + 1} at {frequency[i]:.6g} Hz is taken for no mode of the rope "
+            f"({'stray' if kinds[i] == 'mode' else kinds[i]})"
             for i in np.flatnonzero(self.orders == 0).tolist()
         )
 
@@ -154,6 +158,36 @@ class Fit(Identified):
         columns = {name: table.column(name) for name in table.columns}
         status = (self.status,) * len(self.unknown)
         return Table.of("identified", {**columns, "status": status})
+
+    def plot(self, ax: Axes | None = None, *, of: str = "residuals") -> Axes:
+        """Plot the fit.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's where left out.
+        of : {"residuals", "budget", "ends"}
+            Residuals by order; the intervals of the first number with what makes them; or how
+            likely each stiffness of the ends is.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        SceneError
+            If there is nothing of that, as of ends that were given.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
+        >>> fit.plot(of="budget").get_xlabel()
+        'tension [N]'
+        """
+        return draw(self, "plot", ax, of=of)
 
     @property
     def peaks(self) -> Table:

@@ -28,6 +28,7 @@ from .fit_peaks import Options
 from .known import LEVELS, Known, kept_bounds
 from .other_ends import Remarks, other_ends
 from .peak_damping import PeakDamping, beside, damping_of_peaks
+from .report import shown
 from .told import Told
 
 MOST = 6
@@ -233,7 +234,7 @@ class RopeTask:
         ends = told.ends
         if self.how.ends == "given":
             ends = tuple(other_ends(self.scene, self.how.paths, partial(self.tell, orders)))
-        return Remarks(ends, self._cross_checks(orders))
+        return Remarks(ends, self._cross_checks(orders), *told.fixity)
 
     def _cross_checks(self, orders: Integer) -> tuple[str, ...]:
         """Say what closed formulas give, of one rope alone."""
@@ -242,7 +243,7 @@ class RopeTask:
             return ()
         found = cross_checks(scene.rope, np.asarray(self.peaks.frequency), orders)
         return tuple(
-            f"{one.name} {one.tension:.4g} N" + ("" if one.applies else " (out of its range)")
+            f"{one.name} {shown(one.tension, 'N')}" + ("" if one.applies else " (out of its range)")
             for one in found
             if one.tension is not None
         )

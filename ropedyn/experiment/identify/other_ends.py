@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...base.answer import Frozen
+from ...base.answer import Frozen, axes
 from ...base.array import Real
 from ...base.errors import RopedynError
 from ...scene.scene import Scene
@@ -26,6 +26,8 @@ class Remarks(Frozen):
 
     said_of_ends: tuple[str, ...] = ()
     cross_checks: tuple[str, ...] = ()
+    fixity: Real | None = field(default=None, metadata=axes("fixity"))
+    likelihood_of_fixity: Real | None = field(default=None, metadata=axes("end", "fixity"))
 
 
 def other_ends(scene: Scene, unknown: tuple[str, ...], tell: Callable[[Scene], Told]) -> list[str]:

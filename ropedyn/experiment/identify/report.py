@@ -64,6 +64,12 @@ def _number(path: str, value: float, low: float, high: float) -> str:
     return f"{path}  {shown[0]} {unit}   95 %: {shown[1]} to {shown[2]} {unit}"
 
 
+def shown(value: float, unit: str) -> str:
+    """Return a number in few digits with its unit."""
+    scale, scaled = _scaled(abs(value), unit)
+    return f"{value / scale:.4g} {scaled}"
+
+
 def _scaled(size: float, unit: str) -> tuple[float, str]:
     """Return a factor of thousands and its unit, of forces and what is made of them."""
     if not unit.startswith("N") or not 0 < size < math.inf:

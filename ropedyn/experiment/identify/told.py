@@ -40,6 +40,7 @@ class Told:
     probability: float  # of chance alone to be off by as much; NaN where the noise was estimated
     budget: dict[str, float]  # relative half-widths of 95 % by cause
     ends: tuple[str, ...]  # what the peaks say of the ends
+    fixity: tuple[Real, ...]  # of the ends, with the likelihood of each; nothing of given ones
     assumed: tuple[str, ...]
     notes: tuple[str, ...]
     method: str
@@ -67,6 +68,7 @@ def by_least_squares(
         probability=_probability(solution, square, int((orders > 0).sum())),
         budget=_budget(solution),
         ends=(),
+        fixity=(),
         assumed=assumed_of(how),
         notes=(*notes_of(solution), *_outliers(solution, measured)),
         method="least squares",
@@ -164,6 +166,7 @@ def by_posterior(peaks: Peaks, how: Options, orders: Integer, scene: Scene) -> T
         probability=found.probability,
         budget=dict(found.budget),
         ends=(found.ends.words(unit_of(how.paths[0])),),
+        fixity=(found.ends.fixity, found.ends.likelihood),
         assumed=found.assumed,
         notes=found.notes,
         method="posterior",
