@@ -215,7 +215,7 @@ def peaks_of_rope(seed):
 
 def sample_of_peaks(seeds):
     """Return the share of peaks without a mode, and of intervals that hold theirs, in noise."""
-    found = np.abs(np.concatenate([peaks_of_rope(seed) for seed in seeds]))
+    found = np.abs([one for seed in seeds for one in peaks_of_rope(seed)])
     none = (found[:, 2] > 1) & (found[:, 3] > 0.5)
     noisy = ~none & (found[:, 0] > 0)
     clean = ~none & (found[:, 0] == 0)

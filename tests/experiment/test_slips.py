@@ -19,9 +19,9 @@ def case(seed, *, driven=True):
     model = scene.compile()
     top = 1.05 * model.modes(int(random.integers(5, 10))).frequency[-1]
     lines = np.linspace(0.0, top, int(random.integers(800, 3000)))[1:]
-    drive, other = (("z", scene.rope.length * x) for x in random.uniform(0.05, 0.95, 2))
+    drive, *others = (("z", scene.rope.length * x) for x in random.uniform(0.05, 0.95, 3))
     quantity = QUANTITIES[random.integers(3)]
-    response = [drive, other] if driven else [other]
+    response = [drive, others[0]] if driven else others
     value = model.frf(lines, drive=drive, response=response, quantity=quantity).value
     noise = random.normal(size=(2, *value.shape)) * 10 ** random.uniform(-5, -2)
     value = value + (noise[0] + 1j * noise[1]) * np.abs(value).max(axis=1, keepdims=True)

@@ -11,19 +11,16 @@ from ...base import check
 from ...base.array import Complex, Flags, Index, Real
 from ...base.check import COORDINATES, NEAR
 from ...base.errors import SceneError, SolveError
-from ...base.unit import FAMILY
 from ...chain.port import Point
-from ...eigen.damped.damped import solve_damped
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
 from ...eigen.vectors import shapes_at
 from ...model import Model
 from ...response.frf import FRF
 from ...signal.likeness import residues
+from ..fitting.natural import natural_of
 from .measured import peaks_in
 
-ROUNDING = 1e-9  # Rates whose imaginary part is a smaller share do not oscillate.
-CHANGED = ("frequency", "damping_ratio", "error")  # What damping changes.
 UNSEEN = 1e-9  # Smaller products of a shape at drive and response are rounding at a node.
 
 
@@ -139,34 +136,23 @@ def _of_modes(modes: Modes) -> CalculatedPeaks:
 
 def _with_damping(model: Model, found: CalculatedPeaks) -> CalculatedPeaks:
     """Return natural frequencies and damping ratios of the damped modes, in their order."""
-    # of each component the k-th that oscillates is the k-th undamped one
     modes = found.modes
     if modes is None or not modes.damping_ratio.any():
         return found
     try:
-        damped = solve_damped(model, len(modes.frequency), below=None, solver="sweep", points=None)
+        natural = natural_of(model, modes)
     except SolveError as refusal:
         return replace(found, notes=(f"undamped frequencies are compared: {refusal}",))
-    oscillates = np.flatnonzero(damped.eigenvalue.imag > ROUNDING * np.abs(damped.eigenvalue))
-    own = _components(model, modes.family[found.number])
-    theirs = _components(model, damped.family[oscillates])
-    new = replace(found, **{name: getattr(found, name).copy() for name in CHANGED})
-    for one in range(len(model.components)):
-        of = oscillates[theirs == one]
-        mine = np.flatnonzero(own == one)[: len(of)]
-        of = of[: len(mine)]
-        new.frequency[mine] = damped.natural_frequency[of]
-        new.damping_ratio[mine] = damped.damping_ratio[of]
-        new.error[mine] += damped.rounding_error[of]
-    rising = np.argsort(new.frequency, kind="stable")
-    return replace(new, **{name: getattr(new, name)[rising] for name in (*CHANGED, "number")})
-
-
-def _components(model: Model, family: Any) -> Index:
-    """Return which component modes of these families move."""
-    coordinate = {name: c for c, name in FAMILY.items()}
-    number = {c: k for k, component in enumerate(model.components) for c in component}
-    return np.array([number[coordinate[name]] for name in family.tolist()], dtype=np.intp)
+    frequency = natural.frequency[found.number]
+    rising = np.argsort(frequency, kind="stable")
+    number = found.number[rising]
+    return replace(
+        found,
+        frequency=frequency[rising],
+        error=(modes.mesh_error + natural.rounding_error)[number],
+        damping_ratio=natural.damping_ratio[number],
+        number=number,
+    )
 
 
 def _of_frf(frf: FRF, drive: int) -> CalculatedPeaks:

@@ -70,7 +70,7 @@ class Comparison(Answer):
         Why, in words.
     factor : float
         Common factor of measured over calculated frequencies that the pairs were found with, the
-        median of all; NaN without pairs.
+        median of all; 1 without pairs.
     hint : str
         What the differences show of their cause, where pairs are trusted and prove it: numbers of
         the scene of which one alone explains them, rotational springs at the ends, and whether
@@ -116,7 +116,7 @@ class Comparison(Answer):
     visible: Flags = field(metadata=axes("calculated"))
     status: str = "trusted"
     reason: str = ""
-    factor: float = math.nan
+    factor: float = 1.0
     hint: str = ""
     notes: tuple[str, ...] = ()
     response: tuple[str, ...] = ()
@@ -330,7 +330,7 @@ def compare(
         visible=visible,
         status=status,
         reason=reason,
-        factor=math.exp(numbering.shift) if order.any() else math.nan,
+        factor=math.exp(numbering.shift),
         hint=hint,
         notes=(*_alike(found, numbering, peaks, hint), *slipped, *found.notes, *peaks.left_out),
         mac=_mac(found, peaks, shapes, points, drive),

@@ -26,6 +26,7 @@ LIKE = math.radians(25)  # Phases of residues are those of a quantity to so much
 AGREE = 0.9  # And agree so well: the length of the mean of unit vectors.
 LEAST = 4  # Of fewer residues no trend is said.
 TREND = 0.35  # Amplitudes grow by a whole power of frequency to so much.
+NODE = 0.3  # Residues of less than this share of the largest say less.
 PROVED = 0.2  # Standard error of that power at most.
 ALMOST = 0.9  # Of all peaks so many pair.
 BELOW = 0.4  # Of the first mode, less than this no peak pairs.
@@ -165,22 +166,21 @@ def _residues(measured: Measured, k: int, found: Resonances) -> Residues:
 
 def _power(measured: Measured, seen: Residues, k: int, model: Model) -> int | None:
     """Return the power of omega by which residues exceed those of a model; None: not told."""
-    from scipy.stats import linregress
-
     points = (measured.drive[0], measured.response[k])
     if len(seen.frequency) < LEAST or not all(map(is_motion, points)):
         return None
     found = undamped_peaks(model, float(seen.frequency.max()), len(seen.frequency))
     order = numbered(seen.frequency, found.frequency, np.full(len(seen.frequency), np.nan))[0].order
-    size = _sizes(found, found.checked(points, "measured.response"))[order[order > 0] - 1]
-    alive = size > 0
-    log = np.log(np.abs(seen.size[order > 0][alive]) / size[alive])
-    if len(log) < LEAST:
+    at = order > 0
+    size = _sizes(found, found.checked(points, "measured.response"))[order[at] - 1]
+    if at.sum() < LEAST or not (size > 0).all():
         return None
-    line = linregress(np.log(seen.frequency[order > 0][alive]), log)
-    power = round(line.slope)
-    told = abs(line.slope - power) < TREND and line.stderr < PROVED
-    return power if told else None
+    # near a node a model that is a little off is off by much
+    weight = size / (size + NODE * size.max())
+    log = np.log(np.abs(seen.size[at]) / size)
+    (slope, _), square = np.polyfit(np.log(seen.frequency[at]), log, 1, w=weight, cov=True)
+    power = round(slope)
+    return power if abs(slope - power) < TREND and square[0, 0] < PROVED**2 else None
 
 
 def _sizes(found: CalculatedPeaks, points: Sequence[Point]) -> Real:
