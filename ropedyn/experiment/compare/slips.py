@@ -23,7 +23,7 @@ from .numbering import numbered
 CLEAR = 6.0  # A damping ratio is proved by so many standard uncertainties.
 FEWEST = 3  # Of fewer peaks nothing is said of all of them.
 LIKE = math.radians(25)  # Phases of residues are those of a quantity to so much.
-AGREE = 0.9  # And agree so well: the length of the mean of unit vectors.
+AGREE = 0.75  # So many of them agree.
 LEAST = 4  # Of fewer residues no trend is said.
 TREND = 0.35  # Amplitudes grow by a whole power of frequency to so much.
 NODE = 0.3  # Residues of less than this share of the largest say less.
@@ -122,9 +122,11 @@ def _by_phase(measured: Measured, at: int, found: Resonances, model: Model | Non
     seen = _residues(measured, at, found)
     if len(seen.frequency) < FEWEST:
         return []
-    mean = complex(np.mean(seen.size / np.abs(seen.size)))
-    turns = round(math.degrees(math.atan2(mean.imag, mean.real)) / 90)
-    if turns == 0 or abs(mean) < AGREE or abs(np.angle(mean / 1j**turns)) > LIKE:
+    # a mode that has a node nearby may turn otherwise
+    turns = round(float(np.median(np.degrees(np.angle(seen.size)) % 360)) / 90)
+    turns = (turns + 1) % 4 - 1
+    away = np.abs(np.angle(seen.size / 1j**turns))
+    if turns == 0 or np.mean(away < LIKE) < AGREE:
         return []
     if abs(turns) == 1:
         other = _other(measured, turns)
