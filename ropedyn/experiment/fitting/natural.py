@@ -13,6 +13,7 @@ from ...chain.compiled import Compiled
 from ...eigen.damped.damped import solve_damped
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
+from ...scene.damping import ModalDamping
 from ...scene.scene import Scene
 
 ROUNDING = 1e-9  # Rates whose imaginary part is a smaller share do not oscillate.
@@ -44,6 +45,13 @@ def natural_of(model: Compiled, modes: Modes) -> Natural:
         found.damping_ratio[mine] = damped.damping_ratio[of]
         found.rounding_error[mine] += damped.rounding_error[of]
     return found
+
+
+def is_moved(scene: Scene) -> bool:
+    """Whether damping may move natural frequencies: what is said of modes does not."""
+    ends = any(not isinstance(end, str) and end.dashpot for end in scene.ends)
+    parts = any(getattr(part, "damping", None) for part in scene.parts)
+    return ends or parts or any(not isinstance(one, ModalDamping) for one in scene.dampings)
 
 
 def shift_by_damping(scene: Scene, number: int) -> Real:

@@ -62,10 +62,10 @@ class SideBySide:
         how = identification.how._replace(orders=self.found.ropes["orders"][i, :k])
         return RopeTask(identification.scene, how, peaks, partial(self._tell, i)).fit()
 
-    def _tell(self, i: int, orders: Any, scene: Any) -> Told:
+    def _tell(self, i: int, peaks: Peaks, orders: Any, scene: Any) -> Told:
         if scene is self.found.identification.scene:
             return self.found.told(i)
-        return teller(self.measured[i], self.found.identification.how)(orders, scene)
+        return teller(self.found.identification.how)(peaks, orders, scene)
 
     def errors(self) -> Mapping[int, RopedynError]:
         """Return why ropes have none, by their number."""

@@ -91,12 +91,12 @@ def find(
     )
 
 
-def teller(peaks: Peaks, how: Options) -> Callable[[Integer, Scene], Told]:
-    """Return what tells the numbers of one rope by orders and a scene."""
-    return partial(_least_squares if how.ends == "given" else by_posterior, peaks, how)
+def teller(how: Options) -> Callable[[Peaks, Integer, Scene], Told]:
+    """Return what tells the numbers of one rope by its peaks, their orders and a scene."""
+    return partial(_least_squares if how.ends == "given" else by_posterior, how)
 
 
-def _least_squares(peaks: Peaks, how: Options, orders: Integer, scene: Scene) -> Told:
+def _least_squares(how: Options, peaks: Peaks, orders: Integer, scene: Scene) -> Told:
     """Return what least squares tell of one rope."""
     found = find(scene, how, [peaks], [orders], {})
     if found.reasons:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.array import Integer, Real
+from ...base.computed import changed
 from ...base.errors import IdentifyWarning, SceneError
 from ...base.progress import Progress
 from ...curves.measured import Measured, above_zero
@@ -22,7 +23,9 @@ from ...curves.resonance import Resonances
 from ...scene.path import with_values
 from ...scene.prior import Prior
 from ...scene.scene import Scene
+from ..compare.slips import slips
 from ..fitting.misfit import PriorMisfit, Response
+from ..fitting.natural import is_moved
 from ..fitting.unknown import CALIBRATION, Unknowns
 from ..orders.orders import given_orders
 from .fit import Fit
@@ -222,9 +225,21 @@ def identify(
         _warn(fits.notes)
         return fits
     _weigh(given)
-    fit = RopeTask(_guessed(scene, how, given), how, given, teller(given, how)).fit()
+    record = _said_of(measured) if isinstance(measured, Record) else None
+    fit = RopeTask(_guessed(scene, how, given), how, given, teller(how), record).fit()
     _warn(fit.notes)
     return fit
+
+
+def _said_of(record: Record) -> dict[str, Any]:
+    """Return what a record says of itself, as JSON knows it."""
+    return {
+        "rate": record.rate,
+        "duration": float(record.time[-1] - record.time[0]),
+        "channels": list(record.labels),
+        "quantity": record.quantity,
+        "notes": list(record.notes),
+    }
 
 
 def _given(measured: Any) -> Peaks | list[Peaks]:
@@ -291,9 +306,10 @@ def _many(
             refused[i] = error
             orders[i] = np.zeros(key[0], dtype=np.int64)
     numbered = [one for one in orders if one is not None]
-    if how.ends == "given" and len(numbered) == len(measured) and not how.damping:
+    alike = how.ends == "given" and not how.damping and not is_moved(scene)
+    if alike and len(numbered) == len(measured):
         return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
-    tasks = [RopeTask(_guessed(scene, how, one), how, one, teller(one, how)) for one in measured]
+    tasks = [RopeTask(_guessed(scene, how, one), how, one, teller(how)) for one in measured]
     return each_alone(tasks, refused, **workers)
 
 
@@ -309,7 +325,8 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
     if scale:
         unknowns = unknowns.with_calibration(1.0)
     response = Response(unknowns, above_zero(measured), how.elements, how.element)
-    return fit_response(response, PriorMisfit.of(unknowns, how.prior))
+    found = fit_response(response, PriorMisfit.of(unknowns, how.prior))
+    return changed(found, notes=(*found.notes, *slips(measured, scene.compile())))
 
 
 def _warn(notes: Sequence[str]) -> None:

@@ -17,6 +17,8 @@ from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
 from ...scene.scene import Scene
+from ..compare.slips import slips_of_peaks
+from ..fitting.natural import is_moved, shift_by_damping
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import TIE, Unknowns
 from ..orders.numbering import Numbering, decided, numberings
@@ -35,6 +37,9 @@ MOST = 6
 """Numberings are named up to so many."""
 NAMEABLE = 1e-6
 """Less likely ones are not named."""
+
+PASSES, SETTLED = 12, 1e-9
+"""Damping and frequencies take turns so often at most, until they move by no more of themselves."""
 
 NO_MODES = (
     "no numbering explains the peaks better than that all are strays, or fewer than two are modes: "
@@ -97,7 +102,8 @@ class RopeTask:
     scene: Scene
     how: Options
     peaks: Peaks
-    tell: Callable[[Integer, Scene], Told]  # what peaks of given orders tell of a scene
+    tell: Callable[[Peaks, Integer, Scene], Told]  # what peaks of given orders tell of a scene
+    record: dict[str, Any] | None = None  # what the peaks are of
 
     def fit(self) -> Fit:
         """Find its orders and its numbers."""
@@ -106,10 +112,31 @@ class RopeTask:
         if status == "refused":
             return self._refused(time.perf_counter() - began)
         orders = np.array(found[0].orders, dtype=np.int64)
-        told = self.tell(orders, self.scene)
+        told = self._told(orders)
+        if given_orders(self.how.orders, self.peaks) is None:
+            slipped = slips_of_peaks(np.asarray(self.peaks.frequency), self.scene.compile())
+            told = replace(told, notes=(*told.notes, *slipped))
         damped = self._damping(told, orders)
         fit = self._fit(told, damped, orders, self._decision(status, found, told, damped))
         return changed(fit, cost=replace(fit.cost, seconds=time.perf_counter() - began))
+
+    def _told(self, orders: Integer) -> Told:
+        """Return what peaks tell whose natural frequencies damping has moved."""
+        told = self.tell(self.peaks, orders, self.scene)
+        if not is_moved(self.scene):
+            return told
+        frequency, used = np.asarray(self.peaks.frequency), orders > 0
+        shift = np.zeros(len(frequency))
+        for _ in range(PASSES):
+            moved = shift_by_damping(told.known.scene, int(orders.max()))
+            before, shift = shift, np.where(used, moved[np.maximum(orders - 1, 0)], 0.0)
+            if np.abs(shift - before).max() < SETTLED:
+                return told
+            undamped = replace(self.peaks, frequency=frequency * np.exp(-shift))
+            told = self.tell(undamped, orders, self.scene)
+        left = float(np.abs(shift - before).max())
+        note = f"frequencies that damping moves did not settle: they still change by {left:.1g}"
+        return replace(told, notes=(*told.notes, note))
 
     def _decision(
         self, status: str, found: Sequence[Numbering], told: Told, damped: PeakDamping | None
@@ -186,7 +213,7 @@ class RopeTask:
         for i, one in enumerate(found):
             orders = np.array(one.orders, dtype=np.int64)
             try:
-                told = self.tell(orders, self.scene) if i else first
+                told = self._told(orders) if i else first
             except RopedynError:
                 continue
             each.append((one.probability, orders, told.value, told.known))
@@ -227,13 +254,16 @@ class RopeTask:
             known=decision.known,
             remarks=partial(self._remarks, told, orders),
             details=details_of(self.peaks),
+            record=self.record,
         )
 
     def _remarks(self, told: Told, orders: Integer) -> Remarks:
         """Return what costs something to say."""
         ends = told.ends
         if self.how.ends == "given":
-            ends = tuple(other_ends(self.scene, self.how.paths, partial(self.tell, orders)))
+            ends = tuple(
+                other_ends(self.scene, self.how.paths, partial(self.tell, self.peaks, orders))
+            )
         return Remarks(ends, self._cross_checks(orders), *told.fixity)
 
     def _cross_checks(self, orders: Integer) -> tuple[str, ...]:
@@ -284,6 +314,7 @@ class RopeTask:
             bounds=np.broadcast_to(blank, (len(LEVELS), p, 2)).copy(),
             remarks=Remarks(),
             details=details_of(self.peaks),
+            record=self.record,
         )
 
 

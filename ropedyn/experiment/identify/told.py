@@ -138,7 +138,7 @@ class Sampled:
         return np.asarray(self.posterior.interval(level))
 
 
-def by_posterior(peaks: Peaks, how: Options, orders: Integer, scene: Scene) -> Told:
+def by_posterior(how: Options, peaks: Peaks, orders: Integer, scene: Scene) -> Told:
     """Return what the posterior of one rope tells, the ends being unknown."""
     measured = np.asarray(peaks.frequency)
     found = posterior(
