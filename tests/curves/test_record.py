@@ -70,6 +70,11 @@ def test_a_quantity_of_pint_comes_in_its_unit():
         ({"response": []}, rd.SceneError, "response must be a point"),
         ({"response": 3.5}, TypeError, "response must be a point"),
         ({"response": [("q", 3.5), ("z", 6.0)]}, rd.SceneError, r"response\[0\]\[0\]"),
+        (
+            {"response": [("z", 3.5), ("z", -6.0)]},
+            rd.SceneError,
+            r"response\[1\]\[1\] .* >= 0 \[m\]",
+        ),
         ({"quantity": "receptance"}, rd.SceneError, "quantity must be one of"),
         ({"missing": "zero"}, rd.SceneError, "missing must be one of"),
         ({"force": motion()[0]}, rd.SceneError, "force and drive must be given together"),

@@ -24,9 +24,7 @@ def points_of(given: Any) -> tuple[Point, ...]:
     if not given:
         raise SceneError(f"response must be {what}, got {given!r}")
     each = [given] if isinstance(given[0], str) else given
-    return tuple(
-        check.point(one, f"response[{k}]", check.COORDINATES, None) for k, one in enumerate(each)
-    )
+    return tuple(_place(one, f"response[{k}]") for k, one in enumerate(each))
 
 
 def drive_of(given: Any, force: Any) -> Point | None:
@@ -34,7 +32,13 @@ def drive_of(given: Any, force: Any) -> Point | None:
     if (given is None) != (force is None):
         alone = "force" if given is None else "drive"
         raise SceneError(f"force and drive must be given together, got {alone} alone")
-    return None if given is None else check.point(given, "drive", check.COORDINATES, None)
+    return None if given is None else _place(given, "drive")
+
+
+def _place(given: Any, name: str) -> Point:
+    """Return a point of a rope whose length is not known."""
+    coordinate, x = check.point(given, name, check.COORDINATES, None)
+    return coordinate, check.number(x, f"{name}[1]", "m", sign="nonnegative")
 
 
 def times_given(given: Any, rate: float | None, count: int) -> Real:
