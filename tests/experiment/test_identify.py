@@ -1,6 +1,7 @@
 """Numbers of a scene from measured peaks, against closed forms and models that are known."""
 
 import dataclasses
+import json
 import pickle
 
 import numpy as np
@@ -217,7 +218,10 @@ def test_interval_of_a_stiffness_that_does_not_show_begins_at_zero():
     # the tension is that of the string
     string = fitted(rd.Scene(rd.Rope(LENGTH, DENSITY), tension=1.0), peaks, "tension")
     assert fit.value["tension"] == pytest.approx(string.value["tension"], rel=1e-6)
-    assert fit.std["tension"] == pytest.approx(string.std["tension"], rel=1e-6)
+    # and its interval is no narrower, nor does its std say so
+    half = np.diff(fit.interval(0.6827)["tension"])[0] / 2
+    assert fit.std["tension"] == pytest.approx(half, rel=1e-4)
+    assert fit.std["tension"] > string.std["tension"]
 
 
 def covered(count, *, known, seed, level=0.95, bending=2.0):
@@ -380,6 +384,19 @@ def test_figure_shows_residuals_over_orders():
     np.testing.assert_allclose(points.get_ydata(), 100 * FIT.residual / FIT.measured)
 
 
+def test_noise_that_is_estimated_with_ends_unknown_is_shown_in_numbers():
+    f = noisy(pinned_beam(7, TENSION, 2.0), 1e-3, 3)
+    guess = scene(900.0, 1.0)
+    with pytest.warns(rd.IdentifyWarning, match="the noise is estimated"):
+        fit = rd.identify(guess, rd.Peaks(f, order=range(1, 8)), BOTH)
+    # of 7 peaks two numbers and some of the ends are told
+    assert 2.0 < fit.freedom < 5.0
+    sheet = json.loads(fit.to_json())
+    assert sheet["fit"]["freedom"] == fit.freedom
+    # chance makes it so often that far off: chi-square of 4 between 0.2 and 14
+    assert 0.2 < (fit.measured_std / f / 1e-3).mean() ** 2 * fit.freedom < 14
+
+
 # --- refusals ---------------------------------------------------------------------------------
 
 STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=900.0)
@@ -430,8 +447,15 @@ def test_what_has_no_meaning_is_refused_by_name(change, message):
 )
 def test_wrong_types_are_refused(change):
     arguments = {"scene": STRING, "measured": [10.0], "unknown": "tension"} | change
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match=next(iter(change))):
         rd.identify(**arguments)
+
+
+@pytest.mark.parametrize("orders", ["auto", [1]])
+def test_a_sensor_beyond_the_rope_is_refused_whatever_the_peaks_are(orders):
+    peaks = rd.Peaks([10.0], shape=[[1.0, 0.5]], sensors=[("z", 0.5), ("z", 2 * LENGTH)])
+    with pytest.raises(rd.SceneError, match=rf"sensors\[1\] must be .* 0 to {LENGTH:g} m"):
+        rd.identify(STRING, peaks, "tension", orders=orders)
 
 
 @pytest.mark.parametrize("level", [0.0, 1.0, 95, -0.5, np.nan])

@@ -31,6 +31,7 @@ class Case:
     std: np.ndarray  # [Hz]
     orders: np.ndarray  # from 1; 0 of strays
     exact: np.ndarray  # of all modes up to the highest [Hz]
+    tension: float  # [N]
 
     @property
     def missing(self):
@@ -38,12 +39,16 @@ class Case:
         return self.orders.max() - np.count_nonzero(self.orders)
 
 
-def made(rng, *, seen=None, strays=0, hum=False, missing=0, step=1):
-    """Every `step`-th of the lowest modes but some, with noise, strays and hum or its alias."""
+def made(rng, *, seen=None, strays=0, hum=False, missing=0, step=1, sprung=False):
+    """Every `step`-th of the lowest modes but some, with noise, strays and hum or its alias.
+
+    `sprung`: no end is pinned or clamped.
+    """
     length, density = rng.uniform(2, 60), rng.uniform(0.5, 60)
     tension, ratio = 10 ** rng.uniform(3, 7), 10 ** rng.uniform(np.log10(50), 7)
     bending = tension * length**2 / ratio
-    ends = [(0.0, 0.0), (np.inf, np.inf), tuple(10 ** rng.uniform(-2, 2, 2))][rng.integers(3)]
+    ends = [(0.0, 0.0), (np.inf, np.inf), tuple(10 ** rng.uniform(-2, 2, 2))]
+    ends = ends[2 if sprung else rng.integers(3)]
     springs = tuple(c * np.sqrt(tension * bending) for c in ends)
     number = (int(rng.integers(4, 11)) if seen is None else seen) + missing
     exact = frequencies(
@@ -68,7 +73,18 @@ def made(rng, *, seen=None, strays=0, hum=False, missing=0, step=1):
     off = FACTOR ** rng.uniform(-1, 1, 2)
     rope = rd.Rope(length, density, bending_stiffness=bending * off[1])
     scene = rd.Scene(rope, tension=tension * off[0], ends=("clamped", "clamped"))
-    return Case(scene, peaks[order], noise * peaks[order], orders[order], exact)
+    return Case(scene, peaks[order], noise * peaks[order], orders[order], exact, tension)
+
+
+def mixed(rng, **options):
+    """Any rope: strays, hum and modes that nobody saw."""
+    return made(
+        rng,
+        strays=int(rng.integers(4)),
+        hum=bool(rng.integers(2)),
+        missing=int(rng.integers(4)),
+        **options,
+    )
 
 
 def wrong(case, orders):

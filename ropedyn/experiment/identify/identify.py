@@ -263,7 +263,7 @@ def _damped(unknown: Any, given: Peaks | list[Peaks] | None) -> tuple[Any, tuple
 
 def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
     """Part the calibration from what is sought of the scene."""
-    if isinstance(unknown, str) or CALIBRATION not in unknown:
+    if not isinstance(unknown, (list, tuple, np.ndarray)) or CALIBRATION not in unknown:
         return unknown, False
     if not whole:
         raise SceneError(

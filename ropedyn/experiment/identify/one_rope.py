@@ -23,6 +23,7 @@ from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import TIE, Unknowns
 from ..orders.numbering import Numbering, decided, numberings
 from ..orders.orders import given_orders
+from ..orders.sensed import refuse_outside
 from .candidates import Candidates
 from .cross_checks import cross_checks
 from .fit import Fit
@@ -108,6 +109,7 @@ class RopeTask:
     def fit(self) -> Fit:
         """Find its orders and its numbers."""
         began = time.perf_counter()
+        refuse_outside(self.scene, self.peaks.sensors or ())
         found, status = self._numbered()
         if status == "refused":
             return self._refused(time.perf_counter() - began)

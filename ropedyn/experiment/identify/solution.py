@@ -24,6 +24,7 @@ BACK = 0.1  # Such a number is tried again where it has this share of what the r
 OTHER = 7.0  # And where it is on the other side of its start by so much, a factor of 1000.
 FAR = 2.0  # Such a number has gone at least so far from its start, as a logarithm.
 APART = 1e-6  # A number with more than this share in directions that nothing tells is not told.
+ONE_STD = 0.6827  # Level of one standard deviation to either side.
 TURNS = 50  # Noise and fit take turns so often at most.
 LEAST_FREEDOM = 0.5  # Of fewer degrees of freedom nothing tells the noise.
 UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability are no noise.
@@ -181,10 +182,16 @@ class Solution:
             slope = np.where(self.side[:, None, :] == 0, slope, 0.0)
         return Uncertainty(slope, self.noise)
 
-    @property
+    @computed
     def std(self) -> Real:
         """Standard deviations of the numbers, NaN of those that have one bound, shape (n, p)."""
         std = self.uncertainty.std * np.abs(self.unknowns.slope(self.u))
+        at = np.flatnonzero(self.side.any(axis=1))
+        if len(at):
+            # beside a number at its bound, which could be off it, straight lines know too much
+            some = self.take(at)
+            half = np.ptp(some.interval(ONE_STD), axis=2) / 2
+            std[at] = half / quantile(ONE_STD, some.record["freedom"])[:, None]
         return np.where(self.side == 0, std, np.nan)
 
     def interval(self, level: float) -> Real:

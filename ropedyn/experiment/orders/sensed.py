@@ -31,12 +31,6 @@ class Sensed:
     def of(cls, scene: Scene, sensors: Sequence[tuple[str, float]], count: int) -> Sensed:
         """Calculate them with the numbers of the scene."""
         length = scene.rope.length
-        for i, (coordinate, x) in enumerate(sensors):
-            if coordinate not in scene.coordinates or not 0 <= x <= length:
-                raise SceneError(
-                    f"sensors[{i}] must be a coordinate of {', '.join(scene.coordinates)} and a "
-                    f"place from 0 to {length:g} m, got {(coordinate, x)!r}"
-                )
         marks = tuple(PointMass(x, 0.0) for x in sorted({x for _, x in sensors if 0 < x < length}))
         marked = scene.replace(parts=(*scene.parts, *marks))
         modes = marked.compile(elements=WAVE * count).modes(count)
@@ -71,6 +65,17 @@ class Sensed:
         area = channels / 2 * np.log(np.pi) - gammaln(channels / 2)
         density = -(channels - 1) / 2 * np.log(2 * np.pi * ANGLE**2) - square / (2 * ANGLE**2)
         return np.logaddexp(np.log1p(-FALSE) + density + area, np.log(FALSE))
+
+
+def refuse_outside(scene: Scene, sensors: Sequence[tuple[str, float]]) -> None:
+    """Refuse sensors that are not on the rope."""
+    length = scene.rope.length
+    for i, (coordinate, x) in enumerate(sensors):
+        if coordinate not in scene.coordinates or not 0 <= x <= length:
+            raise SceneError(
+                f"sensors[{i}] must be a coordinate of {', '.join(scene.coordinates)} and a "
+                f"place from 0 to {length:g} m, got {(coordinate, x)!r}"
+            )
 
 
 def _unit(rows: Real) -> Real:

@@ -44,8 +44,8 @@ class Posterior(Answer):
     measured, calculated : ndarray, shape (k,)
         [Hz], the last of the likeliest point; NaN of a peak that is no mode.
     chi_square, freedom, probability : float
-        Of the likeliest point, what noise leaves of it, and how often that would be exceeded; NaN
-        where the noise was estimated.
+        Of the likeliest point, what noise leaves of it, and how often that would be exceeded;
+        `freedom` alone is not NaN where the noise was estimated.
     ends : EndsTold
         What the peaks say of unknown ends.
     assumed, notes : tuple of str

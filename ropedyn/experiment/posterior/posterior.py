@@ -74,19 +74,19 @@ class _Fit(NamedTuple):
 
 
 def _fit(task: PosteriorTask, cloud: Cloud, best: Cloud) -> _Fit:
-    """Compare chi-square with what noise leaves, where its size is given.
+    """Say what noise leaves of chi-square, and compare both where its size is given.
 
     What it exceeds its least value by on average is how many numbers the peaks tell (Spiegelhalter
     et al., J. R. Stat. Soc. B 64, p. 583), the tension not counted, which is always the best.
     """
     from scipy.special import chdtrc
 
-    if task.std is None:
-        return _Fit(np.nan, np.nan, np.nan)
     least, peaks = float(best.chi_square[0]), int(task.used.sum())
     widened = (task.freedom + least) / (task.freedom + peaks - 1)
     told = float(cloud.chi_square.mean() - least) / widened + (TENSION in task.unknown)
     freedom = max(peaks - told, 0.0)
+    if task.std is None:
+        return _Fit(np.nan, freedom, np.nan)
     # with less than half a degree of freedom nothing is left to be tested
     return _Fit(least, freedom, float(chdtrc(freedom, least)) if freedom > 0.5 else np.nan)
 
