@@ -430,7 +430,7 @@ def test_a_truncated_file_is_refused_by_path(share, tmp_path):
 def marked(answer, field):
     """Name of the attribute that holds the kind of the answer, or a field."""
     attributes = answer.to_xarray().attrs
-    (name,) = [k for k, v in attributes.items() if v == field or k.endswith(field)]
+    (name,) = [k for k, v in attributes.items() if v == field or k == f"ropedyn_{field}"]
     return name
 
 
