@@ -43,7 +43,7 @@ def _derivatives(template: Template, modes: Modes, row: Real) -> Real:
 
 def _eigenvalue_slope(path: str, modes: Modes, value: float) -> Real:
     found = SPRING.fullmatch(path)
-    if found is None:
+    if found is None or 0 < value < np.inf:
         return modes.derivative(path, of="eigenvalue")
     if np.isinf(value) or found[2] not in modes.coordinates:
         return np.zeros(len(modes.frequency))
