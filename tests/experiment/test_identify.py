@@ -433,6 +433,7 @@ DAMPED = dataclasses.replace(
             r"prior\['tension'\]\[1\] must be a finite",
         ),
         ({"prior": {"tension": (1.0,)}}, r"prior\['tension'\] must be a value and"),
+        ({"threads": 0}, "threads must be a whole number from 1 to 1024"),
     ],
 )
 def test_what_has_no_meaning_is_refused_by_name(change, message):
@@ -443,7 +444,15 @@ def test_what_has_no_meaning_is_refused_by_name(change, message):
 
 @pytest.mark.parametrize(
     "change",
-    [{"unknown": 3}, {"unknown": [3]}, {"measured": "10"}, {"prior": 3}, {"scene": 3}],
+    [
+        {"unknown": 3},
+        {"unknown": [3]},
+        {"measured": "10"},
+        {"prior": 3},
+        {"scene": 3},
+        {"progress": 3},
+        {"executor": 3},
+    ],
 )
 def test_wrong_types_are_refused(change):
     arguments = {"scene": STRING, "measured": [10.0], "unknown": "tension"} | change

@@ -20,6 +20,8 @@ from ...curves.measured import Measured, above_zero
 from ...curves.peaks import Peaks
 from ...curves.record.record import Record
 from ...curves.resonance import Resonances
+from ...family.rows import Shared
+from ...response.question import workers_of
 from ...scene.path import with_values
 from ...scene.prior import Prior
 from ...scene.scene import Scene
@@ -224,6 +226,7 @@ def identify(
         fits = _many(scene, how, given, workers)
         _warn(fits.notes)
         return fits
+    Shared(np.zeros(0), workers_of(threads), executor, progress)  # which checks them
     _weigh(given)
     record = _said_of(measured) if isinstance(measured, Record) else None
     fit = RopeTask(_guessed(scene, how, given), how, given, teller(how), record).fit()
