@@ -397,6 +397,19 @@ def test_noise_that_is_estimated_with_ends_unknown_is_shown_in_numbers():
     assert 0.2 < (fit.measured_std / f / 1e-3).mean() ** 2 * fit.freedom < 14
 
 
+def test_a_tension_far_from_the_guess_that_orders_were_sought_with_is_named():
+    """Of frequencies in rad/s every second mode is nearer to the guess than every mode."""
+    f = pinned_beam(12, TENSION, 2.0)
+    guess = scene(1.3 * TENSION, 2.0)
+    peaks = rd.Peaks(2 * np.pi * f, std=2e-3 * np.pi * f)
+    with pytest.warns(rd.IdentifyWarning, match=r"tension is [\d.]+ times its guess: .* rad/s"):
+        fit = rd.identify(guess, peaks, BOTH)
+    assert fit.status == "ambiguous" or fit.orders[0] > 1
+    assert "of orders: tension" in fit.assumed[-1]
+    told = rd.identify(guess, rd.Peaks(f, std=1e-3 * f), BOTH)
+    assert not any("its guess" in note for note in told.notes)
+
+
 # --- refusals ---------------------------------------------------------------------------------
 
 STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=900.0)

@@ -24,6 +24,8 @@ from ..fitting.unknown import TIE, Unknowns
 from ..orders.numbering import Numbering, decided, numberings
 from ..orders.orders import given_orders
 from ..orders.sensed import refuse_outside
+from ..orders.standardised import SPREAD
+from ..posterior.space import TENSION
 from .candidates import Candidates
 from .cross_checks import cross_checks
 from .fit import Fit
@@ -41,6 +43,8 @@ NAMEABLE = 1e-6
 
 PASSES, SETTLED = 12, 1e-9
 """Damping and frequencies take turns so often at most, until they move by no more of themselves."""
+FAR = 5.0
+"""A tension so many times its guess is named: the guess took part in the choice of orders."""
 
 NO_MODES = (
     "no numbering explains the peaks better than that all are strays, or fewer than two are modes: "
@@ -226,7 +230,8 @@ class RopeTask:
     ) -> Fit:
         """Gather what was found."""
         how, k, p = self.how, len(orders), len(told.value)
-        std = told.std if decision.status == "trusted" else np.full(p, np.nan)
+        trusted = decision.status == "trusted"
+        std = told.std if trusted else np.full(p, np.nan)
         paths, value, correlation, notes = how.paths, told.value, told.correlation, told.notes
         if damped is not None:
             paths, value = (*paths, *damped.unknown), np.append(value, damped.value)
@@ -247,8 +252,8 @@ class RopeTask:
             status=decision.status,
             budget=told.budget,
             ends=how.ends,
-            assumed=told.assumed,
-            notes=notes if decision.status == "trusted" else (AMBIGUOUS, *notes),
+            assumed=(*told.assumed, *self._assumed()),
+            notes=(*notes, *self._far(told)) if trusted else (AMBIGUOUS, *notes),
             seed=how.seed,
             cost=Cost(0.0, told.method, how.elements or 0, k, factorisations=told.evaluations),
             candidates=decision.candidates,
@@ -257,6 +262,33 @@ class RopeTask:
             remarks=partial(self._remarks, told, orders),
             details=details_of(self.peaks),
             record=self.record,
+        )
+
+    def _weighs_guess(self) -> bool:
+        """Whether the guess of the tension took part in the choice of orders."""
+        how = self.how
+        sought = TENSION in how.paths and TENSION not in how.prior
+        return sought and given_orders(how.orders, self.peaks) is None
+
+    def _assumed(self) -> tuple[str, ...]:
+        """Say what the search of orders took the guess of the tension for."""
+        if not self._weighs_guess():
+            return ()
+        guess, factor = self.scene.mean_tension, np.exp(SPREAD)
+        return (
+            f"of orders: tension {guess:.4g} N within a factor of {factor:.2g} in two of three",
+        )
+
+    def _far(self, told: Told) -> tuple[str, ...]:
+        """Name a tension that is far from its guess."""
+        if not self._weighs_guess():
+            return ()
+        times = float(told.value[self.how.paths.index(TENSION)]) / self.scene.mean_tension
+        if 1 / FAR < times < FAR:
+            return ()
+        return (
+            f"tension is {times:.3g} times its guess: if the guess is nearer than that the orders "
+            "are others, say so by a prior; frequencies in rad/s would be such a slip",
         )
 
     def _remarks(self, told: Told, orders: Integer) -> Remarks:
