@@ -27,17 +27,17 @@ FARTHEST = 30.0  # No logarithm goes farther from where it starts.
 SETTLED = 1e-4  # Slope by standard deviations at the minimum.
 
 
-class Lines(NamedTuple):
+class FourierLines(NamedTuple):
     """Fourier lines of all pieces of a record, by rising frequency."""
 
     frequency: Real  # (k,) [Hz]
     duration: Real  # (k,) of the piece that each is of [s]
     value: Complex  # (channels, k): the mean square of its modulus is half a one-sided density
 
-    def within(self, low: float, high: float) -> Lines:
+    def within(self, low: float, high: float) -> FourierLines:
         """Return the lines of a band."""
         start, stop = np.searchsorted(self.frequency, [low, high])
-        return Lines(
+        return FourierLines(
             self.frequency[start:stop], self.duration[start:stop], self.value[:, start:stop]
         )
 
@@ -54,7 +54,7 @@ class BandMode(NamedTuple):
     shape: Real  # (channels,) of unit length
 
 
-def fit_band(lines: Lines, quantity: str, frequency: float, ratio: float) -> BandMode | None:
+def fit_band(lines: FourierLines, quantity: str, frequency: float, ratio: float) -> BandMode | None:
     """Fit one mode to the lines of a band, from a guess; None where there is none.
 
     E_k = (S f^p |H_k + A|^2 + R f^q) phi phi^T + Se I: the load is S f^p, H_k the amplification of
@@ -92,7 +92,7 @@ class _Band(NamedTuple):
     order: int  # how often the displacement is differentiated
 
     @classmethod
-    def of(cls, lines: Lines, quantity: str) -> _Band:
+    def of(cls, lines: FourierLines, quantity: str) -> _Band:
         f, value = lines.frequency, lines.value.T
         square = np.real(value[:, :, np.newaxis] * value[:, np.newaxis].conj())
         total = np.sum(np.abs(value) ** 2, axis=1)
@@ -282,7 +282,7 @@ def _turned(shape: Real) -> Real:
     return shape * np.sign(shape[np.abs(shape).argmax()])
 
 
-def unfitted(lines: Lines, frequency: float, width: float) -> BandMode:
+def unfitted(lines: FourierLines, frequency: float, width: float) -> BandMode:
     """Return what is known where no mode could be fitted: no more than the place."""
     value = lines.value[:, np.abs(lines.frequency - frequency) <= width]
     shape = np.linalg.eigh(np.real(value @ value.conj().T))[1][:, -1]

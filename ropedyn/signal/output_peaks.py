@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.array import Complex, Real
-from .band_fit import USUAL_RATIO, BandMode, Lines, fit_band, unfitted
+from .band_fit import USUAL_RATIO, BandMode, FourierLines, fit_band, unfitted
 from .record_lines import Density, density, floor_of, lines_of, without_drift
 from .steady_lines import BANDWIDTH, SteadyLine, take_lines
 
@@ -63,7 +63,7 @@ class OutputPeak(NamedTuple):
         return cls(f, line.std, 0.0, hidden, *seen)
 
 
-class Search(NamedTuple):
+class Sought(NamedTuple):
     """Where peaks are sought, and of what."""
 
     quantity: str  # "displacement", "velocity" or "acceleration"
@@ -72,7 +72,7 @@ class Search(NamedTuple):
 
 
 def output_peaks(
-    pieces: Sequence[Real], rate: float, search: Search, report: Callable[[float], object]
+    pieces: Sequence[Real], rate: float, search: Sought, report: Callable[[float], object]
 ) -> list[OutputPeak]:
     """Find the peaks of pieces (channels, t) of a record, by rising frequency."""
     longest = max(piece.shape[1] for piece in pieces)
@@ -92,9 +92,9 @@ def output_peaks(
 
 
 def _fitted(
-    lines: Lines,
+    lines: FourierLines,
     candidates: Real,
-    search: Search,
+    search: Sought,
     duration: float,
     report: Callable[[float], object],
 ) -> list[tuple[BandMode, tuple[float, float]]]:
@@ -111,7 +111,7 @@ def _fitted(
     return kept
 
 
-def _candidates(averaged: Density, floor: Real, search: Search) -> tuple[Real, Real]:
+def _candidates(averaged: Density, floor: Real, search: Sought) -> tuple[Real, Real]:
     """Return where the first singular value of the densities has a maximum.
 
     With it comes what the second has there of the first, 0 where it does not stand out.

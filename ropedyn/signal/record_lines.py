@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..base.array import Complex, Real
-from .band_fit import Lines
+from .band_fit import FourierLines
 from .spectrum import window_weights
 
 DRIFT_CUT = 1 / 3  # Drift is taken away below this part of the lowest frequency.
@@ -51,7 +51,7 @@ def resampled(pieces: Sequence[Real], rate: float, below: float) -> tuple[list[R
     return thin, rate / fewer
 
 
-def lines_of(pieces: Sequence[Real], rate: float) -> Lines:
+def lines_of(pieces: Sequence[Real], rate: float) -> FourierLines:
     """Return the lines of all pieces, each of its whole length without a taper."""
     from scipy import fft
 
@@ -60,7 +60,7 @@ def lines_of(pieces: Sequence[Real], rate: float) -> Lines:
     duration = np.repeat([piece.shape[1] / rate for piece in pieces], [len(f) for f in frequency])
     every = np.concatenate(frequency)
     order = np.argsort(every, kind="stable")
-    return Lines(every[order], duration[order], np.concatenate(value, axis=1)[:, order])
+    return FourierLines(every[order], duration[order], np.concatenate(value, axis=1)[:, order])
 
 
 def density(pieces: Sequence[Real], rate: float, length: int, window: str) -> Density:

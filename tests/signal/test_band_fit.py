@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ropedyn.signal import band_fit
-from ropedyn.signal.band_fit import Lines, fit_band
+from ropedyn.signal.band_fit import FourierLines, fit_band
 from ropedyn.signal.steady_lines import take_lines
 
 DURATION, F0 = 600.0, 4.0
@@ -18,7 +18,7 @@ def lines(rng, quantity, *, ratio=0.004, channels=3, noise=1e-2, wide=8.0, slope
     # u (displacement) = p/(f_0^2 - f^2 + 2 i zeta f_0 f), each derivative a factor f
     h = 2 * ratio * F0**2 / (F0**2 - f**2 + 2j * ratio * F0 * f) * (f / F0) ** ORDERS[quantity]
     # a finite duration, which `blurred` describes: here the load makes what it says
-    band = band_fit._Band.of(Lines(f, np.full(len(f), DURATION), h[np.newaxis]), quantity)
+    band = band_fit._Band.of(FourierLines(f, np.full(len(f), DURATION), h[np.newaxis]), quantity)
     blur = band.blurred(np.log([F0, ratio]))[0]
     load = np.sqrt(blur) * (f / F0) ** (slope / 2)
     shape = np.array([0.3, 0.5, 0.8])[:channels]
@@ -29,7 +29,7 @@ def lines(rng, quantity, *, ratio=0.004, channels=3, noise=1e-2, wide=8.0, slope
 
     value = np.outer(shape, load * h * gaussian(len(f)))
     value = value + np.sqrt(noise) * gaussian(channels, len(f))
-    return Lines(f, np.full(len(f), DURATION), value), shape
+    return FourierLines(f, np.full(len(f), DURATION), value), shape
 
 
 @pytest.mark.parametrize("quantity", ORDERS)
@@ -88,7 +88,9 @@ def test_a_finite_duration_widens_a_resonance_as_simulated():
     exact = np.abs(1 / (1 - 2 * pole.real / z + abs(pole) ** 2 / z**2)) ** 2
     near = np.abs(f - f0) < 0.1
     value = np.ones((1, near.sum()), complex)
-    band = band_fit._Band.of(Lines(f[near], np.full(near.sum(), n / rate), value), "displacement")
+    band = band_fit._Band.of(
+        FourierLines(f[near], np.full(near.sum(), n / rate), value), "displacement"
+    )
     blur = band.blurred(np.log([f0, ratio]))[0]
     # 3000 trials know a mean power to 1.8 %, each of 7 lines to some 5 %
     assert np.abs(power[near] / exact[near] / blur - 1).max() < 0.08

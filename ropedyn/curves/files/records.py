@@ -32,7 +32,7 @@ HISTORY, OVER_TIME = 1, 17
 COMMA = re.compile(r"\d,\d")
 
 
-class Motion(NamedTuple):
+class RecordContent(NamedTuple):
     """What a `Record` is made of, and written from."""
 
     time: Real | None  # (t,) [s]
@@ -69,7 +69,7 @@ class Row(NamedTuple):
 # --- which channels, in which unit ----------------------------------------------------------------
 
 
-def read(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
+def read(file: Path, said: Said, layout: dict[str, Any]) -> RecordContent:
     """Read what a `Record` is made of."""
     universal = is_universal(file)
     if not file.is_file():
@@ -148,7 +148,7 @@ def _scaled(row: Row, unit: Any, expected: str, name: str) -> tuple[Real, int | 
 # --- text -----------------------------------------------------------------------------------------
 
 
-def _text(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
+def _text(file: Path, said: Said, layout: dict[str, Any]) -> RecordContent:
     text = text_of(file)
     if text.startswith(OWN):
         _refuse_said(file, said)
@@ -181,7 +181,7 @@ def _text(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
     others = {_column(file, sheet, key, "time or force") for key in keys}
     said = _in_order(file, said, [i for i in range(width) if i not in others], there)
     found = _chosen(file, said, taken, there)
-    return Motion(time=time, rate=said.rate, missing=said.missing, **found)
+    return RecordContent(time=time, rate=said.rate, missing=said.missing, **found)
 
 
 def _column(file: Path, sheet: Sheet, key: Any, argument: str) -> int:
@@ -207,7 +207,7 @@ def _refuse_said(file: Path, said: Said) -> None:
             )
 
 
-def _own_text(file: Path, text: str) -> Motion:
+def _own_text(file: Path, text: str) -> RecordContent:
     first, _, rest = text.partition("\n")
     changed = f"path must be a file that nobody changed, got {str(file)!r}"
     try:
@@ -221,7 +221,7 @@ def _own_text(file: Path, text: str) -> Motion:
     if sheet.numbers.shape[1] != 1 + len(points) + (drive is not None):
         raise SceneError(f"{changed} with {sheet.numbers.shape[1]} columns")
     rows = sheet.numbers.T
-    return Motion(
+    return RecordContent(
         time=rows[0],
         value=rows[1 : 1 + len(points)],
         rate=said[2],
@@ -234,7 +234,7 @@ def _own_text(file: Path, text: str) -> Motion:
     )
 
 
-def write(motion: Motion, file: Path, binary: bool) -> None:
+def write(motion: RecordContent, file: Path, binary: bool) -> None:
     """Write a record with every digit; see `Record.write`."""
     check.instance(binary, "binary", bool, "True or False")
     if is_universal(file):
@@ -265,7 +265,7 @@ def write(motion: Motion, file: Path, binary: bool) -> None:
 # --- universal files ------------------------------------------------------------------------------
 
 
-def _universal(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
+def _universal(file: Path, said: Said, layout: dict[str, Any]) -> RecordContent:
     for name, usual in LAYOUT.items():
         if layout[name] != usual:
             raise SceneError(f"{name} is for text in columns, got {layout[name]!r}")
@@ -282,11 +282,11 @@ def _universal(file: Path, said: Said, layout: dict[str, Any]) -> Motion:
     return _foreign(file, found, said)
 
 
-def _foreign(file: Path, found: Sequence[uff.Record], said: Said) -> Motion:
+def _foreign(file: Path, found: Sequence[uff.FileFunction], said: Said) -> RecordContent:
     """Return the datasets that the user names, by number or by first line."""
     names = {record.number: record.fields["id1"].strip() for record in found}
     there = ", ".join(f"{number}: {name!r}" for number, name in names.items())
-    used: list[uff.Record] = []
+    used: list[uff.FileFunction] = []
 
     def taken(key: Any, argument: str) -> Row:
         matching = [r for r in found if key in (r.number, names[r.number])]
@@ -304,10 +304,10 @@ def _foreign(file: Path, found: Sequence[uff.Record], said: Said) -> Motion:
     said = _in_order(file, said, motions, there)
     chosen = _chosen(file, said, taken, there)
     time = _times(file, used)
-    return Motion(time=time, rate=said.rate, missing=said.missing, **chosen)
+    return RecordContent(time=time, rate=said.rate, missing=said.missing, **chosen)
 
 
-def _row(record: uff.Record) -> Row:
+def _row(record: uff.FileFunction) -> Row:
     """Return a dataset as a channel; one in the direction -Z counts the other way."""
     fields = record.fields
     sign = -1.0 if fields["rsp_dir"] < 0 else 1.0
@@ -316,7 +316,7 @@ def _row(record: uff.Record) -> Row:
     return Row(sign * np.real(fields["data"]).astype(np.float64), unit, order)
 
 
-def _times(file: Path, records: Sequence[uff.Record]) -> Real:
+def _times(file: Path, records: Sequence[uff.FileFunction]) -> Real:
     """Return the times that all have."""
     first = records[0]
     for record in records:
@@ -336,8 +336,8 @@ def _times(file: Path, records: Sequence[uff.Record]) -> Real:
 
 
 def _own_universal(
-    file: Path, found: Sequence[uff.Record], own: Sequence[re.Match[str] | None]
-) -> Motion:
+    file: Path, found: Sequence[uff.FileFunction], own: Sequence[re.Match[str] | None]
+) -> RecordContent:
     changed = f"path must be a file that nobody changed, got {str(file)!r}"
     match = OWN_TIME.match(found[0].fields["id3"])
     try:
@@ -353,7 +353,7 @@ def _own_universal(
     quantity = next((word for word, k in MOTIONS.items() if k == order), None)
     if quantity is None or "force" in kinds[:-1] or (pushed and len(kinds) == 1):
         raise SceneError(changed)
-    return Motion(
+    return RecordContent(
         time=start + np.arange(rows.shape[1]) / rate,
         value=rows[:-1] if pushed else rows,
         rate=rate,
@@ -364,7 +364,7 @@ def _own_universal(
     )
 
 
-def _write_universal(motion: Motion, file: Path, binary: bool) -> None:
+def _write_universal(motion: RecordContent, file: Path, binary: bool) -> None:
     if np.isnan(motion.value).any():
         raise SceneError("value must be without gaps to be written as a universal file: write .csv")
     points = [*motion.response, *([motion.drive] if motion.drive else [])]
@@ -378,7 +378,7 @@ def _write_universal(motion: Motion, file: Path, binary: bool) -> None:
     uff.write_all(file, datasets)
 
 
-def _header(motion: Motion, point: Any, pushes: bool) -> dict[str, Any]:
+def _header(motion: RecordContent, point: Any, pushes: bool) -> dict[str, Any]:
     """Return the fields of one channel."""
     order = MOTIONS[motion.quantity]
     kind = next(code for code, times in uff.MOTION.items() if times == order)

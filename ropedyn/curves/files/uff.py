@@ -46,7 +46,7 @@ LONGEST_LINE = 6  # The last line of a dataset may be filled up with so many num
 Fields = dict[str, Any]
 
 
-class Record(NamedTuple):
+class FileFunction(NamedTuple):
     """One function of a file."""
 
     number: int  # among the datasets, from 0
@@ -55,7 +55,7 @@ class Record(NamedTuple):
     units: tuple[float, float] | None
 
 
-def read(file: Path, wanted: Callable[[Fields], bool]) -> list[Record]:
+def read(file: Path, wanted: Callable[[Fields], bool]) -> list[FileFunction]:
     """Read the functions of a file."""
     content = file.read_bytes()
     if not content.strip():
@@ -88,8 +88,8 @@ def read(file: Path, wanted: Callable[[Fields], bool]) -> list[Record]:
 
 def _functions(
     file: Path, opened: Any, kinds: Sequence[int], wanted: Callable[[Fields], bool]
-) -> list[Record]:
-    found: list[Record] = []
+) -> list[FileFunction]:
+    found: list[FileFunction] = []
     units = None
     for number, kind in enumerate(kinds):
         if kind == UNITS:
@@ -97,7 +97,7 @@ def _functions(
         if kind == FUNCTION and wanted(_dataset(file, opened, number, header_only=True)):
             fields = _dataset(file, opened, number)
             _check(file, number, fields)
-            found.append(Record(number, fields, units))
+            found.append(FileFunction(number, fields, units))
     return found
 
 

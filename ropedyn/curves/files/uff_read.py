@@ -30,7 +30,7 @@ from .uff import (
     OWN,
     SPREAD,
     UNSAID,
-    Record,
+    FileFunction,
     label_of,
 )
 
@@ -100,7 +100,7 @@ def read(
     )
 
 
-def _numbered(found: Sequence[Record], records: Any, file: Path) -> list[Record]:
+def _numbered(found: Sequence[FileFunction], records: Any, file: Path) -> list[FileFunction]:
     """Return the records of these numbers, or all."""
     if records is None:
         chosen = list(found)
@@ -132,7 +132,7 @@ def _listed(unit: Any, lines: int) -> list[str | None]:
     return list(unit)
 
 
-def _frequency(record: Record, file: Path) -> Real:
+def _frequency(record: FileFunction, file: Path) -> Real:
     """Return the frequencies of a record [Hz]."""
     kind, text = record.fields["abscissa_spec_data_type"], record.fields["abscissa_axis_units_lab"]
     said = label_of(text)
@@ -154,14 +154,14 @@ def _is_spread(fields: uff.Fields) -> bool:
 
 
 def _spread(
-    lines: Sequence[Located], found: Sequence[Record], factor: Sequence[float], file: Path
+    lines: Sequence[Located], found: Sequence[FileFunction], factor: Sequence[float], file: Path
 ) -> Real | None:
     """Return the standard deviation of each response in SI; None without any."""
     std = _beside(lines, found, file)
     return None if std is None else std * np.abs(np.reshape(factor, (-1, 1)))
 
 
-def _beside(lines: Sequence[Located], found: Sequence[Record], file: Path) -> Real | None:
+def _beside(lines: Sequence[Located], found: Sequence[FileFunction], file: Path) -> Real | None:
     """Return what else is known of each response, by nodes and directions; None without any."""
     frequency = _frequency(lines[0].record, file)
     rows = []
@@ -190,11 +190,11 @@ def _beside(lines: Sequence[Located], found: Sequence[Record], file: Path) -> Re
     return np.array([row.fields["data"] for row in rows])
 
 
-def _kind(record: Record) -> str:
+def _kind(record: FileFunction) -> str:
     return SPREAD.lower() if _is_spread(record.fields) else "coherence"
 
 
-def _key(record: Record) -> tuple[int, ...]:
+def _key(record: FileFunction) -> tuple[int, ...]:
     fields = record.fields
     nodes = (fields["rsp_node"], fields["ref_node"])
     return (*nodes, abs(fields["rsp_dir"]), abs(fields["ref_dir"]))
@@ -218,14 +218,14 @@ AXES = ("X", "Y", "Z")  # Axes along which the nodes of a file may be.
 class Located(NamedTuple):
     """One response to one drive."""
 
-    record: Record
+    record: FileFunction
     response: Point
     drive: Point
     sign: int
 
 
 def located(
-    records: Sequence[Record], file: Path, positions: Any, coordinate: Any
+    records: Sequence[FileFunction], file: Path, positions: Any, coordinate: Any
 ) -> list[Located]:
     """Say where on the rope each record is and which way it counts."""
     own = [(record, m) for record in records if (m := OWN.match(record.fields["id2"]))]
@@ -245,7 +245,7 @@ def located(
     return lines
 
 
-def _own(record: Record, match: re.Match[str]) -> Located:
+def _own(record: FileFunction, match: re.Match[str]) -> Located:
     """Return the points that `write` has written down."""
     points = []
     for name, x in (match["r"], match["rx"]), (match["d"], match["dx"]):
@@ -259,7 +259,7 @@ def _own(record: Record, match: re.Match[str]) -> Located:
     return Located(record, points[0], points[1], 1)
 
 
-def _positions(given: Any, records: Sequence[Record], file: Path) -> dict[int, float | None]:
+def _positions(given: Any, records: Sequence[FileFunction], file: Path) -> dict[int, float | None]:
     """Return where each node is, None for one that is left out."""
     nodes = sorted({record.fields[side] for record in records for side in ("rsp_node", "ref_node")})
     what = f"a position [m] for each node of {str(file)!r} ({', '.join(map(str, nodes))})"
@@ -280,7 +280,9 @@ def _positions(given: Any, records: Sequence[Record], file: Path) -> dict[int, f
     return {node: check.optional(given[node], f"positions[{node}]", "m") for node in nodes}
 
 
-def _turned(code: int, coordinate: Any, records: Sequence[Record], file: Path) -> tuple[str, int]:
+def _turned(
+    code: int, coordinate: Any, records: Sequence[FileFunction], file: Path
+) -> tuple[str, int]:
     """Return which coordinate of the rope a direction is and with which sign."""
     axis = DIRECTIONS[abs(code)] if abs(code) < len(DIRECTIONS) else str(code)
     codes = {abs(r.fields[side]) for r in records for side in ("rsp_dir", "ref_dir")}
@@ -372,7 +374,7 @@ def scale(
     return name, size
 
 
-def _said(record: Record, where: str, ends: tuple[Point, Point]) -> tuple[Unit, Unit]:
+def _said(record: FileFunction, where: str, ends: tuple[Point, Point]) -> tuple[Unit, Unit]:
     """Return the unit that a record says itself, by its labels or by dataset 164."""
     fields = record.fields
     above = label_of(fields["ordinate_axis_units_lab"])
@@ -399,7 +401,7 @@ def _said(record: Record, where: str, ends: tuple[Point, Point]) -> tuple[Unit, 
     return found[0], found[1]
 
 
-def _by_dataset(record: Record, ends: tuple[Point, Point]) -> tuple[Unit | None, Unit | None]:
+def _by_dataset(record: FileFunction, ends: tuple[Point, Point]) -> tuple[Unit | None, Unit | None]:
     """Return what dataset 164 and the types of the ordinate make of motion and force."""
     kind, over = (record.fields[f"{side}_spec_data_type"] for side in ("ordinate", "orddenom"))
     if record.units is None:

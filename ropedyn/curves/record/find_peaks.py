@@ -10,7 +10,7 @@ from ...base import check
 from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.progress import Progress, reporter
-from ...signal.output_peaks import Search, output_peaks
+from ...signal.output_peaks import Sought, output_peaks
 from ...signal.record_lines import resampled
 from ..peaks import Peaks
 from .repair import long_enough
@@ -47,7 +47,7 @@ def find_peaks(record: Record, below: float | None, progress: Progress) -> Peaks
             f"{half:.6g} Hz, half its rate, got {highest:.6g}"
         )
     parts, rate = resampled(pieces(record), record.rate, highest)
-    found = output_peaks(parts, rate, Search(record.quantity, lowest, highest), report)
+    found = output_peaks(parts, rate, Sought(record.quantity, lowest, highest), report)
     if not found:
         raise SolveError(
             f"record must have a peak between {lowest:.4g} and {highest:.4g} Hz that stands out "

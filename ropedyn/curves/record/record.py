@@ -269,7 +269,7 @@ class Record(Answer):
         >>> bool((rd.Record.read(path).value == record.value).all())
         True
         """
-        motion = records.Motion(
+        motion = records.RecordContent(
             self.time,
             self.value,
             self.rate,

@@ -26,7 +26,7 @@ DRIFTS = 1.0  # A drift is named from so many times the rest of the motion.
 DRIFT_PARTS = 10  # Drift is what the means of so many parts of a record do.
 
 
-class Grid(NamedTuple):
+class EqualSteps(NamedTuple):
     """Samples at equal steps."""
 
     start: float  # [s]
@@ -35,7 +35,7 @@ class Grid(NamedTuple):
     moved: Real | None  # (samples,) how far each is from there, in steps; None where that is little
 
 
-def grid_of(time: Real, rate: float | None) -> Grid:
+def grid_of(time: Real, rate: float | None) -> EqualSteps:
     """Return the equal steps that times are at."""
     steps = np.diff(time)
     if (steps <= 0).any():
@@ -65,7 +65,7 @@ def grid_of(time: Real, rate: float | None) -> Grid:
             f"time[{k}] = {time[k]:.9g} s, {abs(off[k]):.2g} steps off: resample the values first"
         )
     exact = float(f"{1 / step:.12g}") if rate is None else rate
-    return Grid(float(time[0]), exact, at, off if np.abs(off).max() > EVEN else None)
+    return EqualSteps(float(time[0]), exact, at, off if np.abs(off).max() > EVEN else None)
 
 
 def _steps(time: Real, at: Index, whole: Flags) -> tuple[float, Real]:
@@ -77,7 +77,7 @@ def _steps(time: Real, at: Index, whole: Flags) -> tuple[float, Real]:
     return step, t / step - k
 
 
-def on_grid(grid: Grid, rows: Real) -> tuple[Real, list[str]]:
+def on_grid(grid: EqualSteps, rows: Real) -> tuple[Real, list[str]]:
     """Return rows (rows, t) at equal steps, NaN in gaps that are not bridged, and what was done."""
     from scipy.interpolate import CubicSpline
 
