@@ -125,6 +125,8 @@ def _candidates(averaged: Density, floor: Real, search: Sought) -> tuple[Real, R
     size = np.linalg.eigvalsh(np.moveaxis(whitened, -1, 0))
     first, second = size[:, -1], size[:, -2] if len(scale) > 1 else np.zeros(len(f))
     inside = (f >= search.lowest) & (f <= search.below)
+    if not inside.any():
+        return np.empty(0), np.empty(0)
     root = np.sqrt(averaged.averages)
     stands, leaps = 1 + STANDING / root, np.log1p(PROMINENT / root)
     at, _ = find_peaks(

@@ -200,6 +200,12 @@ def test_a_frequency_that_the_record_cannot_show_is_named(below):
         record.peaks(below=below)
 
 
+def test_a_record_too_short_for_any_peak_is_named():
+    record = rd.Record(None, np.sin(np.arange(64.0)), rate=50.0, response=("z", 3.5))
+    with pytest.raises(rd.SolveError, match="record must hold 100 samples without a gap .* got 64"):
+        record.peaks()
+
+
 def test_progress_ends_at_the_whole():
     record, _ = dirty_record(65, dirty=False, duration=200.0, modes=3)
     told = []

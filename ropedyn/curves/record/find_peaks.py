@@ -41,6 +41,11 @@ def find_peaks(record: Record, below: float | None, progress: Progress) -> Peaks
     report = reporter(progress)
     lowest, half = lowest_of(record), record.rate / 2
     highest = USUAL * half if below is None else check.number(below, "below", "Hz")
+    if not lowest < USUAL * half:
+        raise SolveError(
+            f"record must hold {round(CYCLES * 2 / USUAL)} samples without a gap for a peak, got "
+            f"{round(CYCLES * record.rate / lowest)}"
+        )
     if not lowest < highest <= half:
         raise SceneError(
             f"below must lie between {lowest:.4g} Hz, of which the record has {CYCLES} cycles, and "

@@ -315,7 +315,7 @@ class Record(Answer):
             If below is not between the lowest frequency that the record can show, 40 in its
             longest piece, and half the rate.
         SolveError
-            If every channel is dead, or nothing stands out of the noise.
+            If every channel is dead, the record is too short, or nothing stands out of the noise.
 
         Examples
         --------
