@@ -202,7 +202,9 @@ def test_a_frequency_that_the_record_cannot_show_is_named(below):
 
 def test_a_record_too_short_for_any_peak_is_named():
     record = rd.Record(None, np.sin(np.arange(64.0)), rate=50.0, response=("z", 3.5))
-    with pytest.raises(rd.SolveError, match="record must hold 100 samples without a gap .* got 64"):
+    with pytest.raises(
+        rd.SolveError, match=r"record must hold 100 samples without a gap .* got 64"
+    ):
         record.peaks()
 
 
