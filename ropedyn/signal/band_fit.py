@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -15,12 +16,16 @@ as standard deviation."""
 SLOPE_SPREAD = 2.0
 """Standard deviation of the power of frequency that the load may have more than a white one."""
 USUAL_REST, REST_SPREAD = 1e-3, 3.0
-"""The same of what other modes have of the density at the peak."""
+"""As of damping, of what other modes have of the density at the peak."""
 LEAN_SPREAD = 0.2
 """Standard deviation of what other modes under the same load add to the amplitude of a peak, in
 its own: one point of a rope that is driven alone has such zeros beside its peaks."""
 FALL_SPREAD = 15.0  # The same of the power of frequency with which other modes fall.
-NOISE_SPREAD = 4.0  # The same of the noise: one channel does not tell it from what others have.
+NOISE_SPREAD = 4.0  # The same of ln Se: one channel does not tell it from what others have.
+USUAL = (np.log(USUAL_RATIO), 0.0, 0.0, np.log(USUAL_REST), 0.0, 0.0)
+SPREADS = (np.inf, RATIO_SPREAD, np.inf, NOISE_SPREAD, SLOPE_SPREAD, REST_SPREAD)
+PRECISION = 1 / np.array([*SPREADS, LEAN_SPREAD, FALL_SPREAD])
+"""What is usual of the numbers of `_value` but for the first and the noise, and how precisely."""
 STEP = 1e-3  # Of the differences that give the Hessian, in standard deviations of the minimum.
 FEWEST = 8  # Lines that a fit needs.
 FARTHEST = 30.0  # No logarithm goes farther from where it starts.
@@ -50,7 +55,7 @@ class BandMode(NamedTuple):
     log_std: tuple[float, float]  # of the logarithms of both
     signal: float  # density of the mode at its frequency over that of the noise
     rise: float  # density at the frequency over the larger at the ends of the band
-    gain: float  # of the logarithm of the likelihood by the mode
+    gain: float  # of the logarithm of the posterior, over the same without a mode
     shape: Real  # (channels,) of unit length
 
 
@@ -72,12 +77,14 @@ def fit_band(lines: FourierLines, quantity: str, frequency: float, ratio: float)
         return None
     band = _Band.of(lines, quantity)
     known = (np.log(frequency), np.log(ratio), band.loud(frequency), band.quiet)
-    start = np.array([*known, 0.0, np.log(USUAL_REST), 0.0, 0.0])
-    best = _least(band, start)
-    if best is None:
+    start = np.array([*known, *USUAL[2:]])
+    few = 1 / np.sqrt(band.channels * len(band.frequency))
+    unit = np.array([0.3 * ratio, 0.3, 0.3, few, 0.5, 1.0, 0.05, 5.0])
+    best, value = _least(lambda x: _value(band, x), start, unit)
+    if not band.log_frequency[0] < best[0] < band.log_frequency[-1]:
         return None
     covariance = _covariance(band, best)
-    return None if covariance is None else _mode(band, best, covariance)
+    return None if covariance is None else _mode(band, best, covariance, _without(band) - value)
 
 
 class _Band(NamedTuple):
@@ -165,73 +172,80 @@ class _Band(NamedTuple):
         return np.real(seen) / whole, by_frequency, by_ratio
 
 
+def _likelihood(band: _Band, signal: Real, log_noise: float) -> tuple[float, Real, float]:
+    """Return its negative logarithm, and the slopes by the signal of each line and by ln Se."""
+    noise = np.exp(log_noise)
+    whole = signal + noise
+    share = signal / whole
+    count, n = len(signal), band.channels
+    values, vectors = np.linalg.eigh(np.tensordot(share, band.square, axes=1))
+    along = np.einsum("i,kij,j->k", vectors[:, -1], band.square, vectors[:, -1])
+    left = (band.power - float(values[-1])) / noise
+    value = (n - 1) * count * log_noise + float(np.log(whole).sum()) + left
+    # by the signal of a line: 1/(S_k + Se) - |phi^T F_k|^2/(S_k + Se)^2
+    by_signal = (1 - along / whole) / whole
+    by_noise = (n - 1) * count - left + float((noise + share * along) @ (1 / whole))
+    return value, by_signal, by_noise
+
+
 def _value(band: _Band, x: Real) -> tuple[float, Real]:
     """Return the negative logarithm of the posterior and its slopes by the eight numbers."""
     # x = ln f_0, ln zeta, ln of S/(4 zeta^2), ln Se, p, ln of R over the third, A, q
     shape, by_mode = band.amplified(x)
-    top, noise = np.exp(x[2]), np.exp(x[3])
     ahead = band.log_frequency - x[0]
+    top = np.exp(x[2])
     mode, rest = top * shape, top * np.exp(x[5] + x[7] * ahead)
-    signal = mode + rest
-    whole = signal + noise
-    share = signal / whole
-    count, n = len(shape), band.channels
-    weighted = np.tensordot(share, band.square, axes=1)
-    values, vectors = np.linalg.eigh(weighted)
-    along = np.einsum("i,kij,j->k", vectors[:, -1], band.square, vectors[:, -1])
-    left = (band.power - float(values[-1])) / noise
-    priors = np.array(
-        [
-            (x[1] - np.log(USUAL_RATIO)) / RATIO_SPREAD,
-            x[4] / SLOPE_SPREAD,
-            (x[5] - np.log(USUAL_REST)) / REST_SPREAD,
-            (x[3] - band.quiet) / NOISE_SPREAD,
-            x[6] / LEAN_SPREAD,
-            x[7] / FALL_SPREAD,
-        ]
-    )
-    value = (n - 1) * count * x[3] + float(np.log(whole).sum()) + left
-    # by the signal of a line: 1/(S_k + Se) - |phi^T F_k|^2/(S_k + Se)^2
-    each = (1 - along / whole) / whole
+    value, each, by_noise = _likelihood(band, mode + rest, x[3])
     slopes = np.array(
         [
-            float(each @ (top * by_mode[0] - x[7] * rest)),
-            top * float(each @ by_mode[1]) + priors[0] / RATIO_SPREAD,
-            float(each @ signal),
-            (n - 1) * count
-            - left
-            + float((noise + share * along) @ (1 / whole))
-            + priors[3] / NOISE_SPREAD,
-            float(each @ (mode * ahead)) + priors[1] / SLOPE_SPREAD,
-            float(each @ rest) + priors[2] / REST_SPREAD,
-            top * float(each @ by_mode[2]) + priors[4] / LEAN_SPREAD,
-            float(each @ (rest * ahead)) + priors[5] / FALL_SPREAD,
+            each @ (top * by_mode[0] - x[7] * rest),
+            each @ (top * by_mode[1]),
+            each @ (mode + rest),
+            by_noise,
+            each @ (mode * ahead),
+            each @ rest,
+            each @ (top * by_mode[2]),
+            each @ (rest * ahead),
         ]
     )
-    return value + 0.5 * float(priors @ priors), slopes
+    away = (x - np.array([0.0, *USUAL[:2], band.quiet, *USUAL[2:]])) * PRECISION
+    return value + 0.5 * float(away @ away), slopes + away * PRECISION
 
 
-def _least(band: _Band, start: Real) -> Real | None:
-    """Return the numbers of the least value."""
+def _without(band: _Band) -> float:
+    """Return the negative logarithm of the posterior without a mode: R f^q and noise."""
+    ahead = band.log_frequency - band.log_frequency.mean()
+
+    def value(y: Real) -> tuple[float, Real]:
+        rest = np.exp(y[0] + y[1] * ahead)
+        value, each, by_noise = _likelihood(band, rest, y[2])
+        away = np.array([0.0, y[1] / FALL_SPREAD, (y[2] - band.quiet) / NOISE_SPREAD])
+        slopes = np.array([each @ rest, each @ (rest * ahead), by_noise])
+        spread = np.array([1.0, FALL_SPREAD, NOISE_SPREAD])
+        return value + 0.5 * float(away @ away), slopes + away / spread
+
+    count = len(ahead)
+    start = np.array([np.log(band.power / count), 0.0, band.quiet])
+    few = 1 / np.sqrt(band.channels * count)
+    return _least(value, start, np.array([1 / np.sqrt(count), 1.0, few]))[1]
+
+
+def _least(
+    function: Callable[[Real], tuple[float, Real]], start: Real, unit: Real
+) -> tuple[Real, float]:
+    """Return the numbers of the least value, and that; unit is about a standard deviation each."""
     from scipy.optimize import minimize
-
-    # in steps of about a standard deviation each
-    few = 1 / np.sqrt(band.channels * len(band.frequency))
-    unit = np.array([0.3 * np.exp(start[1]), 0.3, 0.3, few, 0.5, 1.0, 0.05, 5.0])
 
     def scaled(y: Real) -> tuple[float, Real]:
         x = start + unit * y
         if np.abs(x - start).max() > FARTHEST:
             return np.inf, np.zeros(len(unit))
-        value, slopes = _value(band, x)
+        value, slopes = function(x)
         return value, slopes * unit
 
-    found = minimize(
-        scaled, np.zeros(len(unit)), jac=True, method="BFGS", options={"gtol": SETTLED}
-    )
-    best = start + unit * found.x
-    inside = band.log_frequency[0] < best[0] < band.log_frequency[-1]
-    return best if np.isfinite(found.fun) and inside else None
+    how = {"gtol": SETTLED}
+    found = minimize(scaled, np.zeros(len(unit)), jac=True, method="BFGS", options=how)
+    return start + unit * found.x, float(found.fun)
 
 
 def _covariance(band: _Band, best: Real) -> Real | None:
@@ -256,15 +270,13 @@ def _covariance(band: _Band, best: Real) -> Real | None:
     return inverse if (np.diag(inverse)[:2] > 0).all() else None
 
 
-def _mode(band: _Band, best: Real, covariance: Real) -> BandMode:
+def _mode(band: _Band, best: Real, covariance: Real, gain: float) -> BandMode:
     """Say what the best numbers mean."""
     form = band.amplified(best)[0]
     top, noise = np.exp(best[2]), np.exp(best[3])
     other = top * np.exp(best[5]) + noise
     share = 1 - noise / (top * form + other)
     vectors = np.linalg.eigh(np.tensordot(share, band.square, axes=1))[1]
-    count, n = len(form), band.channels
-    flat = n * count * (np.log(band.power / (n * count)) + 1)
     edge = top * max(form[0], form[-1])
     return BandMode(
         frequency=float(np.exp(best[0])),
@@ -272,7 +284,7 @@ def _mode(band: _Band, best: Real, covariance: Real) -> BandMode:
         log_std=(float(np.sqrt(covariance[0, 0])), float(np.sqrt(covariance[1, 1]))),
         signal=float(top * form.max() / other),
         rise=float((top * form.max() + other) / (edge + other)),
-        gain=float(flat - _value(band, best)[0]),
+        gain=gain,
         shape=_turned(vectors[:, -1]),
     )
 

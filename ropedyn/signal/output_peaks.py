@@ -26,8 +26,8 @@ has 0.52 (Rayleigh)."""
 NARROW, NARROWEST = 3.0, 0.5
 """Radians of 2 pi zeta f T that a line has less than: its amplitude hardly has the time to change,
 and has none."""
-LEAST_RISE, LEAST_GAIN = 2.5, 12.0
-"""Of a mode over the ends of its band, and of the logarithm of the likelihood."""
+LEAST_RISE, LEAST_GAIN = 2.5, 8.0
+"""Of a mode over the ends of its band, and of the logarithm of the posterior over none."""
 WIDEST, QUIETEST, VAGUEST = 0.03, 2.0, 0.01
 """A mode has less damping, more density over all else, and a smaller relative uncertainty."""
 TWO = 0.2  # Where the second singular value has this share of the first, there are two modes.

@@ -58,7 +58,7 @@ def test_rope_modes_of_dirty_records_are_found_with_their_uncertainty():
     assert np.mean(np.abs(found.z) < 2) > 0.95 - 6 * np.sqrt(0.95 * 0.05 / 48)
 
 
-LARGE = range(1000, 1200)
+LARGE = range(2000, 2200)
 
 
 @pytest.fixture(scope="module")
