@@ -45,7 +45,7 @@ class OutputPeak(NamedTuple):
     signal: float  # density over that of the noise
     low: float  # band of the fit [Hz]
     high: float
-    gain: float  # of the logarithm of the likelihood
+    gain: float  # of the logarithm of the posterior, over none
 
     @classmethod
     def of(cls, mode: BandMode, band: tuple[float, float], kind: str) -> OutputPeak:
