@@ -32,8 +32,8 @@ def test_every_rope_of_known_tension_has_an_answer(found):
 
 
 @pytest.mark.claim(
-    "A cord and 35 glued tubes of known tension, ends unknown: share of 95 % intervals that miss it "
-    "(within the 10 g to which the weights are known none does)",
+    "A cord and 35 glued tubes of known tension, ends unknown: share of 95 % intervals that miss "
+    "it (within the 10 g to which the weights are known none does)",
     reference=SOURCE,
     accepted=0.05,
 )

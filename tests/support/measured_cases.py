@@ -86,7 +86,11 @@ def straw_cases():
     return found
 
 
-ENDS: Mapping[str, dict] = {"unknown": {}, "pinned": {"ends": "given"}, "clamped": {"ends": "given"}}
+ENDS: Mapping[str, dict] = {
+    "unknown": {},
+    "pinned": {"ends": "given"},
+    "clamped": {"ends": "given"},
+}
 """What is said of the ends, and what `identify` is told of it beside the scene."""
 
 
