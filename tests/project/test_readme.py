@@ -27,6 +27,13 @@ def test_fit_is_the_one_that_is_printed(names):
     assert [f"{one:.3f}" for one in found] == [value, low, high]
 
 
+def test_tension_of_the_record_is_the_one_that_is_printed(names):
+    status, *printed = re.search(r"# (\w+), (\S+) MN, from (\S+) to (\S+) MN", README).groups()
+    signed = names["signed"]
+    found = [signed.value["tension"], *signed.interval(0.95)["tension"]]
+    assert (signed.status, [f"{one / 1e6:.1f}" for one in found]) == (status, printed)
+
+
 def test_answers_are_finite(names):
     assert np.isfinite(names["frf"].value).all()
     assert np.isfinite(names["tip"].value).all()
