@@ -61,7 +61,7 @@ class IdentifyWarning(UserWarning):
     >>> import warnings
     >>> import ropedyn as rd
     >>> scene = rd.Scene(rd.Rope(2.0, 0.2), tension=500.0)
-    >>> peaks = rd.Peaks([25.0, 50.0], std=0.1)
+    >>> peaks = rd.Peaks([25.0, 50.0], std=0.1, order=[1, 2])
     >>> with warnings.catch_warnings(record=True) as told:
     ...     warnings.simplefilter("always")
     ...     fit = rd.identify(scene, peaks, ["tension", "linear_density"])

@@ -300,7 +300,14 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
 
     @computed
     def law(self) -> JointNormal:
-        """The joint distribution."""
+        """The joint distribution.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Prior({"tension": (300.0, 15.0)}).law.by_log.tolist()
+        [True]
+        """
         by_log = np.array([self.distribution[path] == LOG_NORMAL for path in self])
         correlation = None if self.covariance is None else self.correlation
         return JointNormal.of(self.mean, self.std, by_log, correlation)

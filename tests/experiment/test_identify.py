@@ -402,7 +402,10 @@ def test_a_tension_far_from_the_guess_that_orders_were_sought_with_is_named():
     f = pinned_beam(12, TENSION, 2.0)
     guess = scene(1.3 * TENSION, 2.0)
     peaks = rd.Peaks(2 * np.pi * f, std=2e-3 * np.pi * f)
-    with pytest.warns(rd.IdentifyWarning, match=r"tension is [\d.]+ times its guess: .* rad/s"):
+    with (
+        pytest.warns(rd.IdentifyWarning, match=r"tension is [\d.]+ times its guess: .* rad/s"),
+        pytest.warns(rd.IdentifyWarning, match="divide them by 2 pi"),
+    ):
         fit = rd.identify(guess, peaks, BOTH)
     assert fit.status == "ambiguous" or fit.orders[0] > 1
     assert "of orders: tension" in fit.assumed[-1]

@@ -109,15 +109,17 @@ def cord_file(tmp_path):
 
 
 PEAKS = ["--peaks", ",".join(map(str, CORD_PEAKS)), "--unknown", "tension,bending_stiffness"]
+GIVEN = ["--ends", "given", "--orders", "1,2,3,4,5"]
 
 
 def test_command_prints_the_report(cord_file, capsys):
-    assert main(["identify", cord_file, *PEAKS]) == 0
-    assert capsys.readouterr().out.rstrip() == fitted(CORD, CORD_PEAKS, BOTH).report()
+    assert main(["identify", cord_file, *PEAKS, *GIVEN]) == 0
+    peaks = rd.Peaks(CORD_PEAKS, order=[1, 2, 3, 4, 5])
+    assert capsys.readouterr().out.rstrip() == fitted(CORD, peaks, BOTH).report()
 
 
 def test_command_takes_std_orders_and_prior_and_prints_numbers(cord_file, tmp_path, capsys):
-    options = ["--std", "0.05", "--orders", "1,2,3,4,5", "--prior", "tension=1.97:0.001"]
+    options = ["--std", "0.05", *GIVEN, "--prior", "tension=1.97:0.001"]
     figure = ["--plot", str(tmp_path / "cord.png")]
     assert main(["identify", cord_file, *PEAKS, *options, *figure, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
@@ -130,7 +132,7 @@ def test_command_takes_std_orders_and_prior_and_prints_numbers(cord_file, tmp_pa
 
 def test_command_says_what_peaks_do_not_tell_beside_its_numbers(cord_file, capsys):
     few = ["--peaks", "13.88,27.89", "--unknown", "tension,bending_stiffness", "--csv"]
-    assert main(["identify", cord_file, *few]) == 0
+    assert main(["identify", cord_file, *few, "--ends", "given", "--orders", "1,2"]) == 0
     printed = capsys.readouterr()
     assert printed.out.startswith("unknown,value,std")
     assert "as many unknown as peaks" in printed.err
@@ -146,7 +148,7 @@ def test_command_reads_a_file_as_a_whole_or_its_peaks(tmp_path, capsys):
     command = ["identify", str(tmp_path / "guess.toml"), "--measured", str(tmp_path / "run.csv")]
     command += ["--unknown", "tension,bending_stiffness"]
     values = []
-    for more in ([], ["--only-peaks"]):
+    for more in ([], ["--only-peaks", "--ends", "given"]):
         assert main([*command, *more, "--json"]) == 0
         rows = json.loads(capsys.readouterr().out)["rows"]
         values.append([row["value"] for row in rows])

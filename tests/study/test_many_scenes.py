@@ -139,7 +139,7 @@ def test_answers_models_and_scenes_travel(pool):
         rd.compare(model, rd.Peaks([20.0])),
         rd.accuracy_cost(SCENES[0], rd.ask.modes(1), elements=8, repeat=1),
         rd.effect_cost(SCENES[0], rd.ask.modes(1), repeat=1),
-        rd.identify(SCENES[0], rd.Peaks([20.0], std=0.1), "tension"),
+        rd.identify(SCENES[0], rd.Peaks([20.0], std=0.1, order=[1]), "tension"),
         rd.plan_measurement(SCENES[0], modes=1),
         rd.TorsionTest(0.5, [0.0, 1.0], [0.0, 1.0]),
         rd.sweep(itself, range(3)),
@@ -267,7 +267,10 @@ def test_the_table_shows_numbers_rows_and_mappings():
 
 
 def test_the_table_shows_what_was_identified():
-    fits = rd.sweep(lambda f: rd.identify(SCENES[0], rd.Peaks([f], std=0.1), "tension"), [20, 30])
+    def identified(f):
+        return rd.identify(SCENES[0], rd.Peaks([f], std=0.1, order=[1]), "tension")
+
+    fits = rd.sweep(identified, [20, 30])
     assert fits.table().column("tension") == tuple(fit.value["tension"] for fit in fits)
 
 

@@ -27,7 +27,7 @@ from ...signal.likeness import frac, frac_over, mac, residues
 from .calculated import CalculatedPeaks, calculated_peaks, is_motion
 from .cause import likely_cause, tension_alone
 from .measured import MeasuredPeaks, measured_peaks
-from .numbering import Numbering, Verdict, common_factor, numbered, verdict, weighed
+from .numbering import Pairing, Verdict, common_factor, numbered, verdict, weighed
 from .pairing import calculated_at, drive_of, paired
 from .slips import ANGULAR, slips, slips_of_peaks
 
@@ -340,7 +340,7 @@ def compare(
 
 def _numbering(
     calculated: Real, visible: Flags, peaks: MeasuredPeaks, within: float | None
-) -> tuple[Numbering, Verdict]:
+) -> tuple[Pairing, Verdict]:
     """Return which calculated peak each measured one is, and what that is worth."""
     if peaks.order is not None:
         if peaks.last > len(calculated):
@@ -362,7 +362,7 @@ def _numbering(
 
 
 def _alike(
-    found: CalculatedPeaks, numbering: Numbering, peaks: MeasuredPeaks, hint: str
+    found: CalculatedPeaks, numbering: Pairing, peaks: MeasuredPeaks, hint: str
 ) -> list[str]:
     """Say which factor all peaks have in common, if any, and what would explain it."""
     common = common_factor(numbering, peaks.frequency, found.frequency)

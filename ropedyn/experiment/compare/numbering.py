@@ -27,7 +27,7 @@ ALIKE = 3.0  # A common factor is as many times as far from 1 as peaks scatter a
 NOTABLE = 0.01  # Smaller common factors are not worth a word.
 
 
-class Numbering(NamedTuple):
+class Pairing(NamedTuple):
     """Pairs, the factor that they have in common, and what they are worth."""
 
     order: Integer  # (k,) which calculated one each measured one is, from 1; 0: none
@@ -48,11 +48,11 @@ class Verdict(NamedTuple):
     reason: str
 
 
-def numbered(measured: Real, calculated: Real, std: Real) -> list[Numbering]:
+def numbered(measured: Real, calculated: Real, std: Real) -> list[Pairing]:
     """Return the numberings worth naming, the most probable first."""
     plain = weighed(measured, calculated, std, paired(measured, calculated))
     found = {plain.order.tobytes(): plain}
-    begun: dict[bytes, Numbering] = {}
+    begun: dict[bytes, Pairing] = {}
     for shift in SHIFTS.tolist():
         order = paired(measured / math.exp(shift), calculated)
         if np.count_nonzero(order) < FEWEST or order.tobytes() in begun:
@@ -73,7 +73,7 @@ def numbered(measured: Real, calculated: Real, std: Real) -> list[Numbering]:
     return sorted(found.values(), key=lambda one: -one.evidence)
 
 
-def verdict(numberings: list[Numbering]) -> Verdict:
+def verdict(numberings: list[Pairing]) -> Verdict:
     """Say whether the first of numberings is the right one."""
     first = numberings[0]
     if first.pairs == 0:
@@ -88,7 +88,7 @@ def verdict(numberings: list[Numbering]) -> Verdict:
     return Verdict("ambiguous", "several pairings are possible: " + "; or ".join(said))
 
 
-def common_factor(numbering: Numbering, measured: Real, calculated: Real) -> float | None:
+def common_factor(numbering: Pairing, measured: Real, calculated: Real) -> float | None:
     """Return the factor that all pairs have in common, None where they have none worth naming."""
     at = numbering.order > 0
     if numbering.pairs < FEWEST or abs(numbering.shift) < NOTABLE:
@@ -98,13 +98,13 @@ def common_factor(numbering: Numbering, measured: Real, calculated: Real) -> flo
     return math.exp(numbering.shift) if abs(numbering.shift) > ALIKE * scatter else None
 
 
-def _said(numbering: Numbering, probability: float) -> str:
+def _said(numbering: Pairing, probability: float) -> str:
     """Return a numbering in words."""
     modes = ", ".join("-" if k == 0 else str(k) for k in numbering.order.tolist())
     return f"modes {modes} with a factor of {math.exp(numbering.shift):.4g} (p = {probability:.2f})"
 
 
-def weighed(measured: Real, calculated: Real, std: Real, order: Integer) -> Numbering:
+def weighed(measured: Real, calculated: Real, std: Real, order: Integer) -> Pairing:
     """Return pairs with their factor and their evidence."""
     # p = sum over scatters s of prod [(1 - a) N(d; c, s^2 + std^2) + a/ln 2] x what finding c costs
     # x strays x modes that are seen and missed up to the highest; d = ln f/g
@@ -112,12 +112,12 @@ def weighed(measured: Real, calculated: Real, std: Real, order: Integer) -> Numb
     away = np.log(measured[at] / calculated[order[at] - 1])
     shift = float(np.median(away)) if len(away) else 0.0
     if len(measured) == 0:
-        return Numbering(order, 0.0, 0.0, 0.0)
+        return Pairing(order, 0.0, 0.0, 0.0)
     range_ = math.log(measured.max() / measured.min()) + ALONE
     strays = int(np.sum(~at)) * math.log(STRAY / range_)
     modes = len(away) * math.log(1 - MISSED) + _missed(order)
     if len(away) == 0:
-        return Numbering(order, shift, 0.0, strays)
+        return Pairing(order, shift, 0.0, strays)
     near = FARTHEST * (float(np.median(np.abs(away - shift))) + float(SCATTER[0]))
     square = SCATTER[:, None] ** 2 + np.nan_to_num(std[at] / measured[at]) ** 2
     normal = np.exp(-((away - shift) ** 2) / (2 * square)) / np.sqrt(2 * np.pi * square)
@@ -125,7 +125,7 @@ def weighed(measured: Real, calculated: Real, std: Real, order: Integer) -> Numb
     told = np.sqrt(1 / (1 / square).sum(axis=1)) / math.hypot(FACTOR, SCATTER[-1])
     each = fit + np.log(np.minimum(told, 1.0)) - shift**2 / (2 * FACTOR**2)
     log = float(each.max() + np.log(np.mean(np.exp(each - each.max()))))
-    return Numbering(order, shift, near, log + strays + modes)
+    return Pairing(order, shift, near, log + strays + modes)
 
 
 def _missed(order: Integer) -> float:

@@ -29,7 +29,7 @@ class NotConverged(SolveError):
     """Of a row that needs more steps than it is given; users are told a `SolveError`."""
 
 
-class Told(NamedTuple):
+class Directions(NamedTuple):
     """Directions of the variables that change residuals, and how much."""
 
     of_rows: Real  # (n, m, q) orthonormal, of the residuals
@@ -37,11 +37,11 @@ class Told(NamedTuple):
     direction: Real  # (n, q, p) orthonormal, of the variables
 
     @classmethod
-    def of(cls, slope: Real, least: float = BLIND) -> Told:
+    def of(cls, slope: Real, least: float = BLIND) -> Directions:
         """Take the singular values of slopes, shape (n, m, p), those above a share of the first."""
         return cls(*np.linalg.svd(slope, full_matrices=False)).above(least)
 
-    def above(self, least: float) -> Told:
+    def above(self, least: float) -> Directions:
         """Return what is told by more than a share of the first."""
         floor = least * np.maximum(self.size[:, :1], TINY)
         return self._replace(size=self.size * (self.size > floor))
@@ -81,9 +81,9 @@ class Point:
     slope: Real  # (n, m, p)
 
     @computed
-    def told(self) -> Told:
+    def told(self) -> Directions:
         """What residuals tell there, above rounding."""
-        return Told.of(self.slope, ROUNDING)
+        return Directions.of(self.slope, ROUNDING)
 
     @classmethod
     def of(cls, misfit: Misfit, rows: Index, u: Real) -> Point:
@@ -153,7 +153,7 @@ def minimise(
 
     Variables that are not free, shape (n, p), stay.
     """
-    told = start.told if free is None else Told.of(start.slope * free[:, None, :], ROUNDING)
+    told = start.told if free is None else Directions.of(start.slope * free[:, None, :], ROUNDING)
     descent = _Descent(misfit, rows, start, told.above(BLIND).basis(free), digits)
     descent.ahead = told if descent.plain else None
     going = np.flatnonzero(descent.basis.any(axis=(1, 2)))
@@ -179,7 +179,7 @@ class _Descent:
     basis: Real  # (n, p, p)
     digits: Mapping[str, float]
     plain: bool = field(init=False)  # whether the bases are axes
-    ahead: Told | None = field(default=None, init=False)  # what is told where the next step begins
+    ahead: Directions | None = field(default=None, init=False)  # where the next step begins
     evaluations: Integer = field(init=False)  # (n,)
     point: Point = field(init=False)  # the best
     y: Real = field(init=False)  # (n, p) of it
@@ -229,7 +229,7 @@ class _Descent:
         """Try a step of each row; return the rows that need another."""
         told, self.ahead = self.ahead, None
         if told is None:
-            told = Told.of(self._slope(going) * self.unit[going, None, :], ROUNDING)
+            told = Directions.of(self._slope(going) * self.unit[going, None, :], ROUNDING)
         residual = self.point.residual[going]
         cost, along = np.einsum("nm,nm->n", residual, residual), told.along(residual)
         # end where a linear step would gain too little
@@ -240,7 +240,7 @@ class _Descent:
             if not more.any():
                 return going[:0]
             going, cost, along = going[more], cost[more], along[more]
-            told = Told(*(one[more] for one in told))
+            told = Directions(*(one[more] for one in told))
         radius = self.radius[going]
         step = _within(told, along, radius)
         length, bent = np.linalg.norm(step, axis=1), told.size * step
@@ -275,7 +275,7 @@ class _Descent:
         return anew
 
 
-def _within(told: Told, along: Real, radius: Real) -> Real:
+def _within(told: Directions, along: Real, radius: Real) -> Real:
     """Return the best steps that are no longer than a radius, by directions, shape (n, q).
 
     Of min |S w + along|^2 + alpha |w|^2 the length falls as alpha grows; 1/length is nearly linear

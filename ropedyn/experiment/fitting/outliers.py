@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base.array import Flags, Real
 from ...scene.path import unit_of
-from .minimum import TINY, Told
+from .minimum import TINY, Directions
 from .unknown import CALIBRATION, Unknowns
 
 LEVEL = 0.01  # Of so many ropes without an outlier a peak is named.
@@ -103,7 +103,7 @@ class _Left:
     def of(cls, residual: Real, slope: Real, kept: Flags, given: Flags, peaks: int) -> _Left:
         """Leave out each by the closed form (Cook, Weisberg, Residuals and Influence, 2.2)."""
         slope, residual = slope * kept[:, :, None], residual * kept
-        told = Told.of(slope)
+        told = Directions.of(slope)
         inverse = told.direction.swapaxes(1, 2) * told.inverse[:, None, :]
         along = np.einsum("npq,nq->np", inverse, told.along(residual))
         of_rows = told.of_rows * (told.size > 0)[:, None, :]

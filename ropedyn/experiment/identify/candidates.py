@@ -33,7 +33,7 @@ class Candidate:
     Examples
     --------
     >>> import ropedyn as rd
-    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
     >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension", orders=[1, 2, 3])
     >>> first = fit.candidates[0]
     >>> first.probability, first.orders.tolist(), first.interval(0.95)["tension"].round()

@@ -81,7 +81,7 @@ class Fit(Identified):
     Examples
     --------
     >>> import ropedyn as rd
-    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+    >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
     >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
     >>> [round(float(one["tension"]), 1) for one in (fit.value, fit.std)], fit.orders
     ([999.4, 2.1], array([1, 2, 3]))
@@ -138,7 +138,16 @@ class Fit(Identified):
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """The peaks that are taken for no mode, in words."""
+        """The peaks that are taken for no mode, in words.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
+        >>> peaks = rd.Peaks([25.1, 31.7, 49.9, 75.0], std=0.1)
+        >>> rd.identify(scene, peaks, "tension", orders=[1, 0, 2, 3]).left_out
+        ('peak 2 at 31.7 Hz is taken for no mode of the rope (stray)',)
+        """
         frequency, details = self.measured, self.details or ({},) * len(self.orders)
         kinds = [one.get("kind", "mode") for one in details]
         return tuple(
@@ -182,7 +191,7 @@ class Fit(Identified):
         Examples
         --------
         >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
         >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
         >>> fit.plot(of="budget").get_xlabel()
         'tension [N]'
@@ -213,7 +222,7 @@ class Fit(Identified):
         Examples
         --------
         >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
         >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
         >>> fit.report().splitlines()[0]
         'tension  999.4 N   95 %: 995.2 to 1004 N'
@@ -233,7 +242,7 @@ class Fit(Identified):
         --------
         >>> import json
         >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
         >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
         >>> sheet = json.loads(fit.to_json())
         >>> sheet["schema"], sheet["status"], round(sheet["tension"]["median"], 1)

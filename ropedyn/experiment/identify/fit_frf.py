@@ -15,12 +15,12 @@ from ...curves.measured import Measured
 from ...signal.hits import alike
 from ..fitting.minimum import Point
 from ..fitting.misfit import LineMisfit, LogMisfit, OneByOne, PriorMisfit, Response, unseen_of
+from ..fitting.solution import Solution, Task
 from ..fitting.unknown import Unknowns
 from .known import Solved, kept_bounds
 from .notes import RESPONSE, notes_of
 from .response_fit import ResponseFit
 from .response_start import ROW, near, start_of_response
-from .solution import Solution, Task
 
 ROUGH = {"ftol": 1e-4, "xtol": 1e-6, "gtol": 1e-8}  # Tolerances of a fit that only leads on.
 ROUNDS = 4  # Noise and fit take turns so often at most.

@@ -16,9 +16,9 @@ from ...scene.path import with_values
 from ...scene.scene import Scene
 from ..fitting.misfit import PeakMisfit, PriorMisfit, unseen_of
 from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.peak_start import start_of_peaks
+from ..fitting.solution import Solution, Task
 from ..fitting.unknown import Unknowns
-from .peak_start import start_of_peaks
-from .solution import Solution, Task
 
 Ropes = NDArray[np.void]
 """What was measured of many ropes, with the fields of `kind_of_ropes`."""

@@ -20,12 +20,12 @@ from ...base.table import Table, numbers
 from ...curves.peaks import Peaks
 from ...family.rows import Filled, Means, Shared, one_by_one
 from ...response.question import workers_of
+from ..fitting.solution import Solution
 from .fit import Fit
-from .found import Found, teller
+from .found import Found, by_peaks_alone
 from .known import LEVELS, METHODS, checked_level, kept_bounds
 from .notes import notes_of, noteworthy
 from .one_rope import RopeTask
-from .solution import Solution
 from .told import Told
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class SideBySide:
     def _tell(self, i: int, peaks: Peaks, orders: Any, scene: Any) -> Told:
         if scene is self.found.identification.scene:
             return self.found.told(i)
-        return teller(self.found.identification.how)(peaks, orders, scene)
+        return by_peaks_alone(self.found.identification.how, peaks, orders, scene)
 
     def errors(self) -> Mapping[int, RopedynError]:
         """Return why ropes have none, by their number."""
@@ -214,8 +214,9 @@ class Fits(Answer, Sequence[Fit | None]):
         Examples
         --------
         >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=500.0)
-        >>> print(rd.identify(scene, [rd.Peaks([25.0, 50.0], std=0.1)], "tension").report())
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
+        >>> peaks = rd.Peaks([25.0, 50.0, 75.0], std=0.1)
+        >>> print(rd.identify(scene, [peaks], "tension").report())
         1 ropes: 1 trusted
         """
         states = {one: self.status.count(one) for one in dict.fromkeys(self.status)}

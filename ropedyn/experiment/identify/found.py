@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -17,10 +16,10 @@ from ...curves.peaks import Peaks
 from ...family.rows import Means, Shared
 from ...response.question import workers_of
 from ...scene.scene import Scene
+from ..fitting.solution import Solution, kind_of_solution
 from .fit_peaks import Identification, Options, Ropes, kind_of_ropes
 from .known import intervals
-from .solution import Solution, kind_of_solution
-from .told import Told, by_least_squares, by_posterior
+from .told import Told, by_least_squares
 
 ROPES = 1024  # Sent together.
 
@@ -91,12 +90,7 @@ def find(
     )
 
 
-def teller(how: Options) -> Callable[[Peaks, Integer, Scene], Told]:
-    """Return what tells the numbers of one rope by its peaks, their orders and a scene."""
-    return partial(_least_squares if how.ends == "given" else by_posterior, how)
-
-
-def _least_squares(how: Options, peaks: Peaks, orders: Integer, scene: Scene) -> Told:
+def by_peaks_alone(how: Options, peaks: Peaks, orders: Integer, scene: Scene) -> Told:
     """Return what least squares tell of one rope."""
     found = find(scene, how, [peaks], [orders], {})
     if found.reasons:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
+from functools import partial
 from typing import Any, overload
 
 import numpy as np
@@ -34,10 +35,11 @@ from .fit import Fit
 from .fit_frf import fit_response
 from .fit_peaks import Options
 from .fits import Fits, each_alone, fits_of
-from .found import find, teller
+from .found import by_peaks_alone, find
 from .one_rope import RopeTask
 from .peak_damping import OF_DAMPING
 from .response_fit import ResponseFit
+from .told import Told, by_posterior
 
 ENDS = ("unknown", "given")
 ROTATIONAL = re.compile(r"ends\[[01]\]\.spring\.beta")
@@ -187,15 +189,15 @@ def identify(
     --------
     >>> import ropedyn as rd
     >>> rope = rd.Rope(2.0, 0.5, bending_stiffness=1.0)
-    >>> scene = rd.Scene(rope, tension=100.0, ends=("pinned", "pinned"))
+    >>> scene = rd.Scene(rope, tension=900.0, ends=("pinned", "pinned"))
     >>> peaks = rd.Peaks([11.21, 22.58, 34.29, 46.49], std=0.01)
     >>> fit = rd.identify(scene, peaks, ["tension", "bending_stiffness"], ends="given")
     >>> print(fit)
     identified
-    unknown              value        std  95 % from       to
-    -----------------  -------  ---------  ---------  -------
-    tension            999.615   0.867523    997.914  1001.31
-    bending_stiffness  2.05243  0.0277407    1.99806   2.1068
+    unknown              value        std  95 % from       to  status
+    -----------------  -------  ---------  ---------  -------  -------
+    tension            999.615   0.867523    997.915  1001.32  trusted
+    bending_stiffness  2.05243  0.0277407    1.99806   2.1068  trusted
     """
     check.instance(scene, "scene", Scene, "a Scene")
     whole = isinstance(measured, Measured)
@@ -229,7 +231,7 @@ def identify(
     Shared(np.zeros(0), workers_of(threads), executor, progress)  # which checks them
     _weigh(given)
     record = _said_of(measured) if isinstance(measured, Record) else None
-    fit = RopeTask(_guessed(scene, how, given), how, given, teller(how), record).fit()
+    fit = RopeTask(_guessed(scene, how, given), how, given, _teller(how), record).fit()
     _warn(fit.notes)
     return fit
 
@@ -312,8 +314,13 @@ def _many(
     alike = how.ends == "given" and not how.damping and not is_moved(scene)
     if alike and len(numbered) == len(measured):
         return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
-    tasks = [RopeTask(_guessed(scene, how, one), how, one, teller(how)) for one in measured]
+    tasks = [RopeTask(_guessed(scene, how, one), how, one, _teller(how)) for one in measured]
     return each_alone(tasks, refused, **workers)
+
+
+def _teller(how: Options) -> Callable[[Peaks, Integer, Scene], Told]:
+    """Return what tells the numbers of one rope by its peaks, their orders and a scene."""
+    return partial(by_peaks_alone if how.ends == ENDS[1] else by_posterior, how)
 
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:
@@ -329,7 +336,8 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
         unknowns = unknowns.with_calibration(1.0)
     response = Response(unknowns, above_zero(measured), how.elements, how.element)
     found = fit_response(response, PriorMisfit.of(unknowns, how.prior))
-    return changed(found, notes=(*found.notes, *slips(measured, scene.compile())))
+    slipped = () if scale else slips(measured, scene.compile())  # of a scale they would be one
+    return changed(found, notes=(*found.notes, *slipped))
 
 
 def _warn(notes: Sequence[str]) -> None:

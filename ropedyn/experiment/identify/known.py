@@ -14,7 +14,7 @@ from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table, numbers
 from ...scene.scene import Scene
-from .solution import Solution
+from ..fitting.solution import Solution
 
 LEVELS = (0.5, 0.68, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999)
 """Levels whose intervals a file keeps."""

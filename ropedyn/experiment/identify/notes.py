@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Flags, Index, Real
-from .solution import Solution
+from ..fitting.solution import Solution
 
 INVOLVED = 1e-6  # A number takes part in a direction from this share on.
 

@@ -11,7 +11,7 @@ from ...base.answer import Frozen, axes
 from ...base.array import Real
 from ...base.errors import RopedynError
 from ...scene.scene import Scene
-from .solution import LEAST_NOISE
+from ..fitting.solution import LEAST_NOISE
 from .told import Told
 
 WORDS = ("pinned", "clamped")

@@ -18,10 +18,10 @@ from ...scene.damping import ModalDamping
 from ...scene.scene import Scene
 from ..fitting.minimum import Point
 from ..fitting.misfit import OneByOne
+from ..fitting.solution import Solution, Task
 from ..fitting.unknown import Unknowns
 from .known import checked_level, intervals
 from .notes import Data, notes_of
-from .solution import Solution, Task
 
 STEP = 1e-4  # Of central differences in the logarithm of a number: off by a square of it.
 ALIKE = 1e-5  # Numbers that act alike to this share are not told apart.

@@ -19,8 +19,8 @@ from ...model import Model
 from ..fitting.minimum import Minimum, Point, minimise
 from ..fitting.misfit import LogMisfit, OneByOne, PeakMisfit, Response
 from ..fitting.natural_frequencies import NaturalFrequencies
+from ..fitting.peak_start import start_of_peaks
 from ..fitting.unknown import CALIBRATION
-from .peak_start import start_of_peaks
 
 SEEN = 1e-3  # Modes with less than this part of the largest residue are not looked for.
 HIDDEN = 3  # So many of the lowest modes may be missing below the first line.

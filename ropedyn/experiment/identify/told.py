@@ -12,13 +12,13 @@ from ...curves.peaks import Peaks
 from ...scene.path import unit_of, with_values
 from ...scene.scene import Scene
 from ..fitting.outliers import outliers
+from ..fitting.solution import Solution
 from ..posterior.answer import Posterior
 from ..posterior.posterior import posterior
 from ..posterior.task import PosteriorTask
 from .fit_peaks import Options
 from .known import METHODS, Known, Solved, intervals
 from .notes import notes_of
-from .solution import Solution
 
 CAUSES = {"linear_density": "mass"}
 """Words of causes that are not the paths of the numbers."""

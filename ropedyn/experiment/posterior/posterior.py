@@ -65,7 +65,7 @@ def posterior(task: PosteriorTask) -> Posterior:
     )
 
 
-class _Fit(NamedTuple):
+class _Explained(NamedTuple):
     """How well the likeliest point fits."""
 
     chi_square: float
@@ -73,7 +73,7 @@ class _Fit(NamedTuple):
     probability: float
 
 
-def _fit(task: PosteriorTask, cloud: Cloud, best: Cloud) -> _Fit:
+def _fit(task: PosteriorTask, cloud: Cloud, best: Cloud) -> _Explained:
     """Say what noise leaves of chi-square, and compare both where its size is given.
 
     What it exceeds its least value by on average is how many numbers the peaks tell (Spiegelhalter
@@ -86,9 +86,9 @@ def _fit(task: PosteriorTask, cloud: Cloud, best: Cloud) -> _Fit:
     told = float(cloud.chi_square.mean() - least) / widened + (TENSION in task.unknown)
     freedom = max(peaks - told, 0.0)
     if task.std is None:
-        return _Fit(np.nan, freedom, np.nan)
+        return _Explained(np.nan, freedom, np.nan)
     # with less than half a degree of freedom nothing is left to be tested
-    return _Fit(least, freedom, float(chdtrc(freedom, least)) if freedom > 0.5 else np.nan)
+    return _Explained(least, freedom, float(chdtrc(freedom, least)) if freedom > 0.5 else np.nan)
 
 
 def _budget(

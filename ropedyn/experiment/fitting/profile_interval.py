@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.array import Flags, Index, Real
-from ..fitting.minimum import Point, Told, minimise
-from ..fitting.misfit import Misfit
+from .minimum import Directions, Point, minimise
+from .misfit import Misfit
 
 CLOSE = 1e-3  # A bound is known to this share of its distance: 1e-4 of what is covered.
 ACCEPTED = 0.02  # A linear step may take off this share of the growth and leaves its square.
@@ -77,7 +77,7 @@ class Profile:
         free = np.ones(self.path[some].shape, dtype=bool)
         free[np.arange(len(some)), self.i[some]] = False
         slope = start.slope[there] * free[there][:, None, :]
-        along = Told.of(slope).along(start.residual[there])
+        along = Directions.of(slope).along(start.residual[there])
         less = np.einsum("nq,nq->n", along, along)
         linear = less <= accepted[there]
         left[there[linear]] = cost[there[linear]] - less[linear]

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from ...base.array import Flags, Index, Real
 from ...base.computed import computed
 from ...base.errors import RopedynError, SceneError
-from ..fitting.minimum import FARTHEST, Minimum, NotConverged, Point, Told, minimise
-from ..fitting.misfit import JointMisfit, Misfit, PriorMisfit
-from ..fitting.unknown import Unknowns
+from .minimum import FARTHEST, Directions, Minimum, NotConverged, Point, minimise
+from .misfit import JointMisfit, Misfit, PriorMisfit
 from .profile_interval import Profile
+from .unknown import Unknowns
 
 NOMINAL = 1e-3  # Where nothing tells the noise this relative one is thought of.
 LEAST_NOISE = float(np.finfo(float).eps)  # Relative residuals below it are rounding.
@@ -32,7 +32,7 @@ UNLIKELY = 1e-3  # Residuals that chance makes as large with less probability ar
 
 def freedom_of(slope: Real, peaks: int) -> Real:
     """Return degrees of freedom, (n,), of the first rows, the peaks: 1 less its leverage each."""
-    told, used = Told.of(slope), np.abs(slope[:, :peaks]).any(axis=2)
+    told, used = Directions.of(slope), np.abs(slope[:, :peaks]).any(axis=2)
     leverage = np.where(told.size[:, None, :] > 0, told.of_rows[:, :peaks] ** 2, 0.0).sum(axis=2)
     return np.where(used, 1 - leverage, 0.0).sum(axis=1)
 
@@ -54,9 +54,9 @@ class Uncertainty:
     noise: Real  # (n,) standard deviation of residuals; infinite where nothing tells it
 
     @computed
-    def told(self) -> Told:
+    def told(self) -> Directions:
         """What is told."""
-        return Told.of(self.slope)
+        return Directions.of(self.slope)
 
     @computed
     def basis(self) -> Real:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.array import Flags, Index, Integer, Real
-from ..fitting.minimum import BLIND, Point, Told
-from ..fitting.misfit import PeakMisfit
+from .minimum import BLIND, Directions, Point
+from .misfit import PeakMisfit
 
 LEAST = 0.1  # A number falls to no less than this part of itself in a step.
 NEAR = 0.1  # Smaller relative changes need no further step.
@@ -79,7 +79,7 @@ def _frozen_step(ratio: Real, relative: Real, start: Real, movable: Flags) -> Re
     while len(going):
         # by least squares, none below its least, some not at all
         some, held = matrix[going], np.where(free[going], 0.0, change[going])
-        told = Told.of(some * free[going][:, None, :])
+        told = Directions.of(some * free[going][:, None, :])
         along = told.along(1 - ratio[going] - np.einsum("nkp,np->nk", some, held))
         best = np.einsum("nqp,nq->np", told.direction, along * told.inverse)
         change[going] = np.where(free[going], best, held)
