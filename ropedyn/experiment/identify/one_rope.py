@@ -190,6 +190,8 @@ class RopeTask:
             shape=peaks.shape,
             kind=peaks.kind,
             model_std=how.model_std,
+            elements=how.elements,
+            element=how.element,
         )
         status = decided(found)
         named = [one for one in found[:MOST] if one.probability > NAMEABLE]

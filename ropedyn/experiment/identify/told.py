@@ -151,6 +151,8 @@ def by_posterior(how: Options, peaks: Peaks, orders: Integer, scene: Scene) -> T
             how.prior,
             model_std=how.model_std,
             seed=how.seed,
+            elements=how.elements,
+            element=how.element,
         )
     )
     return Told(

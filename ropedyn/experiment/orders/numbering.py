@@ -52,6 +52,8 @@ def numberings(
     shape: ArrayLike | None = None,
     kind: Sequence[str] | None = None,
     model_std: float = 0.0,
+    elements: int | None = None,
+    element: str | None = None,
 ) -> tuple[Numbering, ...]:
     """Find which mode each peak is, the likeliest first; none where peaks show no modes.
 
@@ -67,7 +69,8 @@ def numberings(
     peaks = SortedPeaks.of(measured[order], noise, kinds == "double", model_std)
     shapes = None if shape is None else np.asarray(shape)[order]
     chances = _chances(scene, measured[order], kinds, sensors, shapes)
-    standardised = Standardised.of(scene, unknown, prior or {}, any_ends=ends == "unknown")
+    mesh = {"elements": elements, "element": element}
+    standardised = Standardised.of(scene, unknown, prior or {}, ends == "unknown", **mesh)
     found = search(standardised, peaks, chances)
     none = float(chances(np.zeros((1, len(order)), dtype=np.int64))[0])
     return _clusters(found, standardised, none, len(unknown), np.argsort(order))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ def given_orders(orders: Any, peaks: Peaks) -> Index | None:
     if isinstance(orders, str):
         check.one_of(orders, "orders", ("auto",))
         return None if peaks.order is None else np.array(peaks.order, dtype=np.intp)
-    check.instance(orders, "orders", (list, tuple, np.ndarray), what)
+    check.instance(orders, "orders", (Sequence, np.ndarray), what)
     most = np.iinfo(np.int32).max
     each = [check.count(n, f"orders[{i}]", least=0, most=most) for i, n in enumerate(orders)]
     modes = [n for n in each if n > 0]

@@ -46,7 +46,13 @@ class Standardised:
 
     @classmethod
     def of(
-        cls, scene: Scene, unknown: Sequence[str], prior: Known, *, any_ends: bool
+        cls,
+        scene: Scene,
+        unknown: Sequence[str],
+        prior: Known,
+        any_ends: bool,  # nobody knows them
+        elements: int | None = None,
+        element: str | None = None,
     ) -> Standardised:
         """Take what is sought, what else is not certain, and the ends where nobody knows them."""
         beside = tuple(path for path in prior if path not in unknown and _felt(scene, path))
@@ -64,7 +70,7 @@ class Standardised:
         spring = np.array([path.endswith(".spring.beta") for path in paths])
         stiff = np.array([unit_of(path).startswith("N") for path in paths]) & ~spring
         lead = paths.index(TENSION) if TENSION in unknown else 0
-        calculated = NaturalFrequencies.of(unknowns)
+        calculated = NaturalFrequencies.of(unknowns, elements, element)
         main = np.array([path in {TENSION, BENDING, paths[lead]} for path in paths])
         return cls(calculated, mean, mixing, spread, spring, stiff, main, lead)
 

@@ -71,7 +71,7 @@ class Ridge:
         used = task.used
         return cls(
             space,
-            task.scene.family(space.paths),
+            task.scene.family(space.paths, elements=task.elements, element=task.element),
             np.log(np.asarray(task.frequency)[used]),
             1 / (peak**2 + model**2),
             np.asarray(task.orders)[used] - 1,

@@ -41,6 +41,8 @@ class PosteriorTask:
     model_std: float = 0.0  # relative error of the model at each frequency
     ends: bool = True  # whether rotational springs of the ends are not known
     seed: int = 0
+    elements: int | None = None
+    element: str | None = None
 
     def __post_init__(self) -> None:
         check.instance(self.scene, "scene", Scene, "a Scene")

@@ -79,8 +79,6 @@ def notes_of(
         if low > 0 or high < 1:
             side = "from 0" if high == 1 else "to infinity" if low == 0 else "either way"
             notes.append(f"the peaks do not limit {path} {side}: only what is assumed does")
-    if task.std is None:
-        notes.append("the noise is estimated: the peaks have no std")
     if probability < UNLIKELY:
         notes.append(
             f"the peaks fit worse than their std allow (probability {probability:.1g}): "
