@@ -6,11 +6,12 @@ import argparse
 import warnings
 from typing import Any
 
+from ..base.computed import changed
 from ..base.errors import IdentifyWarning, SceneError
 from ..base.unit import MOTIONS
 from ..curves.peaks import Peaks
 from ..curves.record.record import Record
-from ..experiment.identify.identify import ENDS, identify
+from ..experiment.identify.identify import ENDS, identify, said_of
 from ..scene.scene import Scene
 from . import text
 from .experiment import STD_OF_FITTED
@@ -50,7 +51,8 @@ WIDE = ("tension", "bending_stiffness")
 
 def _tension(options: argparse.Namespace) -> int:
     scene = Scene.load(options.scene)
-    peaks = _peaks(options)
+    record = _record(options)
+    peaks = Peaks(options.peaks, std=options.std) if record is None else _peaks(options, record)
     bends = "beta" in scene.coordinates
     unknown = options.unknown or list(WIDE[: 1 + bends])
     with warnings.catch_warnings():
@@ -65,24 +67,32 @@ def _tension(options: argparse.Namespace) -> int:
             model_std=options.model_std,
             seed=options.seed,
         )
-    return shown_fit(options, fit, None if options.peaks is not None else peaks)
+    if record is None:
+        return shown_fit(options, fit)
+    return shown_fit(options, changed(fit, record=said_of(record)), peaks)
 
 
-def _peaks(options: argparse.Namespace) -> Any:
-    """Return what was measured: peaks, or a record of which they are."""
+def _peaks(options: argparse.Namespace, record: Record) -> Peaks:
+    """Return the peaks of a record, by its force where it has one."""
+    if record.force is None:
+        return record.peaks(options.below)
+    if options.below is not None:
+        raise SceneError("--below must be left out of a record with a force, got both")
+    return Peaks.of(record.frf())
+
+
+def _record(options: argparse.Namespace) -> Record | None:
+    """Return the record, None where peaks are given in its place."""
     if (options.record is None) == (options.peaks is None):
         raise SceneError("either RECORD or --peaks must be given, got both or none")
     if options.peaks is not None:
         refuse(options, OF_RECORD, "RECORD")
-        return Peaks(options.peaks, std=options.std)
+        return None
     refuse(options, (STD_OF_FITTED,), "--peaks")
-    record = _record(options)
-    if record.force is not None:
-        return Peaks.of(record.frf())
-    return record.peaks(options.below)
+    return _read(options)
 
 
-def _record(options: argparse.Namespace) -> Record:
+def _read(options: argparse.Namespace) -> Record:
     """Read the record; a file that was written here says everything itself."""
     if options.sensors is not None and options.channel is not None:
         raise SceneError("--sensors must be left out with --channel, got both")

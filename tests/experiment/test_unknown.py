@@ -7,8 +7,8 @@ import ropedyn as rd
 from ropedyn.experiment.fitting.minimum import Point
 from ropedyn.experiment.fitting.misfit import PeakMisfit, PriorMisfit
 from ropedyn.experiment.fitting.natural_frequencies import NaturalFrequencies
-from ropedyn.experiment.fitting.unknown import Unknowns
 from ropedyn.experiment.fitting.solution import Task
+from ropedyn.experiment.fitting.unknown import Unknowns
 
 TIE = ("ends[0].spring.beta", "ends[1].spring.beta")
 NAME = "ends[0].spring.beta = ends[1].spring.beta"

@@ -29,7 +29,6 @@ OWN_TIME = re.compile(r"ropedyn start (?P<start>\S+) rate (?P<rate>\S+)$")
 """The second and third line of a function that was written here."""
 HISTORY, OVER_TIME = 1, 17
 """Types of a function over time, and of its abscissa."""
-COMMA = re.compile(r"\d,\d")
 
 
 class RecordContent(NamedTuple):
@@ -158,13 +157,7 @@ def _text(file: Path, said: Said, layout: dict[str, Any]) -> RecordContent:
             f"path must be a record, got {str(file)!r}, which is a frequency response: "
             "Measured.read reads it"
         )
-    try:
-        sheet = sheet_of(file, text, **layout)
-    except SceneError as error:
-        if layout["decimal"] == "." and COMMA.search(text) and "decimal" not in str(error):
-            hint = 'numbers with commas need decimal=","'
-            raise SceneError(f"{error}: {hint}, and perhaps delimiter=") from error
-        raise
+    sheet = sheet_of(file, text, **layout)
     width = sheet.numbers.shape[1]
     there = ", ".join(map(repr, sheet.names or ())) or f"{width} columns without names"
 

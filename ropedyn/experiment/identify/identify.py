@@ -230,13 +230,13 @@ def identify(
         return fits
     Shared(np.zeros(0), workers_of(threads), executor, progress)  # which checks them
     _weigh(given)
-    record = _said_of(measured) if isinstance(measured, Record) else None
+    record = said_of(measured) if isinstance(measured, Record) else None
     fit = RopeTask(_guessed(scene, how, given), how, given, _teller(how), record).fit()
     _warn(fit.notes)
     return fit
 
 
-def _said_of(record: Record) -> dict[str, Any]:
+def said_of(record: Record) -> dict[str, Any]:
     """Return what a record says of itself, as JSON knows it."""
     return {
         "rate": record.rate,

@@ -16,6 +16,7 @@ from ...base.computed import changed
 from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
+from ...scene.path import with_values
 from ...scene.scene import Scene
 from ..compare.slips import slips_of_peaks
 from ..fitting.natural import is_moved, shift_by_damping
@@ -50,6 +51,8 @@ NO_MODES = (
     "no numbering explains the peaks better than that all are strays, or fewer than two are modes: "
     "give orders, a prior of the tension, or a record with more modes"
 )
+
+UNSETTLED = "numbers by frequencies and damping by widths did not settle: they still change"
 
 AMBIGUOUS = (
     "ambiguous: the peaks do not tell which modes they are, see the candidates; a prior of the "
@@ -118,13 +121,30 @@ class RopeTask:
         if status == "refused":
             return self._refused(time.perf_counter() - began)
         orders = np.array(found[0].orders, dtype=np.int64)
-        told = self._told(orders)
+        told, damped = self._both(orders)
         if given_orders(self.how.orders, self.peaks) is None:
             slipped = slips_of_peaks(np.asarray(self.peaks.frequency), self.scene.compile())
             told = replace(told, notes=(*told.notes, *slipped))
-        damped = self._damping(told, orders)
         fit = self._fit(told, damped, orders, self._decision(status, found, told, damped))
         return changed(fit, cost=replace(fit.cost, seconds=time.perf_counter() - began))
+
+    def _both(self, orders: Integer) -> tuple[Told, PeakDamping | None]:
+        """Return what frequencies and widths tell, each with what the other has told."""
+        told = self._told(orders)
+        damped = self._damping(told, orders)
+        if damped is None or not is_moved(self.scene):
+            return told, damped
+        for _ in range(PASSES):
+            before = told.value, damped.value
+            found = with_values(self.scene, dict(zip(damped.unknown, damped.value.tolist())))
+            told = replace(self, scene=found)._told(orders)
+            damped = self._damping(told, orders)
+            if all(
+                np.allclose(*pair, rtol=SETTLED, atol=0)
+                for pair in zip(before, (told.value, damped.value))
+            ):
+                return told, damped
+        return replace(told, notes=(*told.notes, UNSETTLED)), damped
 
     def _told(self, orders: Integer) -> Told:
         """Return what peaks tell whose natural frequencies damping has moved."""

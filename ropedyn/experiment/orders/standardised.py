@@ -50,6 +50,7 @@ class Standardised:
         scene: Scene,
         unknown: Sequence[str],
         prior: Known,
+        *,
         any_ends: bool,  # nobody knows them
         elements: int | None = None,
         element: str | None = None,
