@@ -131,18 +131,17 @@ class RopeTask:
     def _both(self, orders: Integer) -> tuple[Told, PeakDamping | None]:
         """Return what frequencies and widths tell, each with what the other has told."""
         told = self._told(orders)
+        if not self.how.damping:
+            return told, None
         damped = self._damping(told, orders)
-        if damped is None or not is_moved(self.scene):
+        if not is_moved(self.scene):
             return told, damped
         for _ in range(PASSES):
-            before = told.value, damped.value
+            before = np.concatenate([told.value, damped.value])
             found = with_values(self.scene, dict(zip(damped.unknown, damped.value.tolist())))
             told = replace(self, scene=found)._told(orders)
             damped = self._damping(told, orders)
-            if all(
-                np.allclose(*pair, rtol=SETTLED, atol=0)
-                for pair in zip(before, (told.value, damped.value))
-            ):
+            if np.allclose(before, [*told.value, *damped.value], rtol=SETTLED, atol=0):
                 return told, damped
         return replace(told, notes=(*told.notes, UNSETTLED)), damped
 
@@ -176,10 +175,8 @@ class RopeTask:
         known = known if damped is None else WithDamping(known, damped)
         return Decision(status, candidates, known)
 
-    def _damping(self, told: Told, orders: Integer) -> PeakDamping | None:
-        """Return what the damping ratios of the peaks tell, where that is asked."""
-        if not self.how.damping:
-            return None
+    def _damping(self, told: Told, orders: Integer) -> PeakDamping:
+        """Return what the damping ratios of the peaks tell."""
         peaks, how = self.peaks, self.how
         std = None if peaks.damping_ratio_std is None else np.asarray(peaks.damping_ratio_std)
         return damping_of_peaks(

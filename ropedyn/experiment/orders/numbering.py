@@ -69,8 +69,14 @@ def numberings(
     peaks = SortedPeaks.of(measured[order], noise, kinds == "double", model_std)
     shapes = None if shape is None else np.asarray(shape)[order]
     chances = _chances(scene, measured[order], kinds, sensors, shapes)
-    mesh = {"elements": elements, "element": element}
-    standardised = Standardised.of(scene, unknown, prior or {}, any_ends=ends == "unknown", **mesh)
+    standardised = Standardised.of(
+        scene,
+        unknown,
+        prior or {},
+        any_ends=ends == "unknown",
+        elements=elements,
+        element=element,
+    )
     found = search(standardised, peaks, chances)
     none = float(chances(np.zeros((1, len(order)), dtype=np.int64))[0])
     return _clusters(found, standardised, none, len(unknown), np.argsort(order))
