@@ -415,6 +415,16 @@ def test_a_tension_far_from_the_guess_that_orders_were_sought_with_is_named():
 
 # --- refusals ---------------------------------------------------------------------------------
 
+
+def test_a_beam_without_tension_is_told_to_give_its_ends():
+    beam = rd.Scene(rd.Rope(LENGTH, 0.5, bending_stiffness=20.0), tension=0.0)
+    peaks = rd.Peaks(beam.compile().modes(5).frequency, std=0.01, order=range(1, 6))
+    with pytest.raises(rd.SceneError, match=r'tension must be > 0 .*, got 0; .* ends="given"'):
+        rd.identify(beam, peaks, "bending_stiffness")
+    fit = rd.identify(beam, peaks, "bending_stiffness", ends="given")
+    assert fit.value["bending_stiffness"] == pytest.approx(20.0, rel=1e-9)
+
+
 STRING = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=900.0)
 DAMPED = dataclasses.replace(
     STRING,

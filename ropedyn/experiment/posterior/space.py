@@ -135,7 +135,10 @@ def space_of(task: PosteriorTask, fixed: Fixed | None = None) -> Space:
     scene, unknown = task.scene, task.unknown
     pivot, guess = TENSION in unknown, value_at(scene, TENSION)
     if guess <= 0:
-        raise SceneError(f"tension must be > 0 where ends are unknown [N], got {guess:g}")
+        raise SceneError(
+            f"tension must be > 0 where ends are unknown [N], got {guess:g}; of a beam without "
+            'tension say ends="given"'
+        )
     stiff = STIFFNESS in unknown and STIFFNESS not in task.prior
     loose = [i for i in range(2) if _is_loose(task, i)]
     own = {TENSION, *(SPRINGS[i] for i in loose), *([STIFFNESS] if stiff else [])}
