@@ -150,3 +150,13 @@ def test_a_comparison_says_the_slips():
     found = rd.compare(string, 2 * np.pi * string.modes(5).frequency)
     assert any("divide them by 2 pi" in note for note in found.notes)
     assert found.status == "ambiguous"
+
+
+def test_a_huge_stray_costs_nothing_and_is_named():
+    scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, parts=[rd.PointMass(0.7, 0.05)])
+    f = scene.compile().modes(5).frequency
+    peaks = rd.Peaks([*f, 1e6], std=[*(1e-3 * f), 1e3])
+    fit = rd.identify(scene, peaks, "tension")
+    assert fit.orders.tolist() == [1, 2, 3, 4, 5, 0]
+    with pytest.raises(rd.SceneError, match=r"at most 5000 modes, got a peak at 1e\+06 Hz"):
+        rd.compare(scene.compile(), peaks)

@@ -116,9 +116,19 @@ def calculated_peaks(
     return found
 
 
+MOST = 5000
+"""Modes that a comparison looks at."""
+
+
 def undamped_peaks(model: Model, highest: float, more: int, least: int = 0) -> CalculatedPeaks:
     """Return the natural frequencies up to the highest measured one, and some more."""
-    number = max(model.count(below=highest) + more, least) + len(model.coordinates) + 1
+    below = model.count(below=highest)
+    if below > MOST:
+        raise SceneError(
+            f"measured must be of at most {MOST} modes, got a peak at {highest:.6g} Hz, below "
+            f"which the scene has {below}: leave it out"
+        )
+    number = max(below + more, least) + len(model.coordinates) + 1
     return _of_modes(solve_modes(model, number, below=None, solver="sweep", strict=False))
 
 

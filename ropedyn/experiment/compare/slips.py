@@ -29,6 +29,7 @@ TREND = 0.35  # Amplitudes grow by a whole power of frequency to so much.
 NODE = 0.3  # Residues of less than this share of the largest say less.
 PROVED = 0.2  # Standard error of that power at most.
 ALMOST = 0.9  # Of all peaks so many pair.
+FARTHER = 20.0  # Modes above so many times the median peak are not looked at.
 BELOW = 0.4  # Of the first mode, less than this no peak pairs.
 MUCH = 5.0  # By which the evidence of angular frequencies is more than that of frequencies.
 TURN = math.radians(1.02 * math.pi)  # Phases in radians that were read as degrees are less.
@@ -75,7 +76,8 @@ def slips_of_peaks(frequency: Real, model: Model) -> tuple[str, ...]:
     frequency = np.asarray(frequency, dtype=np.float64)
     if len(frequency) < FEWEST:
         return ()
-    found = undamped_peaks(model, float(frequency.max()), len(frequency)).frequency
+    highest = min(float(frequency.max()), FARTHER * float(np.median(frequency)))
+    found = undamped_peaks(model, highest, len(frequency)).frequency
     slower, unknown = frequency / (2 * np.pi), np.full(len(frequency), np.nan)
     if np.mean(slower > BELOW * found.min(initial=np.inf)) < ALMOST:
         return ()
