@@ -70,6 +70,8 @@ class History(Answer):
         Absolute error that the elements cause: the distance to the motion of the continuous spans
         of the same scene and the error of that. 0 for continuous spans, infinite where they have no
         answer, as where something is not linear.
+    error : ndarray, shape (responses, t)
+        Absolute error of the values, all of it: of modes that were left out, steps and elements.
     energy : dict of ndarray, shape (t,)
         "kinetic" and "strain", what the forces put in since t = 0 ("input") and what dampers took
         ("dissipated") [J]: kinetic + strain - input + dissipated stays what it was at the first
@@ -127,6 +129,11 @@ class History(Answer):
     energy = Read[dict[str, Real]]("balance", "Energies over time [J], each shape (t,).")
     step_error = Read[Real]("deviation", "Error that steps cause, as value.")
     mesh_error = Read[Real]("deviation", "Error that elements cause, as value.")
+
+    @property
+    def error(self) -> Real:
+        """Absolute error of the values: of modes left out, steps and elements together."""
+        return self.truncation_error[:, None] + self.step_error + self.mesh_error
 
     @property
     def labels(self) -> tuple[str, ...]:

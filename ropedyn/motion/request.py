@@ -74,7 +74,7 @@ class Run:
         """Check what is asked."""
         direct = is_direct(model, method)
         check.one_of(quantity, "quantity", MOTIONS)
-        t = _times(time)
+        t = checked_times(time)
         drives, given = _driven(model, drive, force, t)
         radius = check.number(spectral_radius, "spectral_radius", sign="nonnegative")
         if radius > 1:
@@ -227,7 +227,8 @@ def why_direct(model: Compiled) -> str:
     return ""
 
 
-def _times(given: Any) -> Real:
+def checked_times(given: Any) -> Real:
+    """Return times that increase."""
     t = check.numbers(given, "time", "s", sign="nonnegative")
     if len(t) < 2:
         raise SceneError(f"time must hold two times at least [s], got {len(t)}")

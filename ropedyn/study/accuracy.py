@@ -42,7 +42,7 @@ class AccuracyCost(Answer):
     elements : ndarray of int, shape (rows,)
         How many; of continuous spans how many spans.
     solver : ndarray of str, shape (rows,)
-        "sweep", "lapack" or "band".
+        "sweep", "lapack" or "band"; of motion over time the method.
     seconds : ndarray, shape (rows,)
         Processor time of the question, one thread: the median [s]; of modes that of frequencies,
         shapes come when they are asked for.
@@ -52,13 +52,15 @@ class AccuracyCost(Answer):
         Median processor time of `Scene.compile` [s].
     error : ndarray, shape (rows,)
         True relative error, the largest of all modes or lines; 1.1e-16 where none is seen. Modes
-        are compared in order. Values of which continuous spans have no correct digit themselves,
+        are compared in order; motion over time in parts of the largest value of each response.
+        Values of which continuous spans have no correct digit themselves,
         as a response that is 0 by symmetry, are left out.
     estimated_error : ndarray, shape (rows,)
         Estimated relative error, of mesh and rounding together, the largest too.
     digits_lost : ndarray, shape (rows,)
         Decimal digits lost to rounding, of 15.7: those in which an assembled solver differs from
-        the sweep along the same chain; of the sweep those that its own bound gives up.
+        the sweep along the same chain; of the sweep those that its own bound gives up. Of motion
+        over time those lost to the method: in which one differs from ``"auto"``, or given up.
     refusal : ndarray of str, shape (rows,)
         Why there is no answer, empty where there is one; numbers of such rows are NaN.
 
@@ -194,7 +196,7 @@ def accuracy_cost(
     *,
     elements: int | Sequence[int] | None = None,
     element: str | Sequence[str] = ("rigid", "tensed", "continuous"),
-    solver: str | Sequence[str] = ("sweep", "lapack"),
+    solver: str | Sequence[str] | None = None,
     repeat: int = 7,
     progress: Progress = None,
 ) -> AccuracyCost:
@@ -207,14 +209,16 @@ def accuracy_cost(
     ----------
     scene : Scene
         What is asked about.
-    question : ModesQuestion or FRFQuestion
-        Such as ``rd.ask.modes(10)`` or ``rd.ask.frf(frequency, drive=("z", 0.5))``.
+    question : ModesQuestion, FRFQuestion or MotionQuestion
+        Such as ``rd.ask.modes(10)``, ``rd.ask.frf(frequency, drive=("z", 0.5))`` or
+        ``rd.ask.motion(time, drive=("z", 0.5), force=rd.Step(1.0))``.
     elements : int or sequence of int, optional
         Of chains; powers of two from 8 to 4096, assembled within about a second, where left out.
     element : str or sequence of str
-        Kinds of element; continuous spans are one row, by the sweep.
-    solver : str or sequence of str
-        ``"sweep"``, ``"lapack"``, for a frequency response also ``"band"``.
+        Kinds of element; of continuous spans there is a row for each solver that takes them.
+    solver : str or sequence of str, optional
+        ``"sweep"`` and ``"lapack"`` where left out, for a frequency response also ``"band"``; of
+        motion over time one of the methods of `Model.transient`, ``"auto"`` where left out.
     repeat : int
         How often each is timed, in turns, warmed up; calls that take more than 0.05 s at most three
         times. Of the times the median and the quartiles are kept, of the processor, one thread.
@@ -247,12 +251,14 @@ def accuracy_cost(
     """
     check_question(scene, question)
     kinds = _words(element, "element", KINDS)
-    solvers = _words(solver, "solver", question.solvers)
+    given = question.usual if solver is None else solver
+    solvers = _words(given, "solver", question.solvers)
     counts = None if elements is None else _counts(elements)
     check.count(repeat, "repeat", most=10_000)
     report = reporter(progress)
-    if kinds == ("continuous",) and "sweep" not in solvers:
-        raise SceneError(f'solver must have "sweep" for continuous spans, got {solvers}')
+    if kinds == ("continuous",) and not set(solvers) & set(question.of_spans):
+        able = " or ".join(f'"{one}"' for one in question.of_spans)
+        raise SceneError(f"solver must have {able} for continuous spans, got {solvers}")
     truth = Truth.of(scene, question)
     ways = truth.ways(kinds, counts, solvers)
     if not ways:

@@ -42,9 +42,12 @@ class EffectCost(Answer):
         [1]"``, the largest change of any damping ratio, which has no error bars. Of a frequency
         response ``"largest [dB]"`` and ``"median [dB]"``, of the level |20 log10(without/with)| of
         all lines, and ``"peak shift [Hz]"``, from the largest peak to the nearest one without the
-        effect, where that has the same number. NaN where there is nothing to compare.
+        effect, where that has the same number. Of motion over time ``"largest [%]"``, ``"rms [%]"``
+        of all times and ``"peak [%]"``, of the largest value, in percent of that. NaN where there
+        is nothing to compare.
     error : ndarray, shape (rows,)
-        Error bars of both answers, of mesh and rounding, where the change is largest [Hz, dB].
+        Error bars of both answers, of mesh and rounding, where the change is largest [Hz, dB, %];
+        infinite where none are known, as those of a chain that is not linear.
     beyond_error : ndarray of bool, shape (rows,)
         Whether the effect changes any frequency or level by more than the error bars there, or
         modes or responses are only there with it.
@@ -93,7 +96,7 @@ class EffectCost(Answer):
 
     @property
     def largest(self) -> Real:
-        """The largest change, of frequency [Hz] or of level [dB], shape (rows,)."""
+        """The largest change, of frequency [Hz], level [dB] or motion [%], shape (rows,)."""
         return next(iter(self.change.values()))
 
     @property
@@ -145,7 +148,9 @@ class EffectCost(Answer):
             return "no answer without it"
         if self.beyond_error[row]:
             return "yes"
-        return f"none beyond {'' if self.way == 'continuous' else 'mesh and '}rounding"
+        if np.isinf(self.error[row]):
+            return "not told: its error bars are not known"
+        return f"none beyond {'' if self.way.startswith('continuous') else 'mesh and '}rounding"
 
     def table(self) -> Table:
         """Return a row for each effect that is left out, after one for the whole scene."""
@@ -175,7 +180,7 @@ def effect_cost(
     *,
     elements: int | None = None,
     element: str | None = None,
-    solver: str = "sweep",
+    solver: str | None = None,
     repeat: int = 7,
     progress: Progress = None,
 ) -> EffectCost:
@@ -187,12 +192,14 @@ def effect_cost(
     ----------
     scene : Scene
         What is asked about.
-    question : ModesQuestion or FRFQuestion
-        Such as ``rd.ask.modes(10)`` or ``rd.ask.frf(frequency, drive=("z", 0.5))``.
+    question : ModesQuestion, FRFQuestion or MotionQuestion
+        Such as ``rd.ask.modes(10)``, ``rd.ask.frf(frequency, drive=("z", 0.5))`` or
+        ``rd.ask.motion(time, drive=("z", 0.5), force=rd.Step(1.0))``.
     elements, element
         As in `Scene.compile`: continuous spans where left out.
-    solver : str
-        ``"sweep"``, ``"lapack"``, for a frequency response also ``"band"``.
+    solver : str, optional
+        ``"sweep"`` where left out, ``"lapack"``, for a frequency response also ``"band"``; of
+        motion over time one of the methods of `Model.transient`, ``"auto"`` where left out.
     repeat : int
         How often each is timed, in turns, as in `accuracy_cost`.
     progress : None, True or callable
@@ -229,6 +236,7 @@ def effect_cost(
     rope must have a stiffness or the scene a tension: te
     """
     check_question(scene, question)
+    solver = question.solvers[0] if solver is None else solver
     check.one_of(solver, "solver", question.solvers)
     check.count(repeat, "repeat", most=10_000)
     report = reporter(progress)

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ..ask import Question
 from ..base.array import Flags, Real
 from ..base.errors import SolveError
-from ..experiment.compare.difference import relative
 from ..scene.scene import Scene
 from .way import Way, answered, ask_once
 
@@ -48,7 +47,7 @@ class Truth:
         error = 0.0
         for parts in CUTS:
             cut = Way.of(same, scene, {"elements": parts * spans, "element": "continuous"}).answer
-            error = max(error, _largest(relative(same.values(cut), values), known))
+            error = max(error, _largest(same.apart(same.values(cut), values), known))
         return Truth(scene, question, same, values, known, error, spans)
 
     def ways(
@@ -59,8 +58,9 @@ class Truth:
         for kind in kinds:
             if kind != "continuous":
                 found += [(kind, n, s) for s in solvers for n in counts or self._sensible(kind, s)]
-            elif "sweep" in solvers:
-                found.append((kind, self.spans, "sweep"))
+            else:
+                able = [s for s in solvers if s in self.question.of_spans]
+                found += [(kind, self.spans, s) for s in able]
         return found
 
     def _sensible(self, kind: str, solver: str) -> Iterator[int]:
@@ -68,7 +68,7 @@ class Truth:
         first = max(FEWEST, (self.spans - 1).bit_length())
         for power in range(first, max(MOST, first + 3) + 1):
             model = self.scene.compile(elements=2**power, element=kind)
-            if solver == "lapack" and self.question.work(model) > LONGEST:
+            if self.question.work(model, solver) > LONGEST:
                 return
             yield 2**power
 
@@ -82,9 +82,9 @@ class Truth:
         values, bound = self.same.values(same.answer), self.same.rounding(same.answer)
         error, estimated = self.error, bound
         if not continuous:
-            error = _largest(relative(values, self.values), self.known)
+            error = _largest(self.same.apart(values, self.values), self.known)
             estimated = self.same.mesh(same.answer) + bound
-        lost = bound if solver == "sweep" else self._rounding(way, values, bound)
+        lost = bound if solver == self.question.solvers[0] else self._rounding(way, values, bound)
         rounding = _largest(lost, self.known)
         return way, {
             "error": max(error, EPSILON / 2),
@@ -93,9 +93,9 @@ class Truth:
         }
 
     def _rounding(self, way: Way, values: NDArray[Any], bound: Real) -> Real:
-        """Return how far values are from those of the sweep along the same chain, if it has any."""
+        """Return how far values are from those of the first solver of the same chain, if any."""
         try:
-            return relative(values, self.same.values(ask_once(self.same, way.model)))
+            return self.same.apart(values, self.same.values(ask_once(self.same, way.model)))
         except SolveError:
             return bound
 

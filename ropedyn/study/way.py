@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import FRFQuestion, ModesQuestion, Question
+from ..ask import QUESTIONS, Question
 from ..base import check
 from ..base.errors import RopedynError, SceneError
 from ..base.stopwatch import Times, timed
@@ -31,10 +31,10 @@ class Way:
 
     @classmethod
     def of(
-        cls, question: Question, scene: Scene, how: Mapping[str, Any], solver: str = "sweep"
+        cls, question: Question, scene: Scene, how: Mapping[str, Any], solver: str | None = None
     ) -> Way:
         """Compile and ask."""
-        model = scene.compile(**how)
+        model, solver = scene.compile(**how), solver or question.solvers[0]
         return cls(question, scene, how, solver, model, ask_once(question, model, solver))
 
     @property
@@ -47,13 +47,13 @@ class Way:
         return words(self.model.element, len(self.model.x) - 1, self.solver)
 
 
-def ask_once(question: Question, model: Model, solver: str = "sweep") -> Any:
-    """Ask a model as it is timed: in one thread."""
-    return question.of(model, solver=solver, threads=1)
+def ask_once(question: Question, model: Model, solver: str | None = None) -> Any:
+    """Ask a model as it is timed: in one thread, where no solver is given the first one."""
+    return question.of(model, solver=solver or question.solvers[0], threads=1)
 
 
 def answered(
-    question: Question, scene: Scene, how: Mapping[str, Any], solver: str = "sweep"
+    question: Question, scene: Scene, how: Mapping[str, Any], solver: str | None = None
 ) -> Way:
     """Ask a scene, and refuse a question whose answer is empty."""
     way = Way.of(question, scene, how, solver)
@@ -63,8 +63,10 @@ def answered(
 
 
 def words(element: str, elements: int, solver: str) -> str:
-    """Say a way in words; continuous spans are only swept."""
-    return element if element == "continuous" else f"{element}, {elements}, {solver}"
+    """Say a way in words; to all but motion over time continuous spans are swept."""
+    if element != "continuous":
+        return f"{element}, {elements}, {solver}"
+    return element if solver == "sweep" else f"{element}, {solver}"
 
 
 # Tries a way, and returns it with the numbers of its row.
@@ -74,7 +76,7 @@ Attempt = Callable[[], tuple[Way, Mapping[str, Any]]]
 def check_question(scene: Scene, question: Question) -> None:
     """Refuse what is no scene, and what is no question."""
     check.instance(scene, "scene", Scene, "a Scene")
-    check.instance(question, "question", (ModesQuestion, FRFQuestion), "made by ropedyn.ask")
+    check.instance(question, "question", QUESTIONS, "made by ropedyn.ask")
 
 
 def priced(

@@ -269,6 +269,58 @@ row(
 )
 
 
+ASK = {"drive": ("z", 0.5), "force": rd.Step(1.0)}
+MADE = [0.0, 0.1]
+row("ask.motion", "time", lambda v: rd.ask.motion(v, **ASK), NOT_AN_ARRAY, BAD_ARRAY)
+row(
+    "ask.motion",
+    "drive",
+    lambda v: rd.ask.motion(MADE, **ASK | {"drive": v}),
+    {"number": 3, "text": "z"},
+)
+row(
+    "ask.motion",
+    "force",
+    lambda v: rd.ask.motion(MADE, **ASK | {"force": v}),
+    {"text": "step", "class": rd.Step, "complex": 1j},
+    {"short": [1.0], "long": [1.0, 2.0, 3.0], "nan": [0.0, np.nan], "infinite": [0.0, np.inf]},
+)
+row(
+    "ask.motion, several drives",
+    "force",
+    lambda v: rd.ask.motion(MADE, drive=[("z", 0.5), ("z", 0.2)], force=v),
+    {},
+    {"one": rd.Step(1.0), "three": [rd.Step(1.0)] * 3},
+)
+row(
+    "ask.motion",
+    "response",
+    lambda v: rd.ask.motion(MADE, **ASK, response=v),
+    {"number": 3, "text": "z"},
+    {"no_points": []},
+)
+row(
+    "ask.motion",
+    "start",
+    lambda v: rd.ask.motion(MADE, start=v),
+    {"number": 3.0, "point": ("z", 0.5), "pairs": [(("z", 0.5), 1.0)]},
+)
+row(
+    "ask.motion",
+    "quantity",
+    lambda v: rd.ask.motion(MADE, **ASK, quantity=v),
+    NOT_A_WORD,
+    {"unknown": "receptance", "empty": ""},
+)
+row(
+    "ask.motion",
+    "tolerance",
+    lambda v: rd.ask.motion(MADE, **ASK, tolerance=v),
+    NOT_A_NUMBER,
+    NOT_FINITE | NEGATIVE | ZERO,
+)
+
+
 @pytest.mark.parametrize(("argument", "call", "wrong_types", "wrong_values"), arguments(ARGUMENTS))
 def test_what_has_no_meaning_is_refused_by_name(argument, call, wrong_types, wrong_values):
     refuses(argument, call, wrong_types, wrong_values)

@@ -169,7 +169,7 @@ def test_without_elements_chains_are_doubled_until_they_are_long_or_slow(monkeyp
     monkeypatch.setattr(truth, "MOST", 6)
     answer = cost(BEAM, rd.ask.modes(1), element="tensed", solver="sweep")
     assert answer.elements.tolist() == [8, 16, 32, 64]
-    monkeypatch.setattr(truth, "LONGEST", rd.ask.modes(1).work(BEAM.compile(elements=16)))
+    monkeypatch.setattr(truth, "LONGEST", rd.ask.modes(1).work(BEAM.compile(elements=16), "lapack"))
     answer = cost(BEAM, rd.ask.modes(1), element="tensed", solver="lapack")
     assert answer.elements.tolist() == [8, 16]
 
@@ -363,3 +363,39 @@ def test_the_figure_has_a_curve_for_each_way_and_its_marks():
 def test_the_figure_of_refusals_alone_is_empty():
     ax = made([math.nan], [math.nan]).plot()
     assert not ax.containers
+
+
+# motion over time
+
+TIMES = np.linspace(0.0, 0.1, 401)
+PUSH = {"drive": ("z", 0.5), "force": rd.Sine(1.0, 12.0)}
+SWUNG = STRING.replace(damping=rd.ViscousDamping(0.4))
+
+
+def test_errors_of_motion_are_those_to_the_motion_of_continuous_spans():
+    answer = cost(SWUNG, rd.ask.motion(TIMES, **PUSH), elements=(16, 32), element="rigid")
+    exact = SWUNG.compile().transient(TIMES, **PUSH).value
+    for error, n in zip(answer.error, (16, 32)):
+        found = SWUNG.compile(elements=n, element="rigid").transient(TIMES, **PUSH).value
+        assert error == pytest.approx(np.abs(found - exact).max() / np.abs(exact).max(), rel=1e-9)
+    # parts of a largest value, of the chain and of the true motion, which differ by the error
+    apart = np.abs(answer.estimated_error / answer.error - 1)
+    assert (apart < answer.error).all()
+
+
+def test_each_method_of_motion_is_a_row_and_what_it_refuses_too():
+    methods = ("modal", "direct")
+    question = rd.ask.motion(TIMES, **PUSH, tolerance=1e-3)
+    answer = cost(SWUNG, question, elements=16, element=("rigid", "continuous"), solver=methods)
+    assert answer.solver.tolist() == ["modal", "direct", "modal", "direct"]
+    assert answer.way(2) == "continuous, modal"
+    assert "elements must be given" in answer.refusal[3]
+    # steps add to what elements cause
+    assert 0 < abs(answer.error[1] - answer.error[0]) < 2e-3
+
+
+def test_chains_of_motion_are_doubled_until_they_are_slow(monkeypatch):
+    question = rd.ask.motion(TIMES, **PUSH)
+    monkeypatch.setattr(truth, "LONGEST", question.work(SWUNG.compile(elements=16), "auto"))
+    answer = cost(SWUNG, question, element="tensed")
+    assert answer.elements.tolist() == [8, 16]

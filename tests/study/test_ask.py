@@ -15,6 +15,12 @@ SCENE = rd.Scene(
 )
 GRID = np.linspace(5.0, 150.0, 40)
 POINTS = {"drive": ("z", 0.3), "response": [("z", 0.5), ("beta", 0.7), ("M_beta", 0.4)]}
+TIMES = np.linspace(0.0, 0.05, 41)
+PUSHED = {
+    "drive": [("z", 0.3), ("alpha", 0.3)],
+    "force": [(rd.Sine(1.0, 40.0), np.sin(TIMES)), rd.Step(0.01)],
+    "response": [("z", 0.5), ("alpha", 0.9)],
+}
 
 MODELS = {
     "continuous": SCENE.compile(),
@@ -32,6 +38,14 @@ PAIRS = {
         rd.ask.frf(GRID, quantity="mobility", **POINTS),
         lambda model, **how: model.frf(GRID, quantity="mobility", **POINTS, **how),
     ),
+    "motion": (
+        rd.ask.motion(TIMES, **PUSHED, quantity="velocity"),
+        lambda m, **how: m.transient(TIMES, **PUSHED, quantity="velocity", **how),
+    ),
+    "free motion": (
+        rd.ask.motion(TIMES, start={("z", 0.3): 1.0}, response=("z", 0.7)),
+        lambda m, **how: m.transient(TIMES, start={("z", 0.3): 1.0}, response=("z", 0.7), **how),
+    ),
     "drives": (
         rd.ask.frf([20.0], drive=[("z", 0.3), ("alpha", 0.3)]),
         lambda model, **how: model.frf([20.0], drive=[("z", 0.3), ("alpha", 0.3)], **how),
@@ -41,7 +55,8 @@ PAIRS = {
 
 def bits(answer):
     value = answer.frequency if isinstance(answer, rd.Modes) else answer.value
-    return value.shape, value.tobytes(), answer.rounding_error.tobytes()
+    error = answer.truncation_error if isinstance(answer, rd.History) else answer.rounding_error
+    return value.shape, value.tobytes(), error.tobytes()
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -132,3 +147,19 @@ def test_points_that_a_rope_does_not_have_are_refused_when_it_is_asked(question)
     short = SCENE.replace(rope=ROPE.replace(length=0.2), parts=()).compile()
     with pytest.raises(rd.SceneError, match=r"drive\[1\] must lie on the rope"):
         question.of(short)
+
+
+def test_samples_of_a_force_are_kept_as_they_were():
+    force = np.sin(TIMES)
+    question = rd.ask.motion(TIMES, drive=("z", 0.3), force=force)
+    before = bits(question.of(MODELS["tensed"]))
+    force[:] = 0.0
+    assert bits(question.of(MODELS["tensed"])) == before
+
+
+def test_a_question_of_motion_is_asked_by_the_method_that_is_named():
+    scene = SCENE.replace(damping=rd.RayleighDamping(1.0, 1e-5))
+    question = rd.ask.motion(TIMES, drive=("z", 0.3), force=rd.Sine(1.0, 40.0))
+    model = scene.compile(elements=12, element="rigid")
+    for method in ("modal", "direct"):
+        assert question.of(model, solver=method).cost.method == method

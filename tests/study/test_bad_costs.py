@@ -75,7 +75,7 @@ row(
     "accuracy_cost",
     "solver",
     lambda v: accuracy_cost(solver=v),
-    without(NOT_A_WORD, "list") | {"none_inside": ["sweep", None]},
+    without(NOT_A_WORD, "list", "none") | {"none_inside": ["sweep", None]},
     {"unknown": "magic", "nothing": [], "of_responses_only": "band"},
 )
 row(
@@ -143,7 +143,7 @@ row(
     "effect_cost",
     "solver",
     lambda v: effect_cost(solver=v),
-    NOT_A_WORD,
+    without(NOT_A_WORD, "none"),
     {"unknown": "magic", "of_responses_only": "band", "of_chains_only": "lapack"},
 )
 row("effect_cost", "repeat", lambda v: effect_cost(repeat=v), NOT_A_COUNT, BAD_COUNT)

@@ -490,3 +490,50 @@ def test_the_figure_of_refusals_alone_has_their_names():
     ax = made(4.0, math.nan).plot()
     assert [text.get_text() for text in ax.get_yticklabels()] == ["effect 0\nno answer without it"]
     assert not ax.patches
+
+
+# motion over time
+
+TIMES = np.linspace(0.0, 0.2, 201)
+TAPPED = rd.ask.motion(TIMES, drive=("z", 0.3), force=rd.Impulse(0.01, duration=4e-3))
+
+
+def test_what_damping_changes_of_a_motion_is_what_it_takes_of_a_swinging_string():
+    # a string let go from its first mode, nearly: the pluck of the middle has modes k with 1/k^2
+    scene = STRING.replace(damping=rd.ViscousDamping(0.4))
+    question = rd.ask.motion(TIMES, start={("z", 0.5): 1.0}, response=("z", 0.5))
+    answer = cost(scene, question)
+    change = changes(answer, "viscous damping")
+    free = STRING.compile().transient(TIMES, start={("z", 0.5): 1.0}, response=("z", 0.5)).value
+    damped = scene.compile().transient(TIMES, start={("z", 0.5): 1.0}, response=("z", 0.5)).value
+    apart = 100 * np.abs(free - damped) / np.abs(damped).max()
+    assert change["largest [%]"] == pytest.approx(apart.max(), rel=1e-12)
+    assert change["rms [%]"] == pytest.approx(np.sqrt(np.mean(apart**2)), rel=1e-12)
+    # both begin at the pluck, their largest value
+    assert change["peak [%]"] == pytest.approx(0.0, abs=1e-3)
+    assert answer.beyond_error[row(answer, "viscous damping")]
+
+
+def test_twist_that_nothing_couples_changes_no_bit_of_a_motion():
+    answer = cost(rd.Scene(TWISTED, tension=300.0), TAPPED)
+    for effect in ("twist", "polar inertia"):
+        assert set(changes(answer, effect).values()) == {0.0}
+        assert answer.verdict(row(answer, effect)) == "none beyond rounding"
+
+
+def test_a_change_whose_error_bars_nobody_knows_is_not_told():
+    scene = STRING.replace(parts=[rd.Stop(0.5, gap=1.0, stiffness=1e4)])
+    answer = cost(scene, TAPPED, elements=16, element="rigid")
+    at = row(answer, "stop")
+    assert np.isinf(answer.error[at])
+    assert answer.verdict(at) == "not told: its error bars are not known"
+
+
+def test_a_motion_that_is_only_there_with_an_effect_is_counted():
+    laid = rd.Scene(LAID, tension=300.0)
+    question = rd.ask.motion(
+        TIMES[:20], drive=("z", 0.3), force=rd.Sine(1.0, 20.0), response=("alpha", 0.5)
+    )
+    answer = cost(laid, question)
+    assert answer.only_with[row(answer, "lay")] == 1
+    assert answer.beyond_error[row(answer, "lay")]

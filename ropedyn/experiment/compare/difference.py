@@ -15,6 +15,7 @@ from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
 from ...eigen.spectrum import in_hertz
 from ...model import Model
+from ...motion.history import History
 from ...response.frf import FRF
 
 # Modes are told apart by whose kinetic energy they have: a cross section that turns with dz/dx
@@ -29,6 +30,7 @@ FURTHEST = 16  # Modes are paired with those among at most so many times as many
 # What is measured of a change, the largest first.
 OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
+OF_MOTION = ("largest [%]", "rms [%]", "peak [%]")
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,16 @@ def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
     """Return relative differences: 0 where both are 0, 1 where only the right value is."""
     size = np.where(right == 0, np.abs(found), np.abs(right))
     return np.divide(np.abs(found - right), size, out=np.zeros(size.shape), where=size > 0)
+
+
+def of_largest(found: Real, values: Real) -> Real:
+    """Return differences (responses, t) over the largest value of each response.
+
+    0 of a response that is 0 where the difference is too, else infinite.
+    """
+    size = np.broadcast_to(np.abs(values).max(axis=1, keepdims=True), found.shape)
+    ratio = np.where(found == 0, 0.0, np.inf)
+    return np.divide(np.abs(found), size, out=ratio, where=size > 0)
 
 
 # --- modes ------------------------------------------------------------------------------------
@@ -190,6 +202,31 @@ def _peak_shift(whole: FRF, left: FRF) -> float:
             if np.abs(away).argmin() == largest:
                 shifts.append(float(away[largest]))
     return max(shifts, key=abs, default=np.nan)
+
+
+# --- motion over time ---------------------------------------------------------------------------
+
+
+def change_of_motion(whole: History, left: History) -> AnswerChange:
+    """Compare motion over time with that of what is left, in percent of the largest value."""
+    before, after = whole.value, left.value
+    stands = np.where(before.any(axis=1, keepdims=True), before, after)
+    percent, error = (
+        100 * of_largest(of, stands) for of in (after - before, whole.error + left.error)
+    )
+    peaks = (np.abs(of).max(axis=1, keepdims=True) for of in (before, after))
+    size = (
+        _of(np.max, percent),
+        _of(lambda each: np.sqrt(np.mean(each**2)), percent),
+        _of(np.max, 100 * of_largest(np.subtract(*peaks), stands)),
+    )
+    lost = int((before.any(axis=1) & ~after.any(axis=1)).sum())
+    return AnswerChange(
+        size=dict(zip(OF_MOTION, size)),
+        error=_of(lambda of: error.flat[of.argmax()], percent),
+        beyond_error=bool(lost > 0 or (percent > error).any()),
+        lost=lost,
+    )
 
 
 def _of(measure: Callable[[Real], Any], change: Real) -> float:
