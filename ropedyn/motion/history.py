@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from ..base.answer import Answer, Cost, Frozen, axes
+from ..base.answer import TRANSIENT, Answer, Cost, Frozen, axes
 from ..base.array import Complex, Real
 from ..base.computed import Lazy, Read, lazy
 from ..base.drawing import draw
+from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import MOTIONS, QUANTITIES, label
 from ..chain.port import Point
 from ..curves.measured import Measured
-from ..signal.estimate import estimate
+from ..scene.force import Force
 from ..signal.ringdown import RingDown, ring_down
 from ..signal.spectrum import Spectrum, amplitude, spectrum
+from .response_estimate import estimated
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,6 +92,8 @@ class History(Answer):
         Displacement of the whole rope [m, rad].
     stopped : str
         Why it ends before the last time that was asked for; empty where it does not.
+    released : bool
+        Whether loads were let go at the first time.
     cost : Cost
         What it cost.
 
@@ -125,6 +129,8 @@ class History(Answer):
     balance: Lazy[Balance] = lazy(Balance)
     deviation: Lazy[Deviation] = lazy(Deviation)
     stopped: str = ""
+    released: bool = False
+    law: tuple[Force, ...] = field(default=(), repr=False, metadata=TRANSIENT)
 
     energy = Read[dict[str, Real]]("balance", "Energies over time [J], each shape (t,).")
     step_error = Read[Real]("deviation", "Error that steps cause, as value.")
@@ -323,10 +329,13 @@ class History(Answer):
     ) -> Measured:
         """Estimate the responses per force, as a measurement does: H1 = S_fx / S_ff.
 
-        One segment: the ratio of the Fourier transforms of the whole record. That is exact, but
-        for what lies above half the rate of the times, if motion starts from rest and has decayed
-        at the end, as after a blow or a chirp. Several segments, each half over the next, are
-        averaged, as for noise; then there is a coherence.
+        One segment: the ratio of the Fourier transforms of the whole record, of the force the exact
+        one of what drove, a blow at an instant, a half sine or a step between two times too. That
+        is exact, but for what lies above half the rate of the times, if motion starts from rest and
+        has decayed at the end, as after a blow or a chirp. Several segments, each half over the
+        next, are averaged, as for noise; then there is a coherence, and of the force its samples
+        are taken, which are straight lines where it was given so. `Measured.notes` says which, and
+        what folds or is cut off.
 
         Parameters
         ----------
@@ -349,7 +358,8 @@ class History(Answer):
         TypeError
             If something is of the wrong type.
         SceneError
-            If times have not equal steps, nothing drives at the times, or something else does.
+            If times have not equal steps, nothing drives at the times, or something else does, as
+            loads that were let go.
 
         References
         ----------
@@ -367,10 +377,17 @@ class History(Answer):
         >>> measured.peaks()[0].frequency.round(2)
         array([ 5.  , 14.99])
         """
+        if self.released:
+            raise SceneError(
+                "start must be nothing for a response per force, which begins at rest: the motion "
+                "of what was let go is in it"
+            )
         order = MOTIONS[self.quantity]
-        over_time = self.time, self.value, self.force
-        found = estimate(
-            *over_time,
+        found, notes = estimated(
+            self.time,
+            self.value,
+            self.force,
+            self.law,
             drive=drive,
             segments=segments,
             window=window,
@@ -385,4 +402,5 @@ class History(Answer):
             quantity=list(QUANTITIES)[order],
             coherence=found.coherence,
             averages=found.averages,
+            notes=notes,
         )

@@ -133,6 +133,8 @@ class Run:
             "coordinates": self.model.coordinates,
             "time": self.time,
             "force": self.push,
+            "law": self.forces,
+            "released": bool(self.loads),
             "snapshot_time": self.snapshots,
         }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,6 +67,28 @@ def estimate(
         coherence = coherence_of(spectra)
         averages = OVERLAPPING * segments if window == "hann" else None
     return Estimate(frequency[kept], ESTIMATORS[estimator](spectra), coherence, averages)
+
+
+def estimate_known(
+    time: Real, value: Real, push: Callable[[Real], Complex], *, band: Any, at_rest: bool
+) -> tuple[Estimate, float]:
+    """Estimate responses (responses, t) per force whose transform at angular frequencies is known.
+
+    Of the whole record; and how much what lies above half the rate of the times may add to a line,
+    in parts of the largest: the motion in the last eighth of the lines, which falls on from there.
+    """
+    step, n = time_step(time), len(time)
+    frequency: Real = np.fft.rfftfreq(n, step).astype(np.float64)
+    omega = 2 * np.pi * frequency
+    moved = step * np.fft.rfft(value, axis=1) * np.exp(-1j * omega * time[0])
+    pushed = push(omega)
+    if not pushed.any():
+        raise SceneError("force must drive within the times, got 0")
+    kept = _kept(frequency, np.abs(pushed) ** 2, _band(band), at_rest)
+    found = moved[:, kept] / pushed[kept]
+    above = np.abs(moved[:, -max(1, n // 16) :]).max(axis=1, keepdims=True)
+    size, most = np.abs(found).max(), np.max(above / np.abs(pushed[kept]))
+    return Estimate(frequency[kept], found, None, None), float(most / size) if size > 0 else 0.0
 
 
 def _alone(force: Real, drive: int) -> Real:

@@ -1,0 +1,93 @@
+"""What a motion over time tells of the responses per force, and what it cannot know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..base import check
+from ..base.array import Real
+from ..base.errors import SceneError
+from ..scene.force import Force, Samples
+from ..signal.estimate import Estimate, estimate, estimate_known
+from ..signal.spectrum import time_step
+from .force_spectrum import transform
+
+TAIL = 20  # The last of so many parts of a record says whether the motion has decayed.
+LEFT = 1e-6  # Less of the largest value counts as nothing.
+
+EXACT = "force: its exact transform, of what it does between the times too"
+STRAIGHT = "force: straight lines between its samples, up to the width of the window"
+WEIGHTED = (
+    "force: its samples, which the window weights; what it does between them is not known: one "
+    'segment with window="boxcar" takes its exact transform'
+)
+UNKNOWN = "force: its samples; what it does between them is not known"
+
+
+def estimated(
+    time: Real,
+    value: Real,
+    force: Real,
+    law: Sequence[Force],
+    *,
+    drive: int,
+    segments: int,
+    window: str | None,
+    band: Any,
+    at_rest: bool,
+) -> tuple[Estimate, tuple[str, ...]]:
+    """Return responses per force, as `History.frf` asks for them, and notes on them."""
+    sampled = partial(estimate, time, value, force, drive=drive, segments=segments)
+    sampled = partial(sampled, window=window, band=band, at_rest=at_rest)
+    ends = _at_the_end(time, value, force)
+    if not law:
+        return sampled(), (UNKNOWN, *ends)
+    own = _alone(law, drive, time)
+    if check.count(segments, "segments", most=len(time)) == 1 and window in (None, "boxcar"):
+        push = partial(transform, own, begin=float(time[0]), end=float(time[-1]))
+        found, folded = estimate_known(time, value, push, band=band, at_rest=at_rest)
+        return found, (EXACT, *_folds(time, folded), *ends)
+    found = sampled()
+    if not isinstance(own, Samples):
+        return found, (WEIGHTED, *ends)
+    hat = np.sinc(found.frequency * time_step(time)) ** 2
+    return found._replace(value=found.value / hat), (STRAIGHT, *ends)
+
+
+def _alone(law: Sequence[Force], drive: int, time: Real) -> Force:
+    """Return the force that alone drives within the times, between them too."""
+    check.count(drive, "drive", least=0, most=len(law) - 1)
+    omega = 2 * np.pi * np.fft.rfftfreq(len(time), time_step(time))
+    for k, other in enumerate(law):
+        if k != drive and transform(other, omega, float(time[0]), float(time[-1])).any():
+            raise SceneError(f"force must be 0 at other drives than {drive}, got some at {k}")
+    return law[drive]
+
+
+def _folds(time: Real, folded: float) -> tuple[str, ...]:
+    """Say how much motion above half the rate of the times may be in the lines."""
+    if folded < LEFT:
+        return ()
+    half = (len(time) - 1) / (2 * float(time[-1] - time[0]))
+    return (
+        f"motion: faster than half the rate of the times, {half:g} Hz, it folds into the lines: by "
+        f"about {folded:.2g} of the largest",
+    )
+
+
+def _at_the_end(time: Real, value: Real, force: Real) -> tuple[str, ...]:
+    """Say what of motion and force is cut off at the end of the record."""
+    notes = []
+    tail = slice(-max(1, len(time) // TAIL), None)
+    for name, each in ("motion", value), ("force", force):
+        if each.size == 0 or not each.any():
+            continue
+        largest = np.abs(each).max(axis=1)
+        left = np.abs(each[:, tail]).max(axis=1) / np.where(largest > 0, largest, 1.0)
+        if left.max() > LEFT:
+            notes.append(f"{name}: cut off at the end, with {left.max():.2g} of its largest value")
+    return tuple(notes)
