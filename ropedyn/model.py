@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal, overload
 
 from numpy.typing import ArrayLike
@@ -254,16 +255,8 @@ class Model(Compiled):
         0.0025
         """
         refuse_nonlinear(self)
-        return solve_harmonic(
-            self,
-            frequency,
-            drive=drive,
-            response=response,
-            quantity=quantity,
-            solver=solver,
-            threads=threads,
-            decay=decay,
-        )
+        ask = partial(solve_harmonic, self, frequency, drive=drive, response=response)
+        return ask(quantity=quantity, solver=solver, threads=threads, decay=decay)
 
     def static(
         self, load: Mapping[Point, float], *, solver: str = "sweep", points: int | None = None
@@ -360,7 +353,8 @@ class Model(Compiled):
             Of the direct method [s], at most; a whole number of them lies between two times.
         tolerance : float, optional
             Of the direct method, instead of `step`: steps are made finer until two runs say that
-            the error is within this part of each response's largest value; 1e-4 where left out.
+            their error (`History.error` adds that of the elements) is within this part of each
+            response's largest value; 1e-4 where left out.
         spectral_radius : float
             Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
             motion (with a given `step` to the last digits), less takes it from frequencies that the
@@ -392,9 +386,9 @@ class Model(Compiled):
         -----
         A law of a `NodeForce` that raises ends the run; its exception says for which part and when.
 
-        The direct method lumps all inertia of a chain at its nodes: tensed elements are of second
-        order in it. What has no inertia follows forces at once (rotations of a rope without rotary
-        inertia, driven points between nodes); accelerations there under a force are refused.
+        The direct method lumps all inertia at nodes: tensed elements are of second order in it.
+        What has no inertia follows forces at once (rotations of a rope without rotary inertia,
+        driven points between nodes); accelerations there under a force are refused.
 
         Examples
         --------

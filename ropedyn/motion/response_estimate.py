@@ -61,7 +61,7 @@ def estimated(
 def _alone(law: Sequence[Force], drive: int, time: Real) -> Force:
     """Return the force that alone drives within the times, between them too."""
     check.count(drive, "drive", least=0, most=len(law) - 1)
-    omega = 2 * np.pi * np.fft.rfftfreq(len(time), time_step(time))
+    omega = np.asarray(2 * np.pi * np.fft.rfftfreq(len(time), time_step(time)), dtype=np.float64)
     for k, other in enumerate(law):
         if k != drive and transform(other, omega, float(time[0]), float(time[-1])).any():
             raise SceneError(f"force must be 0 at other drives than {drive}, got some at {k}")
