@@ -30,6 +30,7 @@ from .parametric.floquet import Floquet
 from .parametric.stability import StabilityMap
 from .response.deflection import Deflection
 from .response.frf import FRF
+from .response.second_harmonic import SecondHarmonic
 from .scene.bench.bending_test import BendingTest
 from .scene.bench.torsion_test import TorsionTest
 from .scene.damping import (
@@ -110,6 +111,7 @@ __all__ = [
     "RopedynError",
     "Scene",
     "SceneError",
+    "SecondHarmonic",
     "Sine",
     "SolveError",
     "Spectrum",

@@ -29,7 +29,7 @@ from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
 from .response.frf import FRF
-from .response.harmonic import solve_harmonic
+from .response.second_harmonic import solver_of
 from .scene.scene import Scene
 
 
@@ -192,6 +192,7 @@ class Model(Compiled):
         solver: str = "sweep",
         threads: int | None = None,
         decay: float = 0.0,
+        harmonic: int = 1,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment, or motion of an end.
 
@@ -221,6 +222,9 @@ class Model(Compiled):
             variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
         decay : float, optional
             [1/s]: the response at i omega + decay, of force and motion both times exp(-decay t).
+        harmonic : {1, 2}
+            2: what slopes that stretch the rope cause at twice the frequency, per square of the
+            force, such as ``("alpha", L)`` or ``("F_x", 0.0)``; see `SecondHarmonic`.
 
         Returns
         -------
@@ -255,7 +259,7 @@ class Model(Compiled):
         0.0025
         """
         refuse_nonlinear(self)
-        ask = partial(solve_harmonic, self, frequency, drive=drive, response=response)
+        ask = partial(solver_of(harmonic), self, frequency, drive=drive, response=response)
         return ask(quantity=quantity, solver=solver, threads=threads, decay=decay)
 
     def static(

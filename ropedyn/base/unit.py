@@ -43,30 +43,38 @@ def label(
     response: tuple[str, float],
     drive: tuple[Any, ...] | None = None,
     quantity: str = "receptance",
+    *,
+    power: int = 1,
 ) -> str:
     """Say what a response is, such as ``z at 0.500 m [m/N]``; per motion of an end ``[m/m]``."""
-    return f"{place(response)} [{curve_unit(response, drive, quantity)}]"
+    return f"{place(response)} [{curve_unit(response, drive, quantity, power=power)}]"
 
 
 def named(
-    responses: Sequence[Any], drives: Sequence[Any], quantity: str
+    responses: Sequence[Any], drives: Sequence[Any], quantity: str, *, power: int = 1
 ) -> Iterator[tuple[str, int, int]]:
     """Yield the name of each response to each drive with the numbers of both."""
     for d, drive in enumerate(drives):
         for r, response in enumerate(responses):
             more = f" driven in {place(drive)}" if len(drives) > 1 else ""
-            yield label(response, drive, quantity) + more, r, d
+            yield label(response, drive, quantity, power=power) + more, r, d
 
 
-def curve_unit(response: tuple[str, float], drive: tuple[Any, ...] | None, quantity: str) -> str:
-    """Return the unit of a response such as ``m/N``, of motion over time where nothing drives."""
+def curve_unit(
+    response: tuple[str, float], drive: tuple[Any, ...] | None, quantity: str, *, power: int = 1
+) -> str:
+    """Return the unit of a response such as ``m/N``, of motion over time where nothing drives.
+
+    Per a power of the force.
+    """
     name = response[0]
     unit = FORCE_UNIT[OF_FORCE[name]] if name in OF_FORCE else UNIT.get(name, UNIT["z"])
     unit += ("", "/s", "/s^2")[(QUANTITIES | MOTIONS)[quantity]]
     if drive is None:
         return unit
     cause = push_unit(drive)
-    return f"{unit}/{cause}" if " " not in cause else f"{unit}/({cause})"
+    per = cause if " " not in cause else f"({cause})"
+    return f"{unit}/{per}" if power == 1 else f"{unit}/{per}^{power}"
 
 
 def power(value: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -30,6 +30,7 @@ class Curves(Answer):
     frequency: Real
     value: Complex
     decay: float  # 1/s
+    power: ClassVar[int] = 1  # of the force, that the value is per
 
     @property
     def s(self) -> Complex:
@@ -47,7 +48,8 @@ class Curves(Answer):
     @property
     def labels(self) -> tuple[str, ...]:
         """What each response is, with its unit, for the first drive."""
-        return tuple(label(r, self.drive[0], self.quantity) for r in self.response)
+        of = self.drive[0], self.quantity
+        return tuple(label(r, *of, power=self.power) for r in self.response)
 
     def curve(self, response: int = 0, drive: int = 0) -> Complex:
         """Return one response to one drive, shape (f,).
@@ -218,5 +220,5 @@ class Curves(Answer):
 
 def named_curves(curves: Curves) -> Iterator[tuple[str, int, Complex]]:
     """Yield each response to each drive: its name, which response it is, and the curve."""
-    for name, r, d in named(curves.response, curves.drive, curves.quantity):
+    for name, r, d in named(curves.response, curves.drive, curves.quantity, power=curves.power):
         yield name, r, curves.curve(r, d)

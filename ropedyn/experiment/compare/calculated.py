@@ -166,6 +166,8 @@ def _with_damping(model: Model, found: CalculatedPeaks) -> CalculatedPeaks:
 
 
 def _of_frf(frf: FRF, drive: int) -> CalculatedPeaks:
+    if frf.power != 1:
+        raise SceneError("calculated must be a response at the frequency, got harmonic 2")
     peaks = peaks_in(frf if len(frf.drive) == 1 else frf.peaks(drive))
     return CalculatedPeaks(
         frequency=peaks.frequency,
