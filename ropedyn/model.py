@@ -25,6 +25,7 @@ from .motion.history import History
 from .motion.modal.steady_states import superpose_steadily
 from .motion.modal.superposition import superpose
 from .motion.request import Run, SteppedSine
+from .motion.turning import refuse_steady, turned
 from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
@@ -357,7 +358,7 @@ class Model(Compiled):
             Of the direct method [s], at most; a whole number of them lies between two times.
         tolerance : float, optional
             Of the direct method, instead of `step`: steps are made finer until two runs say that
-            their error (`History.error` adds that of the elements) is within this part of each
+            their error (`History.total_error` adds that of elements) is within this part of each
             response's largest value; 1e-4 where left out.
         spectral_radius : float
             Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
@@ -420,7 +421,7 @@ class Model(Compiled):
             progress=progress,
             partial=partial,
         )
-        return march(run) if run.direct else superpose(run)
+        return turned(run, march if run.direct else superpose)
 
     def floquet(self, modes: int | None = 4) -> Floquet:
         """Find how free motion grows or decays under the tension that pulsates.
@@ -587,6 +588,7 @@ class Model(Compiled):
             tolerance=tolerance,
             progress=progress,
         )
+        refuse_steady(asked)
         return march_steadily(asked) if asked.direct else superpose_steadily(asked)
 
 

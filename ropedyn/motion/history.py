@@ -72,7 +72,7 @@ class History(Answer):
         Absolute error that the elements cause: the distance to the motion of the continuous spans
         of the same scene and the error of that. 0 for continuous spans, infinite where they have no
         answer, as where something is not linear.
-    error : ndarray, shape (responses, t)
+    total_error : ndarray, shape (responses, t)
         Absolute error of the values, all of it: of modes that were left out, steps and elements.
         A tolerance is kept for the chain as it is: coarse elements are wrong by far more.
     energy : dict of ndarray, shape (t,)
@@ -82,7 +82,8 @@ class History(Answer):
         at 4 values for each rad of the modes and forces, 16 at least between two times: 2 s at
         10 kHz of 126 modes take 10 s. Work of a tension that pulsates is input; of an
         end that jumps, what stays of it. Where stops or a `NodeForce` act, what they took since
-        then is "laws" and belongs to the sum.
+        then is "laws" and belongs to the sum. What a pulsating tension turns in a laid rope is not
+        in them.
     snapshot_time : ndarray, shape (s,)
         When the whole rope was looked at [s].
     x : ndarray, shape (nodes,)
@@ -113,7 +114,7 @@ class History(Answer):
     array([0.1, 0.1, 0.1, 0.1, 0.1])
     >>> bool((history.mesh_error < 2e-3).all()), float(history.step_error.max())
     (True, 0.0)
-    >>> bool((history.error == history.mesh_error).all())
+    >>> bool((history.total_error == history.mesh_error).all())
     True
     """
 
@@ -140,7 +141,7 @@ class History(Answer):
     mesh_error = Read[Real]("deviation", "Error that elements cause, as value.")
 
     @property
-    def error(self) -> Real:
+    def total_error(self) -> Real:
         """Absolute error of the values: of modes left out, steps and elements together."""
         return self.truncation_error[:, None] + self.step_error + self.mesh_error
 

@@ -22,7 +22,7 @@ class Tension(Description):
     is the same everywhere where waves along x are much faster than transverse ones (Kirchhoff's
     string). Frequencies, responses and deflections are those of the mean tension; what pulsates and
     stretches acts in `Model.transient`, `Model.stepped_sine`, `Model.floquet` and
-    `Model.stability_map`.
+    `Model.stability_map`. A laid rope is turned by what pulsates, at ends that are free to turn.
 
     Parameters
     ----------

@@ -648,5 +648,5 @@ def test_the_error_of_a_chain_counts_in_what_its_elements_cause(element, method)
     wrong, largest = np.abs(history.value - exact), np.abs(exact).max()
     # 8 and 42 % where the steps alone are right to 6e-5
     assert history.step_error.max() < 1e-4 * largest < 0.05 * wrong.max()
-    assert (history.error >= wrong).all()
-    assert (history.error <= wrong + 2 * history.step_error + 1e-5 * largest).all()
+    assert (history.total_error >= wrong).all()
+    assert (history.total_error <= wrong + 2 * history.step_error + 1e-5 * largest).all()

@@ -212,7 +212,8 @@ def change_of_motion(whole: History, left: History) -> AnswerChange:
     before, after = whole.value, left.value
     stands = np.where(before.any(axis=1, keepdims=True), before, after)
     percent, error = (
-        100 * of_largest(of, stands) for of in (after - before, whole.error + left.error)
+        100 * of_largest(of, stands)
+        for of in (after - before, whole.total_error + left.total_error)
     )
     peaks = (np.abs(of).max(axis=1, keepdims=True) for of in (before, after))
     size = (

@@ -1,0 +1,154 @@
+"""What a tension that varies turns: the twist of a laid rope whose tension pulsates.
+
+A tension h(t) beside the mean, the same all along, loads the twist of a laid rope by the torque
+(D/EA) h: with C_r = C - D^2/EA
+
+    C_r alpha'' = p alpha_tt,  C_r alpha' = -(D/EA) h at ends that turn,  M = C_r alpha' + (D/EA) h
+
+D and EA are the same all along the rope, so nothing but its ends is loaded. C_r is the torsional
+stiffness at a given tension, 1/S_aa of the section flexibility S: the chain of alpha alone has it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ..base.array import Real
+from ..base.computed import changed
+from ..base.errors import SceneError
+from ..base.unit import OF_FORCE
+from ..chain.compiled import Compiled
+from ..chain.port import moving
+from ..scene.end import end_of
+from ..scene.force import Sine
+from ..scene.parts.part import standing
+from ..scene.scene import Scene
+from ..scene.tension import Tension
+from .history import History
+from .modal.superposition import superpose
+from .request import Run, SteppedSine
+
+WHY = "where lay_coupling turns the rope under a tension"
+
+
+def turned(run: Run, solve: Callable[[Run], History]) -> History:
+    """Follow a motion, with the twist that a pulsating tension drives in a laid rope."""
+    scene = run.model.scene
+    if not _is_laid(scene) or not isinstance(scene.tension, Tension):
+        return solve(run)
+    _refuse_stretching(scene)
+    if not scene.tension.pulsates:
+        return solve(run)
+    _refuse(run.model, [moving(point) for point in run.responses if point[0] not in OF_FORCE])
+    history = solve(run)
+    return _with_twist(run, history) if len(history.time) > 1 else history
+
+
+def refuse_steady(asked: SteppedSine) -> None:
+    """Refuse a steady state to which the tension's own twist would belong."""
+    scene = asked.model.scene
+    if not _is_laid(scene) or not isinstance(scene.tension, Tension):
+        return
+    _refuse_stretching(scene)
+    turns = {moving(point) for point in asked.responses} & {"x", "alpha"}
+    if scene.tension.pulsates and turns and (asked.frequency == scene.tension.frequency).any():
+        raise SceneError(
+            f"frequency must not be that of the pulsating tension, {scene.tension.frequency!r} Hz, "
+            f"{WHY}: what it drives by itself is no response to the drive"
+        )
+
+
+def _is_laid(scene: Scene) -> bool:
+    return bool(scene.rope.lay_coupling)
+
+
+def turning_ends(scene: Scene) -> list[int]:
+    """Return the numbers of the ends that are free to turn."""
+    return [k for k in (0, 1) if "alpha" not in end_of(scene.ends[k]).term().held]
+
+
+def _refuse_stretching(scene: Scene) -> None:
+    """Refuse twist that acts back on the tension that motion makes."""
+    if isinstance(scene.tension, Tension) and scene.tension.stretching and turning_ends(scene):
+        raise SceneError(
+            f"tension must not be stretching {WHY} and an end is free to turn, which slackens it: "
+            'hold alpha at both ends, or ask the scene without("lay")'
+        )
+
+
+def _refuse(model: Compiled, asked: list[str]) -> None:
+    """Refuse what the twist cannot be told apart from."""
+    scene = model.scene
+    if scene.rope.lay_slope:
+        raise SceneError(
+            f"lay_slope must be None {WHY} that pulsates: it couples twist and bending"
+        )
+    if "x" in asked:
+        raise SceneError(
+            f"response must not be x {WHY} that pulsates: which end gives way to it is not said"
+        )
+    for i, part in enumerate(scene.parts):
+        laws = part.term().laws if part in standing([part]) else ()
+        if turning_ends(scene) and any(law.coordinate == "alpha" for law in laws):
+            raise SceneError(f"parts[{i}] must be linear on alpha {WHY} that pulsates")
+
+
+def _with_twist(run: Run, history: History) -> History:
+    """Add twist, torque and tension to a motion."""
+    scene = run.model.scene
+    tension = scene.tension
+    assert isinstance(tension, Tension)
+    share = (scene.rope.lay_coupling or 0.0) / (scene.rope.axial_stiffness or math.inf)
+    value, snapshot = history.value.copy(), history.snapshot.copy()
+    extra = _pulsation(tension, history.time, run.order)
+    for k, point in enumerate(run.responses):
+        value[k] += {"F_x": 1.0, "M_alpha": share}.get(point[0], 0.0) * extra
+    error = history.truncation_error.copy()
+    ends = turning_ends(scene)
+    own = [k for k, point in enumerate(run.responses) if moving(point) == "alpha"]
+    if ends and (own or len(history.snapshot_time)):
+        twist = superpose(_twisting(run, history, tension, share, ends))
+        value[own] += twist.value
+        error[own] += twist.truncation_error
+        at = run.model.coordinates.index("alpha")
+        snapshot[:, :, at] += twist.snapshot[:, :, 0]
+    return changed(history, value=value, truncation_error=error, snapshot=snapshot)
+
+
+def _pulsation(tension: Tension, time: Real, order: int) -> Real:
+    """Return what pulsation adds to the tension, `order` times differentiated."""
+    omega = 2 * math.pi * tension.frequency
+    angle = omega * time + tension.phase + order * math.pi / 2
+    return np.asarray(tension.amplitude * omega**order * np.cos(angle))
+
+
+def _twisting(run: Run, history: History, tension: Tension, share: float, ends: list[int]) -> Run:
+    """Return the motion of twist alone, under the moments of the tension on ends that turn."""
+    chain = run.model.chain.only(("alpha",))
+    alone = replace(
+        run.model,
+        coordinates=("alpha",),
+        components=(("alpha",),),
+        chain=chain,
+        unknowns=(chain.free,),
+    )
+    phase = tension.phase + math.pi / 2
+    moments = {
+        end: Sine((1 - 2 * end) * share * tension.amplitude, tension.frequency, phase=phase)
+        for end in ends
+    }
+    return replace(
+        run.kept,
+        model=alone,
+        time=history.time,
+        drives=tuple(("alpha", float(run.model.x[-end])) for end in ends),
+        forces=tuple(moments[end] for end in ends),
+        responses=tuple(point for point in run.responses if moving(point) == "alpha"),
+        loads={},
+        snapshots=history.snapshot_time,
+        modes=None,
+    )
