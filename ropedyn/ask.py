@@ -79,6 +79,8 @@ class ModesQuestion:
     (('sweep', 'lapack'), True)
     >>> print(question.apart(question.values(answer), 1.0001 * answer.frequency).round(6))
     [0.0001 0.0001]
+    >>> question.unseen(answer)
+    array([0., 0.])
     """
 
     number: int | None = None
@@ -133,6 +135,10 @@ class ModesQuestion:
         """Return how far values are from right ones, relative to these."""
         return relative(found, right)
 
+    def unseen(self, answer: Modes) -> Real:
+        """Return the relative error that the same spans in other cuts do not show: none."""
+        return np.zeros(self.values(answer).shape)
+
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order, that an assembled solver takes: dense, n^3."""
         return 7e-11 * sum(float(n) ** 3 for n in model.unknowns) * (solver == "lapack")
@@ -167,6 +173,8 @@ class FRFQuestion(Frozen):
     (('sweep', 'band', 'lapack'), True)
     >>> print(question.apart(answer.value, 1.01 * answer.value).round(6))
     [[0.009901 0.009901]]
+    >>> question.unseen(answer)
+    array([[0., 0.]])
     """
 
     frequency: Real
@@ -229,6 +237,10 @@ class FRFQuestion(Frozen):
         """Return how far values are from right ones, relative to these."""
         return relative(found, right)
 
+    def unseen(self, answer: FRF) -> Real:
+        """Return the relative error that the same spans in other cuts do not show: none."""
+        return np.zeros(self.values(answer).shape)
+
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order, that an assembled solver takes: n a line."""
         return 4e-7 * model.size * len(self.frequency) * (solver == "lapack")
@@ -265,6 +277,8 @@ class MotionQuestion(Frozen):
     ('auto', True)
     >>> print(question.apart(answer.value, 1.01 * answer.value).max().round(6))
     0.009901
+    >>> bool((question.unseen(answer) == question.rounding(answer)).all())
+    True
     """
 
     time: Real
@@ -344,6 +358,10 @@ class MotionQuestion(Frozen):
     def apart(self, found: NDArray[Any], right: NDArray[Any]) -> Real:
         """Return how far values are from right ones, over the largest of each response."""
         return of_largest(found - right, right)
+
+    def unseen(self, answer: History) -> Real:
+        """Return the relative error that the same spans in other cuts do not show: the method's."""
+        return self.rounding(answer)
 
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order, that the slowest way takes: n a time."""

@@ -52,9 +52,10 @@ class AccuracyCost(Answer):
         Median processor time of `Scene.compile` [s].
     error : ndarray, shape (rows,)
         True relative error, the largest of all modes or lines; 1.1e-16 where none is seen. Modes
-        are compared in order; motion over time in parts of the largest value of each response.
-        Values of which continuous spans have no correct digit themselves,
-        as a response that is 0 by symmetry, are left out.
+        are compared in order; motion over time in parts of the largest value of each response, and
+        no error of it is seen below that of the method for continuous spans. Values of which
+        continuous spans have no correct digit themselves, as a response that is 0 by symmetry, are
+        left out.
     estimated_error : ndarray, shape (rows,)
         Estimated relative error, of mesh and rounding together, the largest too.
     digits_lost : ndarray, shape (rows,)

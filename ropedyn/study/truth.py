@@ -33,6 +33,7 @@ class Truth:
     # which of them have a correct digit: what is 0 by symmetry is nothing but rounding
     known: Flags
     error: float  # their own largest relative error, seen in other cuts of the same spans
+    floor: float  # that of the method, which cuts do not show: below it no error is seen
     spans: int  # how many
 
     @staticmethod
@@ -44,11 +45,12 @@ class Truth:
         if not known.any():
             raise SolveError(f"continuous spans have no correct digit of the {question}")
         same, spans = question.like(whole.answer), len(whole.model.x) - 1
-        error = 0.0
+        floor = _largest(question.unseen(whole.answer), known)
+        error = floor
         for parts in CUTS:
             cut = Way.of(same, scene, {"elements": parts * spans, "element": "continuous"}).answer
             error = max(error, _largest(same.apart(same.values(cut), values), known))
-        return Truth(scene, question, same, values, known, error, spans)
+        return Truth(scene, question, same, values, known, error, floor, spans)
 
     def ways(
         self, kinds: Sequence[str], counts: Sequence[int] | None, solvers: Sequence[str]
@@ -82,7 +84,7 @@ class Truth:
         values, bound = self.same.values(same.answer), self.same.rounding(same.answer)
         error, estimated = self.error, bound
         if not continuous:
-            error = _largest(self.same.apart(values, self.values), self.known)
+            error = max(_largest(self.same.apart(values, self.values), self.known), self.floor)
             estimated = self.same.mesh(same.answer) + bound
         lost = bound if solver == self.question.solvers[0] else self._rounding(way, values, bound)
         rounding = _largest(lost, self.known)

@@ -394,6 +394,15 @@ def test_each_method_of_motion_is_a_row_and_what_it_refuses_too():
     assert 0 < abs(answer.error[1] - answer.error[0]) < 2e-3
 
 
+def test_no_error_of_motion_is_seen_below_that_of_the_method():
+    # the same modes are left out of all cuts: what they cause shows in none
+    question = rd.ask.motion(TIMES, **PUSH)
+    answer = cost(SWUNG, question, element="continuous")
+    exact = SWUNG.compile().transient(TIMES, **PUSH, tolerance=1e-3)
+    left = (exact.truncation_error / np.abs(exact.value).max(axis=1)).max()
+    assert answer.error[0] >= left > 1e-12
+
+
 def test_chains_of_motion_are_doubled_until_they_are_slow(monkeypatch):
     question = rd.ask.motion(TIMES, **PUSH)
     monkeypatch.setattr(truth, "LONGEST", question.work(SWUNG.compile(elements=16), "auto"))
