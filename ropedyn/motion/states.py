@@ -1,0 +1,323 @@
+"""Motion of a few points as undamped modes, each damped for itself, and what follows them at rest.
+
+    q_k'' + 2 sigma_k q_k' + square_k q_k = sum_i push[k, i] f_i
+    y_o = sum_k (seen[o, k] q_k + swept[o, k] q_k') + sum_i (now[o, i] f_i + late[o, i] l_i),
+    l_i + gamma l_i' = f_i
+
+`now` and `late` are the flexibility of the modes that are left out: damped stiffness lets it relax.
+Residues are means over circles around the eigenvalues (see contour.py), so that nothing but H is
+asked for, and each is a product push times seen. Dashpots of single points are left out of the
+modes: they are laws of these points, as stops and friction are.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..base.array import Complex, Flags, Index, Real
+from ..base.errors import SceneError, SolveError
+from ..chain import tip
+from ..chain.compiled import Compiled
+from ..chain.port import Point, is_force, locate, moving
+from ..eigen.damped.proportional import Proportional, proportional
+from ..eigen.damped.rates import Rates
+from ..eigen.spectrum import spectrum
+from ..response.modal_sum import known_ratios, shift_of, undamped_factors
+from ..response.moved_end import is_end, moves_ends
+from ..response.question import Question
+from ..response.solvers import SOLVERS
+from ..scene.damping import INERTIA, having
+from ..scene.end import end_of
+from ..scene.parts.part import standing
+from ..signal import contour
+
+LARGEST = 200  # All modes of a chain with so many are taken.
+EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes.
+UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
+
+
+class Resistance(NamedTuple):
+    """A dashpot of one point."""
+
+    point: Point
+    damping: float  # [N s/m, N m s]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class States:
+    """Motion of points under forces on points; see the formulas above."""
+
+    sigma: Real  # (k,) [1/s]
+    square: Real  # (k,) [rad^2/s^2]
+    push: Real  # (k, inputs)
+    seen: Real  # (outputs, k)
+    swept: Real  # (outputs, k) [s]; 0 but of internal forces where stiffness is damped
+    now: Real  # (outputs, inputs)
+    late: Real  # (outputs, inputs)
+    gamma: float  # [s]
+    beyond: float  # Angular frequency of the lowest mode that is left out [rad/s], or infinite
+    drag: float  # of the modes that are left out, as proportional damping [1/s]
+    ratio: float  # of their damping, as a ratio
+    # (outputs, inputs) sum of what left-out modes have as flexibility, in magnitude, at most;
+    # infinite of internal forces, tips and moved ends
+    left: Real
+
+    @property
+    def modes(self) -> int:
+        """How many modes there are."""
+        return len(self.sigma)
+
+    def at(self, s: Complex) -> Complex:
+        """Return the transfer functions at rates s [rad/s], shape (outputs, inputs, n)."""
+        own = 1 / (s * s + 2 * np.multiply.outer(self.sigma, s) + self.square[:, None])
+        row = self.seen[:, :, None] + np.multiply.outer(self.swept, s)
+        value = np.einsum("okn,kn,ki->oin", row, own, self.push, optimize=True)
+        late = self.late[:, :, None] / (1 + self.gamma * s)
+        return np.asarray(value + self.now[:, :, None] + late)
+
+    def bound(self, omega: Real) -> Real:
+        """Bound how far `at` is from the exact response at omega, (outputs, inputs, n)."""
+        # a left-out mode is 1/(g lambda + p), p = s^2 + drag s, in place of 1/(g lambda); the
+        # largest share |p|/|g lambda + p| is that of the lowest, whose lambda is beyond^2
+        omega = np.asarray(omega, dtype=np.float64)
+        if not np.isfinite(self.beyond):
+            return np.zeros((*self.left.shape, len(omega)))
+        stiff = np.abs(1 + 1j * self.gamma * omega)
+        moves = np.abs(-(omega**2) + 1j * self.drag * omega)
+        moves += 2 * self.ratio * omega * self.beyond
+        room = stiff * self.beyond**2 - moves
+        share = np.divide(moves, room, out=np.full(len(omega), np.inf), where=room > 0)
+        with np.errstate(invalid="ignore"):
+            far = self.left[:, :, None] * (share / stiff)
+        return np.nan_to_num(far, nan=0.0, posinf=np.inf)
+
+
+# --- what stands at single points ---------------------------------------------------------------
+
+
+def without_dashpots(
+    model: Compiled, component: tuple[str, ...]
+) -> tuple[Compiled, tuple[Resistance, ...]]:
+    """Return the model without dashpots of single points on a component, and these."""
+    found = [one for one in _dashpots(model) if one.point[0] in component]
+    chain = model.chain
+    if not found or chain.damping is None:
+        return model, ()
+    damping, kept = chain.damping.copy(), []
+    terms: dict[int, int] = {}  # nodes of one term have the same dashpots: taken from it once
+    for one in found:
+        node = locate(model.x, one.point[1])[0]
+        term = int(chain.term_of[node])
+        at = model.coordinates.index(one.point[0])
+        if chain.held[term, at]:
+            continue
+        kept.append(one)
+        if terms.setdefault(term, node) == node:
+            damping[term, at, at] -= one.damping
+    damping[np.abs(damping) <= 8 * np.finfo(float).eps * np.abs(chain.damping)] = 0.0
+    free = chain._replace(damping=damping if damping.any() else None)
+    return dataclasses.replace(model, chain=free), tuple(kept)
+
+
+def _dashpots(model: Compiled) -> list[Resistance]:
+    found = []
+    for part in standing(model.scene.parts):
+        found += [Resistance((c, part.x), value) for c, value in part.term().damping.items()]
+    for end, x in zip(model.scene.ends, (0.0, float(model.x[-1]))):
+        found += [Resistance((c, x), v) for c, v in end_of(end).term().damping.items()]
+    return [one for one in found if one.point[0] in model.coordinates]
+
+
+# --- modes and residues -------------------------------------------------------------------------
+
+
+def states(
+    model: Compiled,
+    component: tuple[str, ...],
+    inputs: Sequence[Any],
+    outputs: Sequence[Point],
+    *,
+    modes: int,
+) -> States:
+    """Find the states of one component, without its dashpots of single points.
+
+    Chains of at most `LARGEST` unknowns have all of their modes, others so many.
+    """
+    model, _ = without_dashpots(model, component)
+    closed = _damping(model, component)
+    eigenvalue, beyond, error = _eigenvalues(model, component, modes)
+    ratio = np.zeros(len(eigenvalue))
+    if having(model.scene.dampings, "ratio"):
+        ratio = known_ratios(model, component, eigenvalue)
+        if len(ratio) < len(eigenvalue):
+            beyond = float(np.sqrt(eigenvalue[len(ratio)]))
+            eigenvalue, error = eigenvalue[: len(ratio)], error[: len(ratio)]
+    asked = _Responses(model, component, list(inputs), list(outputs))
+    residue, rest = _residues(asked, eigenvalue, error, beyond)
+    left = _left(asked, rest, beyond, lambda own: _residues(own, eigenvalue, error, beyond)[1])
+    own, push, seen = _factored(residue, eigenvalue, asked)
+    omega = np.sqrt(np.maximum(eigenvalue, 0.0))
+    gamma, drag = closed.soften.real, closed.drag.real
+    sigma = ratio * omega + (drag + gamma * eigenvalue) / 2
+    # internal forces are the elastic ones with what damps them; so is what moves with an end
+    at_once = np.logical_or.outer(
+        np.array([is_force(p) for p in outputs], dtype=np.bool_),
+        np.array([is_end(p) for p in inputs], dtype=np.bool_),
+    )
+    if gamma == 0:
+        at_once[:] = True
+    forces = np.array([is_force(p) for p in outputs], dtype=np.bool_)
+    return States(
+        sigma=sigma[own],
+        square=eigenvalue[own],
+        push=push,
+        seen=seen,
+        swept=np.where(forces[:, None], gamma * seen, 0.0),
+        now=np.where(at_once, rest, 0.0),
+        late=np.where(at_once, 0.0, rest),
+        gamma=gamma,
+        beyond=beyond,
+        drag=drag,
+        ratio=float(ratio.max(initial=0.0)),
+        left=left,
+    )
+
+
+def _damping(model: Compiled, component: tuple[str, ...]) -> Proportional:
+    """Return how all but dashpots of single points is damped, and refuse what couples modes."""
+    losses = [one.kind for one in having(model.scene.dampings, "loss")]
+    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    closed = proportional(model.chain.only(component), Rates.of(model.scene.dampings))
+    if losses or closed is None:
+        got = ", ".join(losses) if losses else repr(model.scene.damping)
+        raise SceneError(
+            "damping must leave undamped modes uncoupled, as drag, modal ratios, dashpots of "
+            f"single points and stiffness damping without tension do, got {got}"
+        )
+    return closed
+
+
+def _eigenvalues(
+    model: Compiled, component: tuple[str, ...], modes: int
+) -> tuple[Real, float, Real]:
+    """Return those of the modes, the angular frequency of the next, and the errors."""
+    chain = model.chain.only(component)
+    wanted = chain.finite if chain.finite is not None and chain.free <= LARGEST else modes
+    value, error = spectrum(model, component, wanted + 1)
+    beyond = float(np.sqrt(max(value[wanted], 0.0))) if len(value) > wanted else np.inf
+    value, error = value[:wanted], error[:wanted]
+    if np.isfinite(value).all() and not np.isfinite(error).all():
+        raise SolveError(f"({', '.join(component)}): the modes have no correct digit")
+    return value, beyond, error
+
+
+@dataclasses.dataclass(frozen=True)
+class _Responses:
+    """Which transfer functions of one component."""
+
+    model: Compiled
+    component: tuple[str, ...]
+    inputs: list[Any]
+    outputs: list[Point]
+
+    def undamped(self, z: Complex) -> Complex:
+        """Return those without damping at z = -s^2, shape (inputs, outputs, n)."""
+        model, factor = self.model, np.ascontiguousarray(undamped_factors(z))
+        hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
+        asked = tip.spread(model, self.outputs)
+        question = Question(model, self.component, hertz, factor, self.inputs, asked, 1)
+        value, error = moves_ends(SOLVERS["sweep"])(question)
+        if any(map(tip.is_tip, self.outputs)):
+            value, error = tip.gather(model, self.outputs, factor, value, error)
+        return value
+
+
+def _residues(asked: _Responses, eigenvalue: Real, error: Real, beyond: float) -> tuple[Real, Real]:
+    """Return the residues, (inputs, outputs, k), and the rest as (outputs, inputs)."""
+    shape = (len(asked.inputs), len(asked.outputs), len(eigenvalue))
+    residue = np.zeros(shape)
+    if len(eigenvalue):
+        circles = contour.on_a_line(eigenvalue, error, beyond**2)
+        residue = -contour.residues(asked.undamped, eigenvalue, circles).real
+    shift = shift_of(eigenvalue)
+    whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
+    rest = whole - residue @ (1 / (eigenvalue + shift))
+    if not np.isfinite(beyond):  # only rounding is there, but of what has no inertia
+        size = np.abs(whole) + np.abs(residue) @ np.abs(1 / (eigenvalue + shift))
+        rest = np.where(np.abs(rest) <= 1e-11 * size, 0.0, rest)
+    return residue, rest.T
+
+
+def _left(asked: _Responses, rest: Real, beyond: float, rest_of: Any) -> Real:
+    """Bound the flexibility of left-out modes as an inner product, (outputs, inputs)."""
+    if not np.isfinite(beyond):
+        return np.zeros(rest.shape)
+    own: dict[Any, float] = {}
+    for point in dict.fromkeys([*asked.inputs, *asked.outputs]):
+        plain = not (is_end(point) or is_force(point) or tip.is_tip(point))
+        alone = dataclasses.replace(asked, inputs=[point], outputs=[point])
+        own[point] = float(np.abs(rest_of(alone)[0, 0])) if plain else np.inf
+    o, i = ([own[p] for p in some] for some in (asked.outputs, asked.inputs))
+    with np.errstate(invalid="ignore"):
+        return np.nan_to_num(np.sqrt(np.multiply.outer(o, i)), nan=np.inf, posinf=np.inf)
+
+
+# --- residues as products -----------------------------------------------------------------------
+
+
+def _factored(residue: Real, eigenvalue: Real, asked: _Responses) -> tuple[Index, Real, Real]:
+    """Return of each state its mode, its push and how it is seen."""
+    inputs, outputs, _ = residue.shape
+    twin = [asked.outputs.index(p) if p in asked.outputs else -1 for p in asked.inputs]
+    size = np.abs(residue).max(axis=2, initial=0.0)
+    floor = UNMOVED * size
+    number: list[int] = []
+    push: list[Real] = []
+    seen: list[Real] = []
+    for group in _equal(eigenvalue):
+        left = residue[:, :, group].sum(axis=2)
+        for k in group:
+            found = _rank_one(left, size, floor, twin)
+            if found is None:
+                break
+            number.append(int(k))
+            push.append(found[0])
+            seen.append(found[1])
+            left = left - np.multiply.outer(*found)
+    own = np.array(number, dtype=np.intp)
+    return (
+        own,
+        np.array(push, dtype=np.float64).reshape(len(own), inputs),
+        np.array(seen, dtype=np.float64).reshape(len(own), outputs).T,
+    )
+
+
+def _equal(eigenvalue: Real) -> list[Index]:
+    """Gather eigenvalues that are one."""
+    near: Flags = np.diff(eigenvalue) <= EQUAL * np.abs(eigenvalue[1:])
+    return [g for g in np.split(np.arange(len(eigenvalue)), np.flatnonzero(~near) + 1) if len(g)]
+
+
+def _rank_one(R: Real, size: Real, floor: Real, twin: list[int]) -> tuple[Real, Real] | None:
+    """Return push and seen of the largest product in the residues of a mode."""
+    share = np.divide(np.abs(R), size, out=np.zeros_like(R), where=(size > 0) & (np.abs(R) > floor))
+    if not share.any():
+        return None
+    own = [share[i, o] if o >= 0 and R[i, o] > 0 else 0.0 for i, o in enumerate(twin)]
+    i, o = np.unravel_index(int(share.argmax()), share.shape)
+    best = int(np.argmax(own)) if own else 0
+    if own and own[best] > 1e-8 * share[i, o]:
+        i, o = np.intp(best), np.intp(twin[best])
+    scale = np.sqrt(np.abs(R[i, o]))
+    return R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
+
+
+def held(model: Compiled, component: tuple[str, ...], point: Point) -> bool:
+    """Whether a point cannot move."""
+    node, inside = locate(model.x, point[1])
+    at = model.coordinates.index(moving(point))
+    return inside is None and bool(model.chain.held[model.chain.term_of[node], at])

@@ -1,0 +1,133 @@
+"""States of a few points, against the exact response that the sweep knows at every frequency."""
+
+import numpy as np
+import pytest
+
+import ropedyn as rd
+from ropedyn.motion.states import states, without_dashpots
+
+ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
+POINTS = [("z", 0.3), ("z", 0.5), ("z", 0.71)]
+FREQUENCY = np.linspace(3.0, 1000.0, 201)
+OMEGA = 2 * np.pi * FREQUENCY
+
+
+def tensed(**given):
+    return rd.Scene(ROPE, tension=2830.0, **given)
+
+
+def exact(model, points=POINTS, omega=OMEGA):
+    f = omega / (2 * np.pi)
+    value = [model.frf(f, drive=one, response=points).value for one in points]
+    return np.array(value).swapaxes(0, 1)
+
+
+def found(model, modes):
+    return states(model, model.component_of("z"), POINTS, POINTS, modes=modes)
+
+
+def with_dashpots(value, model):
+    """Let the dashpots that states leave out resist."""
+    _, resisting = without_dashpots(model, model.component_of("z"))
+    at = [POINTS.index(one.point) for one in resisting]
+    damping = np.diag([one.damping for one in resisting])
+    result = np.empty_like(value)
+    for n, w in enumerate(OMEGA):
+        H = value[:, :, n]
+        held = np.eye(len(at)) + 1j * w * damping @ H[np.ix_(at, at)]
+        result[:, :, n] = H - H[:, at] @ np.linalg.solve(held, 1j * w * damping @ H[at])
+    return result
+
+
+SCENES = {
+    "drag": tensed(damping=rd.ViscousDamping(1.0)),
+    "dashpots": tensed(parts=[rd.Dashpot(0.5, 30.0), rd.Dashpot(0.71, 4.0)]),
+    "stiffness": rd.Scene(ROPE, damping=rd.StiffnessDamping(1e-4)),
+    "strong stiffness": rd.Scene(ROPE, damping=rd.StiffnessDamping(3e-3)),
+    "rayleigh": tensed(damping=rd.RayleighDamping(2.0, 1e-5)),
+}
+
+
+@pytest.mark.claim(
+    "States of 40 and 80 modes and rest to 1 kHz: largest error over the largest response",
+    reference="exact response of continuous spans",
+    accepted=1e-5,
+)
+@pytest.mark.parametrize("name", SCENES)
+def test_states_are_the_exact_response_and_converge(name, claim):
+    model = SCENES[name].compile()
+    true = exact(model)
+    scale = np.abs(true).max(axis=2, keepdims=True)
+    error = [
+        (np.abs(with_dashpots(found(model, n).at(1j * OMEGA), model) - true) / scale).max()
+        for n in (40, 80)
+    ]
+    claim(error[0])
+    assert error[1] < error[0] / 30  # the rest is of the fourth order in the last frequency
+
+
+@pytest.mark.parametrize("name", ["drag", "stiffness", "strong stiffness", "rayleigh"])
+@pytest.mark.parametrize("modes", [10, 40])
+def test_bound_covers_the_error_of_what_is_left_out(name, modes):
+    model = SCENES[name].compile()
+    own = found(model, modes)
+    error, bound = np.abs(own.at(1j * OMEGA) - exact(model)), own.bound(OMEGA)
+    rounding = 1e-12 * np.abs(exact(model)).max()
+    assert (error <= bound + rounding).all()
+    within = (bound > 100 * rounding) & np.isfinite(bound)
+    # both are of the same order where all points move alike
+    assert np.median((bound / np.maximum(error, rounding))[within]) < 40
+
+
+@pytest.mark.parametrize("element", ["rigid", "tensed"])
+def test_states_of_a_chain_are_all_of_its_motion(element):
+    scene = tensed(damping=rd.ViscousDamping(1.0), parts=[rd.Dashpot(0.5, 30.0)])
+    model = scene.compile(elements=16, element=element)
+    own = found(model, 4)
+    assert own.modes == 15
+    assert not own.bound(OMEGA).any()
+    value = with_dashpots(own.at(1j * OMEGA), model)
+    assert np.abs(value - exact(model)).max() < 1e-12 * np.abs(exact(model)).max()
+
+
+def test_modal_ratios_stand_beside_dashpots():
+    scene = tensed(damping=rd.ModalDamping(0.01))
+    own, beside = (
+        found(one.compile(), 60) for one in (scene, scene.replace(parts=[rd.Dashpot(0.5, 30.0)]))
+    )
+    assert np.allclose(own.sigma, 0.01 * np.sqrt(own.square), rtol=1e-12)
+    assert np.allclose(own.sigma, beside.sigma, rtol=1e-9)
+    model = scene.compile()
+    frf = model.frf(FREQUENCY, drive=POINTS[0], response=POINTS)
+    error = np.abs(own.at(1j * OMEGA)[:, 0] - frf.value)
+    known = frf.mesh_error * np.abs(frf.value)  # the modes that the response leaves out
+    assert (error <= own.bound(OMEGA)[:, 0] + known + 1e-12 * np.abs(frf.value).max()).all()
+
+
+def test_equal_modes_keep_their_shapes():
+    """Two strings beside a support have modes in pairs: a point of one does not move the other."""
+    string = rd.Scene(rd.Rope(2.0, 0.1), tension=100.0, parts=[rd.Support(1.0)])
+    model = string.compile()
+    points = [("z", 0.4), ("z", 1.3)]
+    own = states(model, ("z",), points, points, modes=20)
+    value, true = own.at(1j * OMEGA[:3]), exact(model, points, OMEGA[:3])
+    assert (np.abs(value - true) <= own.bound(OMEGA[:3])).all()
+    assert np.abs(value[0, 1]).max() < 1e-12 * np.abs(value[0, 0]).max()
+
+
+def test_internal_forces_and_moved_ends_are_states_too():
+    model = tensed(damping=rd.ViscousDamping(1.0)).compile()
+    inputs, outputs = [("z", 0.3), ("end", 0, "z")], [("z", 0.5), ("F_z", 0.8)]
+    own = states(model, ("z", "beta"), inputs, outputs, modes=80)
+    w = OMEGA[:20]
+    true = np.array([model.frf(w / 2 / np.pi, drive=d, response=outputs).value for d in inputs])
+    true = true.swapaxes(0, 1)
+    scale = np.abs(true).max(axis=2, keepdims=True)
+    assert (np.abs(own.at(1j * w) - true) / scale).max() < 1e-4
+    assert np.isinf(own.bound(w)[1]).all()
+
+
+def test_damping_that_couples_modes_is_refused():
+    model = tensed(damping=rd.StiffnessDamping(1e-4)).compile()
+    with pytest.raises(rd.SceneError, match="damping must leave undamped modes uncoupled"):
+        found(model, 10)
