@@ -1,0 +1,1 @@
+"""Motion between stops and friction: linear phases in closed form, from event to event."""

@@ -1,0 +1,106 @@
+"""Motion of a phase under what drives it, in closed form.
+
+    z' = p z + g(t):  z = (z_0 - sum_m Z_m - a_0) e^(p t) + sum_m Z_m e^(eta_m t) + a_0 + a_1 t
+
+where nothing nearly cancels; forces near a pole make t e^(rate t), poles near 0 a polynomial.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.array import Complex, Index, Real
+from .course import Course
+from .phase import Matrices
+from .poles import Poles
+
+SLOW, POWERS = 3e-3, 8
+"""A pole this close to 0 over the time ahead is a polynomial of so many powers of t."""
+CLOSE = 1e-5  # A force this close to a pole over the time ahead makes t e^(rate t).
+
+
+class Forcing(NamedTuple):
+    """Re(wave e^(rate t)) + level + slope t, of each drive."""
+
+    rate: Complex  # (m,) [1/s]
+    wave: Complex  # (drives, m)
+    level: Real  # (drives,)
+    slope: Real  # (drives,)
+
+
+class Driven(NamedTuple):
+    """z over time, as in the head of the file."""
+
+    first: Complex  # (j,) z at the beginning
+    push: Forcing
+    fixed: Real  # s
+    own: Complex  # (j,) of e^(p t)
+    forced: Complex  # (j, 2 m) of the drives' rates and their conjugates
+    near: tuple[Index, Index]  # which poles and which of these rates
+    grows: Complex  # (near,) of t e^(rate t)
+    power: Complex  # (j, powers) of t
+
+    def rates(self, poles: Poles) -> Complex:
+        """Return all rates: between what is near, of the poles, of the drives."""
+        eta = _twice(self.push.rate)
+        between = (poles.rate[self.near[0]] + eta[self.near[1]]) / 2
+        return np.concatenate([between, poles.rate, eta])
+
+    def seen(self, poles: Poles, rows: Complex, Dd: Real, Ds: Real) -> Course:
+        """Return Re(rows z) + Dd f_d + Ds s."""
+        push, j = self.push, self.near[0]
+        eta = rows @ self.forced
+        m = len(push.rate)
+        eta[:, :m] += Dd @ push.wave
+        c = np.concatenate([np.zeros((len(rows), len(j))), rows * self.own, eta], axis=1)
+        a = (rows @ self.power).real
+        a[:, 0] += Dd @ push.level + Ds @ self.fixed
+        a[:, 1] += Dd @ push.slope
+        return Course(self.rates(poles), c, rows[:, j] * self.grows, a)
+
+    def at(self, poles: Poles, time: float) -> Complex:
+        """Return z at a time."""
+        rate = self.rates(poles)
+        n, j = len(self.near[0]), len(poles.rate)
+        power = np.exp(rate * time)
+        z = self.own * power[n : n + j] + self.forced @ power[n + j :]
+        z += self.power @ time ** np.arange(POWERS)
+        np.add.at(z, self.near[0], self.grows * time * power[:n])
+        return np.asarray(z)
+
+
+def drive(
+    poles: Poles, matrices: Matrices, z: Complex, push: Forcing, fixed: Real, ahead: float
+) -> Driven:
+    """Return the motion from z on while nothing happens, for a time."""
+    p = poles.rate
+    driven = poles.left @ matrices.Bd
+    eta = _twice(push.rate)
+    forced = driven @ np.concatenate([push.wave, push.wave.conj()], axis=1) / 2
+    gap = eta - p[:, None]
+    near = np.nonzero((np.abs(gap) * ahead < CLOSE) & (forced != 0))
+    grows = forced[near]
+    forced = np.divide(forced, gap, out=np.zeros_like(forced), where=gap != 0)
+    forced[near] = 0.0
+    own = z - forced.sum(axis=1)
+    level = driven @ push.level + poles.left @ (matrices.Bs @ fixed)
+    slope = driven @ push.slope
+    power = np.zeros((len(p), POWERS), dtype=np.complex128)
+    slow = np.abs(p) * ahead < SLOW
+    fast = ~slow
+    power[fast, 1] = -slope[fast] / p[fast]
+    power[fast, 0] = (power[fast, 1] - level[fast]) / p[fast]
+    own[fast] -= power[fast, 0]
+    for m in range(POWERS):
+        for shift, value in enumerate((own, level, slope)):
+            if m >= shift:
+                power[slow, m] += value[slow] * p[slow] ** (m - shift) / factorial(m)
+    own[slow] = 0.0
+    return Driven(z, push, fixed, own, forced, near, grows, power)
+
+
+def _twice(rate: Complex) -> Complex:
+    return np.concatenate([rate, rate.conj()])

@@ -1,0 +1,135 @@
+"""The first time at which one of several functions falls below zero, and none before it.
+
+Between two looks at h and h' a distance w apart, with |h''| <= M,
+
+    h >= min(h_a, h_a + h_a' w/2 - M w^2/8, h_b, h_b - h_b' w/2 - M w^2/8).
+
+Where that is not above zero the interval is divided, so that nothing is overlooked however short it
+is, but for what rounding hides.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.array import Flags, Real
+from .course import Course
+
+LOOKS, PARTS = 64, 8  # So many intervals are looked at together, and one is divided into so many.
+ROUNDING = 64 * np.finfo(float).eps  # Of the sum of the terms' magnitudes.
+DEEPEST = 24  # Divisions after which only rounding is left.
+STEPS = 60  # Of a root, at most.
+
+
+class Crossing(NamedTuple):
+    """Where a function falls below zero."""
+
+    time: float
+    which: int
+
+
+class _Guards(NamedTuple):
+    value: Course
+    slope: Course
+    bend: Course
+    floor: Real  # (guards,) what rounding cannot tell from 0
+
+
+def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
+    """Return the first time before the end at which a guard falls below zero, from 0 on.
+
+    `scale` is the size of the numbers that the guards are differences of.
+    """
+    if not len(guards.c):
+        return None
+    slope = guards.derivative()
+    floor = ROUNDING * np.maximum(scale, guards.size(0.0, 0.0))
+    g = _Guards(guards, slope, slope.derivative(), floor)
+    start = guards.at(np.zeros(1))[:, 0]
+    if (start < -floor).any():
+        return Crossing(0.0, int(np.argmin(start + floor)))
+    first = 0.0
+    while first < end:
+        last = _reach(g, first, end)
+        found = _within(g, first, last, LOOKS, 0)
+        if found is not None:
+            return found
+        first = last
+    return None
+
+
+def _reach(g: _Guards, first: float, end: float) -> float:
+    """Return up to where so many looks tell the most."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        size, bend = g.value.size(first, first), g.bend.size(first, first)
+    share = np.divide(size, bend, out=np.full(len(size), np.inf), where=bend > 0)
+    width = LOOKS * np.sqrt(0.2 * float(share.min(initial=np.inf)))
+    if not first + width > first:
+        width = (end - first) / LOOKS
+    return min(end, first + width)
+
+
+def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Crossing | None:
+    """Look at parts of an interval, in order."""
+    time = np.linspace(first, last, parts + 1)
+    power = g.value.powers(time)
+    h, v = g.value.on(power, time), g.slope.on(power, time)
+    width = (last - first) / parts
+    bend = g.bend.size(first, last)
+    for k in np.flatnonzero(~_safe(g, h, v, width, bend)):
+        lo, hi = float(time[k]), float(time[k + 1])
+        falls = v[:, k : k + 2].max(axis=1) < -bend * width / 2  # throughout
+        below = h[:, k + 1] < -g.floor
+        if depth >= DEEPEST or not lo < (lo + hi) / 2 < hi:
+            if below.any():
+                return Crossing(hi, int(np.argmin(h[:, k + 1] + g.floor)))
+            continue
+        unclear = ~falls & ~_certain(g, h[:, k], h[:, k + 1], v[:, k], v[:, k + 1], width, bend)
+        if not unclear.any() and below.any():
+            roots = [Crossing(_root(g, i, lo, hi), int(i)) for i in np.flatnonzero(below)]
+            return min(roots)
+        found = _within(g, lo, hi, PARTS, depth + 1)
+        if found is not None:
+            return found
+    return None
+
+
+def _safe(g: _Guards, h: Real, v: Real, width: float, bend: Real) -> Flags:
+    """Say in which intervals every guard is above zero, shape (parts,)."""
+    floor, bent = g.floor[:, None], bend[:, None]
+    sure = _above(h[:, :-1], h[:, 1:], v[:, :-1], v[:, 1:], width, bent) >= -floor
+    return np.asarray(sure.all(axis=0))
+
+
+def _certain(g: _Guards, ha: Real, hb: Real, va: Real, vb: Real, width: float, bend: Real) -> Flags:
+    """Say which guards are above zero in one interval."""
+    return np.asarray(_above(ha, hb, va, vb, width, bend) >= -g.floor)
+
+
+def _above(ha: Real, hb: Real, va: Real, vb: Real, width: float, bend: Real) -> Real:
+    """Return what guards are at least, from both ends of intervals."""
+    sag = bend * width**2 / 8
+    left = np.minimum(ha, ha + va * width / 2 - sag)
+    return np.minimum(left, np.minimum(hb, hb - vb * width / 2 - sag))
+
+
+def _root(g: _Guards, which: int, lo: float, hi: float) -> float:
+    """Return where a guard that falls throughout is zero, by Newton's method between bounds."""
+    h, v = (one.some(slice(which, which + 1)) for one in (g.value, g.slope))
+    at = (lo + hi) / 2
+    for _ in range(STEPS):
+        when = np.array([at])
+        power = h.powers(when)
+        value = float(h.on(power, when)[0, 0])
+        if value > 0:
+            lo = at
+        else:
+            hi = at
+        step = value / float(v.on(power, when)[0, 0])
+        new = at - step if lo < at - step < hi else (lo + hi) / 2
+        if abs(new - at) <= 2 * np.spacing(max(abs(at), hi - lo)) or new in (lo, hi):
+            return new
+        at = new
+    return at

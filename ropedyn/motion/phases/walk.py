@@ -1,0 +1,223 @@
+"""One component from event to event: which stops are met, where friction holds, and the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.array import Complex, Real
+from ...base.errors import SolveError
+from .course import Course
+from .driven import Driven, Forcing, drive
+from .phase import Matrices, PhaseSystem, matrices
+from .pieces import ForcePiece
+from .poles import Poles, poles_of
+from .search import first_crossing
+
+AT_ONCE = 64  # Events at one time, at most.
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """One phase: what each visit takes."""
+
+    mode: tuple[int, ...]  # 1 of stops in contact; of friction the direction it slips in, or 0
+    matrices: Matrices
+    poles: Poles
+    seen: Complex  # (outputs, j)
+
+    @classmethod
+    def of(cls, system: PhaseSystem, mode: tuple[int, ...]) -> Phase:
+        """Assemble it and find its poles."""
+        m = matrices(system, mode)
+        poles = poles_of(m.A, m.E.shape[1], system.span)
+        return cls(mode, m, poles, m.Y @ poles.right)
+
+
+class Instant(NamedTuple):
+    """A state at a time."""
+
+    q: Real  # (k,)
+    v: Real  # (k,)
+    e: Real  # (extras,)
+    hold: Real  # (frictions,) where friction holds, or would [m, rad]
+
+
+class Visit(NamedTuple):
+    """A phase while it lasts."""
+
+    start: float  # [s]
+    stop: float  # [s]
+    mode: tuple[int, ...]
+    outputs: Course  # responses, displacement and force of each law, since its start
+
+
+class Walk:
+    """Motion of one component from event to event."""
+
+    def __init__(self, system: PhaseSystem) -> None:
+        self.system = system
+        self.phases: dict[tuple[int, ...], Phase] = {}
+        self.events: list[tuple[float, int]] = []  # when, and of which law
+
+    def visits(self, start: Instant, pieces: Iterator[ForcePiece]) -> Iterator[Visit]:
+        """Yield one phase after another."""
+        now, mode = start, self._first(start)
+        for piece in pieces:
+            if piece.kick.any():
+                now, mode = self._struck(now, mode, piece)
+            time, forcing, crowd = piece.start, piece.push, 0
+            while time < piece.stop:
+                phase, driven = self._enter(now, mode, forcing, piece.stop - time)
+                outputs = self._outputs(phase, driven)
+                guards, scale = self._guards(mode, outputs), self._scale(phase, driven, mode)
+                event = first_crossing(guards, scale, piece.stop - time)
+                last = piece.stop - time if event is None else event.time
+                if last > 0:
+                    yield Visit(time, time + last, mode, outputs)
+                now = self._leave(phase, driven, now, last)
+                if event is None:
+                    break
+                law = self._law(mode, event.which)
+                crowd = 0 if time + last > time else crowd + 1
+                if crowd > AT_ONCE:
+                    raise SolveError(f"laws at points disagree at t = {time:g} s: no phase lasts")
+                time, forcing = time + last, _later(forcing, last)
+                self.events.append((time, law))
+                now, mode = self._changed(now, mode, law, event.which, outputs, last)
+
+    def _first(self, start: Instant) -> tuple[int, ...]:
+        """Return the phase before the first event: stops that are met, friction that holds."""
+        laws = self.system.laws
+        u = self.system.states.seen[self.system.responses :] @ start.q
+        met = [int(c.side * u[k] > c.gap) for k, c in enumerate(laws.contacts)]
+        return (*met, *(0 for _ in laws.frictions))
+
+    def _phase(self, mode: tuple[int, ...]) -> Phase:
+        if mode not in self.phases:
+            self.phases[mode] = Phase.of(self.system, mode)
+        return self.phases[mode]
+
+    def _enter(
+        self, now: Instant, mode: tuple[int, ...], forcing: Forcing, ahead: float
+    ) -> tuple[Phase, Driven]:
+        phase = self._phase(mode)
+        m = phase.matrices
+        x = np.concatenate([m.E.T @ (now.q - m.b @ now.hold), m.E.T @ now.v, now.e])
+        fixed = np.concatenate([[1.0], now.hold])
+        z = phase.poles.left @ x
+        return phase, drive(phase.poles, m, z, forcing, fixed, ahead)
+
+    def _outputs(self, phase: Phase, driven: Driven) -> Course:
+        return driven.seen(phase.poles, phase.seen, phase.matrices.Dd, phase.matrices.Ds)
+
+    def _leave(self, phase: Phase, driven: Driven, now: Instant, time: float) -> Instant:
+        m, n = phase.matrices, phase.matrices.E.shape[1]
+        x = (phase.poles.right @ driven.at(phase.poles, time)).real
+        q, v = m.E @ x[:n] + m.b @ now.hold, m.E @ x[n : 2 * n]
+        return Instant(q, v, x[2 * n :], now.hold)
+
+    def _guards(self, mode: tuple[int, ...], outputs: Course) -> Course:
+        """Return what stays above zero while the phase lasts."""
+        system, laws = self.system, self.system.laws
+        first, count = system.responses, len(laws.points)
+        contacts, frictions = len(laws.contacts), len(laws.frictions)
+        u = outputs.some(slice(first, first + contacts + frictions))
+        force = outputs.some(slice(first + count, first + count + contacts + frictions))
+        found = []
+        for k, stop in enumerate(laws.contacts):
+            sign = 1.0 if mode[k] else -1.0
+            found.append(_scaled(u.some(slice(k, k + 1)), sign * stop.side, -sign * stop.gap))
+        for k, friction in enumerate(laws.frictions, contacts):
+            one = slice(k, k + 1)
+            if mode[k]:
+                found.append(_scaled(u.some(one).derivative(), float(mode[k]), 0.0))
+            else:
+                found += [_scaled(force.some(one), sign, friction.force) for sign in (1.0, -1.0)]
+        return _stacked(found, outputs)
+
+    def _scale(self, phase: Phase, driven: Driven, mode: tuple[int, ...]) -> Real:
+        """Return the size of the numbers that each guard is a difference of."""
+        laws, first, m = self.system.laws, self.system.responses, phase.matrices
+        size = np.abs(phase.seen) * np.abs(driven.first)
+        value = size.sum(axis=1) + np.abs(m.Ds) @ np.abs(driven.fixed)
+        value += np.abs(m.Dd) @ np.abs(driven.push.level)
+        speed = size @ np.abs(phase.poles.rate)
+        contacts, count = len(laws.contacts), len(laws.points)
+        found = (value[first : first + contacts] + [c.gap for c in laws.contacts]).tolist()
+        for k, friction in enumerate(laws.frictions, contacts):
+            held = float(value[first + count + k]) + friction.force
+            found += [float(speed[first + k])] if mode[k] else [held, held]
+        return np.array(found)
+
+    def _law(self, mode: tuple[int, ...], guard: int) -> int:
+        """Return which law a guard is of."""
+        each = [1] * len(self.system.laws.contacts)
+        each += [1 if one else 2 for one in mode[len(each) :]]
+        return int(np.searchsorted(np.cumsum(each), guard, side="right"))
+
+    def _changed(
+        self,
+        now: Instant,
+        mode: tuple[int, ...],
+        law: int,
+        guard: int,
+        outputs: Course,
+        time: float,
+    ) -> tuple[Instant, tuple[int, ...]]:
+        """Return the state and the phase after an event."""
+        contacts, first = len(self.system.laws.contacts), self.system.responses
+        new = list(mode)
+        if law < contacts:
+            new[law] = 1 - mode[law]
+        elif mode[law]:
+            new[law] = 0
+            hold = now.hold.copy()
+            hold[law - contacts] = outputs.some(slice(first + law, first + law + 1)).at(
+                np.array([time])
+            )[0, 0]
+            now = now._replace(hold=hold)
+        else:
+            # the force that holds reaches its largest: from below, it slips against it
+            same = [k for k in range(guard + 1) if self._law(mode, k) == law]
+            new[law] = 1 if len(same) == 1 else -1
+        return now, tuple(new)
+
+    def _struck(
+        self, now: Instant, mode: tuple[int, ...], piece: ForcePiece
+    ) -> tuple[Instant, tuple[int, ...]]:
+        """Let blows act: friction on nothing but mass slips at once."""
+        system = self.system
+        contacts = len(system.laws.contacts)
+        v = now.v + system.states.push[:, : system.drives] @ piece.kick
+        new, soft = list(mode), system.soft
+        for k in range(contacts, contacts + len(system.laws.frictions)):
+            speed = float(system.states.push[:, system.first + k] @ v)
+            if not soft[k] and speed != 0:
+                new[k] = 1 if speed > 0 else -1
+        return now._replace(v=v), tuple(new)
+
+
+def _scaled(course: Course, factor: float, shift: float) -> Course:
+    """Return factor y + shift."""
+    a = factor * course.a
+    a[:, 0] += shift
+    return Course(course.rate, factor * course.c, factor * course.d, a)
+
+
+def _stacked(found: list[Course], like: Course) -> Course:
+    if not found:
+        return like.some(slice(0, 0))
+    parts = zip(*((one.c, one.d, one.a) for one in found))
+    return Course(like.rate, *(np.concatenate(part) for part in parts))
+
+
+def _later(forcing: Forcing, time: float) -> Forcing:
+    """Return the same since a later time."""
+    return forcing._replace(
+        wave=forcing.wave * np.exp(forcing.rate * time), level=forcing.level + forcing.slope * time
+    )
+
