@@ -19,12 +19,11 @@ from .eigen.eigen import solve_modes
 from .eigen.modes import Modes
 from .eigen.spectrum import count_modes
 from .eigen.tolerance import compile_within
-from .motion.direct.direct import march
 from .motion.direct.steady_states import march_steadily
 from .motion.history import History
 from .motion.modal.steady_states import superpose_steadily
-from .motion.modal.superposition import superpose
 from .motion.request import Run, SteppedSine
+from .motion.solve import follow_motion
 from .motion.turning import refuse_steady, turned
 from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
@@ -345,11 +344,12 @@ class Model(Compiled):
         start : mapping from points to float, or Deflection, optional
             Static loads [N, N m] under which the rope rests, at the mean tension and without what
             is not linear (a `Stop`, friction), before it is let go at the first time.
-        method : {"auto", "modal", "direct"}
+        method : {"auto", "modal", "events", "direct"}
             ``"modal"``: linear scenes, the sum over modes, complex ones where damping is not
             proportional, each integrated exactly, with the static motion of those left out.
             ``"direct"``: chains, linear or not, an implicit scheme of second order, unconditionally
-            stable, along the chain (csrc/march/form/march.h). ``"auto"``: modal where it can be.
+            stable, along the chain (csrc/march/form/march.h). ``"events"``: stops and friction,
+            in closed form between events. ``"auto"``: modal where it can be, else events or direct.
         modes : int, optional
             Of each component, that the modal method sums; where left out all of a chain of at most
             1000 unknowns, else those below eight times what force and times resolve, from 64 to
@@ -421,7 +421,7 @@ class Model(Compiled):
             progress=progress,
             partial=partial,
         )
-        return turned(run, march if run.direct else superpose)
+        return turned(run, follow_motion)
 
     def floquet(self, modes: int | None = 4) -> Floquet:
         """Find how free motion grows or decays under the tension that pulsates.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -92,6 +93,10 @@ class History(Answer):
         Of every node.
     snapshot : ndarray, shape (s, nodes, coordinates)
         Displacement of the whole rope [m, rad].
+    sure_until : float
+        Where stops and friction make motion chaotic: until when modes, elements apart, and rounding
+        leave it within the tolerance [s]; errors are infinite after it. Infinite where nothing
+        limits it.
     stopped : str
         Why it ends before the last time that was asked for; empty where it does not.
     released : bool
@@ -132,6 +137,7 @@ class History(Answer):
     cost: Cost
     balance: Lazy[Balance] = lazy(Balance)
     deviation: Lazy[Deviation] = lazy(Deviation)
+    sure_until: float = math.inf
     stopped: str = ""
     released: bool = False
     law: tuple[Force, ...] = field(default=(), repr=False, metadata=TRANSIENT)

@@ -26,6 +26,7 @@ from ..scene.parts.part import standing
 from ..scene.tension import Tension
 
 METHODS = ("auto", "modal", "direct")
+EVENTS = "events"  # Of `Model.transient` alone.
 MODAL, DIRECT = 1e-9, 1e-3  # Tolerances of a steady state that methods keep where none is given.
 
 
@@ -40,6 +41,7 @@ class Run:
     forces: tuple[Force, ...]  # one for each
     responses: tuple[Point, ...]  # Motion, internal forces, tips of wires
     direct: bool  # whether steps answer, not modes
+    method: str = "auto"  # as it was asked for
     order: int = 0  # how often the displacement is differentiated
     # under which the rope rests before the first time, when it is let go
     loads: Mapping[Point, float] = field(default_factory=dict)
@@ -72,7 +74,8 @@ class Run:
         partial: bool,
     ) -> Run:
         """Check what is asked."""
-        direct = is_direct(model, method)
+        check.one_of(method, "method", (*METHODS, EVENTS))
+        direct = is_direct(model, "auto" if method == EVENTS else method)
         check.one_of(quantity, "quantity", MOTIONS)
         t = checked_times(time)
         drives, given = _driven(model, drive, force, t)
@@ -91,6 +94,7 @@ class Run:
             given,
             responses=observed(model, response, drives),
             direct=direct,
+            method=method,
             order=MOTIONS[quantity],
             loads=loads,
             snapshots=_snapshots(snapshots, t),

@@ -187,17 +187,26 @@ def states(
     )
 
 
-def _damping(model: Compiled, component: tuple[str, ...]) -> Proportional:
-    """Return how all but dashpots of single points is damped, and refuse what couples modes."""
+def why_coupled(model: Compiled, component: tuple[str, ...]) -> str:
+    """Say that damping couples undamped modes, with nothing where it does not."""
     losses = [one.kind for one in having(model.scene.dampings, "loss")]
     losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    rates = Rates.of(model.scene.dampings)
+    if not losses and proportional(model.chain.only(component), rates) is not None:
+        return ""
+    got = ", ".join(losses) if losses else repr(model.scene.damping)
+    return (
+        "damping must leave undamped modes uncoupled, as drag, modal ratios, dashpots of single "
+        f"points and stiffness damping without tension do, got {got}"
+    )
+
+
+def _damping(model: Compiled, component: tuple[str, ...]) -> Proportional:
+    """Return how all but dashpots of single points is damped, and refuse what couples modes."""
+    why = why_coupled(model, component)
     closed = proportional(model.chain.only(component), Rates.of(model.scene.dampings))
-    if losses or closed is None:
-        got = ", ".join(losses) if losses else repr(model.scene.damping)
-        raise SceneError(
-            "damping must leave undamped modes uncoupled, as drag, modal ratios, dashpots of "
-            f"single points and stiffness damping without tension do, got {got}"
-        )
+    if why or closed is None:
+        raise SceneError(why)
     return closed
 
 

@@ -1,6 +1,6 @@
 """Outputs as functions of the time since a phase began: exponentials, t times some, a polynomial.
 
-    y(t) = Re sum_j (c_j + d_j t) e^(rate_j t) + sum_m a_m t^m
+y(t) = Re sum_j (c_j + d_j t) e^(rate_j t) + sum_m a_m t^m
 """
 
 from __future__ import annotations

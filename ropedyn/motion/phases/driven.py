@@ -73,7 +73,7 @@ class Driven(NamedTuple):
 
 
 def drive(
-    poles: Poles, matrices: Matrices, z: Complex, push: Forcing, fixed: Real, ahead: float
+    poles: Poles, matrices: Matrices, z: Complex, push: Forcing, *, fixed: Real, ahead: float
 ) -> Driven:
     """Return the motion from z on while nothing happens, for a time."""
     p = poles.rate
@@ -81,7 +81,8 @@ def drive(
     eta = _twice(push.rate)
     forced = driven @ np.concatenate([push.wave, push.wave.conj()], axis=1) / 2
     gap = eta - p[:, None]
-    near = np.nonzero((np.abs(gap) * ahead < CLOSE) & (forced != 0))
+    one, other = np.nonzero((np.abs(gap) * ahead < CLOSE) & (forced != 0))
+    near = one, other
     grows = forced[near]
     forced = np.divide(forced, gap, out=np.zeros_like(forced), where=gap != 0)
     forced[near] = 0.0

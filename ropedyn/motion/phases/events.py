@@ -2,93 +2,149 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from ...base.answer import Cost
-from ...base.array import Index, Real
-from ...base.errors import SceneError
-from ...chain.port import Point, moving
-from ...response.moved_end import is_end
-from ..history import Balance, Deviation, History
+from ...base.array import Real
+from ...base.errors import SceneError, SolveError
+from ...chain.compile import compile_scene
+from ...eigen.vectors import within
+from ...response.deflection import POINTS
+from ..history import Deviation, History
 from ..request import Run
-from ..states import states
-from .laws import PhaseLaws, phase_laws
-from .phase import PhaseSystem, extras
+from .components import Look, moving_components, rest, why_not_events
+from .energy import balance
 from .pieces import pieces
-from .walk import Instant, Walk
+from .walk import PhaseWalk, Visit
 
-MODES = 64  # Of continuous spans and long chains.
-
-
-@dataclass(frozen=True, eq=False)
-class Moving:
-    """One component that moves in a run."""
-
-    system: PhaseSystem
-    drives: list[int]  # Which of the run's drives
-    loads: list[float]  # that are let go
-    responses: list[int]  # Which of the run's responses
+MODES, MOST = 64, 256  # Of continuous spans and long chains, at first and at most.
+TOLERANCE = 1e-3  # Of the largest value, where none is given.
+NUDGE = 1e-11  # Rounding is at most this part of what drives.
+MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
+NONE = np.zeros(0)
 
 
-def moving_components(run: Run, modes: int) -> list[Moving]:
-    """Return the components that are pushed."""
-    model, found = run.model, []
-    for component in model.components:
-        drives = [k for k, d in enumerate(run.drives) if moving(d) in component]
-        loads = {p: load for p, load in run.loads.items() if p[0] in component}
-        watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
-        if not drives and not loads:
-            continue
-        laws = phase_laws(model, component)
-        inputs: list[Any] = [*(run.drives[k] for k in drives), *loads, *laws.points]
-        outputs: list[Point] = [*(run.responses[k] for k in watched), *laws.points]
-        st = states(model, component, inputs, outputs, modes=modes)
-        if st.late.any() and any(map(is_end, inputs)):
-            raise SceneError("drive must not be the motion of an end where stiffness is damped")
-        span = float(run.time[-1] - run.time[0])
-        system = PhaseSystem(st, laws, len(drives), len(loads), len(watched), span)
-        found.append(Moving(system, drives, list(loads.values()), watched))
-    return found
+class Followed(NamedTuple):
+    """A motion."""
+
+    seen: list[Real]  # (points, t) of each look
+    events: list[float]  # [s]
+    whole: bool  # whether no mode is left out
+    modes: int
 
 
-def _start(one: Moving) -> Instant:
-    """Return the rest under loads that are let go."""
-    st, system = one.system.states, one.system
-    load = np.zeros(st.push.shape[1])
-    load[system.drives : system.first] = one.loads
-    if load.any() and not (st.square > 0).all():
-        raise SceneError("start must be None where the rope has no rest under a load")
-    q = (st.push @ load) / np.where(st.square == 0, 1.0, st.square)
-    u = st.seen[system.responses :] @ q + (st.now + st.late)[system.responses :] @ load
-    own = extras(system)
-    e = load[own] if system.late else u[[i - system.first for i in own]]
-    contacts = len(system.laws.contacts)
-    hold = u[contacts : contacts + len(system.laws.frictions)]
-    return Instant(q, np.zeros_like(q), e, hold)
-
-
-def follow(run: Run, modes: int) -> tuple[Real, list[Walk]]:
-    """Return the responses, (responses, t), and what happened."""
-    value = np.zeros((len(run.responses), len(run.time)))
-    walks = []
-    for one in moving_components(run, modes):
-        walk = Walk(one.system)
-        walks.append(walk)
+def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> Followed:
+    """Return what is seen, (points, t) of each look, of a motion whose push is nudged."""
+    seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
+    events: list[float] = []
+    whole = True
+    for one in moving_components(run, looks, modes):
+        walk = PhaseWalk(one.system)
         forces = [run.forces[k] for k in one.drives]
-        rows = slice(0, one.system.responses)
-        for visit in walk.visits(_start(one), pieces(forces, run.time)):
-            last = visit.stop >= run.time[-1]
-            i = int(np.searchsorted(run.time, visit.start))
-            j = int(np.searchsorted(run.time, visit.stop, side="right" if last else "left"))
-            if i == j:
-                continue
-            course = visit.outputs.some(rows)
-            for _ in range(run.order):
-                course = course.derivative()
-            value[one.responses, i:j] = course.at(run.time[i:j] - visit.start)
-    return value, walks
+        for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
+            for look, value, (rows, which) in zip(looks, seen, one.watched):
+                _record(visit, look, value, rows=rows, which=which, last=visit.stop >= run.time[-1])
+            run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
+        events += [at for at, _ in walk.events]
+        whole = whole and not np.isfinite(one.system.states.beyond)
+    return Followed(seen, sorted(events), whole, modes)
+
+
+def _record(
+    visit: Visit, look: Look, value: Real, *, rows: slice, which: list[int], last: bool
+) -> None:
+    """Keep what a look sees of a phase."""
+    i = int(np.searchsorted(look.time, visit.start))
+    j = int(np.searchsorted(look.time, visit.stop, side="right" if last else "left"))
+    if i == j or not which:
+        return
+    course = visit.outputs(rows)
+    for _ in range(look.order):
+        course = course.derivative()
+    value[which, i:j] = course.at(look.time[i:j] - visit.start)
+
+
+# --- how far it is right ------------------------------------------------------------------------
+
+
+def solve_events(run: Run) -> History:
+    """Follow the motion from event to event; see `Model.transient`."""
+    start = clock.perf_counter()
+    why = why_not_events(run)
+    if why:
+        raise SceneError(f'{why} where the method is "events"')
+    x = within(run.model.x, POINTS) if run.model.element == "continuous" else run.model.x
+    points = tuple((c, float(at)) for at in x for c in run.model.coordinates)
+    looks = [Look(run.responses, run.time, run.order)]
+    if len(run.snapshots):
+        looks.append(Look(points, run.snapshots, 0))
+    found, error = _within(run, looks)
+    value = found.seen[0]
+    seconds = clock.perf_counter() - start
+    sure = _sure_until(run, value, error)
+    error[:, run.time > sure] = np.inf
+    width = len(run.model.coordinates)
+    kept = found.seen[1] if len(looks) > 1 else np.zeros((len(points), 0))
+    return History(
+        **run.kept.told,
+        value=value,
+        truncation_error=np.where(np.isfinite(error), error, 0.0).max(axis=1, initial=0.0),
+        x=x,
+        snapshot=np.ascontiguousarray(kept.T).reshape(-1, len(x), width),
+        cost=Cost(seconds, "events", len(run.model.x) - 1, found.modes),
+        balance=partial(balance, run.kept, found.modes),
+        deviation=partial(_deviation, run.kept, value, error),
+        sure_until=sure,
+    )
+
+
+def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
+    """Return the motion and the error that modes and rounding cause, as its first look.
+
+    It is followed once more, with half the modes, or where there are all with its push nudged.
+    """
+    least = run.tolerance or TOLERANCE
+    modes = MODES
+    coarse = follow(run, looks[:1], modes // 2, NUDGE)
+    if coarse.whole:
+        found = follow(run, looks, modes // 2)
+        return found, _running(found.seen[0] - coarse.seen[0])
+    while True:
+        found = follow(run, looks, modes)
+        error = _running(MARGIN * (found.seen[0] - coarse.seen[0]))
+        size = np.abs(found.seen[0]).max(axis=1, keepdims=True)
+        if (error <= least * size).all() or 2 * modes > MOST:
+            return found, error
+        coarse, modes = found, 2 * modes
+
+
+def _running(difference: Real) -> Real:
+    """Return the largest difference up to each time: what is off does not come back."""
+    return np.maximum.accumulate(np.abs(difference), axis=1)
+
+
+def _sure_until(run: Run, value: Real, error: Real) -> float:
+    """Return the last time at which the error of every response is within the tolerance."""
+    size = np.abs(value).max(axis=1, keepdims=True)
+    wrong = (error > (run.tolerance or TOLERANCE) * size).any(axis=0)
+    if not wrong.any():
+        return math.inf
+    return float(run.time[max(int(wrong.argmax()) - 1, 0)])
+
+
+def _deviation(run: Run, value: Real, error: Real) -> Deviation:
+    """Return the errors of modes and rounding, and of elements."""
+    if run.model.element == "continuous":
+        return Deviation(error, np.zeros(value.shape))
+    try:
+        true = solve_events(replace(run, model=compile_scene(run.model.scene), snapshots=NONE))
+    except (SceneError, SolveError):
+        return Deviation(error, np.full(value.shape, np.inf))
+    return Deviation(error, np.abs(value - true.value) + true.step_error)

@@ -55,9 +55,3 @@ def phase_laws(model: Compiled, component: tuple[str, ...]) -> PhaseLaws:
     _, dashpots = without_dashpots(model, component)
     frictions = tuple(Friction(point, force) for point, force in friction.items())
     return PhaseLaws(tuple(contacts), frictions, dashpots)
-
-
-def only_events(model: Compiled) -> bool:
-    """Whether all that is not linear in a scene are stops and friction."""
-    laws = [law for part in standing(model.scene.parts) for law in part.term().laws]
-    return all(one.kind == "stop" or (one.kind == "power" and one.value[1] == 0) for one in laws)

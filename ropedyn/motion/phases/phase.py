@@ -1,7 +1,7 @@
 """A scene between two events: linear, with poles of its own, in closed form.
 
-With the states q, law forces f_A that act (stops in contact, friction that holds, dashpots) and those
-that are known (drives f_d, friction that slips) a phase is
+With the states q, law forces f_A (stops in contact, friction that holds, dashpots) and those that
+are known (drives f_d, friction that slips) a phase is
 
     x' = A x + B_d f_d + B_s s,    y = Y x + D_d f_d + D_s s,    s = (1, u_0 of each friction).
 
@@ -18,6 +18,7 @@ told by one line each,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -95,7 +96,7 @@ class _Rows:
         sizes = [k, k, len(own), len(active), system.drives, 1 + len(system.laws.frictions)]
         at = np.cumsum([0, *sizes])
         self.q, self.v, self.e, self.f, self.d, self.s = (
-            slice(i, j) for i, j in zip(at[:-1], at[1:])
+            slice(i, j) for i, j in pairwise(at.tolist())
         )
         self.width = int(at[-1])
 
@@ -127,13 +128,13 @@ def matrices(system: PhaseSystem, mode: tuple[int, ...]) -> Matrices:
         else:
             c = laws.dashpots[i - system.first - system.damped.start].damping
             extra[n] = -force[i] / c
-    lines = _lines(system, mode, active, rows, u, acceleration, extra)
+    lines = _lines(system, mode, active, rows, u=u, acceleration=acceleration, extra=extra)
     fixed = [k for k in sticking if not soft[k]]
     E, b = _constrained(system, fixed, contacts)
     solved = _solved(lines, rows)
     whole = np.concatenate([E.T @ acceleration, extra, y, u, force[system.first :]])
-    whole = whole[:, : rows.f.start], whole[:, rows.f] @ solved, whole[:, rows.f.stop :]
-    known = np.concatenate([whole[0], whole[2]], axis=1) + whole[1]
+    known = np.concatenate([whole[:, : rows.f.start], whole[:, rows.f.stop :]], axis=1)
+    known += whole[:, rows.f] @ solved
     return _reduced(system, rows, known, E, b)
 
 
@@ -165,6 +166,7 @@ def _lines(
     mode: tuple[int, ...],
     active: list[int],
     rows: _Rows,
+    *,
     u: Real,
     acceleration: Real,
     extra: Real,

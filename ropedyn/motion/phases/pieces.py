@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ...base.array import Real
-from ...base.errors import SceneError
 from ...scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .driven import Forcing
+
+AMPLITUDES = ("wave", "level", "slope")
 
 
 class ForcePiece(NamedTuple):
@@ -23,25 +25,27 @@ class ForcePiece(NamedTuple):
     kick: Real  # (drives,) blows at the start [N s]
 
 
-def pieces(forces: Sequence[Force], time: Real) -> Iterator[ForcePiece]:
-    """Return what drives between the times at which something changes, in turn."""
+def pieces(forces: Sequence[Force], time: Real, factor: float = 1.0) -> Iterator[ForcePiece]:
+    """Return what drives, times a factor, between the times at which it changes, in turn."""
     begin, end = float(time[0]), float(time[-1])
     each = [list(_flat(force)) for force in forces]
     cuts = {begin, end}
     for one in (one for some in each for one in some):
-        if isinstance(one, Chirp):
-            raise SceneError(
-                'force must not be a Chirp where the method is "events": its phases have no '
-                "exponentials; give its samples"
-            )
         inner = one.time.tolist() if isinstance(one, Samples) else one.breaks
         cuts.update(t for t in (*inner, *(at for at, _ in one.blows)) if begin < t < end)
     order = sorted(cuts)
     if len(order) == 1:
         return
-    for start, stop in zip(order[:-1], order[1:]):
+    for start, stop in pairwise(order):
         kick = [sum(p for one in some for at, p in one.blows if at == start) for some in each]
-        yield ForcePiece(start, stop, _push(each, start, stop), np.array(kick, dtype=np.float64))
+        push = _push(each, start, stop)
+        push = push._replace(**{name: factor * getattr(push, name) for name in AMPLITUDES})
+        yield ForcePiece(start, stop, push, factor * np.array(kick, dtype=np.float64))
+
+
+def is_chirp(force: Force) -> bool:
+    """Whether some of it is a chirp, which is no sum of exponentials."""
+    return any(isinstance(one, Chirp) for one in _flat(force))
 
 
 def _flat(force: Force) -> Iterator[Force]:

@@ -86,9 +86,10 @@ def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Cr
             if below.any():
                 return Crossing(hi, int(np.argmin(h[:, k + 1] + g.floor)))
             continue
-        unclear = ~falls & ~_certain(g, h[:, k], h[:, k + 1], v[:, k], v[:, k + 1], width, bend)
+        certain = _above(h[:, k : k + 2], v[:, k : k + 2], width, bend[:, None])[:, 0] >= -g.floor
+        unclear = ~falls & ~certain
         if not unclear.any() and below.any():
-            roots = [Crossing(_root(g, i, lo, hi), int(i)) for i in np.flatnonzero(below)]
+            roots = [Crossing(_root(g, int(i), lo, hi), int(i)) for i in np.flatnonzero(below)]
             return min(roots)
         found = _within(g, lo, hi, PARTS, depth + 1)
         if found is not None:
@@ -98,21 +99,14 @@ def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Cr
 
 def _safe(g: _Guards, h: Real, v: Real, width: float, bend: Real) -> Flags:
     """Say in which intervals every guard is above zero, shape (parts,)."""
-    floor, bent = g.floor[:, None], bend[:, None]
-    sure = _above(h[:, :-1], h[:, 1:], v[:, :-1], v[:, 1:], width, bent) >= -floor
-    return np.asarray(sure.all(axis=0))
+    return np.asarray((_above(h, v, width, bend[:, None]) >= -g.floor[:, None]).all(axis=0))
 
 
-def _certain(g: _Guards, ha: Real, hb: Real, va: Real, vb: Real, width: float, bend: Real) -> Flags:
-    """Say which guards are above zero in one interval."""
-    return np.asarray(_above(ha, hb, va, vb, width, bend) >= -g.floor)
-
-
-def _above(ha: Real, hb: Real, va: Real, vb: Real, width: float, bend: Real) -> Real:
-    """Return what guards are at least, from both ends of intervals."""
+def _above(h: Real, v: Real, width: float, bend: Real) -> Real:
+    """Return what guards are at least between looks, shape (guards, looks - 1)."""
     sag = bend * width**2 / 8
-    left = np.minimum(ha, ha + va * width / 2 - sag)
-    return np.minimum(left, np.minimum(hb, hb - vb * width / 2 - sag))
+    left = np.minimum(h, h + v * width / 2 - sag)[:, :-1]
+    return np.minimum(left, np.minimum(h, h - v * width / 2 - sag)[:, 1:])
 
 
 def _root(g: _Guards, which: int, lo: float, hi: float) -> float:

@@ -36,6 +36,20 @@ class Phase:
         poles = poles_of(m.A, m.E.shape[1], system.span)
         return cls(mode, m, poles, m.Y @ poles.right)
 
+    def outputs(self, driven: Driven, which: slice) -> Course:
+        """Return some of responses, displacements and forces of laws."""
+        m = self.matrices
+        return driven.seen(self.poles, self.seen[which], m.Dd[which], m.Ds[which])
+
+    def state(self, driven: Driven, hold: Real) -> Course:
+        """Return q, q' and e."""
+        m, n = self.matrices, self.matrices.E.shape[1]
+        right = self.poles.right
+        rows = np.concatenate([m.E @ right[:n], m.E @ right[n : 2 * n], right[2 * n :]])
+        shift = np.zeros((len(rows), 1 + len(hold)))
+        shift[: len(m.b), 1:] = m.b
+        return driven.seen(self.poles, rows, np.zeros((len(rows), m.Bd.shape[1])), shift)
+
 
 class Instant(NamedTuple):
     """A state at a time."""
@@ -51,11 +65,20 @@ class Visit(NamedTuple):
 
     start: float  # [s]
     stop: float  # [s]
-    mode: tuple[int, ...]
-    outputs: Course  # responses, displacement and force of each law, since its start
+    phase: Phase
+    driven: Driven  # since its start
+    hold: Real  # (frictions,) where friction holds
+
+    def outputs(self, which: slice) -> Course:
+        """Return some of responses, displacements and forces of laws, since the start."""
+        return self.phase.outputs(self.driven, which)
+
+    def state(self) -> Course:
+        """Return q, q' and e, one after another, since the start."""
+        return self.phase.state(self.driven, self.hold)
 
 
-class Walk:
+class PhaseWalk:
     """Motion of one component from event to event."""
 
     def __init__(self, system: PhaseSystem) -> None:
@@ -72,12 +95,12 @@ class Walk:
             time, forcing, crowd = piece.start, piece.push, 0
             while time < piece.stop:
                 phase, driven = self._enter(now, mode, forcing, piece.stop - time)
-                outputs = self._outputs(phase, driven)
+                outputs = phase.outputs(driven, slice(self.system.responses, None))
                 guards, scale = self._guards(mode, outputs), self._scale(phase, driven, mode)
                 event = first_crossing(guards, scale, piece.stop - time)
                 last = piece.stop - time if event is None else event.time
                 if last > 0:
-                    yield Visit(time, time + last, mode, outputs)
+                    yield Visit(time, time + last, phase, driven, now.hold)
                 now = self._leave(phase, driven, now, last)
                 if event is None:
                     break
@@ -87,7 +110,9 @@ class Walk:
                     raise SolveError(f"laws at points disagree at t = {time:g} s: no phase lasts")
                 time, forcing = time + last, _later(forcing, last)
                 self.events.append((time, law))
-                now, mode = self._changed(now, mode, law, event.which, outputs, last)
+                now, mode = self._changed(
+                    now, mode, law=law, guard=event.which, outputs=outputs, time=last
+                )
 
     def _first(self, start: Instant) -> tuple[int, ...]:
         """Return the phase before the first event: stops that are met, friction that holds."""
@@ -109,10 +134,7 @@ class Walk:
         x = np.concatenate([m.E.T @ (now.q - m.b @ now.hold), m.E.T @ now.v, now.e])
         fixed = np.concatenate([[1.0], now.hold])
         z = phase.poles.left @ x
-        return phase, drive(phase.poles, m, z, forcing, fixed, ahead)
-
-    def _outputs(self, phase: Phase, driven: Driven) -> Course:
-        return driven.seen(phase.poles, phase.seen, phase.matrices.Dd, phase.matrices.Ds)
+        return phase, drive(phase.poles, m, z, forcing, fixed=fixed, ahead=ahead)
 
     def _leave(self, phase: Phase, driven: Driven, now: Instant, time: float) -> Instant:
         m, n = phase.matrices, phase.matrices.E.shape[1]
@@ -122,11 +144,9 @@ class Walk:
 
     def _guards(self, mode: tuple[int, ...], outputs: Course) -> Course:
         """Return what stays above zero while the phase lasts."""
-        system, laws = self.system, self.system.laws
-        first, count = system.responses, len(laws.points)
-        contacts, frictions = len(laws.contacts), len(laws.frictions)
-        u = outputs.some(slice(first, first + contacts + frictions))
-        force = outputs.some(slice(first + count, first + count + contacts + frictions))
+        laws = self.system.laws
+        count, contacts = len(laws.points), len(laws.contacts)
+        u, force = outputs.some(slice(0, count)), outputs.some(slice(count, None))
         found = []
         for k, stop in enumerate(laws.contacts):
             sign = 1.0 if mode[k] else -1.0
@@ -163,22 +183,21 @@ class Walk:
         self,
         now: Instant,
         mode: tuple[int, ...],
+        *,
         law: int,
         guard: int,
         outputs: Course,
         time: float,
     ) -> tuple[Instant, tuple[int, ...]]:
         """Return the state and the phase after an event."""
-        contacts, first = len(self.system.laws.contacts), self.system.responses
-        new = list(mode)
+        contacts, new = len(self.system.laws.contacts), list(mode)
         if law < contacts:
             new[law] = 1 - mode[law]
         elif mode[law]:
             new[law] = 0
             hold = now.hold.copy()
-            hold[law - contacts] = outputs.some(slice(first + law, first + law + 1)).at(
-                np.array([time])
-            )[0, 0]
+            u = outputs.some(slice(law, law + 1)).at(np.array([time]))
+            hold[law - contacts] = u[0, 0]
             now = now._replace(hold=hold)
         else:
             # the force that holds reaches its largest: from below, it slips against it
@@ -220,4 +239,3 @@ def _later(forcing: Forcing, time: float) -> Forcing:
     return forcing._replace(
         wave=forcing.wave * np.exp(forcing.rate * time), level=forcing.level + forcing.slope * time
     )
-

@@ -1,0 +1,147 @@
+"""Where the energy is while stops and friction act.
+
+kinetic    sum of q'^2/2,       strain   sum of square q^2/2 and of what modes leave out, f R f/2
+laws       k (u - gap)^2/2 of stops,     input   integral of f u' of the drives, and jumps
+dissipated integral of 2 sigma q'^2, of F |u'| where friction slips, of f^2/c of dashpots,
+and of gamma l' R l' of what modes leave out
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.array import Real
+from ...base.errors import SceneError
+from ...response.moved_end import is_end
+from ..history import Balance
+from ..request import Run
+from .components import Look, Moving, moving_components, rest
+from .laws import Contact
+from .pieces import pieces
+from .walk import PhaseWalk, Visit
+
+NAMES = ("kinetic", "strain", "input", "dissipated", "laws")
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+TURN = 2.0  # Between two times of a rule of Gauss the fastest motion turns by this angle.
+FAINT = 1e-14  # Motion with less than this part of the energy is not resolved.
+
+
+class _Seen(NamedTuple):
+    """A component at times of a visit."""
+
+    q: Real
+    v: Real
+    u: Real  # displacements of drives, loads and laws
+    speed: Real
+    force: Real  # of all inputs, of drives as the forces say
+    relaxed: Real  # (extras, t)
+    relaxing: Real  # (extras, t)
+
+
+def balance(run: Run, modes: int) -> Balance:
+    """Return the energies at the times of a run."""
+    if any(map(is_end, run.drives)):
+        raise SceneError('energy is not told where an end is moved and the method is "events"')
+    points = (*run.drives, *run.loads)
+    asked = replace(run, responses=points, order=0)
+    total = np.zeros((len(NAMES), len(run.time)))
+    has_stops = False
+    for one in moving_components(asked, [Look(points, run.time, 0)], modes):
+        total += _component(asked, one)
+        has_stops = has_stops or bool(one.system.laws.contacts)
+    energy = dict(zip(NAMES, total))
+    if not has_stops:
+        del energy["laws"]
+    return Balance(energy)
+
+
+def _component(run: Run, one: Moving) -> Real:
+    """Return the energies of one component, (names, t)."""
+    result = np.zeros((len(NAMES), len(run.time)))
+    done = np.zeros(2)  # input and dissipated
+    before = None
+    forces = [run.forces[k] for k in one.drives]
+    for visit in PhaseWalk(one.system).visits(rest(one, 0.0), pieces(forces, run.time)):
+        edges = _edges(visit, run.time)
+        stored = _stored(one, _look(run, one, visit, edges))
+        if before is not None:
+            done[0] += stored[:, 0].sum() - before
+        before = stored[:, -1].sum()
+        nodes = (edges[:-1, None] + np.multiply.outer(np.diff(edges), (NODES + 1) / 2)).ravel()
+        power = _powers(one, visit, _look(run, one, visit, nodes))
+        each = power.reshape(2, -1, len(NODES)) @ (WEIGHTS / 2) * np.diff(edges)
+        gone = done[:, None] + np.concatenate([np.zeros((2, 1)), each.cumsum(axis=1)], axis=1)
+        done = gone[:, -1]
+        i, j = np.searchsorted(run.time, [visit.start, visit.stop])
+        j += int(visit.stop >= run.time[-1])
+        at = np.minimum(np.searchsorted(edges, run.time[i:j]), len(edges) - 1)
+        result[:2, i:j], result[4, i:j] = stored[:2, at], stored[2, at]
+        result[2:4, i:j] = gone[:, at]
+    return result
+
+
+def _edges(visit: Visit, time: Real) -> Real:
+    """Return the times of a visit, with so many between that its motion is resolved."""
+    inside = time[(time > visit.start) & (time < visit.stop)]
+    edges = np.concatenate([[visit.start], inside, [visit.stop]])
+    rate, own = np.abs(visit.phase.poles.rate), visit.driven.own
+    size = np.abs(visit.phase.poles.right[: visit.phase.matrices.E.shape[1]] * own).max(axis=0, initial=0.0)
+    share = (rate * size) ** 2
+    fast = rate[share > FAINT * share.max(initial=0.0)].max(initial=0.0)
+    fast = max(fast, np.abs(visit.driven.push.rate).max(initial=0.0))
+    parts = np.maximum(1, np.ceil(np.diff(edges) * fast / TURN)).astype(int)
+    step = np.repeat(np.diff(edges) / parts, parts)
+    first = np.repeat(edges[:-1], parts)
+    number = np.concatenate([np.arange(n) for n in parts])
+    return np.append(first + number * step, edges[-1])
+
+
+def _look(run: Run, one: Moving, visit: Visit, time: Real) -> _Seen:
+    system, since = one.system, time - visit.start
+    state, seen = visit.state(), visit.outputs(slice(None))
+    k, laws = system.states.modes, len(system.laws.points)
+    x, y = state.at(since), seen.at(since)
+    speed = seen.derivative().some(slice(0, system.responses + laws)).at(since)
+    given = np.zeros((system.first, len(time)))
+    for n, d in enumerate(one.drives):
+        given[n] = run.forces[d].value(time)
+    force = np.concatenate([given, y[system.responses + laws :]])
+    slow = state.derivative().some(slice(2 * k, None)).at(since)
+    return _Seen(x[:k], x[k : 2 * k], y[: len(speed)], speed, force, x[2 * k :], slow)
+
+
+def _stored(one: Moving, seen: _Seen) -> Real:
+    """Return kinetic energy, strain and that of stops, (3, t)."""
+    st, laws = one.system.states, one.system.laws
+    strain = (st.square[:, None] * seen.q**2).sum(axis=0) / 2
+    if one.system.late:
+        strain += np.einsum("it,ij,jt->t", seen.relaxed, st.late, seen.relaxed) / 2
+    strain += np.einsum("it,ij,jt->t", seen.force, st.now, seen.force) / 2
+    stops = np.zeros_like(strain)
+    for k, stop in enumerate(laws.contacts):
+        stops += _pressed(stop, seen.u[one.system.responses + k])
+    return np.stack([(seen.v**2).sum(axis=0) / 2, strain, stops])
+
+
+def _pressed(stop: Contact, u: Real) -> Real:
+    return np.asarray(stop.stiffness / 2 * np.maximum(stop.side * u - stop.gap, 0.0) ** 2)
+
+
+def _powers(one: Moving, visit: Visit, seen: _Seen) -> Real:
+    """Return the powers of what drives and of what takes, (2, t)."""
+    system = one.system
+    st, laws = system.states, system.laws
+    put = (seen.force[: system.drives] * seen.speed[: system.drives]).sum(axis=0)
+    taken = (2 * st.sigma[:, None] * seen.v**2).sum(axis=0)
+    if system.late:
+        taken += st.gamma * np.einsum("it,ij,jt->t", seen.relaxing, st.late, seen.relaxing)
+    first = system.responses + len(laws.contacts)
+    for k, friction in enumerate(laws.frictions):
+        if visit.phase.mode[len(laws.contacts) + k]:
+            taken += friction.force * np.abs(seen.speed[first + k])
+    for k, dashpot in enumerate(laws.dashpots):
+        taken += seen.force[system.first + system.damped.start + k] ** 2 / dashpot.damping
+    return np.stack([put, taken])
