@@ -34,7 +34,7 @@ class Forcing(NamedTuple):
 class Driven(NamedTuple):
     """z over time, as in the head of the file."""
 
-    first: Complex  # (j,) z at the beginning
+    first: Real  # (j,) size of what z is the sum of at the beginning
     push: Forcing
     fixed: Real  # s
     own: Complex  # (j,) of e^(p t)
@@ -95,12 +95,19 @@ def drive(
     power[fast, 1] = -slope[fast] / p[fast]
     power[fast, 0] = (power[fast, 1] - level[fast]) / p[fast]
     own[fast] -= power[fast, 0]
+    if slow.any():
+        power[slow] = _expanded(p[slow], (own[slow], level[slow], slope[slow]))
+        own[slow] = 0.0
+    return Driven(np.abs(z), push, fixed, own, forced, near, grows, power)
+
+
+def _expanded(p: Complex, values: tuple[Complex, Complex, Complex]) -> Complex:
+    """Return the powers of t of z_0, a level and a slope that poles near 0 integrate."""
+    power = np.zeros((len(p), POWERS), dtype=np.complex128)
     for m in range(POWERS):
-        for shift, value in enumerate((own, level, slope)):
-            if m >= shift:
-                power[slow, m] += value[slow] * p[slow] ** (m - shift) / factorial(m)
-    own[slow] = 0.0
-    return Driven(z, push, fixed, own, forced, near, grows, power)
+        for shift, value in enumerate(values[: m + 1]):
+            power[:, m] += value * p ** (m - shift) / factorial(m)
+    return power
 
 
 def _twice(rate: Complex) -> Complex:

@@ -24,7 +24,7 @@ from .energy import balance
 from .pieces import pieces
 from .walk import PhaseWalk, Visit
 
-MODES, MOST = 64, 256  # Of continuous spans and long chains, at first and at most.
+MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at most.
 TOLERANCE = 1e-3  # Of the largest value, where none is given.
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.

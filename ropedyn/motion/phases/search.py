@@ -10,6 +10,7 @@ is, but for what rounding hides.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from .course import Course
 
 LOOKS, PARTS = 64, 8  # So many intervals are looked at together, and one is divided into so many.
 ROUNDING = 64 * np.finfo(float).eps  # Of the sum of the terms' magnitudes.
+BEGUN = 1e-10  # Of the same: an event is rounded to so much, at most.
 DEEPEST = 24  # Divisions after which only rounding is left.
 STEPS = 60  # Of a root, at most.
 
@@ -45,30 +47,35 @@ def first_crossing(guards: Course, scale: Real, end: float) -> Crossing | None:
     if not len(guards.c):
         return None
     slope = guards.derivative()
-    floor = ROUNDING * np.maximum(scale, guards.size(0.0, 0.0))
+    scale = np.maximum(scale, guards.size(0.0, 0.0))
+    start, rise = (one.at(np.zeros(1))[:, 0] for one in (guards, slope))
+    # what begins a little below zero and rises was zero before rounding
+    begun = (rise > 0) & (start < 0) & (-start < BEGUN * scale)
+    floor = np.maximum(ROUNDING * scale, np.where(begun, -2 * start, 0.0))
     g = _Guards(guards, slope, slope.derivative(), floor)
-    start = guards.at(np.zeros(1))[:, 0]
     if (start < -floor).any():
         return Crossing(0.0, int(np.argmin(start + floor)))
     first = 0.0
     while first < end:
-        last = _reach(g, first, end)
-        found = _within(g, first, last, LOOKS, 0)
+        last, looks = _reach(g, first, end)
+        found = _within(g, first, last, looks, 0)
         if found is not None:
             return found
         first = last
     return None
 
 
-def _reach(g: _Guards, first: float, end: float) -> float:
-    """Return up to where so many looks tell the most."""
+def _reach(g: _Guards, first: float, end: float) -> tuple[float, int]:
+    """Return up to where looks tell the most, and how many it takes."""
     with np.errstate(over="ignore", invalid="ignore"):
         size, bend = g.value.size(first, first), g.bend.size(first, first)
     share = np.divide(size, bend, out=np.full(len(size), np.inf), where=bend > 0)
-    width = LOOKS * np.sqrt(0.2 * float(share.min(initial=np.inf)))
+    width = float(np.sqrt(0.2 * share.min(initial=np.inf)))
     if not first + width > first:
         width = (end - first) / LOOKS
-    return min(end, first + width)
+    if first + LOOKS * width < end:
+        return first + LOOKS * width, LOOKS
+    return end, max(1, math.ceil((end - first) / width)) if width < math.inf else 1
 
 
 def _within(g: _Guards, first: float, last: float, parts: int, depth: int) -> Crossing | None:

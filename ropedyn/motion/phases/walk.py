@@ -17,7 +17,9 @@ from .pieces import ForcePiece
 from .poles import Poles, poles_of
 from .search import first_crossing
 
-AT_ONCE = 64  # Events at one time, at most.
+AT_ONCE = 64  # Events so close to each other, at most,
+INSTANT = 1e-11  # of the time that is asked for.
+SHARE = 1 / 16  # Of products that rounding adds up, beside their sum.
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +30,14 @@ class Phase:
     matrices: Matrices
     poles: Poles
     seen: Complex  # (outputs, j)
+    loss: Real  # (j, n) magnitude of what z is told by
 
     @classmethod
     def of(cls, system: PhaseSystem, mode: tuple[int, ...]) -> Phase:
         """Assemble it and find its poles."""
         m = matrices(system, mode)
         poles = poles_of(m.A, m.E.shape[1], system.span)
-        return cls(mode, m, poles, m.Y @ poles.right)
+        return cls(mode, m, poles, m.Y @ poles.right, np.abs(poles.left))
 
     def outputs(self, driven: Driven, which: slice) -> Course:
         """Return some of responses, displacements and forces of laws."""
@@ -105,9 +108,11 @@ class PhaseWalk:
                 if event is None:
                     break
                 law = self._law(mode, event.which)
-                crowd = 0 if time + last > time else crowd + 1
+                crowd = 0 if last > INSTANT * self.system.span else crowd + 1
                 if crowd > AT_ONCE:
-                    raise SolveError(f"laws at points disagree at t = {time:g} s: no phase lasts")
+                    raise SolveError(
+                        f"stops and friction find no phase that lasts at t = {time:g} s"
+                    )
                 time, forcing = time + last, _later(forcing, last)
                 self.events.append((time, law))
                 now, mode = self._changed(
@@ -134,7 +139,8 @@ class PhaseWalk:
         x = np.concatenate([m.E.T @ (now.q - m.b @ now.hold), m.E.T @ now.v, now.e])
         fixed = np.concatenate([[1.0], now.hold])
         z = phase.poles.left @ x
-        return phase, drive(phase.poles, m, z, forcing, fixed=fixed, ahead=ahead)
+        driven = drive(phase.poles, m, z, forcing, fixed=fixed, ahead=ahead)
+        return phase, driven._replace(first=np.abs(z) + SHARE * (phase.loss @ np.abs(x)))
 
     def _leave(self, phase: Phase, driven: Driven, now: Instant, time: float) -> Instant:
         m, n = phase.matrices, phase.matrices.E.shape[1]
@@ -162,7 +168,7 @@ class PhaseWalk:
     def _scale(self, phase: Phase, driven: Driven, mode: tuple[int, ...]) -> Real:
         """Return the size of the numbers that each guard is a difference of."""
         laws, first, m = self.system.laws, self.system.responses, phase.matrices
-        size = np.abs(phase.seen) * np.abs(driven.first)
+        size = np.abs(phase.seen) * driven.first
         value = size.sum(axis=1) + np.abs(m.Ds) @ np.abs(driven.fixed)
         value += np.abs(m.Dd) @ np.abs(driven.push.level)
         speed = size @ np.abs(phase.poles.rate)

@@ -1,0 +1,275 @@
+"""Stops and friction from event to event, against closed forms and an independent integration."""
+
+import math
+import time as clock
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import ropedyn as rd
+from ropedyn.motion.phases.components import Look
+from ropedyn.motion.phases.events import follow
+from ropedyn.motion.request import Run
+
+LENGTH, DENSITY, TENSION = 1.0, 0.1, 100.0
+MASS, STIFFNESS = DENSITY * LENGTH / 2, 4 * TENSION / LENGTH
+OMEGA = math.sqrt(STIFFNESS / MASS)
+PERIOD = 2 * math.pi / OMEGA
+AMPLITUDE = 0.01
+MIDDLE = ("z", LENGTH / 2)
+
+ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
+DRAG = rd.ViscousDamping(1.0)
+PUSH = {"drive": ("z", 0.25), "force": rd.Sine(50.0, 63.0)}
+
+
+def rope(*parts, damping=DRAG, tension=2830.0):
+    return rd.Scene(ROPE, tension=tension, damping=damping, parts=parts)
+
+
+def mass_on_a_string(*parts):
+    return rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, parts=parts).compile(elements=2)
+
+
+def kept(history):
+    e = history.energy
+    return e["kinetic"] + e["strain"] - e["input"] + e["dissipated"] + e.get("laws", 0.0)
+
+
+# --- friction -----------------------------------------------------------------------------------
+
+
+def coulomb(time, friction):
+    """The mass between turning points, half a period each; it loses 4 F/k a period."""
+    found, shift = [], friction / STIFFNESS
+    for t in time:
+        x, left = AMPLITUDE, t
+        while abs(x) > shift and left > PERIOD / 2:
+            x, left = 2 * math.copysign(shift, x) - x, left - PERIOD / 2
+        centre = math.copysign(shift, x)
+        found.append(x if abs(x) <= shift else centre + (x - centre) * math.cos(OMEGA * left))
+    return np.array(found)
+
+
+@pytest.mark.claim(
+    "Friction through 100 turns until it holds: largest error over the amplitude",
+    reference="cosines about +-F/k, half a period each",
+    accepted=1e-12,
+)
+def test_friction_decays_through_a_hundred_turns(claim):
+    friction = STIFFNESS * AMPLITUDE / 203.3
+    time = np.linspace(0.0, 60 * PERIOD, 601)
+    history = mass_on_a_string(rd.Dashpot(LENGTH / 2, friction, exponent=0.0)).transient(
+        time, start={MIDDLE: STIFFNESS * AMPLITUDE}, response=MIDDLE
+    )
+    exact = coulomb(time, friction)
+    assert history.cost.method == "events"
+    assert exact[-1] == exact[-40] != 0  # it holds
+    error = np.abs(history.value[0] - exact)
+    claim(error.max() / AMPLITUDE)
+    assert (error <= history.truncation_error[0] + 1e-13 * AMPLITUDE).all()
+    assert history.sure_until == math.inf
+    assert np.ptp(kept(history)) < 1e-12 * kept(history)[0]
+
+
+@pytest.mark.parametrize("how", [{}, {"elements": 64, "element": "rigid"}])
+def test_friction_that_holds_answers_at_once(how):
+    """Its point stays where it is, and the rope moves on both sides as if it were supported."""
+    model = rope(rd.Dashpot(0.5, 100.0, exponent=0.0)).compile(**how)
+    time = np.linspace(0.0, 0.1, 1001)
+    begin = clock.process_time()
+    history = model.transient(time, response=[("z", 0.25), ("z", 0.5)], **PUSH)
+    assert clock.process_time() - begin < 2.0  # 0.05 s; it never came back from steps
+    assert np.abs(history.value[1]).max() < 1e-13 * np.abs(history.value[0]).max()
+    held = rope(rd.Support(0.5)).compile(**how)
+    exact = held.transient(time, response=("z", 0.25), **PUSH).value[0]
+    error = np.abs(history.value[0] - exact)
+    assert (error <= history.truncation_error[0] + 1e-9 * np.abs(exact).max()).all()
+
+
+def test_friction_keeps_what_rests():
+    model = mass_on_a_string(rd.Dashpot(LENGTH / 2, 1.0, exponent=0.0))
+    history = model.transient(np.linspace(0, 1, 11), drive=MIDDLE, force=rd.Sine(0.999, 20.0))
+    assert not history.value.any()
+
+
+# --- stops --------------------------------------------------------------------------------------
+
+
+def independent(model, stops, time):
+    """Integrate the chain to 1e-12, stopping at each event; return the motion and the events."""
+    x, width = model.x, len(model.coordinates)
+    free = np.flatnonzero(model.chain.held[model.chain.term_of].ravel() == 0)
+    where = [(x[n // width], model.coordinates[n % width]) for n in free]
+    z = [k for k, (_, c) in enumerate(where) if c == "z"]
+    b = [k for k, (_, c) in enumerate(where) if c == "beta"]
+    K, M, C = (m().toarray() for m in (model.stiffness, model.mass, model.damping))
+    K = K[np.ix_(z, z)] - K[np.ix_(z, b)] @ np.linalg.solve(K[np.ix_(b, b)], K[np.ix_(b, z)])
+    mass, C, n = np.diag(M)[z], C[np.ix_(z, z)], len(z)
+    place = np.array([where[k][0] for k in z])
+    at = [int(np.abs(place - stop.x).argmin()) for stop in stops]
+    pushed, force = int(np.abs(place - PUSH["drive"][1]).argmin()), PUSH["force"]
+
+    def rhs(t, y, met):
+        f = -K @ y[:n] - C @ y[n:]
+        f[pushed] += force.amplitude * math.sin(2 * math.pi * force.frequency * t)
+        for on, k, stop in zip(met, at, stops):
+            f[k] -= on * stop.side * stop.stiffness * (stop.side * y[k] - stop.gap)
+        return np.concatenate([y[n:], f / mass])
+
+    def gate(k, stop, sign):
+        def gap(t, y, met):
+            return sign * (stop.side * y[k] - stop.gap)
+
+        gap.terminal, gap.direction = True, -1
+        return gap
+
+    y, t, met, events, value = np.zeros(2 * n), 0.0, [0] * len(stops), [], []
+    while True:
+        gates = [gate(k, s, 1 if on else -1) for on, k, s in zip(met, at, stops)]
+        ahead = time[len(value) :]
+        options = {"rtol": 1e-12, "atol": 1e-16, "max_step": 5e-4, "t_eval": ahead}
+        found = solve_ivp(
+            rhs, (t, time[-1]), y, "DOP853", events=gates, args=(tuple(met),), **options
+        )
+        value.extend(found.y[at[0]] if len(found.t) else [])
+        hit = [k for k, some in enumerate(found.t_events) if len(some)]
+        if not hit:
+            return np.array(value), np.array(events)
+        t, y = found.t_events[hit[0]][0], found.y_events[hit[0]][0]
+        met[hit[0]] ^= 1
+        events.append(t)
+
+
+def followed(model, time, response):
+    """Return the events that phases find."""
+    run = Run.of(
+        model,
+        time,
+        response=response,
+        quantity="displacement",
+        start=None,
+        method="events",
+        modes=None,
+        step=None,
+        tolerance=None,
+        spectral_radius=1.0,
+        snapshots=None,
+        progress=None,
+        partial=False,
+        **PUSH,
+    )
+    return np.array(follow(run, [Look(run.responses, run.time, 0)], 64).events)
+
+
+STOPS = {
+    "soft": ([rd.Stop(0.5, 1e4, gap=1e-3)], 0.2),
+    "hard": ([rd.Stop(0.5, 1e6, gap=1e-3)], 0.1),
+    "harder": ([rd.Stop(0.5, 1e8, gap=1e-3)], 0.1),
+    "two": ([rd.Stop(0.5, 1e7, gap=1e-3), rd.Stop(0.25, 1e7, gap=1e-3, side=-1)], 0.05),
+}
+
+
+@pytest.mark.claim(
+    "Times at which stops of 1e4 to 1e8 N/m are met and left [s]",
+    reference="solve_ivp to 1e-12 of the same chain, stopped at each event",
+    accepted=1e-10,
+)
+@pytest.mark.parametrize("name", STOPS)
+def test_stops_are_met_when_an_independent_integration_meets_them(name, claim):
+    stops, end = STOPS[name]
+    time = np.linspace(0.0, end, 401)
+    how = {"elements": 16, "element": "rigid"}
+    exact, when = independent(rope().compile(**how), stops, time)
+    model = rope(*stops).compile(**how)
+    found = followed(model, time, ("z", stops[0].x))
+    assert len(found) == len(when) > 10
+    claim(np.abs(found - when).max())
+    history = model.transient(time, response=("z", stops[0].x), **PUSH)
+    error = np.abs(history.value[0] - exact)
+    assert (error <= history.truncation_error[0] + 1e-9 * np.abs(exact).max()).all()
+
+
+def test_contact_shorter_than_a_sample_is_not_missed():
+    """A stiff stop at the turning point: 30 microseconds of contact between samples of 10 ms."""
+    stop = rd.Stop(LENGTH / 2, 1e7, gap=0.999 * AMPLITUDE, side=-1)
+    asked = {"start": {MIDDLE: STIFFNESS * AMPLITUDE}, "response": MIDDLE}
+    coarse, fine = np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 10001)
+    few, many = (mass_on_a_string(stop).transient(t, **asked) for t in (coarse, fine))
+    free = mass_on_a_string().transient(coarse, **asked)
+    assert np.abs(few.value[0] - many.value[0, ::100]).max() < 1e-12 * AMPLITUDE
+    assert np.abs(few.value - free.value).max() > 0.1 * AMPLITUDE
+
+
+@pytest.mark.parametrize("quantity", ["displacement", "velocity"])
+def test_continuous_spans_are_what_fine_chains_come_to(quantity):
+    stop, time = rd.Stop(0.5, 1e4, gap=1e-3), np.linspace(0.0, 0.05, 201)
+    asked = {"response": ("z", 0.4), "quantity": quantity, **PUSH}
+    model = rope(stop)
+    exact = model.compile().transient(time, **asked)
+    assert not exact.mesh_error.any()
+    assert exact.truncation_error.max() <= 1e-3 * np.abs(exact.value).max()
+    distance = [
+        np.abs(model.compile(elements=n).transient(time, **asked).value - exact.value).max()
+        for n in (16, 64)
+    ]
+    assert distance[1] < distance[0] / 8
+
+
+@pytest.mark.parametrize(
+    ("damping", "tension"),
+    [(rd.ModalDamping(0.01), 2830.0), (rd.StiffnessDamping(1e-4), 0.0), (None, 2830.0)],
+    ids=["modal", "stiffness", "none"],
+)
+def test_phases_keep_energy(damping, tension):
+    parts = (rd.Stop(0.5, 1e4, gap=1e-3), rd.Dashpot(0.7, 3.0), rd.Dashpot(0.3, 2.0, exponent=0.0))
+    model = rope(*parts, damping=damping, tension=tension).compile(elements=8, element="rigid")
+    history = model.transient(np.linspace(0.0, 0.1, 101), method="events", **PUSH)
+    assert history.energy["dissipated"][-1] > 0
+    assert np.ptp(kept(history)) < 1e-9 * history.energy["input"].max()
+
+
+# --- what is asked ------------------------------------------------------------------------------
+
+
+def test_snapshots_are_the_motion_of_all_points():
+    model = rope(rd.Stop(0.5, 1e4, gap=1e-3)).compile(elements=8)
+    time = np.linspace(0.0, 0.04, 41)
+    points = [("z", float(x)) for x in model.x]
+    history = model.transient(time, response=points, snapshots=time[[10, 40]], **PUSH)
+    at = history.coordinates.index("z")
+    assert np.allclose(history.snapshot[:, :, at], history.value[:, [10, 40]].T, atol=1e-15)
+
+
+def test_samples_and_blows_are_forces_too():
+    model = rope(rd.Stop(0.5, 1e4, gap=1e-4)).compile(elements=8)
+    time = np.linspace(0.0, 0.05, 501)
+    drive = PUSH["drive"]
+    sine = model.transient(time, drive=drive, force=PUSH["force"])
+    sampled = model.transient(time, drive=drive, force=PUSH["force"].value(time))
+    assert np.abs(sampled.value - sine.value).max() < 3e-3 * np.abs(sine.value).max()
+    short = rd.Impulse(0.01, time=0.001, duration=1e-7)
+    blow, hit = (
+        model.transient(time[::10], drive=drive, force=f)
+        for f in (rd.Impulse(0.01, time=0.001), short)
+    )
+    assert np.abs(blow.value - hit.value).max() < 1e-3 * np.abs(hit.value).max()
+
+
+@pytest.mark.parametrize(
+    ("given", "force", "message"),
+    [
+        ({"parts": [rd.NodeForce(0.5, lambda t, u, v: -u)]}, None, r"parts\[0\] must be a stop"),
+        ({"parts": [rd.Dashpot(0.5, 1.0, exponent=2.0)]}, None, r"parts\[0\] must be a stop"),
+        ({"tension": rd.Tension(9.0, amplitude=1.0, frequency=9.0)}, None, "tension must not"),
+        ({}, rd.Chirp(1.0, 10.0, 20.0, 1.0), "force must not be a Chirp"),
+        ({"damping": rd.StiffnessDamping(1e-4)}, None, "damping must leave"),
+    ],
+)
+def test_what_phases_do_not_take_is_refused(given, force, message):
+    model = rope().replace(**given).compile(elements=8)
+    with pytest.raises(rd.SceneError, match=message + '.*where the method is "events"'):
+        model.transient(
+            [0.0, 0.1], drive=("z", 0.25), force=force or PUSH["force"], method="events"
+        )
