@@ -72,7 +72,7 @@ class History(Answer):
     mesh_error : ndarray, shape (responses, t)
         Absolute error that the elements cause: the distance to the motion of the continuous spans
         of the same scene and the error of that. 0 for continuous spans, infinite where they have no
-        answer, as where something is not linear.
+        answer, as where something is not linear but stops and friction.
     total_error : ndarray, shape (responses, t)
         Absolute error of the values, all of it: of modes that were left out, steps and elements.
         A tolerance is kept for the chain as it is: coarse elements are wrong by far more.

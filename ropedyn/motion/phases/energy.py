@@ -88,9 +88,8 @@ def _edges(visit: Visit, time: Real) -> Real:
     inside = time[(time > visit.start) & (time < visit.stop)]
     edges = np.concatenate([[visit.start], inside, [visit.stop]])
     rate, own = np.abs(visit.phase.poles.rate), visit.driven.own
-    size = np.abs(visit.phase.poles.right[: visit.phase.matrices.E.shape[1]] * own).max(
-        axis=0, initial=0.0
-    )
+    right = visit.phase.poles.right[: visit.phase.matrices.E.shape[1]]
+    size = np.abs(right * own).max(axis=0, initial=0.0)
     share = (rate * size) ** 2
     fast = rate[share > FAINT * share.max(initial=0.0)].max(initial=0.0)
     fast = max(fast, np.abs(visit.driven.push.rate).max(initial=0.0))

@@ -73,7 +73,7 @@ def _checked_side(side: Any) -> int:
 class Stop(Part):
     """A spring that the rope meets after a gap, on one side.
 
-    Only `Model.transient` and `Model.stepped_sine` take it, by the direct method.
+    Only `Model.transient` and `Model.stepped_sine` take it; the first on continuous spans too.
 
     Parameters
     ----------
