@@ -12,11 +12,7 @@ from .request import EVENTS, Run
 
 def follow_motion(run: Run) -> History:
     """Return the motion by the method that was asked for; see `Model.transient`."""
-    if run.method == EVENTS or (run.method == "auto" and run.direct and _has_phases(run)):
+    # steps where they are asked for, and where phases do not take the scene
+    if run.method == EVENTS or (run.method == "auto" and run.direct and not why_not_events(run)):
         return solve_events(run)
     return march(run) if run.direct else superpose(run)
-
-
-def _has_phases(run: Run) -> bool:
-    """Whether phases answer where nothing asks for steps."""
-    return run.step is None and run.spectral_radius == 1 and not why_not_events(run)

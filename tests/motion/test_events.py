@@ -257,6 +257,35 @@ def test_samples_and_blows_are_forces_too():
     assert np.abs(blow.value - hit.value).max() < 1e-3 * np.abs(hit.value).max()
 
 
+def test_answer_is_saved_with_the_time_it_is_sure_until(tmp_path):
+    model = rope(rd.Stop(0.5, 1e4, gap=1e-3)).compile(elements=4)
+    history = model.transient(np.linspace(0.0, 0.01, 11), **PUSH)
+    history.save(tmp_path / "h.nc")
+    assert rd.load(tmp_path / "h.nc").sure_until == history.sure_until == math.inf
+
+
+@pytest.mark.parametrize("asked", [{"step": 1e-3}, {"partial": True}, {"spectral_radius": 0.5}])
+def test_what_steps_alone_know_is_refused(asked):
+    model = rope(rd.Stop(0.5, 1e4)).compile(elements=4)
+    with pytest.raises(rd.SceneError, match="partial, step and spectral_radius must be left out"):
+        model.transient([0.0, 0.1], method="events", **PUSH, **asked)
+    assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "direct"
+
+
+def test_chaos_says_until_when_it_is_known():
+    """Two stiff stops without damping: rounding is the motion after a while."""
+    stops = (rd.Stop(0.5, 1e7, gap=1e-4), rd.Stop(0.5, 1e7, gap=1e-4, side=-1))
+    model = rope(*stops, damping=None).compile(elements=8, element="rigid")
+    time = np.linspace(0.0, 1.0, 201)
+    history = model.transient(time, response=("z", 0.5), **PUSH)
+    assert 0.05 < history.sure_until < 1.0
+    assert np.isinf(history.step_error[0, time > history.sure_until]).all()
+    # stated twice, the second time from a motion that is not the same to rounding
+    other = model.transient(time[:101], response=("z", 0.5), **PUSH)
+    known = time[:101] <= history.sure_until
+    assert np.abs(other.value - history.value[:, :101])[:, known].max() < 1e-3 * history.value.max()
+
+
 @pytest.mark.parametrize(
     ("given", "force", "message"),
     [

@@ -111,8 +111,8 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
     It is followed once more, with half the modes, or where there are all with its push nudged.
     """
     least = run.tolerance or TOLERANCE
-    modes = MODES
-    coarse = follow(run, looks[:1], modes // 2, NUDGE)
+    modes = run.modes or MODES
+    coarse = follow(run, looks[:1], max(modes // 2, 1), NUDGE)
     if coarse.whole:
         found = follow(run, looks, modes // 2)
         return found, _running(found.seen[0] - coarse.seen[0])
@@ -120,7 +120,7 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
         found = follow(run, looks, modes)
         error = _running(MARGIN * (found.seen[0] - coarse.seen[0]))
         size = np.abs(found.seen[0]).max(axis=1, keepdims=True)
-        if (error <= least * size).all() or 2 * modes > MOST:
+        if (error <= least * size).all() or run.modes or 2 * modes > MOST:
             return found, error
         coarse, modes = found, 2 * modes
 
