@@ -82,6 +82,7 @@ def test_friction_that_holds_answers_at_once(how):
     history = model.transient(time, response=[("z", 0.25), ("z", 0.5)], **PUSH)
     assert clock.process_time() - begin < 2.0  # 0.05 s; it never came back from steps
     assert np.abs(history.value[1]).max() < 1e-13 * np.abs(history.value[0]).max()
+    assert history.sure_until == math.inf
     held = rope(rd.Support(0.5)).compile(**how)
     exact = held.transient(time, response=("z", 0.25), **PUSH).value[0]
     error = np.abs(history.value[0] - exact)
@@ -275,15 +276,11 @@ def test_what_steps_alone_know_is_refused(asked):
 def test_chaos_says_until_when_it_is_known():
     """Two stiff stops without damping: rounding is the motion after a while."""
     stops = (rd.Stop(0.5, 1e7, gap=1e-4), rd.Stop(0.5, 1e7, gap=1e-4, side=-1))
-    model = rope(*stops, damping=None).compile(elements=8, element="rigid")
-    time = np.linspace(0.0, 1.0, 201)
+    model = rope(*stops, damping=None).compile(elements=4, element="rigid")
+    time = np.linspace(0.0, 0.2, 201)
     history = model.transient(time, response=("z", 0.5), **PUSH)
-    assert 0.05 < history.sure_until < 1.0
+    assert 0.02 < history.sure_until < 0.2
     assert np.isinf(history.step_error[0, time > history.sure_until]).all()
-    # stated twice, the second time from a motion that is not the same to rounding
-    other = model.transient(time[:101], response=("z", 0.5), **PUSH)
-    known = time[:101] <= history.sure_until
-    assert np.abs(other.value - history.value[:, :101])[:, known].max() < 1e-3 * history.value.max()
 
 
 @pytest.mark.parametrize(

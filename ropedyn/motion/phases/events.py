@@ -28,6 +28,7 @@ MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at mo
 TOLERANCE = 1e-3  # Of the largest value, where none is given.
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
+HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.
 NONE = np.zeros(0)
 
 
@@ -35,6 +36,7 @@ class Followed(NamedTuple):
     """A motion."""
 
     seen: list[Real]  # (points, t) of each look
+    size: list[Real]  # (points,) of the modes that these are the sum of
     events: list[float]  # [s]
     whole: bool  # whether no mode is left out
     modes: int
@@ -43,18 +45,21 @@ class Followed(NamedTuple):
 def follow(run: Run, looks: Sequence[Look], modes: int, nudge: float = 0.0) -> Followed:
     """Return what is seen, (points, t) of each look, of a motion whose push is nudged."""
     seen = [np.zeros((len(one.points), len(one.time))) for one in looks]
+    sizes = [np.zeros(len(one.points)) for one in looks]
     events: list[float] = []
     whole = True
     for one in moving_components(run, looks, modes):
         walk = PhaseWalk(one.system)
         forces = [run.forces[k] for k in one.drives]
         for visit in walk.visits(rest(one, nudge), pieces(forces, run.time, 1 + nudge)):
-            for look, value, (rows, which) in zip(looks, seen, one.watched):
+            for look, value, size, (rows, which) in zip(looks, seen, sizes, one.watched):
+                moved = visit.size(one.system.states.seen[rows], look.order)
+                size[which] = np.maximum(size[which], moved)
                 _record(visit, look, value, rows=rows, which=which, last=visit.stop >= run.time[-1])
             run.progress(min(1.0, (visit.stop - run.time[0]) / one.system.span))
         events += [at for at, _ in walk.events]
         whole = whole and not np.isfinite(one.system.states.beyond)
-    return Followed(seen, sorted(events), whole, modes)
+    return Followed(seen, sizes, sorted(events), whole, modes)
 
 
 def _record(
@@ -88,7 +93,7 @@ def solve_events(run: Run) -> History:
     found, error = _within(run, looks)
     value = found.seen[0]
     seconds = clock.perf_counter() - start
-    sure = _sure_until(run, value, error)
+    sure = _sure_until(run, found, error)
     error[:, run.time > sure] = np.inf
     width = len(run.model.coordinates)
     kept = found.seen[1] if len(looks) > 1 else np.zeros((len(points), 0))
@@ -119,8 +124,7 @@ def _within(run: Run, looks: Sequence[Look]) -> tuple[Followed, Real]:
     while True:
         found = follow(run, looks, modes)
         error = _running(MARGIN * (found.seen[0] - coarse.seen[0]))
-        size = np.abs(found.seen[0]).max(axis=1, keepdims=True)
-        if (error <= least * size).all() or run.modes or 2 * modes > MOST:
+        if (error <= least * _largest(found)).all() or run.modes or 2 * modes > MOST:
             return found, error
         coarse, modes = found, 2 * modes
 
@@ -130,10 +134,15 @@ def _running(difference: Real) -> Real:
     return np.maximum.accumulate(np.abs(difference), axis=1)
 
 
-def _sure_until(run: Run, value: Real, error: Real) -> float:
+def _largest(found: Followed) -> Real:
+    """Return the largest value of each response, (responses, 1), or what rounding leaves of 0."""
+    value = np.abs(found.seen[0]).max(axis=1, initial=0.0)
+    return np.maximum(value, HELD * found.size[0])[:, None]
+
+
+def _sure_until(run: Run, found: Followed, error: Real) -> float:
     """Return the last time at which the error of every response is within the tolerance."""
-    size = np.abs(value).max(axis=1, keepdims=True)
-    wrong = (error > (run.tolerance or TOLERANCE) * size).any(axis=0)
+    wrong = (error > (run.tolerance or TOLERANCE) * _largest(found)).any(axis=0)
     if not wrong.any():
         return math.inf
     return float(run.time[max(int(wrong.argmax()) - 1, 0)])

@@ -76,6 +76,13 @@ class Visit(NamedTuple):
         """Return some of responses, displacements and forces of laws, since the start."""
         return self.phase.outputs(self.driven, which)
 
+    def size(self, seen: Real, order: int) -> Real:
+        """Return what the modes that outputs are the sum of move them at the start, at most."""
+        m, poles = self.phase.matrices, self.phase.poles
+        q = np.abs(m.E @ poles.right[: m.E.shape[1]])
+        each = q @ (np.abs(self.driven.own) * np.abs(poles.rate) ** order)
+        return np.asarray(np.abs(seen) @ (each + np.abs(m.b @ self.hold)))
+
     def state(self) -> Course:
         """Return q, q' and e, one after another, since the start."""
         return self.phase.state(self.driven, self.hold)
