@@ -14,7 +14,7 @@ import ropedyn as rd
 
 ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
 SCENE = rd.Scene(ROPE, tension=2830.0, damping=rd.ViscousDamping(1.0))
-PUSH = {"drive": ("z", 0.25), "force": rd.Sine(50.0, 63.0), "response": ("z", 0.5)}
+PUSH = {"drive": ("z", 0.25), "force": rd.Sine(50.0, 63.0), "response": ("z", 0.4)}
 TIME = np.linspace(0.0, 0.1, 1001)
 CASES = {
     "friction that holds": rd.Dashpot(0.5, 100.0, exponent=0.0),
