@@ -14,6 +14,8 @@
 #define LAPACKE_dgbtrf_work scipy_LAPACKE_dgbtrf_work
 #define LAPACKE_dgbtrs_work scipy_LAPACKE_dgbtrs_work
 #define LAPACKE_dgesvd_work scipy_LAPACKE_dgesvd_work
+#define LAPACKE_dgetrf_work scipy_LAPACKE_dgetrf_work
+#define LAPACKE_dgetrs_work scipy_LAPACKE_dgetrs_work
 #define LAPACKE_dpbcon_work scipy_LAPACKE_dpbcon_work
 #define LAPACKE_dpbtrf_work scipy_LAPACKE_dpbtrf_work
 #define LAPACKE_dsyev_work scipy_LAPACKE_dsyev_work

@@ -53,6 +53,9 @@ static PyMethodDef methods[] = {
      "carried_pair_slopes(chain, factor, field, pair, slip) -> numbers, rows of structures"},
     {"sensitivity", py_sensitivity, METH_VARARGS,
      "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},
+    {"collocate", py_collocate, METH_VARARGS,
+     "collocate(step, laws, begin, known, force, state, size) -> force, state, motion, size, steps "
+     "made, iterations, residual, failure"},
     {"march_factor", py_march_factor, METH_VARARGS,
      "march_factor(chain, beside, law, theta, extra) -> plan"},
     {"march", py_march, METH_VARARGS,

@@ -21,6 +21,7 @@ FLOORS = [
     "energy",
     "assembled",
     "mixed",
+    "collocation",
     "march/form",
     "march/kernel",
     "march",
