@@ -1,5 +1,8 @@
 """The C core over NumPy arrays; see csrc/glue."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +15,10 @@ _Integers = NDArray[np.int32]
 _Plan = NDArray[np.uint8]
 _Beside = tuple[_Real, float, _Real, _Real, float, float]
 _Law = tuple[_Integers, _Real, _Integers, _Real]
+_SmoothCalls = tuple[Callable[[Any, Any, Any], Any] | None, ...]
+_SmoothLaws = tuple[_Integers, _Real, _SmoothCalls, NDArray[np.uint8]]
+_Step = tuple[float, _Real, _Real, _Real, _Real, _Real, _Real]
+_Failure = tuple[BaseException | None, int, float, float, float]
 _State = tuple[_Real, _Real, _Real, _Real, _Real]
 
 def section(
@@ -82,6 +89,16 @@ def sensitivity(chain: Chain, shape: _Real, eigenvalue: _Real, /) -> tuple[_Real
 def recurrence(
     change: _Real, seen: _Real, length: NDArray[np.int32], force: _Real, state: _Real, /
 ) -> tuple[_Real, _Real]: ...
+def collocate(
+    step: _Step,
+    laws: _SmoothLaws,
+    begin: _Real,
+    known: _Real,
+    force: _Real,
+    state: _Real,
+    size: _Real,
+    /,
+) -> tuple[_Real, _Real, _Real, _Real, int, int, float, _Failure | None]: ...
 def march_factor(
     chain: Chain, beside: _Beside, law: _Law, theta: float, extra: float, /
 ) -> _Plan: ...

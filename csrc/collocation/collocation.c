@@ -23,7 +23,8 @@ struct solver {
     const struct rd_collocation_work *work;
     const double *known; /* u and v without the forces of this step */
     double begin;
-    double *size;
+    double *size;  /* (3, laws) of the motion and the forces before */
+    double *scale; /* (laws,) of the forces of this step            */
 };
 
 void rd_collocation_work(const struct rd_collocation *step, struct rd_workspace *workspace,
@@ -35,7 +36,7 @@ void rd_collocation_work(const struct rd_collocation *step, struct rd_workspace 
         .wanted = rd_take(workspace, all, sizeof(double)),
         .slope = rd_take(workspace, 2 * all, sizeof(double)),
         .gap = rd_take(workspace, all, sizeof(double)),
-        .tried = rd_take(workspace, all, sizeof(double)),
+        .tried = rd_take(workspace, all + n, sizeof(double)), /* and the scales of the laws */
         .jacobian = rd_take(workspace, all * all, sizeof(double)),
         .call = rd_take(workspace, 12 * s, sizeof(double)),
         .pivot = rd_take(workspace, all, sizeof(int32_t)),
@@ -68,12 +69,15 @@ static bool say_call(const struct solver *solver, size_t law, bool sloped)
     const struct rd_collocation_work *work = solver->work;
     double *t = work->call, *u = t + 3 * s, *v = u + 3 * s, *force = v + 3 * s, shift[2];
     for (int k = 0; k < 2; k++)
-        shift[k] = fmax(SHIFT * solver->size[(size_t)k * n + law], NOTHING);
+        shift[k] = fmax(solver->size[(size_t)k * n + law], NOTHING);
+    for (size_t i = 0; i < s; i++)
+        for (int k = 0; k < 2; k++)
+            shift[k] = fmax(shift[k], fabs(work->point[(2 * i + (size_t)k) * n + law]));
     for (size_t i = 0; i < count; i++) {
         const size_t at = i % s;
         t[i] = solver->begin + solver->step->h * solver->step->node[at];
-        u[i] = work->point[2 * at * n + law] + (i / s == 1 ? shift[0] : 0);
-        v[i] = work->point[(2 * at + 1) * n + law] + (i / s == 2 ? shift[1] : 0);
+        u[i] = work->point[2 * at * n + law] + (i / s == 1 ? SHIFT * shift[0] : 0);
+        v[i] = work->point[(2 * at + 1) * n + law] + (i / s == 2 ? SHIFT * shift[1] : 0);
     }
     if (!solver->laws->call(solver->laws->context, law, count, t, u, v, force))
         return false;
@@ -104,23 +108,19 @@ static void move(const struct solver *solver, const double *R)
 static void grow(const struct solver *solver, const double *R)
 {
     const size_t s = solver->step->stages, n = solver->step->laws;
-    const struct rd_collocation_work *work = solver->work;
+    const double *point = solver->work->point;
     for (size_t i = 0; i < s; i++)
         for (size_t d = 0; d < n; d++) {
-            const double force = fmax(fabs(R[i * n + d]), fabs(work->wanted[i * n + d]));
-            const double now[3] = {fabs(work->point[2 * i * n + d]),
-                                   fabs(work->point[(2 * i + 1) * n + d]), force};
+            const double now[3] = {point[2 * i * n + d], point[(2 * i + 1) * n + d], R[i * n + d]};
             for (size_t k = 0; k < 3; k++)
-                solver->size[k * n + d] = fmax(solver->size[k * n + d], now[k]);
+                solver->size[k * n + d] = fmax(solver->size[k * n + d], fabs(now[k]));
         }
 }
 
-/* what the laws say where forces R move their points, and the gap to R; its size in *worst. With
-   false a law failed */
-static bool say(const struct solver *solver, const double *R, bool sloped, double *worst)
+/* what the laws say where forces R move their points, and the gap to R; with false a law failed */
+static bool say(const struct solver *solver, const double *R, bool sloped)
 {
     const size_t n = solver->step->laws, all = solver->step->stages * n;
-    const struct rd_collocation_work *work = solver->work;
     move(solver, R);
     for (size_t d = 0; d < n; d++) {
         if (solver->laws->kind[d] == RD_SMOOTH_POWER)
@@ -128,17 +128,23 @@ static bool say(const struct solver *solver, const double *R, bool sloped, doubl
         else if (!say_call(solver, d, sloped))
             return false;
     }
-    grow(solver, R);
-    *worst = 0;
-    for (size_t i = 0; i < all; i++) {
-        const double size = solver->size[2 * n + i % n];
-        work->gap[i] = work->wanted[i] - R[i];
-        if (size > 0)
-            *worst = fmax(*worst, fabs(work->gap[i]) / size);
-        if (isnan(work->gap[i]))
-            *worst = INFINITY;
-    }
+    for (size_t i = 0; i < all; i++)
+        solver->work->gap[i] = solver->work->wanted[i] - R[i];
     return true;
+}
+
+/* of the gap, beside the largest forces */
+static double worst_of(const struct solver *solver)
+{
+    const size_t n = solver->step->laws, all = solver->step->stages * n;
+    double worst = 0;
+    for (size_t i = 0; i < all; i++) {
+        const double gap = fabs(solver->work->gap[i]), scale = solver->scale[i % n];
+        if (!isfinite(gap))
+            return INFINITY;
+        worst = scale > 0 ? fmax(worst, gap / scale) : worst;
+    }
+    return worst;
 }
 
 /* --- Newton's method ---------------------------------------------------------------------------*/
@@ -165,39 +171,54 @@ static bool advance(const struct solver *solver, double *R, double *worst)
     const size_t all = solver->step->stages * solver->step->laws;
     const struct rd_collocation_work *work = solver->work;
     const double before = *worst;
-    double *change = work->gap;
+    memcpy(work->tried, work->gap, all * sizeof *R);
     LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', (int32_t)all, 1, work->jacobian, (int32_t)all,
-                        work->pivot, change, (int32_t)all);
-    memcpy(work->tried, change, all * sizeof *change);
+                        work->pivot, work->tried, (int32_t)all);
     for (double share = 1;; share /= 2) {
         for (size_t i = 0; i < all; i++)
             R[i] += (share == 1 ? 1 : -share) * work->tried[i];
-        if (!say(solver, R, false, worst))
+        if (!say(solver, R, false))
             return false;
+        *worst = worst_of(solver);
         if (*worst < before || share <= SHARE || before <= LEAST)
             return true;
     }
 }
 
+/* forces of this step are measured by the largest before it and at its first guess */
+static void measure(const struct solver *solver, const double *R)
+{
+    const size_t n = solver->step->laws, all = solver->step->stages * n;
+    memcpy(solver->scale, solver->size + 2 * n, n * sizeof *R);
+    for (size_t i = 0; i < all; i++) {
+        const double most = fmax(fabs(R[i]), fabs(solver->work->wanted[i]));
+        solver->scale[i % n] = fmax(solver->scale[i % n], most);
+    }
+}
+
 static enum rd_status solve(const struct solver *solver, double *R, struct rd_collocated *run)
 {
-    double worst, best = INFINITY;
-    bool sloped = false;
-    if (!say(solver, R, true, &worst))
+    double best = INFINITY;
+    bool factored = false;
+    if (!say(solver, R, true))
         return RD_INTERRUPTED;
+    measure(solver, R);
+    double worst = worst_of(solver);
     for (int k = 0; k < MOST; k++) {
         run->residual = worst;
-        if (worst <= ENOUGH || (worst <= LEAST && worst >= best / 2))
+        if (worst <= ENOUGH || (worst <= LEAST && worst >= best / 2)) {
+            grow(solver, R);
             return RD_OK;
+        }
         if (k > 0 && worst > FALLS * best && worst > LEAST) {
-            if (!say(solver, R, true, &worst))
+            if (!say(solver, R, true))
                 return RD_INTERRUPTED;
-            sloped = false;
+            factored = false;
         }
         best = fmin(best, worst);
-        if (!sloped && !factor(solver))
+        if (!isfinite(worst) || (!factored && !factor(solver)))
             return RD_NO_CONVERGENCE;
-        sloped = true;
+        factored = true;
         run->iterations++;
         if (!advance(solver, R, &worst))
             return RD_INTERRUPTED;
@@ -260,7 +281,8 @@ enum rd_status rd_collocation_run(const struct rd_collocation *step,
         const double *x = run->state + k * states;
         look(step, run->known + k * 2 * all, x, point);
         guess(step, run->force + k * all, R);
-        const struct solver solver = {step, laws, work, point, run->begin[k], run->size};
+        const struct solver solver = {step,          laws,      work, point,
+                                      run->begin[k], run->size, work->tried + all};
         const enum rd_status status = solve(&solver, R, run);
         if (status != RD_OK)
             return status;

@@ -79,7 +79,7 @@ static bool say_one(struct py_collocation *call, size_t law, double t, double u,
     Py_XDECREF(value);
     for (int k = 0; k < 3; k++)
         Py_XDECREF(number[k]);
-    return isfinite(*force) ? true : fail(call, law, t, u, v);
+    return isnan(*force) ? fail(call, law, t, u, v) : true;
 }
 
 static PyObject *copied(size_t count, const double *from)
@@ -105,7 +105,7 @@ static bool say_all(struct py_collocation *call, size_t law, size_t count, const
     if (right)
         memcpy(force, PyArray_DATA(array), count * sizeof *force);
     for (size_t i = 0; right && i < count; i++)
-        right = isfinite(force[i]);
+        right = !isnan(force[i]);
     Py_XDECREF(array);
     Py_XDECREF(value);
     for (int k = 0; k < 3; k++)

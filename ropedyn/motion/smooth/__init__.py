@@ -1,0 +1,1 @@
+"""Motion under smooth laws, by collocation of their forces."""

@@ -1,0 +1,126 @@
+"""A run under smooth laws with steps of one length at most."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ... import _core
+from ...base.array import Real
+from ...base.errors import SolveError
+from .collocation import STAGES, nodes, tables
+from .laws import Failure, core_laws
+from .steps import SNAP, Steps, steps_between
+from .system import LawSystem
+
+BLOCK = 1 << 21  # So many numbers of states are kept at a time,
+ROWS = 4096  # and how so many places within a step are seen.
+
+
+class Passed(NamedTuple):
+    """What a run with steps of one length found."""
+
+    looked: list[Real]  # what laws add to each look, (outputs, t)
+    reached: float  # until when [s]
+    stages: int
+    error: BaseException | None = None  # what ended it early
+    settles: bool = True  # whether Newton's method found the forces
+
+
+class Passage:
+    """A run with steps of one length at most."""
+
+    def __init__(self, system: LawSystem, h: float) -> None:
+        self.system = system
+        self.all_steps = steps_between(system.time, system.breaks, h)
+        self.looked = [np.zeros((o.stop - o.start, len(t))) for o, t, _ in system.looks]
+        self._rows: dict[tuple[float, float, int], tuple[Real, Real]] = {}
+
+    def through(self, progress: Callable[[float], object]) -> Passed:
+        """Take all steps."""
+        system, n, k = self.system, len(self.system.laws), len(self.system.modes.sigma)
+        known = self._known()
+        size = np.concatenate([np.abs(known).max(axis=(0, 1)), np.zeros((1, n))])
+        laws = core_laws(system.laws, system.time, size)
+        points = system.modes.some(system.points, system.points)
+        force, state = np.zeros((STAGES, n)), np.zeros((n, 2, k))
+        done, before, table = 0, math.nan, None
+        for block in self._blocks(max(BLOCK // (2 * n * k), 1)):
+            if table is None or block.h != before:
+                table = tables(points, block.h, before if done else block.h)
+            begin: Real = block.begin + block.h * np.arange(block.number)
+            now = known[done : done + block.number]
+            found = _core.collocate(table, laws, begin, now, force, state, size)
+            forces, motions, _, (size,), made, _, residual, failure = found
+            done, before = done + made, block.h
+            is_last = made == block.number and done == len(known)
+            self._look(block._replace(number=made), forces[1:], motions, is_last)
+            reached = block.begin + made * block.h
+            if made < block.number:
+                error = self._error(failure, reached, residual)
+                settles = failure is not None
+                return Passed(self.looked, reached, done * STAGES, error, settles)
+            force, state = forces[-1], motions[-1]
+            progress(done / len(known))
+        return Passed(self.looked, float(system.time[-1]), done * STAGES)
+
+    def _blocks(self, most: int) -> Iterator[Steps]:
+        for whole in self.all_steps:
+            yield from whole.parts(most)
+
+    def _known(self) -> Real:
+        """Return how the laws' points move without laws at all stages, (steps, stages, 2, laws)."""
+        system = self.system
+        stages = [
+            np.add.outer(s.begin + s.h * np.arange(s.number), s.h * nodes(STAGES)).ravel()
+            for s in self.all_steps
+        ]
+        time = np.concatenate([system.time[:1], *stages])
+        both = [system.linear(system.points, time, order)[:, 1:] for order in range(2)]
+        value = np.stack(both).reshape(2, len(system.laws), -1, STAGES)
+        return np.ascontiguousarray(value.transpose(2, 3, 0, 1))
+
+    def _error(self, failure: tuple[Any, ...] | None, when: float, residual: float) -> Any:
+        if failure is not None:
+            return Failure(*failure).told(self.system.laws)
+        names = ", ".join(dict.fromkeys(law.name for law in self.system.laws if law.call))
+        return SolveError(
+            f"the law of {names or 'a dashpot'} does not converge at t = {when!r} s: the residual "
+            f"is {residual:.3g} of the forces; laws without jumps do, in steps short enough"
+        )
+
+    # --- what is looked at ----------------------------------------------------------------------
+
+    def _look(self, steps: Steps, force: Real, state: Real, is_last: bool) -> None:
+        """Add what laws move at the times within some steps."""
+        if steps.number == 0:
+            return
+        for number, look in enumerate(self.system.looks):
+            since = (look.time - steps.begin) / steps.h
+            inside = (since >= -SNAP) & (since < steps.number - SNAP)
+            if is_last:
+                inside |= since >= steps.number - SNAP
+            at = np.flatnonzero(inside)
+            step = np.minimum(np.floor(since[at] + SNAP).astype(np.intp), steps.number - 1)
+            theta = np.round(np.clip(since[at] - step, 0.0, 1.0), 10)
+            for one in np.unique(theta).tolist():
+                some = theta == one
+                own, forced = self._row(number, steps.h, one)
+                moved = own @ state[step[some]].reshape(-1, own.shape[1]).T
+                moved += forced @ force[step[some]].reshape(-1, forced.shape[1]).T
+                self.looked[number][:, at[some]] = moved
+
+    def _row(self, number: int, h: float, theta: float) -> tuple[Real, Real]:
+        """Return what a look sees per state at the beginning of a step, and per force in it."""
+        if (h, theta, number) not in self._rows:
+            if len(self._rows) > ROWS:
+                self._rows.clear()
+            system, look = self.system, self.system.looks[number]
+            some = system.modes.some(system.points, look.output)
+            own, forced = some.rows(some.reached(h, theta), look.order, h)
+            flat = own.reshape(len(own), -1), forced.reshape(len(own), -1)
+            self._rows[h, theta, number] = flat
+        return self._rows[h, theta, number]

@@ -1,0 +1,290 @@
+"""Motion over time under smooth laws of points.
+
+What drives moves the linear rope in closed form; what the forces of the laws add is found by
+collocation (collocation.py), which leaves them alone unknown. Two runs, one with steps half as
+long, tell the error of the steps, and of continuous spans a run with half of the modes that of the
+modes that are left out.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from ...base.answer import Cost
+from ...base.array import Real
+from ...base.errors import SceneError, SolveError
+from ...chain.compile import compile_scene
+from ...chain.compiled import Compiled
+from ...chain.port import locate, moving
+from ...eigen.damped.proportional import proportional
+from ...eigen.damped.rates import Rates
+from ...eigen.vectors import within
+from ...response.deflection import POINTS
+from ...scene.damping import having
+from ..direct.direct import march
+from ..history import Balance, Deviation, History
+from ..modal.superposition import superpose
+from ..request import Run
+from ..states import without_dashpots
+from .laws import PointLaw, laws_on, why_not_smooth
+from .passage import Passage
+from .system import Asked, LawSystem, Look
+
+TOLERANCE = 1e-3  # Errors are within this part of the largest value where none is given.
+MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
+MOST_STEPS = 2_000_000  # A run takes so many steps at most,
+HARD = 10  # or so many halvings of steps that do not converge.
+SHARE = 0.5  # The finer of two runs has this part of their distance as its error at most.
+NOTHING = 1e-9  # Responses smaller than this part of the largest are rounding.
+ROUNDING = 1e-12  # Of the largest value, what Newton's method leaves.
+STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
+
+
+# --- what is taken ------------------------------------------------------------------------------
+
+
+def takes(run: Run, method: str) -> bool:
+    """Whether collocation answers: the method is open, laws are smooth and modes uncoupled."""
+    given = run.step is not None or run.spectral_radius != 1 or run.modes is not None
+    model = run.model
+    if method != "auto" or given or why_not_smooth(model):
+        return False
+    scene, rates = model.scene, Rates.of(model.scene.dampings)
+    if having(scene.dampings, "loss") or model.chain.is_hysteretic:
+        return False
+    for component in model.components:
+        laws = laws_on(model, component)
+        if laws and _has_no_inertia(model, component, laws):
+            return False
+        plain = without_dashpots(model, component)[0].chain.only(component)
+        if laws and proportional(plain, rates) is None:
+            return False
+    return True
+
+
+def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[PointLaw]) -> bool:
+    chain = model.chain.only(component)
+    if chain.inertia is not None:
+        return False
+    for point, _ in laws:
+        node, inside = locate(model.x, point[1])
+        at = component.index(point[0])
+        if inside is not None or not chain.mass[chain.term_of[node], at, at] > 0:
+            return True
+    return False
+
+
+# --- runs that agree ----------------------------------------------------------------------------
+
+
+@dataclass
+class Found:
+    """Motion of a component, and how far it is off."""
+
+    looked: list[Real]  # of each look, (outputs, t)
+    step_error: Real  # of the first look
+    truncation: Real  # (outputs of the first look,)
+    h: float  # [s]
+    reached: float  # [s]
+    stages: int
+    modes: int
+    error: BaseException | None = None  # what ended it early
+
+
+def scale(value: Real) -> Real:
+    """Return the largest value of each response, of what is rounding the largest of all as well."""
+    most = np.abs(value).max(axis=1, initial=0.0)
+    return np.maximum(np.maximum(most, NOTHING * most.max(initial=0.0)), np.finfo(float).tiny)
+
+
+def agree(system: LawSystem, tolerance: float, run: Run) -> Found:
+    """Halve the steps until two runs agree within the tolerance, and return the finer."""
+    linear, h = system.without_laws(), system.first_step
+    span, worst = float(system.time[-1] - system.time[0]), np.inf
+    coarse: list[Real] | None = None
+    stages = hard = 0
+    while True:
+        passed = Passage(system, h).through(run.progress)
+        stages += passed.stages
+        looked = [own + more for own, more in zip(linear, passed.looked)]
+        found = Found(
+            looked,
+            np.full(looked[0].shape, np.inf),
+            np.zeros(len(looked[0])),
+            h,
+            passed.reached,
+            stages,
+            len(system.modes.sigma),
+            passed.error,
+        )
+        if passed.error is None and coarse is not None:
+            size = scale(looked[0])[:, None]
+            apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
+            found.step_error = SHARE * apart + ROUNDING * size
+            worst = float((found.step_error / size).max(initial=0.0))
+            if worst <= tolerance:
+                return found
+        hard += not passed.settles
+        if passed.error is not None and (passed.settles or hard > HARD):
+            return found
+        coarse, h = looked if passed.error is None else None, h / 2
+        if span / h > MOST_STEPS:
+            found.error = SolveError(
+                f"tolerance {tolerance:g} needs more than {MOST_STEPS} steps: with "
+                f"{round(span / h / 2)} the error is {worst:.3g}"
+            )
+            return found
+
+
+def component_motion(run: Run, asked: Asked) -> Found:
+    """Take more modes until those left out do not show, where there are endless many."""
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    count = MODES
+    while True:
+        system = LawSystem.of(run, asked, count)
+        found = agree(system, tolerance, run)
+        if found.error is not None or not np.isfinite(system.beyond):
+            return found
+        fewer = LawSystem.of(run, asked, count // 2)
+        passed = Passage(fewer, found.h).through(run.progress)
+        found.stages += passed.stages
+        looked = fewer.without_laws()[0] + passed.looked[0]
+        found.truncation = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
+        worst = float((found.truncation / scale(found.looked[0])).max(initial=0.0))
+        if passed.error is not None or worst <= tolerance:
+            return found
+        if count >= MOST_MODES:
+            found.error = SolveError(
+                f"tolerance {tolerance:g} needs more than {count} modes: with these the error is "
+                f"{worst:.3g}"
+            )
+            return found
+        count *= 2
+
+
+# --- the answer ---------------------------------------------------------------------------------
+
+
+def nonlinear(run: Run, method: str) -> History:
+    """Find the motion of what is not linear; see `Model.transient`."""
+    return collocate(run) if takes(run, method) else march(run)
+
+
+def collocate(run: Run) -> History:
+    """Find the motion under smooth laws; see `Model.transient`."""
+    start = clock.perf_counter()
+    model = run.model
+    x = within(model.x, POINTS) if model.element == "continuous" else model.x
+    answer = _Answer(run, x)
+    for component in model.components:
+        laws = laws_on(model, component)
+        answer.take(component, laws)
+    history = answer.history(clock.perf_counter() - start)
+    error = answer.error
+    if error is not None and (len(history.time) == 0 or not isinstance(error, STOPS)):
+        raise error
+    if error is not None and not run.partial:
+        if isinstance(error, SolveError):
+            error.history = history
+        raise error
+    return history
+
+
+class _Answer:
+    """What is asked, filled component by component."""
+
+    def __init__(self, run: Run, x: Real) -> None:
+        self.run, self.x = run, x
+        shape = (len(run.responses), len(run.time))
+        self.value, self.step_error = np.zeros(shape), np.zeros(shape)
+        self.truncation = np.zeros(len(run.responses))
+        seen = len(run.snapshots)
+        self.snapshot = np.zeros((seen, len(x), len(run.model.coordinates)))
+        self.stages = self.modes = 0
+        self.reached = float(run.time[-1])
+        self.error: BaseException | None = None
+
+    def take(self, component: tuple[str, ...], laws: list[PointLaw]) -> None:
+        """Add the motion of a component."""
+        run = self.run
+        watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
+        at = [run.model.coordinates.index(c) for c in component]
+        if not laws:
+            self._linear(component, watched, at)
+            return
+        seen = [(c, float(x)) for x in self.x for c in component] if len(run.snapshots) else []
+        points = [*(run.responses[k] for k in watched), *seen]
+        looks = [Look(slice(0, len(watched)), run.time, run.order)]
+        looks.append(Look(slice(len(watched), len(points)), run.snapshots, 0))
+        found = component_motion(run, Asked(component, laws, points, looks))
+        self.value[watched], self.step_error[watched] = found.looked[0], found.step_error
+        self.truncation[watched] = found.truncation
+        if seen:
+            self.snapshot[:, :, at] = found.looked[1].T.reshape(-1, len(self.x), len(component))
+        self.stages, self.modes = self.stages + found.stages, self.modes + found.modes
+        if found.error is not None and found.reached < self.reached:
+            self.reached = found.reached
+        self.error = self.error or found.error
+
+    def _linear(self, component: tuple[str, ...], watched: list[int], at: list[int]) -> None:
+        run = self.run
+        driven = [k for k, d in enumerate(run.drives) if moving(d) in component]
+        loads = {p: load for p, load in run.loads.items() if p[0] in component}
+        if not driven and not loads:
+            return
+        some = replace(
+            run,
+            drives=tuple(run.drives[k] for k in driven),
+            forces=tuple(run.forces[k] for k in driven),
+            responses=tuple(run.responses[k] for k in watched),
+            loads=loads,
+        )
+        found = superpose(some)
+        self.value[watched], self.truncation[watched] = found.value, found.truncation_error
+        self.snapshot[:, :, at] = found.snapshot[:, :, at]
+        self.modes += found.cost.unknowns
+
+    def history(self, seconds: float) -> History:
+        """Return all of it until the end that was reached."""
+        run = self.run.kept
+        kept = run.time <= self.reached if self.error is not None else np.isfinite(run.time)
+        seen = run.snapshots <= self.reached
+        asked = replace(run, time=run.time[kept], snapshots=run.snapshots[seen])
+        error, stopped = self.error, ""
+        if error is not None:
+            told = f"{type(error).__name__}: {error}"
+            stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
+        value = self.value[:, kept]
+        elements = len(run.model.x) - 1
+        return History(
+            **asked.told,
+            value=value,
+            truncation_error=self.truncation,
+            x=self.x,
+            snapshot=self.snapshot[seen],
+            cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
+            balance=_no_balance,
+            deviation=partial(_deviation, asked, value, self.step_error[:, kept]),
+            stopped=stopped,
+        )
+
+
+def _no_balance() -> Balance:
+    raise SceneError('method must be "direct" for the energy where laws act, got "auto"')
+
+
+def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
+    """Return how far the values are from those without steps and without elements."""
+    if run.model.element == "continuous":
+        return Deviation(step_error, np.zeros(value.shape))
+    try:
+        model = compile_scene(run.model.scene)
+        true = collocate(replace(run, model=model, snapshots=np.zeros(0)))
+    except (SceneError, SolveError):
+        return Deviation(step_error, np.full(value.shape, np.inf))
+    more = true.step_error + true.truncation_error[:, None]
+    return Deviation(step_error, np.abs(value - true.value) + more)

@@ -1,0 +1,161 @@
+"""A component under smooth laws: its modes, its laws, and what moves it without them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.array import Real
+from ...chain.port import Point, moving
+from ...scene.force import Force
+from ..modal.convolution import motion_under
+from ..modal.expansion import Expansion
+from ..request import Run
+from ..states import States, states
+from .collocation import Oscillating
+from .laws import PointLaw, SmoothLaw
+
+LEAST = 32  # A run has so many steps at least,
+PER_PERIOD = 4  # and a period of the lowest mode, and of what pushes, so many.
+
+
+class Look(NamedTuple):
+    """When outputs are asked for."""
+
+    output: slice
+    time: Real  # (t,) [s]
+    order: int
+
+
+class Asked(NamedTuple):
+    """What is asked of a component."""
+
+    component: tuple[str, ...]
+    laws: list[PointLaw]
+    outputs: list[Point]
+    looks: list[Look]  # at the outputs
+
+
+@dataclass(frozen=True, eq=False)
+class LawSystem:
+    """A component: its modes, its laws, and what moves it without them."""
+
+    laws: list[SmoothLaw]
+    modes: Oscillating  # of inputs at the laws' points; outputs there come first
+    driven: list[Expansion]  # of each drive: the same outputs
+    pushes: list[Force | float]  # of each drive
+    time: Real  # (t,) [s]
+    looks: list[Look]
+    beyond: float  # lowest angular frequency that is left out [rad/s]
+
+    @classmethod
+    def of(cls, run: Run, asked: Asked, count: int) -> LawSystem:
+        """Find the modes."""
+        component, laws, outputs, looks = asked
+        n, drive = len(laws), [k for k, p in enumerate(run.places) if moving(p) in component]
+        points = [one.point for one in laws]
+        inputs = [*points, *(run.places[k] for k in drive)]
+        found = states(run.model, component, inputs, [*points, *outputs], modes=count)
+        return cls(
+            [one.law for one in laws],
+            oscillating(found, n),
+            [expansion(found, n + k) for k in range(len(drive))],
+            [run.pushes[k] for k in drive],
+            run.time,
+            [look._replace(output=_shifted(look.output, n)) for look in looks],
+            found.beyond,
+        )
+
+    @property
+    def points(self) -> slice:
+        """Outputs that are the laws' points."""
+        return slice(len(self.laws))
+
+    @property
+    def breaks(self) -> list[float]:
+        """When what drives jumps or bends [s]."""
+        return [at for one in self.pushes if not isinstance(one, float) for at in one.breaks]
+
+    @property
+    def first_step(self) -> float:
+        """The longest step to begin with [s]."""
+        omega = np.sqrt(self.modes.square[self.modes.square > 0])
+        highest = [one.highest for one in self.pushes if not isinstance(one, float)]
+        fastest = max([float(omega.min(initial=np.inf)) / (2 * np.pi), *highest])
+        span = float(self.time[-1] - self.time[0]) / LEAST
+        return min(span, 1 / (PER_PERIOD * fastest)) if np.isfinite(fastest) else span
+
+    def linear(self, rows: slice, time: Real, order: int) -> Real:
+        """Return what drives move, without laws, (rows, t)."""
+        value = np.zeros((len(self.modes.seen[rows]), len(time)))
+        for one, push in zip(self.driven, self.pushes):
+            some = one._replace(
+                a=one.a[:, rows],
+                b=one.b[:, rows],
+                r=one.r[:, rows],
+                rest=one.rest[:, rows],
+                bound=one.bound[:, rows],
+            )
+            value += motion_under(some, 0, push, time, order)
+        return value
+
+    def without_laws(self) -> list[Real]:
+        """Return what each look sees where no law acts, (outputs, t)."""
+        begin = float(self.time[0])
+        seen = []
+        for look in self.looks:  # motion begins at the first time
+            late = len(look.time) == 0 or look.time[0] > begin
+            time = np.append(begin, look.time) if late else look.time
+            seen.append(self.linear(look.output, time, look.order)[:, int(late) :])
+        return seen
+
+
+def _shifted(rows: slice, by: int) -> slice:
+    return slice(rows.start + by, rows.stop + by)
+
+
+def oscillating(found: States, laws: int) -> Oscillating:
+    """Return the modes as laws push them; what is left out follows as a mode of its lowest."""
+    count, inputs = found.modes, slice(laws)
+    now, late = found.now[:, inputs], found.late[:, inputs]
+    lag = 1 / found.gamma if found.gamma else 0.0
+    beyond = found.beyond if now.any() else 0.0
+    more = laws * (bool(now.any()) + bool(late.any()))
+    sigma, square = np.zeros(more), np.zeros(more)
+    seen, swept = np.zeros((len(found.seen), more)), np.zeros((len(found.seen), more))
+    at = 0
+    if now.any():
+        sigma[:laws] = found.ratio * beyond + (found.drag + found.gamma * beyond**2) / 2
+        square[:laws], seen[:, :laws] = beyond**2, now * beyond**2
+        at = laws
+    if late.any():  # 1/(1 + gamma s) as two equal rates, one of which is taken away again
+        sigma[at:], square[at:] = lag, lag**2
+        seen[:, at:], swept[:, at:] = late * lag**2, late * lag
+    push = np.zeros((count + more, laws))
+    push[:count] = found.push[:, inputs]
+    push[count:] = np.tile(np.eye(laws), (more // max(laws, 1), 1))
+    return Oscillating(
+        np.append(found.sigma, sigma),
+        np.append(found.square, square),
+        push,
+        np.concatenate([found.seen, seen], axis=1),
+        np.concatenate([found.swept, swept], axis=1),
+    )
+
+
+def expansion(found: States, which: int) -> Expansion:
+    """Return what one input moves as an expansion of one drive."""
+    push, lag = found.push[:, which], found.gamma
+    return Expansion(
+        sigma=found.sigma,
+        square=found.square,
+        a=(found.seen * push)[None],
+        b=(found.swept * push)[None],
+        p=np.array([-1 / lag] if lag else []),
+        r=found.late[None, :, which, None] / lag if lag else np.zeros((1, len(found.late), 0)),
+        rest=found.now[None, :, which],
+        bound=found.left[None, :, which],
+        beyond=found.beyond,
+    )
