@@ -118,9 +118,17 @@ def without_dashpots(
         kept.append(one)
         if terms.setdefault(term, node) == node:
             damping[term, at, at] -= one.damping
-    damping[np.abs(damping) <= 8 * np.finfo(float).eps * np.abs(chain.damping)] = 0.0
+    _round_to_mass(damping, chain.mass, 8 * np.finfo(float).eps * np.abs(chain.damping))
     free = chain._replace(damping=damping if damping.any() else None)
     return dataclasses.replace(model, chain=free), tuple(kept)
+
+
+def _round_to_mass(damping: Real, mass: Real, rounding: Real) -> None:
+    """Let what differs by rounding from drag along the rope, which is as the mass, be that."""
+    ratio = np.divide(damping, mass, out=np.zeros_like(mass), where=mass > 0)
+    for drag in (float(np.median(ratio[mass > 0])) if (mass > 0).any() else 0.0, 0.0):
+        near = np.abs(damping - drag * mass) <= rounding
+        damping[near] = drag * mass[near]
 
 
 def _dashpots(model: Compiled) -> list[Resistance]:

@@ -39,6 +39,13 @@ def nodes(stages: int) -> Real:
     return np.asarray(node)
 
 
+@lru_cache(maxsize=64)
+def gauss(count: int) -> tuple[Real, Real]:
+    """Return Gauss's nodes on (-1, 1) and their weights."""
+    node, weight = np.polynomial.legendre.leggauss(count)
+    return node, weight
+
+
 def lagrange(theta: Real, order: int = 0) -> Real:
     """Return Lagrange's polynomials of the nodes at theta, differentiated, (theta, stages)."""
     node = nodes(STAGES)
@@ -93,7 +100,7 @@ class Oscillating:
         total = np.zeros((STAGES, 2, len(self.sigma)))
         for begin, end in pairwise(edge.tolist()):
             count = PANEL + math.ceil(PER_RADIAN * turns * (end - begin))
-            x, weight = np.polynomial.legendre.leggauss(count)
+            x, weight = gauss(8 * -(-count // 8))
             since = begin + (end - begin) * (x + 1) / 2
             shape = lagrange((t - since) / h) * (weight * (end - begin) / 2)[:, None]
             for i, part in enumerate(self.blow(since)):

@@ -51,7 +51,7 @@ class Passage:
         for block in self._blocks(max(BLOCK // (2 * n * k), 1)):
             if table is None or block.h != before:
                 table = tables(points, block.h, before if done else block.h)
-            begin: Real = block.begin + block.h * np.arange(block.number)
+            begin = block.begin + block.h * np.arange(block.number, dtype=np.float64)
             now = known[done : done + block.number]
             found = _core.collocate(table, laws, begin, now, force, state, size)
             forces, motions, _, (size,), made, _, residual, failure = found

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Real
 from ...base.errors import SceneError, SolveError
-from ...chain.compile import compile_scene
 from ...chain.compiled import Compiled
 from ...chain.port import locate, moving
 from ...eigen.damped.proportional import proportional
@@ -38,9 +36,9 @@ TOLERANCE = 1e-3  # Errors are within this part of the largest value where none 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
-SHARE = 0.5  # The finer of two runs has this part of their distance as its error at most.
+SHARE = 1.0  # The finer of two runs has this part of their distance as its error at most.
 NOTHING = 1e-9  # Responses smaller than this part of the largest are rounding.
-ROUNDING = 1e-12  # Of the largest value, what Newton's method leaves.
+ROUNDING = 1e-12  # Of the largest value and of each radian that it turns, what rounding leaves.
 STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
 
 
@@ -101,6 +99,13 @@ def scale(value: Real) -> Real:
     return np.maximum(np.maximum(most, NOTHING * most.max(initial=0.0)), np.finfo(float).tiny)
 
 
+def rounding(value: Real, time: Real) -> Real:
+    """Return what rounding leaves, as value: of what moves fast, phases are known to less."""
+    most = np.abs(value).max(axis=1, initial=0.0)[:, None]
+    slope = np.abs(np.diff(value) / np.diff(time)).max(axis=1, initial=0.0)[:, None]
+    return np.asarray(ROUNDING * (most + slope * (time - time[0])))
+
+
 def agree(system: LawSystem, tolerance: float, run: Run) -> Found:
     """Halve the steps until two runs agree within the tolerance, and return the finer."""
     linear, h = system.without_laws(), system.first_step
@@ -124,7 +129,7 @@ def agree(system: LawSystem, tolerance: float, run: Run) -> Found:
         if passed.error is None and coarse is not None:
             size = scale(looked[0])[:, None]
             apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            found.step_error = SHARE * apart + ROUNDING * size
+            found.step_error = SHARE * apart + rounding(looked[0], system.time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
                 return found
@@ -260,6 +265,8 @@ class _Answer:
             stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
         value = self.value[:, kept]
         elements = len(run.model.x) - 1
+        is_exact = run.model.element == "continuous"
+        mesh_error = np.full(value.shape, 0.0 if is_exact else np.inf)
         return History(
             **asked.told,
             value=value,
@@ -268,23 +275,10 @@ class _Answer:
             snapshot=self.snapshot[seen],
             cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
             balance=_no_balance,
-            deviation=partial(_deviation, asked, value, self.step_error[:, kept]),
+            deviation=Deviation(self.step_error[:, kept], mesh_error),
             stopped=stopped,
         )
 
 
 def _no_balance() -> Balance:
     raise SceneError('method must be "direct" for the energy where laws act, got "auto"')
-
-
-def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
-    """Return how far the values are from those without steps and without elements."""
-    if run.model.element == "continuous":
-        return Deviation(step_error, np.zeros(value.shape))
-    try:
-        model = compile_scene(run.model.scene)
-        true = collocate(replace(run, model=model, snapshots=np.zeros(0)))
-    except (SceneError, SolveError):
-        return Deviation(step_error, np.full(value.shape, np.inf))
-    more = true.step_error + true.truncation_error[:, None]
-    return Deviation(step_error, np.abs(value - true.value) + more)

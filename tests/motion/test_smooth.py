@@ -1,0 +1,214 @@
+"""Motion under smooth laws, by collocation, against closed forms and explicit steps."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipj
+
+import ropedyn as rd
+
+LENGTH, DENSITY, TENSION = 1.0, 0.1, 100.0
+MASS, STIFFNESS = DENSITY * LENGTH / 2, 4 * TENSION / LENGTH
+AMPLITUDE, CUBIC = 0.01, 1.6e7
+MIDDLE = ("z", LENGTH / 2)
+ROPE = rd.Rope(LENGTH, DENSITY)
+
+
+def hardening(calls=None):
+    def law(t, u, v):
+        if calls is not None:
+            calls.append(np.ndim(u))
+        return -CUBIC * u**3
+
+    return rd.NodeForce(LENGTH / 2, law)
+
+
+def duffing(time):
+    """m x'' + k x + c x^3 = 0 from rest at the amplitude; Nayfeh and Mook 1979, 2.2."""
+    stiff = STIFFNESS + CUBIC * AMPLITUDE**2
+    modulus = CUBIC * AMPLITUDE**2 / (2 * stiff)
+    return AMPLITUDE * ellipj(math.sqrt(stiff / MASS) * time, modulus)[1]
+
+
+def mass_on_a_string(*parts, elements=2, **scene):
+    return rd.Scene(ROPE, tension=TENSION, parts=parts, **scene).compile(elements=elements)
+
+
+def released(model, time, **asked):
+    return model.transient(time, start={MIDDLE: STIFFNESS * AMPLITUDE}, response=MIDDLE, **asked)
+
+
+def error(history, exact):
+    return np.abs(history.value - exact).max() / np.abs(exact).max()
+
+
+# --- one mass -----------------------------------------------------------------------------------
+
+
+@pytest.mark.claim(
+    "Duffing over 5 s (140 periods) by collocation: largest error over the one that is said",
+    reference="Jacobi's cn",
+    accepted=1.0,
+)
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7, 1e-9])
+def test_hardening_spring_is_duffings_within_the_error_it_says(tolerance, claim):
+    time = np.linspace(0.0, 5.0, 5001)
+    history = released(mass_on_a_string(hardening()), time, tolerance=tolerance)
+    assert history.cost.method == "collocation"
+    assert (history.step_error <= tolerance * np.abs(history.value).max()).all()
+    claim((np.abs(history.value[0] - duffing(time)) / history.step_error[0]).max())
+
+
+def test_law_that_takes_arrays_is_called_with_them_and_says_the_same():
+    calls, time = [], np.linspace(0.0, 0.5, 301)
+    many = released(mass_on_a_string(hardening(calls)), time)
+    alone = rd.NodeForce(LENGTH / 2, lambda t, u, v: -CUBIC * math.pow(u, 3))
+    one = released(mass_on_a_string(alone), time)
+    assert np.mean(calls) > 0.9
+    assert error(many, one.value) < 1e-9  # Newton's method ends at 1e-13 of the forces
+
+
+def test_velocity_and_acceleration_are_those_of_the_displacement():
+    time = np.linspace(0.0, 0.05, 201)
+    model = mass_on_a_string(hardening())
+    u, v, a = (
+        released(model, time, quantity=q, tolerance=1e-8).value[0]
+        for q in ("displacement", "velocity", "acceleration")
+    )
+    # the equation of motion, to what the steps leave
+    assert MASS * a == pytest.approx(-STIFFNESS * u - CUBIC * u**3, abs=1e-6 * MASS * abs(a).max())
+    energy = MASS * v**2 / 2 + STIFFNESS * u**2 / 2 + CUBIC * u**4 / 4
+    assert np.ptp(energy) < 1e-7 * energy[0]
+
+
+def test_snapshots_are_the_motion_of_the_nodes():
+    time = np.linspace(0.0, 0.05, 101)
+    model = mass_on_a_string(hardening(), elements=6)
+    history = released(model, time, snapshots=[0.02, 0.05])
+    at = [int(np.abs(time - t).argmin()) for t in history.snapshot_time]
+    assert history.snapshot[:, 3, 0] == pytest.approx(history.value[0, at], rel=1e-12)
+
+
+def test_law_that_jumps_is_refused_where_it_holds_what_moves():
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -math.copysign(1.0, v))
+    with pytest.raises(rd.SolveError, match=r"parts\[0\] does not converge at t = .* residual"):
+        released(mass_on_a_string(law), np.linspace(0.0, 0.5, 101))
+
+
+@pytest.mark.parametrize("value", [math.nan, None, "1"])
+def test_law_that_returns_no_number_is_named(value):
+    law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -u if t < 0.02 else value)
+    asked = {"time": np.linspace(0.0, 0.05, 11)}
+    with pytest.raises(rd.SolveError, match=r"parts\[0\].law\(t=0\.02.*must return") as caught:
+        released(mass_on_a_string(law), **asked)
+    assert "must return" in caught.value.history.stopped
+    assert 0.0 < released(mass_on_a_string(law), partial=True, **asked).time[-1] <= 0.02
+
+
+def test_law_that_raises_is_named_and_what_was_before_stays():
+    def fail(t, u, v):
+        if t > 0.03:
+            raise ZeroDivisionError("no")
+        return -10.0 * u
+
+    with pytest.raises(ZeroDivisionError, match="no") as caught:
+        released(mass_on_a_string(rd.NodeForce(0.5, fail)), np.linspace(0.0, 0.05, 11))
+    assert any("parts[0].law(t=0.03" in note for note in caught.value.__notes__)
+
+
+# --- random scenes ------------------------------------------------------------------------------
+
+
+def random_case(rng):
+    """A string of rigid elements with laws, dashpots, damping and a drive, and its equation."""
+    elements = int(rng.integers(4, 17))
+    x = np.arange(elements + 1) * LENGTH / elements
+    node = [int(k) for k in rng.choice(np.arange(1, elements), 3, replace=False)]
+    cubic, square, drag = 10 ** rng.uniform([4, -1, -1], [7, 1.5, 0.5])
+    kind = int(rng.integers(3))
+    laws = [
+        (node[0], lambda t, u, v: -cubic * u**3 - 0.3 * v),
+        (node[1], lambda t, u, v: -square * v * np.abs(v)),
+    ][: 1 + kind % 2]
+    parts = [rd.NodeForce(x[node[0]], laws[0][1])]
+    parts += [rd.Dashpot(x[node[1]], square, exponent=2.0)] if len(laws) > 1 else []
+    parts += [rd.Dashpot(x[node[2]], drag)] if rng.random() < 0.5 else []
+    damping = [None, rd.ViscousDamping(rng.uniform(0.1, 2)), rd.RayleighDamping(1.0, 1e-4)][kind]
+    scene = rd.Scene(ROPE, tension=TENSION, parts=parts, damping=damping)
+    force = [
+        rd.Sine(rng.uniform(1, 5), rng.uniform(5, 60)),
+        rd.Impulse(0.02, time=0.01, duration=rng.uniform(2e-3, 2e-2)),
+        rd.Step(rng.uniform(1, 5), time=0.013),
+    ][int(rng.integers(3))]
+    return scene.compile(elements=elements, element="rigid"), laws, x, int(node[2]), force
+
+
+def explicit(model, laws, at, force, time, order):
+    """Explicit steps of the assembled equations to 1e-11, from break to break."""
+    linear = [one for one in model.scene.parts if not one.term().laws]
+    plain = model.scene.replace(parts=linear).compile(elements=len(model.x) - 1, element="rigid")
+    M, C, K = (m.toarray() for m in (plain.mass(), plain.damping(), plain.stiffness()))
+    n, inverse = len(M), np.linalg.inv(M)
+
+    def rhs(t, y):
+        f = -K @ y[:n] - C @ y[n:]
+        f[at - 1] += force.value(np.array(t))
+        for node, law in laws:
+            f[node - 1] += law(t, y[node - 1], y[n + node - 1])
+        return np.concatenate([y[n:], inverse @ f])
+
+    edges = np.unique([time[0], *(b for b in force.breaks if 0 < b < time[-1]), time[-1]])
+    y, value = np.zeros(2 * n), np.zeros((2 * n, len(time)))
+    for begin, end in pairwise(edges):
+        inside = (time >= begin) & (time <= end)
+        last = end - 1e-12 * (end - begin)  # a jump at the end belongs to what follows
+        ask = np.unique(np.minimum(np.append(time[inside], end), last))
+        kept = {"rtol": 1e-11, "atol": 1e-15, "max_step": (end - begin) / 20}
+        found = solve_ivp(rhs, (begin, last), y, "DOP853", ask, **kept)
+        value[:, inside], y = found.y[:, : inside.sum()], found.y[:, -1]
+    return value[order * n + at - 1]
+
+
+def worst_of(seed, count):
+    """Largest error over what is said, and over the largest value, of random scenes."""
+    said, relative = [], []
+    for rng in np.random.default_rng(seed).spawn(count):
+        model, laws, x, at, force = random_case(rng)
+        order, tolerance = int(rng.integers(2)), 10 ** rng.uniform(-6, -3)
+        time = np.linspace(0.0, 0.1, 101)
+        drive, quantity = ("z", float(x[at])), ("displacement", "velocity")[order]
+        history = model.transient(
+            time, drive=drive, force=force, quantity=quantity, tolerance=tolerance
+        )
+        assert history.cost.method == "collocation"
+        exact = explicit(model, laws, at, force, time, order)
+        wrong, size = np.abs(history.value[0] - exact), np.abs(exact).max()
+        said.append(wrong.max() / history.step_error[0].max())
+        relative.append(history.step_error[0].max() / size / tolerance)
+    return np.array(said), np.array(relative)
+
+
+@pytest.mark.claim(
+    "Random strings under smooth laws, sines, blows and steps: largest error over what is said",
+    reference="solve_ivp of the assembled equations to 1e-11",
+    accepted=1.0,
+)
+def test_errors_of_random_scenes_are_within_what_is_said(claim):
+    said, relative = worst_of(20, 12)
+    assert (relative <= 1).all()
+    claim(said.max())
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "200 random strings under smooth laws: largest error over what is said",
+    reference="solve_ivp of the assembled equations to 1e-11",
+    accepted=1.0,
+)
+def test_errors_of_many_random_scenes_are_within_what_is_said(claim):
+    said, relative = worst_of(2026, 200)
+    assert (relative <= 1).all()
+    claim(said.max())
