@@ -123,6 +123,23 @@ class Oscillating:
         forced = a[:, None] * pushed[:, 0] + b[:, None] * pushed[:, 1]
         return own[:, None] * self.push.T[:, None], at_once + forced @ self.push
 
+    def modal_rows(self, reached: Reached, order: int, h: float) -> tuple[Real, Real]:
+        """Return outputs per (q, q') and per forces on each mode at the stages; `swept` is 0.
+
+        Shapes (outputs, 2, k) and (outputs, stages, k).
+        """
+        now, slope = self.seen, np.zeros_like(self.seen)
+        at_once = np.zeros((STAGES, 1))
+        if order == 1:
+            now, slope = slope, now
+        if order == 2:
+            at_once = lagrange(np.array([reached.theta]))[0][:, None]
+            now, slope = -self.seen * self.square, -2 * self.sigma * self.seen
+        change, pushed = reached.change, reached.pushed
+        own = now[:, None] * change[0] + slope[:, None] * change[1]
+        forced = now[:, None] * pushed[:, 0] + slope[:, None] * pushed[:, 1]
+        return own, forced + at_once * self.seen[:, None]
+
 
 class Reached(NamedTuple):
     """How modes move until a time within a step."""

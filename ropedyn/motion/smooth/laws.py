@@ -62,8 +62,8 @@ def why_not_smooth(model: Compiled) -> str:
             if law.kind == "power" and law.value[1] <= 1:
                 return f"the force of parts[{i}] jumps or is steep where its velocity turns"
     tension = model.scene.tension
-    if isinstance(tension, Tension) and not tension.is_constant:
-        return "the tension changes"
+    if isinstance(tension, Tension) and tension.pulsates:
+        return "the tension pulsates"
     return ""
 
 
@@ -105,7 +105,7 @@ def takes_arrays(law: SmoothLaw, time: Real, size: Real) -> bool:
     return bool((wrong <= SAME * np.abs(each).max()).all())
 
 
-class Failure(NamedTuple):
+class LawFailure(NamedTuple):
     """Where a law failed."""
 
     error: BaseException | None  # what it raised; None of what is no number

@@ -12,7 +12,7 @@ from ... import _core
 from ...base.array import Real
 from ...base.errors import SolveError
 from .collocation import STAGES, nodes, tables
-from .laws import Failure, core_laws
+from .laws import LawFailure, core_laws
 from .steps import SNAP, Steps, steps_between
 from .system import LawSystem
 
@@ -30,7 +30,7 @@ class Passed(NamedTuple):
     settles: bool = True  # whether Newton's method found the forces
 
 
-class Passage:
+class LawPassage:
     """A run with steps of one length at most."""
 
     def __init__(self, system: LawSystem, h: float) -> None:
@@ -80,12 +80,12 @@ class Passage:
         ]
         time = np.concatenate([system.time[:1], *stages])
         both = [system.linear(system.points, time, order)[:, 1:] for order in range(2)]
-        value = np.stack(both).reshape(2, len(system.laws), -1, STAGES)
+        value = np.stack(both).reshape(2, len(both[0]), -1, STAGES)
         return np.ascontiguousarray(value.transpose(2, 3, 0, 1))
 
     def _error(self, failure: tuple[Any, ...] | None, when: float, residual: float) -> Any:
         if failure is not None:
-            return Failure(*failure).told(self.system.laws)
+            return LawFailure(*failure).told(self.system.laws)
         names = ", ".join(dict.fromkeys(law.name for law in self.system.laws if law.call))
         return SolveError(
             f"the law of {names or 'a dashpot'} does not converge at t = {when!r} s: the residual "

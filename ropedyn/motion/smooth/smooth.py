@@ -29,8 +29,9 @@ from ..modal.superposition import superpose
 from ..request import Run
 from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
-from .passage import Passage
-from .system import Asked, LawSystem, Look
+from .passage import LawPassage
+from .stretching import StretchedPassage, StretchedSystem, is_stretched, stretched_points
+from .system import LawQuestion, LawSystem, Look
 
 TOLERANCE = 1e-3  # Errors are within this part of the largest value where none is given.
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
@@ -51,17 +52,22 @@ def takes(run: Run, method: str) -> bool:
     model = run.model
     if method != "auto" or given or why_not_smooth(model):
         return False
-    scene, rates = model.scene, Rates.of(model.scene.dampings)
-    if having(scene.dampings, "loss") or model.chain.is_hysteretic:
+    if having(model.scene.dampings, "loss") or model.chain.is_hysteretic:
         return False
-    for component in model.components:
-        laws = laws_on(model, component)
-        if laws and _has_no_inertia(model, component, laws):
-            return False
-        plain = without_dashpots(model, component)[0].chain.only(component)
-        if laws and proportional(plain, rates) is None:
-            return False
-    return True
+    return all(_is_taken(run, component) for component in model.components)
+
+
+def _is_taken(run: Run, component: tuple[str, ...]) -> bool:
+    model, laws = run.model, laws_on(run.model, component)
+    rates, plain = Rates.of(model.scene.dampings), model.chain.only(component)
+    if is_stretched(model, component):
+        closed = proportional(plain, rates)
+        points = [*run.places, *run.responses]
+        return not laws and closed is not None and stretched_points(model, component, points)
+    if not laws:
+        return True
+    plain = without_dashpots(model, component)[0].chain.only(component)
+    return not _has_no_inertia(model, component, laws) and proportional(plain, rates) is not None
 
 
 def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[PointLaw]) -> bool:
@@ -80,7 +86,7 @@ def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[Poin
 
 
 @dataclass
-class Found:
+class Agreed:
     """Motion of a component, and how far it is off."""
 
     looked: list[Real]  # of each look, (outputs, t)
@@ -106,17 +112,19 @@ def rounding(value: Real, time: Real) -> Real:
     return np.asarray(ROUNDING * (most + slope * (time - time[0])))
 
 
-def agree(system: LawSystem, tolerance: float, run: Run) -> Found:
+def agree(
+    system: LawSystem, tolerance: float, run: Run, passage: type[LawPassage] = LawPassage
+) -> Agreed:
     """Halve the steps until two runs agree within the tolerance, and return the finer."""
     linear, h = system.without_laws(), system.first_step
     span, worst = float(system.time[-1] - system.time[0]), np.inf
     coarse: list[Real] | None = None
     stages = hard = 0
     while True:
-        passed = Passage(system, h).through(run.progress)
+        passed = passage(system, h).through(run.progress)
         stages += passed.stages
         looked = [own + more for own, more in zip(linear, passed.looked)]
-        found = Found(
+        found = Agreed(
             looked,
             np.full(looked[0].shape, np.inf),
             np.zeros(len(looked[0])),
@@ -145,9 +153,11 @@ def agree(system: LawSystem, tolerance: float, run: Run) -> Found:
             return found
 
 
-def component_motion(run: Run, asked: Asked) -> Found:
+def component_motion(run: Run, asked: LawQuestion) -> Agreed:
     """Take more modes until those left out do not show, where there are endless many."""
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    if is_stretched(run.model, asked.component):
+        return agree(StretchedSystem.stretched(run, asked), tolerance, run, StretchedPassage)
     count = MODES
     while True:
         system = LawSystem.of(run, asked, count)
@@ -155,7 +165,7 @@ def component_motion(run: Run, asked: Asked) -> Found:
         if found.error is not None or not np.isfinite(system.beyond):
             return found
         fewer = LawSystem.of(run, asked, count // 2)
-        passed = Passage(fewer, found.h).through(run.progress)
+        passed = LawPassage(fewer, found.h).through(run.progress)
         found.stages += passed.stages
         looked = fewer.without_laws()[0] + passed.looked[0]
         found.truncation = np.abs(looked - found.looked[0]).max(axis=1, initial=0.0)
@@ -218,14 +228,14 @@ class _Answer:
         run = self.run
         watched = [k for k, r in enumerate(run.responses) if moving(r) in component]
         at = [run.model.coordinates.index(c) for c in component]
-        if not laws:
+        if not laws and not is_stretched(run.model, component):
             self._linear(component, watched, at)
             return
         seen = [(c, float(x)) for x in self.x for c in component] if len(run.snapshots) else []
         points = [*(run.responses[k] for k in watched), *seen]
         looks = [Look(slice(0, len(watched)), run.time, run.order)]
         looks.append(Look(slice(len(watched), len(points)), run.snapshots, 0))
-        found = component_motion(run, Asked(component, laws, points, looks))
+        found = component_motion(run, LawQuestion(component, laws, points, looks))
         self.value[watched], self.step_error[watched] = found.looked[0], found.step_error
         self.truncation[watched] = found.truncation
         if seen:

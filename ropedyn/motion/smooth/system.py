@@ -29,7 +29,7 @@ class Look(NamedTuple):
     order: int
 
 
-class Asked(NamedTuple):
+class LawQuestion(NamedTuple):
     """What is asked of a component."""
 
     component: tuple[str, ...]
@@ -51,7 +51,7 @@ class LawSystem:
     beyond: float  # lowest angular frequency that is left out [rad/s]
 
     @classmethod
-    def of(cls, run: Run, asked: Asked, count: int) -> LawSystem:
+    def of(cls, run: Run, asked: LawQuestion, count: int) -> LawSystem:
         """Find the modes."""
         component, laws, outputs, looks = asked
         n, drive = len(laws), [k for k, p in enumerate(run.places) if moving(p) in component]
@@ -64,7 +64,7 @@ class LawSystem:
             [expansion(found, n + k) for k in range(len(drive))],
             [run.pushes[k] for k in drive],
             run.time,
-            [look._replace(output=_shifted(look.output, n)) for look in looks],
+            [look._replace(output=shifted(look.output, n)) for look in looks],
             found.beyond,
         )
 
@@ -112,7 +112,8 @@ class LawSystem:
         return seen
 
 
-def _shifted(rows: slice, by: int) -> slice:
+def shifted(rows: slice, by: int) -> slice:
+    """Return rows further down."""
     return slice(rows.start + by, rows.stop + by)
 
 
