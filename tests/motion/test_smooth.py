@@ -119,6 +119,53 @@ def test_law_that_raises_is_named_and_what_was_before_stays():
     assert any("parts[0].law(t=0.03" in note for note in caught.value.__notes__)
 
 
+# --- mean stretching ----------------------------------------------------------------------------
+
+AXIAL = 2e6
+
+
+def stretched_string(elements, **scene):
+    rope = rd.Rope(LENGTH, DENSITY, axial_stiffness=AXIAL)
+    tension = rd.Tension(TENSION, stretching=True)
+    return rd.Scene(rope, tension=tension, **scene).compile(elements=elements, element="rigid")
+
+
+def test_stretching_of_one_mass_is_duffings():
+    time = np.linspace(0.0, 0.5, 201)  # 8 EA/L^3 is the cubic stiffness
+    history = released(stretched_string(2), time, tolerance=1e-7)
+    assert history.cost.method == "collocation"
+    wrong = np.abs(history.value[0] - duffing(time))
+    assert (wrong <= history.step_error[0]).all()
+
+
+@pytest.mark.claim(
+    "Mean stretching of a string of 16 elements under a sine: largest error over the largest value",
+    reference="solve_ivp of Kirchhoff's string, mass by mass, to 1e-11",
+    accepted=1e-7,
+)
+@pytest.mark.parametrize("drag", [0.0, 1.0])
+def test_stretching_couples_modes_as_kirchhoffs_string_does(drag, claim):
+    n, h, time = 15, LENGTH / 16, np.linspace(0.0, 0.2, 201)
+    second = (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)) / h
+    force = rd.Sine(8.0, 30.0)
+
+    def rhs(t, y):
+        u = y[:n]
+        f = -(TENSION + AXIAL / (2 * LENGTH) * (u @ second @ u)) * (second @ u) - drag * h * y[n:]
+        f[3] += force.value(np.array(t))
+        return np.concatenate([y[n:], f / (DENSITY * h)])
+
+    kept = {"rtol": 1e-11, "atol": 1e-15}
+    exact = solve_ivp(rhs, (0, time[-1]), np.zeros(2 * n), "DOP853", time, **kept).y[[3, 11]]
+    damping = rd.ViscousDamping(drag) if drag else None
+    history = stretched_string(16, damping=damping).transient(
+        time, drive=("z", 0.25), force=force, response=[("z", 0.25), ("z", 0.75)], tolerance=1e-6
+    )
+    assert history.cost.method == "collocation"
+    assert (np.abs(history.value - exact) <= history.step_error).all()
+    claim(error(history, exact))
+
+
 # --- random scenes ------------------------------------------------------------------------------
 
 

@@ -54,6 +54,29 @@ STEPPED = (
     np.ones(4),
     np.ones((2, 8)),
 )
+# a step of two stages of one law in Python and one in the core, three modes, no forces before it
+COLLOCATED = (
+    (
+        0.1,
+        np.array([1 / 3, 1.0]),
+        np.full((2, 2, 3), 0.1),
+        np.full((2, 2, 3), 0.1),
+        np.full((2, 2, 3, 2, 2, 2), 0.1),
+        np.full((2, 2, 2, 2, 2), 0.01),
+        np.eye(2),
+    ),
+    (
+        np.array([1, 0], np.int32),
+        np.array([[0.0, 1.0], [0.1, 2.0]]),
+        (lambda t, u, v: 1.0 - u, None),
+        np.array([1, 0], np.uint8),
+    ),
+    np.array([0.0, 0.1]),
+    np.zeros((2, 2, 2, 2)),
+    np.zeros((2, 2)),
+    np.zeros((2, 2, 3)),
+    np.ones((3, 2)),
+)
 # stations, elements, ropes and rounding of three spans, two of them alike
 DIVIDED = (
     np.array([0.0, 1.0, 1.5, 2.5]),
@@ -228,6 +251,7 @@ OTHERS = {
         LAW_NUMBERS, 1e-3, np.ones(2), MATRIX, np.zeros(2), np.zeros(2)
     ),
     "recurrence": lambda _: _core.recurrence(*STEPPED),
+    "collocate": lambda _: _core.collocate(*COLLOCATED)[:-1],
     "closed_modes": lambda _: _core.closed_modes(*STRINGS, np.eye(5), 2),
     "closed_count": lambda _: _core.closed_count(*STRINGS, 30.0),
     "closed_chain_modes": lambda _: _core.closed_chain_modes(*CUT_STRING, np.eye(12), 2),
@@ -544,6 +568,25 @@ REFUSED = {
         lambda: _core.triple(CHAIN, len(CHAIN.length), FACTOR.T[:2].copy()),
         ValueError,
         f"got {len(CHAIN.length)}",
+    ),
+    "a law that is neither called nor a power": (
+        lambda: _core.collocate(
+            COLLOCATED[0], (np.array([2, 0], np.int32), *COLLOCATED[1][1:]), *COLLOCATED[2:]
+        ),
+        ValueError,
+        r"kind\[0\] must be 0, or 1 of what is called, got 2",
+    ),
+    "stages too many": (
+        lambda: _core.collocate(
+            (0.1, np.ones(65), *COLLOCATED[0][2:]), COLLOCATED[1], *COLLOCATED[2:]
+        ),
+        ValueError,
+        "node must hold 1 to 64 stages, got 65",
+    ),
+    "known motion of other steps": (
+        lambda: _core.collocate(*COLLOCATED[:3], COLLOCATED[3][1:], *COLLOCATED[4:]),
+        ValueError,
+        "known must have 2 entries along axis 0, got 1",
     ),
     "modes that do not fill the lanes": (
         lambda: _core.recurrence(STEPPED[0][:, :, 1:], STEPPED[1][:, :, 1:], *STEPPED[2:]),

@@ -161,7 +161,7 @@ def component_motion(run: Run, asked: LawQuestion) -> Agreed:
     count = MODES
     while True:
         system = LawSystem.of(run, asked, count)
-        found = agree(system, tolerance, run)
+        found = agree(system, tolerance, run, LawPassage)
         if found.error is not None or not np.isfinite(system.beyond):
             return found
         fewer = LawSystem.of(run, asked, count // 2)

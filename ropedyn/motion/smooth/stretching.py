@@ -34,7 +34,7 @@ from ...scene.tension import Tension
 from ..modal.expansion import Expansion
 from ..request import Run
 from ..states import LARGEST
-from .collocation import STAGES, Oscillating, nodes
+from .collocation import STAGES, Oscillating, lagrange, nodes
 from .passage import LawPassage, Passed
 from .system import LawQuestion, LawSystem, shifted
 
@@ -159,7 +159,7 @@ def geometric(chain: Chain, shape: Real) -> Real:
         others = unit[k + 1 :]
         product = (slope(unit[k] + others) - slope(unit[k] - others)) / 4
         form[k, k + 1 :] = form[k + 1 :, k] = product
-    return np.asarray(form * np.outer(size, size))
+    return np.asarray(form * np.outer(size, size), dtype=np.float64)
 
 
 # --- steps --------------------------------------------------------------------------------------
@@ -176,6 +176,7 @@ class StretchedPassage(LawPassage):
         k = known.shape[-1]
         state, force, size = np.zeros((2, k)), np.zeros((STAGES, k)), 0.0
         done, before = 0, None
+        ahead = lagrange(1 + nodes(STAGES))
         for block in self._blocks(4096):
             if block.h != before:
                 step = StretchedStep.of(self.system, block.h)
@@ -184,7 +185,8 @@ class StretchedPassage(LawPassage):
             for i in range(block.number):
                 states[i] = state
                 q = known[done] + step.free(state)
-                solved, residual = step.solve(q, force, size)
+                guess = ahead @ force if i else force
+                solved, residual = step.solve(q, guess, size)
                 if solved is None:
                     when = block.begin + i * block.h
                     told = f"stretching does not converge at t = {when!r} s: the residual is "
@@ -237,7 +239,7 @@ class StretchedStep(NamedTuple):
         best = worst = np.inf
         inverse = None
         for _ in range(MOST):
-            q = free + np.einsum("kij,jk->ik", self.own, force)
+            q = free + applied(self.own, force)
             bent = [q @ form.matrix for form in self.forms]
             taken = [f.stiffness / 2 * (q * b).sum(axis=1) for f, b in zip(self.forms, bent)]
             wanted = -sum(N[:, None] * b for N, b in zip(taken, bent))
@@ -260,20 +262,27 @@ class StretchedStep(NamedTuple):
             np.diag(f.matrix)[:, None, None] * N[:, None] * self.own
             for f, N in zip(self.forms, taken)
         )
-        return np.linalg.inv(matrix)
+        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
     def _newton(self, gap: Real, bent: list[Real], inverse: Real) -> Real:
         """Return the change of the forces, with the changes of N of all forms and stages."""
-        plain = np.einsum("kij,jk->ik", inverse, gap)
-        moved = np.einsum("kij,jk->ik", self.own, plain)
-        both = self.own @ inverse  # (k, stages, stages)
+        plain = applied(inverse, gap)
+        moved = applied(self.own, plain)
+        both = self.own @ inverse
         right = np.concatenate([f.stiffness * (b * moved).sum(1) for f, b in zip(self.forms, bent)])
         left = np.block(
-            [
-                [f.stiffness * np.einsum("ik,kij,jk->ij", b, both, c) for c in bent]
-                for f, b in zip(self.forms, bent)
-            ]
+            [[f.stiffness * coupled(b, both, c) for c in bent] for f, b in zip(self.forms, bent)]
         )
         more = np.linalg.solve(np.eye(len(left)) + left, right).reshape(len(self.forms), -1)
-        push = sum(N[:, None] * b for N, b in zip(more, bent))
-        return np.asarray(plain - np.einsum("kij,jk->ik", inverse, push), dtype=np.float64)
+        push = np.sum([N[:, None] * b for N, b in zip(more, bent)], axis=0)
+        return np.asarray(plain - applied(inverse, push), dtype=np.float64)
+
+
+def applied(matrix: Real, stages: Real) -> Real:
+    """Return (k, i, j) matrices times (j, k) stages, (i, k)."""
+    return np.asarray((matrix @ stages.T[:, :, None])[:, :, 0].T)
+
+
+def coupled(one: Real, matrix: Real, other: Real) -> Real:
+    """Return the sum over k of one_ik matrix_kij other_jk, (i, j)."""
+    return np.asarray((one.T[:, :, None] * matrix * other.T[:, None]).sum(axis=0))

@@ -21,9 +21,10 @@ def _checked_law(law: Any) -> Any:
 class NodeForce(Part):
     """A force that depends on time and on the motion of the place it acts at.
 
-    Only `Model.transient` and `Model.stepped_sine` take it, by the direct method, and call the law
-    about four times for each of the two stages of a step: some 100 microseconds of Python a step.
-    The tension must neither pulsate nor be stretching.
+    Only `Model.transient` and `Model.stepped_sine` take it. The tension must neither pulsate nor be
+    stretching. With ``method="auto"`` motion under a smooth law is found by collocation, some 20
+    calls a step; a law that takes arrays of t, u and v, as ``-1e9 * u**3`` does, is given all
+    stages of a step in one call. One that jumps, such as friction, does not converge and is refused.
 
     Parameters
     ----------
