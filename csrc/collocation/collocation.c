@@ -271,8 +271,7 @@ static void guess(const struct rd_collocation *step, const double *before, doubl
 
 enum rd_status rd_collocation_run(const struct rd_collocation *step,
                                   const struct rd_smooth_laws *laws,
-                                  const struct rd_collocation_work *work,
-                                  struct rd_collocated *run)
+                                  const struct rd_collocation_work *work, struct rd_collocated *run)
 {
     const size_t s = step->stages, n = step->laws, all = s * n, states = 2 * n * step->modes;
     for (run->made = 0; run->made < run->steps; run->made++) {
@@ -281,8 +280,8 @@ enum rd_status rd_collocation_run(const struct rd_collocation *step,
         const double *x = run->state + k * states;
         look(step, run->known + k * 2 * all, x, point);
         guess(step, run->force + k * all, R);
-        const struct solver solver = {step,          laws,      work, point,
-                                      run->begin[k], run->size, work->tried + all};
+        const struct solver solver = {
+            step, laws, work, point, run->begin[k], run->size, work->tried + all};
         const enum rd_status status = solve(&solver, R, run);
         if (status != RD_OK)
             return status;

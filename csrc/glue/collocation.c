@@ -12,8 +12,8 @@ struct py_collocation {
     struct rd_collocation step;
     struct rd_smooth_laws laws;
     struct rd_collocated run;
-    PyObject *calls;        /* of laws that Python knows, None for others */
-    const uint8_t *arrays;  /* (laws,) whether a law takes arrays         */
+    PyObject *calls;       /* of laws that Python knows, None for others */
+    const uint8_t *arrays; /* (laws,) whether a law takes arrays         */
     PyArrayObject *keep[KEPT];
     size_t kept;
     double failed[4]; /* law, time, u and v where one failed                          */
@@ -97,8 +97,8 @@ static bool say_all(struct py_collocation *call, size_t law, size_t count, const
     PyObject *number[3] = {copied(count, t), copied(count, u), copied(count, v)}, *value = NULL;
     PyArrayObject *array = NULL;
     if (number[0] != NULL && number[1] != NULL && number[2] != NULL)
-        value = PyObject_Vectorcall(PyTuple_GET_ITEM(call->calls, (Py_ssize_t)law), number, 3,
-                                    NULL);
+        value =
+            PyObject_Vectorcall(PyTuple_GET_ITEM(call->calls, (Py_ssize_t)law), number, 3, NULL);
     if (value != NULL)
         array = py_array(value, NPY_DOUBLE, 1, (npy_intp[]){(npy_intp)count}, "law");
     bool right = array != NULL;
@@ -167,8 +167,7 @@ static int parse_step(PyObject *object, struct py_collocation *call)
 {
     PyObject *node, *change, *push, *seen, *own, *ahead;
     struct rd_collocation *step = &call->step;
-    if (!PyArg_ParseTuple(object,
-                          "dOOOOOO;step must be (h, node, change, push, seen, own, ahead)",
+    if (!PyArg_ParseTuple(object, "dOOOOOO;step must be (h, node, change, push, seen, own, ahead)",
                           &step->h, &node, &change, &push, &seen, &own, &ahead))
         return -1;
     step->node = keep(call, node, NPY_DOUBLE, 1, (npy_intp[]){-1}, "node");
@@ -282,9 +281,9 @@ PyObject *py_collocate(PyObject *module, PyObject *arguments)
     }
     failure = failure_of(&call, status);
     if (failure != NULL)
-        result = Py_BuildValue("OOOOnndO", made[0], made[1], made[2], made[3],
-                               (Py_ssize_t)call.run.made, (Py_ssize_t)call.run.iterations,
-                               call.run.residual, failure);
+        result =
+            Py_BuildValue("OOOOnndO", made[0], made[1], made[2], made[3], (Py_ssize_t)call.run.made,
+                          (Py_ssize_t)call.run.iterations, call.run.residual, failure);
 done:
     PyMem_RawFree(workspace.base);
     Py_XDECREF(failure);

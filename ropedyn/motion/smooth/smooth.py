@@ -37,7 +37,7 @@ TOLERANCE = 1e-3  # Errors are within this part of the largest value where none 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
-SHARE = 1.0  # The finer of two runs has this part of their distance as its error at most.
+TIMES = 3.0  # The finer of two runs is off by so many times their distance at most.
 NOTHING = 1e-9  # Responses smaller than this part of the largest are rounding.
 ROUNDING = 1e-12  # Of the largest value and of each radian that it turns, what rounding leaves.
 STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answer.
@@ -137,7 +137,7 @@ def agree(
         if passed.error is None and coarse is not None:
             size = scale(looked[0])[:, None]
             apart = np.maximum.accumulate(np.abs(looked[0] - coarse[0]), axis=1)
-            found.step_error = SHARE * apart + rounding(looked[0], system.time)
+            found.step_error = TIMES * apart + rounding(looked[0], system.time)
             worst = float((found.step_error / size).max(initial=0.0))
             if worst <= tolerance:
                 return found

@@ -24,7 +24,7 @@ class NodeForce(Part):
     Only `Model.transient` and `Model.stepped_sine` take it. The tension must neither pulsate nor be
     stretching. With ``method="auto"`` motion under a smooth law is found by collocation, some 20
     calls a step; a law that takes arrays of t, u and v, as ``-1e9 * u**3`` does, is given all
-    stages of a step in one call. One that jumps, such as friction, does not converge and is refused.
+    stages of a step in one call. What jumps, such as friction, does not converge and is refused.
 
     Parameters
     ----------
