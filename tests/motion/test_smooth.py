@@ -84,6 +84,12 @@ def test_velocity_and_acceleration_are_those_of_the_displacement():
     assert np.ptp(energy) < 1e-7 * energy[0]
 
 
+def test_energy_is_kept():
+    history = released(mass_on_a_string(hardening()), np.linspace(0.0, 0.05, 51))
+    total = sum(history.energy[name] for name in ("kinetic", "strain", "laws"))
+    assert np.ptp(total) < 1e-3 * total[0]  # steps of the default tolerance account for it
+
+
 def test_snapshots_are_the_motion_of_the_nodes():
     time = np.linspace(0.0, 0.05, 101)
     model = mass_on_a_string(hardening(), elements=6)

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import time as clock
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Real
-from ...base.errors import SceneError, SolveError
+from ...base.errors import SolveError
 from ...chain.compiled import Compiled
 from ...chain.port import locate, moving
 from ...eigen.damped.proportional import proportional
@@ -284,11 +285,12 @@ class _Answer:
             x=self.x,
             snapshot=self.snapshot[seen],
             cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
-            balance=_no_balance,
+            balance=partial(_balance, asked),
             deviation=Deviation(self.step_error[:, kept], mesh_error),
             stopped=stopped,
         )
 
 
-def _no_balance() -> Balance:
-    raise SceneError('method must be "direct" for the energy where laws act, got "auto"')
+def _balance(run: Run) -> Balance:
+    """Return the energies, which steps along the chain account for."""
+    return march(replace(run, snapshots=np.zeros(0))).balance
