@@ -8,6 +8,7 @@ from .modal.superposition import superpose
 from .phases.components import why_not_events
 from .phases.events import solve_events
 from .request import EVENTS, Run
+from .smooth.smooth import collocate, takes
 
 
 def follow_motion(run: Run) -> History:
@@ -15,4 +16,6 @@ def follow_motion(run: Run) -> History:
     # steps where they are asked for, and where phases do not take the scene
     if run.method == EVENTS or (run.method == "auto" and run.direct and not why_not_events(run)):
         return solve_events(run)
+    if run.direct and takes(run):
+        return collocate(run)
     return march(run) if run.direct else superpose(run)

@@ -47,11 +47,11 @@ STOPS = (Exception, KeyboardInterrupt)  # May end a run early and leave an answe
 # --- what is taken ------------------------------------------------------------------------------
 
 
-def takes(run: Run, method: str) -> bool:
+def takes(run: Run) -> bool:
     """Whether collocation answers: the method is open, laws are smooth and modes uncoupled."""
     given = run.step is not None or run.spectral_radius != 1 or run.modes is not None
     model = run.model
-    if method != "auto" or given or why_not_smooth(model):
+    if run.method != "auto" or given or why_not_smooth(model):
         return False
     if having(model.scene.dampings, "loss") or model.chain.is_hysteretic:
         return False
@@ -183,11 +183,6 @@ def component_motion(run: Run, asked: LawQuestion) -> Agreed:
 
 
 # --- the answer ---------------------------------------------------------------------------------
-
-
-def nonlinear(run: Run, method: str) -> History:
-    """Find the motion of what is not linear; see `Model.transient`."""
-    return collocate(run) if takes(run, method) else march(run)
 
 
 def collocate(run: Run) -> History:
