@@ -26,6 +26,7 @@ from .family.frf import FamilyFRF
 from .family.modes import FamilyModes
 from .model import Model
 from .motion.history import History
+from .motion.periodic.branches import Branches
 from .parametric.floquet import Floquet
 from .parametric.stability import StabilityMap
 from .response.deflection import Deflection
@@ -67,6 +68,7 @@ __all__ = [
     "Animation",
     "Answer",
     "BendingTest",
+    "Branches",
     "BrokenWire",
     "Chirp",
     "Choice",

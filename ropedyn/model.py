@@ -19,10 +19,11 @@ from .eigen.eigen import solve_modes
 from .eigen.modes import Modes
 from .eigen.spectrum import count_modes
 from .eigen.tolerance import compile_within
-from .motion.direct.steady_states import march_steadily
 from .motion.history import History
-from .motion.modal.steady_states import superpose_steadily
-from .motion.request import Run, SteppedSine
+from .motion.periodic.asked import SteppedSine
+from .motion.periodic.branches import Branches, solve_branches
+from .motion.periodic.stepped import solve_stepped
+from .motion.request import Run
 from .motion.solve import follow_motion
 from .motion.turning import refuse_steady, turned
 from .parametric.floquet import Floquet, solve_floquet
@@ -512,84 +513,83 @@ class Model(Compiled):
         refuse_nonlinear(self)
         return solve_stability(self, frequency, amplitude, modes=modes, progress=progress)
 
+    @overload
     def stepped_sine(
+        self, frequency: ArrayLike, *, branches: Literal[False] = False, **asked: Any
+    ) -> FRF: ...
+
+    @overload
+    def stepped_sine(
+        self, frequency: ArrayLike, *, branches: Literal[True], **asked: Any
+    ) -> Branches: ...
+
+    def stepped_sine(  # type: ignore[misc]  # which names asked may have is said here alone
         self,
         frequency: ArrayLike,
         *,
         drive: Any,
         amplitude: float,
         response: Point | Sequence[Point] | None = None,
+        branches: bool = False,
         quantity: str = "receptance",
-        method: str = "auto",
         tolerance: float | None = None,
         progress: Progress = None,
-    ) -> FRF:
-        """Find the frequency response by motion over time to the steady state.
+    ) -> FRF | Branches:
+        """Find the steady motion under a sine whose frequency is stepped.
 
-        At each frequency the drive is amplitude cos(omega t), and the motion is followed until it
-        repeats itself, as in the 2015 study. For linear scenes it is what `frf` computes directly;
-        of others it is the part of the motion that has the frequency of the drive. Where a curve
-        bends over it depends on where the frequency came from: frequencies are stepped through in
-        the order they are given, each from the motion at the one before.
+        What has the frequency of the drive: of linear scenes `frf`, of others by harmonic balance.
+        The first state is reached from rest, each other one along the branch from the one before,
+        and where that ends on the next stable one it leads to.
 
         Parameters
         ----------
         frequency : array_like, shape (f,)
             [Hz], each > 0, in any order.
-        drive : point
-            As in `transient`.
+        drive : point, such as ``("z", 0.5)`` or ``("end", 0, "z")``
         amplitude : float
-            [N, N m; m, rad of an end].
+            Of a sine [N, N m; m, rad of an end].
         response : point or list of points, optional
             As in `frf`.
+        branches : bool
+            Whether all branches between the lowest and the highest frequency are followed.
         quantity : {"receptance", "mobility", "accelerance"}
             Displacement, velocity or acceleration, per amplitude.
-        method : {"auto", "modal", "direct"}
-            As in `transient`.
         tolerance : float, optional
-            Relative change of the steady state from period to period and, of the direct method,
-            error of its steps; 1e-9 of the modal method where left out and 1e-3 of the direct one.
+            By which part of the motion more harmonics change it, 1e-5; 1e-3 where friction slips.
         progress : None, True or callable
             True: a line on stderr; a callable takes the fraction that is done.
 
         Returns
         -------
-        FRF
-            `rounding_error` is the estimated relative error of the steady state, and of the steps.
+        FRF, or Branches if `branches`
+            `rounding_error` is the estimated error; `stable` tells what disturbances leave.
 
         Raises
         ------
         TypeError
             If an argument is of the wrong type.
         SceneError
-            If a value has no meaning, or the method does not take the scene.
+            If a value has no meaning; a `LossFactor`; continuous spans whose tension pulsates or
+            is stretching, or where dry friction slips.
         SolveError
-            If there is no steady state: nothing is damped, motion grows or does not repeat itself,
-            or drive and pulsating tension do not begin anew together within 1000 periods.
+            If there is no steady state, or 256 harmonics do not tell it.
 
         Examples
         --------
+        A string that reaches a stop 2 mm away:
+
         >>> import ropedyn as rd
-        >>> damping = rd.RayleighDamping(1.0, 0.0)
-        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping).compile(elements=8)
-        >>> lines, drive = [10.0, 15.8], ("z", 0.5)
-        >>> stepped = model.stepped_sine(lines, drive=drive, amplitude=1.0)
-        >>> bool(abs(stepped.value / model.frf(lines, drive=drive).value - 1).max() < 1e-8)
-        True
+        >>> how = {"damping": rd.RayleighDamping(6.0, 0.0), "parts": [rd.Stop(0.5, 1e3, gap=2e-3)]}
+        >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how)
+        >>> stepped = scene.compile().stepped_sine([12.0, 15.0], drive=("z", 0.5), amplitude=1.0)
+        >>> abs(stepped.value).round(5), stepped.stable
+        (array([[0.00343, 0.00516]]), array([ True,  True]))
         """
-        asked = SteppedSine.of(
-            self,
-            frequency,
-            drive=drive,
-            amplitude=amplitude,
-            response=response,
-            quantity=quantity,
-            method=method,
-            tolerance=tolerance,
-            progress=progress,
-        )
+        check.instance(branches, "branches", bool, "True or False")
+        how = quantity, tolerance, progress
+        asked = SteppedSine.of(self, frequency, drive, amplitude, response, *how)
         refuse_steady(asked)
-        return march_steadily(asked) if asked.direct else superpose_steadily(asked)
+        return solve_branches(asked) if branches else solve_stepped(asked)
 
 
 def compile_model(scene: Scene, **how: Any) -> Model:

@@ -4,30 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..base import check
-from ..base.answer import Cost
-from ..base.array import Complex, Real
+from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.progress import reporter, silent
-from ..base.unit import MOTIONS, QUANTITIES, push_unit
+from ..base.unit import MOTIONS, push_unit
 from ..chain.compiled import Compiled
 from ..chain.place import observed, points
 from ..chain.port import Point
 from ..response.deflection import Deflection, checked_loads
-from ..response.frf import FRF, MeshOfResponse
-from ..response.harmonic import mesh_of_frf
 from ..scene.force import Force, forces
 from ..scene.parts.part import standing
 from ..scene.tension import Tension
 
 METHODS = ("auto", "modal", "direct")
 EVENTS = "events"  # Of `Model.transient` alone.
-MODAL, DIRECT = 1e-9, 1e-3  # Tolerances of a steady state that methods keep where none is given.
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,76 +136,6 @@ class Run:
             "released": bool(self.loads),
             "snapshot_time": self.snapshots,
         }
-
-
-@dataclass(frozen=True, eq=False)
-class SteppedSine:
-    """Steady states at frequencies, as solvers are asked for them; see `Model.stepped_sine`."""
-
-    model: Compiled  # that is driven
-    frequency: Real  # (f,) in the order they are stepped through [Hz]
-    drive: Point  # what moves by, or is pushed with, amplitude cos(omega t)
-    amplitude: float  # [N, N m; m, rad of an end]
-    responses: tuple[Point, ...]  # what is watched
-    quantity: str  # of the answer
-    direct: bool  # whether steps answer, not modes
-    tolerance: float  # of the steady state, relative
-    progress: Callable[[float], Any]  # takes the fraction that is done
-
-    @classmethod
-    def of(
-        cls,
-        model: Compiled,
-        frequency: Any,
-        *,
-        drive: Any,
-        amplitude: float,
-        response: Any,
-        quantity: str,
-        method: str,
-        tolerance: float | None,
-        progress: Any,
-    ) -> SteppedSine:
-        """Check what is asked."""
-        check.one_of(quantity, "quantity", QUANTITIES)
-        direct = is_direct(model, method)
-        given = check.optional(tolerance, "tolerance", sign="positive")
-        drives, several = points(model, drive, "drive", forces=False, ends=True)
-        if several:
-            raise SceneError(f"drive must be one point, got {len(drives)}")
-        f = check.frequencies(frequency)
-        if not f.min() > 0:
-            least = float(f.min())
-            raise SceneError(f"frequency must be > 0 [Hz], got {least!r}: that is `static`")
-        return cls(
-            model,
-            f,
-            drives[0],
-            check.number(amplitude, "amplitude", push_unit(drives[0]), sign="positive"),
-            observed(model, response, drives),
-            quantity,
-            direct,
-            tolerance=given or (DIRECT if direct else MODAL),
-            progress=reporter(progress),
-        )
-
-    def answer(self, value: Complex, error: Real, cost: Cost) -> FRF:
-        """Return steady states per amplitude, (responses, f), with their relative errors."""
-        scene, f, ends = self.model.scene, self.frequency, ((self.drive,), self.responses)
-        value = value * (2j * np.pi * f) ** QUANTITIES[self.quantity]
-        mesh: MeshOfResponse | Callable[[], MeshOfResponse]
-        mesh = partial(mesh_of_frf, scene, f, *ends, quantity=self.quantity, value=value)
-        if why_direct(self.model):
-            mesh = MeshOfResponse(np.full(value.shape, np.inf))
-        return FRF(
-            *ends,
-            quantity=self.quantity,
-            frequency=f,
-            value=value,
-            rounding_error=error,
-            cost=cost,
-            mesh=mesh,
-        )
 
 
 def is_direct(model: Compiled, method: str) -> bool:

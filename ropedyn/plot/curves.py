@@ -13,6 +13,7 @@ from ..curves.resonance import Resonances
 from ..family.frf import FamilyFRF
 from ..family.modes import FamilyModes
 from ..motion.history import History
+from ..motion.periodic.branches import Branches
 from ..parametric.floquet import Floquet
 from ..parametric.stability import StabilityMap
 from ..signal.ringdown import RingDown
@@ -33,6 +34,19 @@ def plot_curves(curves: Curves, ax: Axes) -> None:
             ax.semilogy(curves.frequency, np.abs(curve), label=name)
     ax.set_title(f"frequency response, driven in {', '.join(map(place, curves.drive))}")
     amplitudes(ax, curves.quantity)
+
+
+@plots(Branches)
+def plot_branches(branches: Branches, ax: Axes) -> None:
+    """Plot amplitudes over frequency on a logarithmic scale, dashed where motion is not stable."""
+    for branch in branches:
+        for name, r, curve in named_curves(branch):
+            for these, style in ((branch.stable, "-"), (~np.asarray(branch.stable), "--")):
+                shown = np.where(these, np.abs(curve), np.nan)
+                ax.semilogy(branch.frequency, shown, style, color=f"C{r}", label=name)
+                name = "_" + name
+    ax.set_title(f"steady motion, driven in {', '.join(map(place, branches.drive))}")
+    amplitudes(ax, branches.quantity)
 
 
 @plots(FamilyFRF)

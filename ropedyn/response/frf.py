@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from ..base.answer import TRANSIENT, Cost, Frozen, axes
-from ..base.array import Complex, Real
+from ..base.array import Complex, Flags, Real
 from ..base.computed import Lazy, Read, computed, lazy
 from ..base.errors import SceneError
 from ..chain.port import Point
@@ -62,6 +62,8 @@ class FRF(Curves):
         give that were left out.
     cost : Cost
         What it cost.
+    stable : ndarray of bool, shape (f,), or None
+        Of steady motion under a stepped sine: whether it comes back to itself when it is disturbed.
     decay : float
         The value is the response at s = i omega + decay [1/s], 0 unless it was asked for: that of
         K + s C + s^2 M, with s and s^2 times the displacement as velocity and acceleration. A loss
@@ -80,6 +82,7 @@ class FRF(Curves):
         default=None, repr=False, metadata=TRANSIENT
     )
     decay: float = 0.0
+    stable: Flags | None = field(default=None, metadata=axes("frequency"))
 
     mesh_error = Read[Real]("mesh", "Relative error that the elements cause, as value.")
 

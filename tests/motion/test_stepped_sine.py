@@ -19,30 +19,24 @@ def away(stepped, direct):
     return np.abs(stepped.value / direct.value - 1)
 
 
-@pytest.mark.claim(
-    "stepped sine over time against the direct response at the study's peaks and between",
-    reference="the sweep at each frequency",
-    accepted=1e-9,
-)
-def test_modal_steady_states_are_the_direct_response(study, claim):
-    peaks = study.frf(np.linspace(30, 250, 2001), drive=DRIVE).peaks()[0].frequency
-    lines = np.concatenate([np.linspace(30.0, 250.0, 12), peaks])
+def test_steady_motion_of_a_linear_scene_is_its_response(study):
+    lines = np.linspace(30.0, 250.0, 12)
     stepped = study.stepped_sine(lines, drive=DRIVE, amplitude=2.0, response=RESPONSES)
-    direct = study.frf(lines, drive=DRIVE, response=RESPONSES)
-    error = away(stepped, direct)
-    claim(error.max())
-    assert (error <= stepped.rounding_error + 1e-11).all()
+    assert (stepped.value == study.frf(lines, drive=DRIVE, response=RESPONSES).value).all()
+    assert stepped.stable.all()
 
 
-def test_marched_steady_states_are_the_direct_response_within_their_error(study):
-    lines = [69.4, 150.0]
-    options = {"drive": DRIVE, "response": RESPONSES}
-    stepped = study.stepped_sine(lines, amplitude=2.0, method="direct", tolerance=1e-4, **options)
-    error = away(stepped, study.frf(lines, **options))
-    assert (error <= stepped.rounding_error).all()
-    assert stepped.rounding_error.max() < 5e-4
-    assert stepped.cost.method == "direct"
-    assert stepped.cost.sweeps > 1000
+def test_steady_motion_is_what_integration_over_time_settles_on(study):
+    """A stop that is met for half of the period, against implicit steps through 200 periods."""
+    f = 69.4
+    scene = study.scene.replace(parts=[rd.Stop(DRIVE[1], 2e4)])
+    model = scene.compile(elements=8, element="difference")
+    stepped = model.stepped_sine([f], drive=DRIVE, amplitude=2.0)
+    time = np.linspace(0.0, 200 / f, 200 * 512 + 1)
+    force = rd.Sine(2.0, f, phase=np.pi / 2)
+    history = model.transient(time, drive=DRIVE, force=force, step=time[1])
+    settled = history.value[0, -512:] * np.exp(-2j * np.pi * f * time[-512:])
+    assert abs(2 / 512 * settled.sum() / 2.0 / stepped.value[0, 0] - 1) < 1e-4
 
 
 def test_quantities_and_moved_ends_are_those_of_the_direct_response():
@@ -54,16 +48,6 @@ def test_quantities_and_moved_ends_are_those_of_the_direct_response():
     # lumps with end correction in both
     assert away(stepped, model.frf([20.0, 16.0], **options)).max() < 1e-8
     assert stepped.labels == model.frf([20.0], **options).labels
-
-
-def test_modes_left_out_of_continuous_spans_are_in_the_error():
-    scene = rd.study2015.tensed_beam(2830.0, 1.54)
-    model = scene.replace(damping=rd.RayleighDamping(4.0, 1e-5)).compile()
-    lines = [64.0, 100.0, 300.0]
-    stepped = model.stepped_sine(lines, drive=("z", 0.5), amplitude=1.0)
-    error = away(stepped, model.frf(lines, drive=("z", 0.5)))
-    assert (error <= stepped.rounding_error).all()
-    assert stepped.rounding_error.max() < 1e-3
 
 
 # --- one mass on a string whose tension grows ---------------------------------------------------
@@ -106,7 +90,7 @@ def test_bent_resonance_is_that_of_harmonic_balance_and_jumps():
     model = hard()
     first = model.modes(1).frequency[0]
     lines = first * np.linspace(1.0, 1.7, 8)
-    options = {"drive": ("z", LENGTH / 2), "amplitude": FORCE, "tolerance": 1e-4}
+    options = {"drive": ("z", LENGTH / 2), "amplitude": FORCE}
     up = model.stepped_sine(lines, **options)
     down = model.stepped_sine(lines[::-1], **options)
     rising, falling = FORCE * up.value[0], FORCE * down.value[0, ::-1]
@@ -154,23 +138,19 @@ def pulsed(pulsation, amplitude):
 @pytest.mark.parametrize("pulsation", [30.0, 10.0, 17.0])
 def test_motion_under_a_tension_of_another_period_is_hills(pulsation):
     # both begin anew after 2, 2 and 20 periods of the drive
-    stepped = pulsed(pulsation, 30.0).stepped_sine(
-        [20.0], drive=("z", LENGTH / 2), amplitude=1.0, tolerance=1e-5
-    )
+    stepped = pulsed(pulsation, 30.0).stepped_sine([20.0], drive=("z", LENGTH / 2), amplitude=1.0)
     exact = hill(20.0, pulsation, 4 * 30.0 / LENGTH)
     assert abs(stepped.value[0, 0] / exact - 1) <= stepped.rounding_error[0, 0]
-    assert stepped.rounding_error[0, 0] < 2e-5
+    assert stepped.rounding_error[0, 0] < 1e-5
 
 
 def test_law_of_another_period_is_hills():
     stiffness, omega = 120.0, 2 * np.pi * 30.0
     law = rd.NodeForce(LENGTH / 2, lambda t, u, v: -stiffness * np.cos(omega * t) * u)
     scene = hard(parts=[law]).scene.without("mean stretching")
-    stepped = scene.compile(elements=2).stepped_sine(
-        [20.0], drive=("z", LENGTH / 2), amplitude=1.0, tolerance=2e-2
-    )
+    stepped = scene.compile(elements=2).stepped_sine([20.0], drive=("z", LENGTH / 2), amplitude=1.0)
     error = abs(stepped.value[0, 0] / hill(20.0, 30.0, stiffness) - 1)
-    assert error <= stepped.rounding_error[0, 0] < 2e-2
+    assert error <= stepped.rounding_error[0, 0] < 1e-5
 
 
 def test_tension_that_never_begins_anew_with_the_drive_is_refused():
@@ -181,11 +161,11 @@ def test_tension_that_never_begins_anew_with_the_drive_is_refused():
 # --- what has no steady state -------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", ["modal", "direct"])
-def test_undamped_motion_has_no_steady_state(method):
-    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=2)
-    with pytest.raises(rd.SolveError, match=r"10\.0 Hz has no steady state"):
-        model.stepped_sine([10.0], drive=("z", 0.5), amplitude=1.0, method=method)
+@pytest.mark.parametrize("elements", [2, None])
+def test_undamped_motion_has_no_steady_state(elements):
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=elements)
+    with pytest.raises(rd.SolveError, match="no steady state"):
+        model.stepped_sine([10.0], drive=("z", 0.5), amplitude=1.0)
 
 
 @pytest.mark.parametrize(
@@ -194,7 +174,6 @@ def test_undamped_motion_has_no_steady_state(method):
         ({"frequency": [0.0]}, "frequency must be > 0"),
         ({"amplitude": 0.0}, "amplitude must be a finite number > 0"),
         ({"drive": [("z", 0.5), ("z", 0.2)]}, "drive must be one point"),
-        ({"method": "modal"}, "method must be"),
         ({"tolerance": -1.0}, "tolerance must be"),
     ],
 )
@@ -216,18 +195,3 @@ def test_undamped_modes_that_are_not_driven_do_not_hinder_the_steady_state():
         assert (error <= stepped.rounding_error + exact.rounding_error).all()
     with pytest.raises(rd.SolveError, match="no steady state"):
         model.stepped_sine(f, drive=("z", 0.25), amplitude=1.0)
-
-
-@pytest.mark.parametrize(
-    "damping", [rd.ModalDamping(0.3), rd.ViscousDamping(3.0), rd.Dashpot(0.375, 50.0)], ids=str
-)
-def test_error_of_modes_left_out_holds_where_damping_is_strong(damping):
-    """At 2 Hz what they do beyond their static motion is all in proportion to velocity."""
-    is_part = isinstance(damping, rd.Dashpot)
-    how = {"parts": [damping, rd.Dashpot(0.25, 1.0)]} if is_part else {"damping": damping}
-    model = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, **how).compile()
-    drive, response = ("z", 0.375), [("z", 0.375), ("z", 0.25)]
-    stepped = model.stepped_sine([2.0], drive=drive, response=response, amplitude=1.0)
-    exact = model.frf([2.0], drive=drive, response=response)
-    error = np.abs(stepped.value / exact.value - 1)
-    assert (error <= stepped.rounding_error + exact.rounding_error).all()

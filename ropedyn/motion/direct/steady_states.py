@@ -1,4 +1,4 @@
-"""Steady states under a stepped sine, by implicit steps along the chain."""
+"""Steady states of motion with dry friction that slips, by implicit steps along the chain."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from ...response.frf import FRF
 from ...scene.force import Sine
 from ...scene.tension import Tension
 from ...signal.spectrum import amplitudes
-from ..request import Run, SteppedSine
+from ..periodic.asked import SteppedSine
+from ..request import Run
 from .direct import refuse_responses
 from .lumped import lumped_chains, refuse_model
 from .march import Motion, stage_of
@@ -27,6 +28,7 @@ BLOCK = 4096  # The core takes so many steps in one call, or a period: a look fo
 LOOKS = 4  # So many looks in a row must agree.
 LONGEST = 100_000  # A motion that changes after so many periods is said not to settle.
 KEEPS = stage_of(1.0)
+TOLERANCE = 1e-3  # Of the steady state where none is given.
 
 
 def march_steadily(asked: SteppedSine) -> FRF:
@@ -50,7 +52,8 @@ def march_steadily(asked: SteppedSine) -> FRF:
     work = sum(m.stages for m in motions), sum(m.factorisations for m in motions)
     seconds = clock.perf_counter() - start
     cost = Cost(seconds, "direct", len(asked.model.x) - 1, unknowns, *work)
-    return asked.answer(value, error, cost)
+    stable = np.ones(len(asked.frequency), dtype=np.bool_)  # or it would not have settled
+    return asked.answer(asked.frequency, value, error, cost, stable)
 
 
 def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:
@@ -62,7 +65,7 @@ def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> t
         after, left = _settled(asked, motions, frequency, count)
         # of second order: a third of the change is what is left of it
         off = np.abs(after - before) / 3
-        if (off <= asked.tolerance * np.abs(after).max()).all():
+        if (off <= (asked.tolerance or TOLERANCE) * np.abs(after).max()).all():
             return after + (after - before) / 3, off + left
         before = after
     raise SolveError(
@@ -89,7 +92,7 @@ def _settled(
         changes = np.abs(np.diff(seen[-LOOKS - 1 :], axis=0)).max(axis=1)
         size = np.abs(seen[-1]).max()
         left = _left(changes)
-        if left <= asked.tolerance / 2 * size:
+        if left <= (asked.tolerance or TOLERANCE) / 2 * size:
             return seen[-1], left
     raise SolveError(
         f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "

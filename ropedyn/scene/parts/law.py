@@ -21,10 +21,11 @@ def _checked_law(law: Any) -> Any:
 class NodeForce(Part):
     """A force that depends on time and on the motion of the place it acts at.
 
-    Only `Model.transient` and `Model.stepped_sine` take it. The tension must neither pulsate nor be
-    stretching. With ``method="auto"`` motion under a smooth law is found by collocation, some 20
-    calls a step; a law that takes arrays of t, u and v, as ``-1e9 * u**3`` does, is given all
-    stages of a step in one call. What jumps, such as friction, does not converge and is refused.
+    Only `Model.transient` and `Model.stepped_sine` take it. With ``method="auto"`` motion under a
+    smooth law is found by collocation, some 20 calls a step; a law that takes arrays of t, u and v,
+    as ``-1e9 * u**3`` does, is given all stages of a step in one call. What jumps, such as
+    friction, does not converge and is refused. Harmonic balance gives it the times and motions of a
+    whole period where it takes arrays, else one after another.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def _checked_side(side: Any) -> int:
 class Stop(Part):
     """A spring that the rope meets after a gap, on one side.
 
-    Only `Model.transient` and `Model.stepped_sine` take it; the first on continuous spans too.
+    Only `Model.transient` and `Model.stepped_sine` take it, on continuous spans too.
 
     Parameters
     ----------

@@ -1,0 +1,162 @@
+"""Branches of solutions of G(x, p) = 0, by pseudo-arclength.
+
+A step goes along the tangent and returns to the curve in the plane across it. It is accepted while
+the tangent turns little: that alone tells whether a resonance was passed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.array import Real
+from ..base.errors import SolveError
+
+TURN, SLIGHT = 0.5, 0.25  # The tangent turns by at most so much a step; by less it grows [rad].
+GROWTH = 1.6  # So much.
+LONGEST, SHORTEST = 0.5, 1e-9  # Steps, in parts of the motion and of the scale of the parameter.
+ASTRAY = 0.5  # A step returns to the curve from at most this part of its length.
+NEWTON = 10  # Steps of Newton's method at most.
+ENOUGH = 1e-7  # Its last one, relative: what it leaves is about the square of that.
+PLENTY = 3  # A step that takes more is not followed by a longer one.
+
+Linearise = Callable[[Real, float], tuple[Real, Real, Real]]
+"""From x and p to G, dG/dx and dG/dp."""
+
+
+class Place(NamedTuple):
+    """A point of a branch."""
+
+    x: Real
+    p: float
+    along: Real  # tangent, of x
+    up: float  # tangent, of p
+
+
+@dataclass(eq=False)
+class Branch:
+    """A curve, followed."""
+
+    linearise: Linearise
+    place: Place
+    scale: float  # of p
+    small: float  # motion that is as good as none
+    step: float = 0.05  # the next one
+    newtons: int = 0  # steps of Newton's method so far
+
+    def advance(self) -> Place:
+        """Take one step, however short it must be; return where it ends."""
+        before = self.place
+        while self.step >= SHORTEST:
+            reached, turns = self.reached(before, self.step), 0
+            if reached is not None:
+                place, turns, off = reached
+                angle = self._angle(before, place)
+                if angle <= TURN and off <= ASTRAY * self.step:
+                    if angle <= SLIGHT and turns <= PLENTY:
+                        self.step = min(GROWTH * self.step, LONGEST)
+                    self.place = place
+                    return place
+            self.step /= 2
+        raise SolveError(f"the branch cannot be followed beyond the parameter {before.p!r}")
+
+    def reached(self, before: Place, step: float) -> tuple[Place, int, float] | None:
+        """Return where a step along the tangent leads, its Newton steps and how far it was off."""
+        size = self._size(before.x)
+        x, p = before.x + step * before.along, before.p + step * before.up
+        row = np.append(before.along / size**2, before.up / self.scale**2)
+        off = np.zeros(len(x) + 1)
+        for turn in range(NEWTON):
+            G, J, by_p = self.linearise(x, p)
+            self.newtons += 1
+            matrix = np.block([[J, by_p[:, None]], [row]])
+            try:
+                change = np.linalg.solve(matrix, np.append(-G, 0.0))
+            except np.linalg.LinAlgError:
+                return None
+            x, p, off = x + change[:-1], p + float(change[-1]), off + change
+            far = np.hypot(np.linalg.norm(change[:-1]) / size, change[-1] / self.scale)
+            if not far < 1e3 * max(step, 1.0) or not p > 0:
+                return None
+            if far <= ENOUGH:
+                away = np.hypot(np.linalg.norm(off[:-1]) / size, off[-1] / self.scale)
+                tangent = np.linalg.solve(matrix, np.append(np.zeros(len(x)), 1.0))
+                return self._unit(x, p, tangent), turn + 1, float(away)
+        return None
+
+    def turned(self, up: float) -> None:
+        """Begin where the branch is, so that p goes up or down."""
+        place = self.place
+        _, J, by_p = self.linearise(place.x, place.p)
+        tangent = np.append(np.linalg.solve(J, -by_p), 1.0) * up
+        self.place = self._unit(place.x, place.p, tangent)
+
+    def settle(self, x: Real, p: float) -> Real | None:
+        """Return the solution at p near x, None if Newton's method finds none."""
+        for _ in range(NEWTON):
+            G, J, _ = self.linearise(x, p)
+            self.newtons += 1
+            try:
+                change = np.linalg.solve(J, -G)
+            except np.linalg.LinAlgError:
+                return None
+            x = x + change
+            far = float(np.linalg.norm(change)) / self._size(x)
+            if not np.isfinite(far):
+                return None
+            if far <= ENOUGH:
+                return x
+        return None
+
+    def between(self, before: Place, after: Place, p: float) -> Real | None:
+        """Return the solution at p between two places, by Hermite's cubic and Newton."""
+        d = after.p - before.p
+        s = (p - before.p) / d if d else 0.0
+        slopes = [place.along * (d / place.up) if place.up else 0.0 for place in (before, after)]
+        guess = (1 + 2 * s) * (1 - s) ** 2 * before.x + s**2 * (3 - 2 * s) * after.x
+        guess = guess + s * (1 - s) ** 2 * slopes[0] - s**2 * (1 - s) * slopes[1]
+        if not np.linalg.norm(guess - before.x) <= 2 * np.linalg.norm(after.x - before.x):
+            guess = before.x + s * (after.x - before.x)
+        return self.settle(guess, p)
+
+    def fold(self, before: Place, after: Place) -> Place | None:
+        """Return where p turns between two places, None where steps do not lead there."""
+        from scipy.optimize import brentq
+
+        size = self._size(before.x)
+        whole = np.dot(after.x - before.x, before.along) / size**2
+        whole += (after.p - before.p) * before.up / self.scale**2
+        found: dict[float, Place] = {0.0: before, float(whole): after}
+
+        def up(step: float) -> float:
+            if step not in found:
+                reached = self.reached(before, step)
+                if reached is None:
+                    raise SolveError("a step leads nowhere")
+                found[step] = reached[0]
+            return found[step].up
+
+        try:
+            root = brentq(up, 0.0, float(whole), xtol=1e-12, rtol=1e-9, maxiter=50)
+        except (SolveError, ValueError):
+            return None
+        up(float(root))
+        return found[float(root)]
+
+    def _size(self, x: Real) -> float:
+        return max(float(np.linalg.norm(x)), self.small)
+
+    def _unit(self, x: Real, p: float, tangent: Real) -> Place:
+        long = np.hypot(np.linalg.norm(tangent[:-1]) / self._size(x), tangent[-1] / self.scale)
+        return Place(x, p, tangent[:-1] / long, float(tangent[-1] / long))
+
+    def _angle(self, before: Place, after: Place) -> float:
+        """Return by how much the tangent turned [rad]."""
+        size = self._size(before.x)
+        a = np.append(before.along / size, before.up / self.scale)
+        b = np.append(after.along / size, after.up / self.scale)
+        a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+        return float(2 * np.arctan2(np.linalg.norm(a - b), np.linalg.norm(a + b)))

@@ -1,0 +1,1 @@
+"""Periodic motion by harmonic balance."""

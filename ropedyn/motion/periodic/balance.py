@@ -1,0 +1,137 @@
+"""Harmonic balance: the motion of the points alone, at a base frequency omega and its harmonics.
+
+    q_k = H_qd(i k omega) F_k + H_qq(i k omega) r_k(q),   k = 0..K
+
+with r_k the Fourier coefficients of the forces, sampled over a period. Motion is the sum of
+q_k e^(i k omega t) over -K..K, q_-k = conj q_k. Unknown are the real numbers Re q_0..K, Im q_1..K.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ...base.array import Complex, Index, Real
+from .laws import Felt, PointForces
+from .transfer import Transfer
+
+
+class Linear(NamedTuple):
+    """The balance about a motion."""
+
+    gap: Real  # (n,) what is not balanced
+    jacobian: Real  # (n, n)
+    slope: Real  # (n,) of the gap by the parameter
+
+
+@dataclass(frozen=True)
+class Balance:
+    """What is balanced: a drive of one amplitude on a scene, harmonics up to K."""
+
+    transfer: Transfer  # (points and more, points + 1), the drive last
+    force: PointForces
+    points: int
+    harmonics: int  # K
+    amplitude: float  # of the drive
+    turn: int = 1  # the harmonic that drives
+
+    @cached_property
+    def samples(self) -> int:
+        """Of a period."""
+        return int(2 ** np.ceil(np.log2(self.force.samples * self.harmonics)))
+
+    @cached_property
+    def order(self) -> Real:
+        """The harmonics 0..K."""
+        return np.arange(self.harmonics + 1.0)
+
+    @cached_property
+    def pairs(self) -> Index:
+        """Where k - l is among the samples' harmonics, (K + 1, 2K + 1) for l = -K..K."""
+        across = np.arange(-self.harmonics, self.harmonics + 1)
+        return np.asarray((np.arange(self.harmonics + 1)[:, None] - across) % self.samples)
+
+    def complex(self, x: Real) -> Complex:
+        """Return the harmonics, (points, K + 1), of the unknowns."""
+        x = x.reshape(self.points, -1)
+        q = x[:, : self.harmonics + 1].astype(np.complex128)
+        q[:, 1:] += 1j * x[:, self.harmonics + 1 :]
+        return q
+
+    def real(self, q: Complex) -> Real:
+        """Return the unknowns, (n,), of harmonics."""
+        return np.concatenate([q.real, q.imag[:, 1:]], axis=1).ravel()
+
+    def wider(self, x: Real, harmonics: int) -> Real:
+        """Return the unknowns of a balance with more harmonics, the new ones 0."""
+        q = self.complex(x)
+        more = np.zeros((self.points, harmonics + 1), dtype=np.complex128)
+        more[:, : q.shape[1]] = q
+        return np.concatenate([more.real, more.imag[:, 1:]], axis=1).ravel()
+
+    def motion(self, q: Complex, omega: float) -> tuple[Real, Real, Real]:
+        """Return the times of a period, and displacement and velocity there."""
+        both = np.stack([q, 1j * omega * self.order * q])
+        u, v = np.fft.irfft(both, self.samples) * self.samples
+        return 2 * np.pi / omega * np.arange(self.samples) / self.samples, u, v
+
+    def coefficients(self, sampled: Real) -> Complex:
+        """Return Fourier coefficients 0..K of something over a period."""
+        return np.fft.rfft(sampled, axis=-1)[..., : self.harmonics + 1] / self.samples
+
+    def forces(self, x: Real, omega: float) -> Complex:
+        """Return the harmonics of the forces, (points, K + 1)."""
+        return self.coefficients(self.force.force(*self.motion(self.complex(x), omega)))
+
+    def driven(self, share: float = 1.0) -> Complex:
+        """Return the harmonics of the drive, (K + 1,)."""
+        F = np.zeros(self.harmonics + 1, dtype=np.complex128)
+        F[self.turn] = share * self.amplitude / 2
+        return F
+
+    def at(self, x: Real, omega: float, share: float = 1.0) -> tuple[Linear, Real]:
+        """Return the balance about a motion: slope by omega, and by the share of the drive."""
+        q, k = self.complex(x), self.order
+        time, u, v = self.motion(q, omega)
+        felt = self.force.felt(time, u, v)
+        H, slope = self.transfer.with_slope(k * omega)
+        H, slope = H[:, : self.points], slope[:, : self.points]
+        push = np.concatenate([self.coefficients(felt.force), self.driven(share)[None]])
+        gap = q.T - _on(H, push)
+        by_omega = -k[:, None] * _on(slope, push)
+        if felt.by_v.any():
+            rate = self.coefficients(np.einsum("pjn,jn->pn", felt.by_v, v / omega))
+            by_omega -= _on(H[..., :-1], rate)
+        by_share = -H[..., -1] * self.driven()[:, None]
+        linear = Linear(self.real(gap.T), self._jacobian(H, felt, omega), self.real(by_omega.T))
+        return linear, self.real(by_share.T)
+
+    def _jacobian(self, H: Complex, felt: Felt, omega: float) -> Real:
+        """Return I - H (r_u + r_v i l omega)^ for real unknowns."""
+        K, m = self.harmonics, self.points
+        stiff = self._toeplitz(felt.by_u)
+        if felt.by_v.any():
+            stiff = stiff + self._toeplitz(felt.by_v) * (1j * omega * np.arange(-K, K + 1))
+        # (k, i, p) (k, p, j l)
+        moved = H[..., :-1] @ stiff.transpose(2, 0, 1, 3).reshape(K + 1, m, -1)
+        moved = moved.reshape(K + 1, m, m, 2 * K + 1).transpose(1, 0, 2, 3)
+        ahead, behind = moved[..., K:], moved[..., K::-1]
+        even = ahead + behind
+        even[..., 0] = ahead[..., 0]
+        odd = (1j * (ahead - behind))[..., 1:]
+        both = np.concatenate([even, odd], axis=3)
+        rows = np.concatenate([both.real, both.imag[:, 1:]], axis=1)
+        n = m * (2 * K + 1)
+        return np.eye(n) - rows.reshape(n, n)
+
+    def _toeplitz(self, slope: Real) -> Complex:
+        """Return the coefficients k - l of slopes, (points, points, K + 1, 2K + 1)."""
+        return np.asarray(np.fft.fft(slope, axis=2)[..., self.pairs] / self.samples)
+
+
+def _on(H: Complex, push: Complex) -> Complex:
+    """Return H_k push_k, (K + 1, points)."""
+    return np.asarray((H @ push.T[..., None])[..., 0])

@@ -1,0 +1,242 @@
+"""All steady motion that was found between two frequencies."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...base import check
+from ...base.answer import Answer, Cost, axes
+from ...base.array import Complex, Flags, Index, Real
+from ...base.errors import SceneError, SolveError
+from ...base.table import Table
+from ...chain.port import Point
+from ...response.frf import FRF, MeshOfResponse
+from ..continuation import Place
+from .asked import SteppedSine
+from .balance import Balance
+from .driven import Driven
+from .state import HARMONICS, MOST, State, by_frequency, settled
+from .stepped import STEPS, at_rest, holds, pieces, watched
+
+SAME = 1e-3  # Motions at one frequency that differ by less are one, relative.
+
+
+@dataclass(frozen=True, eq=False)
+class Branches(Answer):
+    """Steady motion under a sine, by branches: a sequence of `FRF` between folds.
+
+    Branches that are connected come one after another, each from one fold to the next. What is
+    connected neither with the motion that is reached from rest at the lowest frequency nor with
+    that at the highest is not found, nor is motion that repeats itself after several periods.
+
+    Attributes
+    ----------
+    drive, response : tuple of points
+        What is driven and watched.
+    quantity : {"receptance", "mobility", "accelerance"}
+        Displacement, velocity or acceleration, per amplitude of the drive.
+    amplitude : float
+        Of the drive [N, N m; m, rad of an end].
+    first : ndarray of int, shape (branches,)
+        Where each branch begins among the points.
+    frequency : ndarray, shape (points,)
+        [Hz], as the branches are followed.
+    value : ndarray of complex, shape (responses, points)
+        Motion is Re(value exp(+i omega t)) and its harmonics, per amplitude.
+    rounding_error : ndarray, as value
+        Estimated relative error.
+    stable : ndarray of bool, shape (points,)
+        Whether the motion comes back to itself when it is disturbed.
+    folds : ndarray, shape (f,)
+        Frequencies at which a branch turns into the next [Hz], in the order they are passed.
+    fold_error : ndarray, shape (f,)
+        How far they are off, estimated [Hz].
+    cost : Cost
+        What it cost.
+
+    Examples
+    --------
+    A spring that hardens: between two folds there are three motions, one of them unstable.
+
+    >>> import ropedyn as rd
+    >>> spring = rd.NodeForce(0.5, lambda t, u, v: -1e6 * u**3)
+    >>> damping = rd.RayleighDamping(6.0, 0.0)
+    >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=[spring])
+    >>> model = scene.compile(elements=2)
+    >>> drive = {"drive": ("z", 0.5), "amplitude": 1.0}
+    >>> branches = model.stepped_sine([12.0, 24.0], **drive, branches=True)
+    >>> len(branches), branches.folds.round(2), bool(branches[1].stable[5])
+    (3, array([21.12, 16.95]), False)
+    """
+
+    drive: tuple[Point, ...]
+    response: tuple[Point, ...]
+    quantity: str
+    amplitude: float
+    first: Index = field(metadata=axes("branch"))
+    frequency: Real = field(metadata=axes("point", unit="Hz"))
+    value: Complex = field(metadata=axes("response", "point"))
+    rounding_error: Real = field(metadata=axes("response", "point"))
+    stable: Flags = field(metadata=axes("point"))
+    folds: Real = field(metadata=axes("fold", unit="Hz"))
+    fold_error: Real = field(metadata=axes("fold", unit="Hz"))
+    mesh_error: Real = field(metadata=axes("response", "point"))
+    cost: Cost
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def __getitem__(self, number: int) -> FRF:
+        """Return a branch."""
+        least, most = -len(self), len(self) - 1
+        k = check.count(number, "number of a branch", least=least, most=most) % len(self)
+        ends = np.append(self.first, len(self.frequency))
+        part = slice(ends[k], ends[k + 1])
+        return FRF(
+            self.drive,
+            self.response,
+            quantity=self.quantity,
+            frequency=self.frequency[part],
+            value=self.value[:, part],
+            rounding_error=self.rounding_error[:, part],
+            cost=self.cost,
+            mesh=MeshOfResponse(self.mesh_error[:, part]),
+            stable=self.stable[part],
+        )
+
+    def __iter__(self) -> Iterator[FRF]:
+        return (self[k] for k in range(len(self)))
+
+    def table(self) -> Table:
+        """Return one row for each branch: where it leads, and how much of it is stable."""
+        each = list(self)
+        columns: dict[str, Any] = {
+            "from [Hz]": np.array([one.frequency[0] for one in each]),
+            "to [Hz]": np.array([one.frequency[-1] for one in each]),
+            "points": np.array([len(one.frequency) for one in each]),
+            "stable [%]": np.array(
+                [100 * one.stable.mean() for one in each if one.stable is not None]
+            ),
+        }
+        for k, name in enumerate(each[0].labels):
+            columns[f"largest |{name}|"] = np.array([np.abs(one.value[k]).max() for one in each])
+        return Table.of("branches of steady motion", columns)
+
+
+def solve_branches(asked: SteppedSine) -> Branches:
+    """Follow branches between the lowest and the highest frequency."""
+    start = clock.perf_counter()
+    driven = Driven.of(asked)
+    _refuse(driven)
+    harmonics = HARMONICS
+    while True:
+        balance = driven.balance(harmonics)
+        traces = [[settled(driven, one) for one in way] for way in traced(driven, balance)]
+        found = [[one for one in way if one is not None] for way in traces]
+        if found == traces:
+            return _answer(driven, found, start)
+        harmonics *= 2
+        if 2 * harmonics > MOST:
+            raise SolveError(f"{harmonics} harmonics do not tell where branches lead")
+
+
+def _refuse(driven: Driven) -> None:
+    """Refuse what has no branches over the frequency."""
+    if len(driven.asked.frequency) < 2 or np.ptp(driven.asked.frequency) == 0:
+        raise SceneError(
+            "frequency must hold two at least, between which branches are followed, got "
+            f"{driven.asked.frequency.tolist()}"
+        )
+    if not driven.points:
+        raise SceneError("branches must be False where no law bends them, got True")
+    if not driven.keeps_time:
+        raise SceneError(
+            "branches must be False where a law depends on time or the tension pulsates, got True: "
+            "drive and those begin anew together at single frequencies only"
+        )
+
+
+def traced(driven: Driven, balance: Balance) -> list[list[State]]:
+    """Follow what is reached from rest at the lowest frequency, and then at the highest."""
+    f = np.unique(driven.asked.frequency)
+    up = _trace(driven, balance, f, 1)
+    x = at_rest(driven, balance, float(f[-1]))
+    ends = [s.place.x for s in up if s.kind == "asked" and s.place.p == 2 * np.pi * f[-1]]
+    if any(np.linalg.norm(x - end) <= SAME * np.linalg.norm(x) for end in ends):
+        return [up]
+    return [up, _trace(driven, balance, f, -1)]
+
+
+def _trace(driven: Driven, balance: Balance, f: Real, heading: int) -> list[State]:
+    """Follow one branch through the frequencies until it leaves them."""
+    first = float(f[::heading][0])
+    omega = 2 * np.pi * f
+    x = at_rest(driven, balance, first)
+    branch = by_frequency(driven, balance)
+    branch.place = Place(x, 2 * np.pi * first, x, 0.0)
+    branch.turned(float(heading))
+    states = [State(balance, branch.place)]
+    for _ in range(STEPS):
+        for piece in filter(None, pieces(branch)):
+            for at in _passed(omega, piece):
+                inside = branch.between(*piece, at)
+                if inside is not None:
+                    states.append(State(balance, Place(inside, at, inside, 0.0)))
+            end = piece[1]
+            if not omega[0] <= end.p <= omega[-1]:
+                return states
+            states.append(State(balance, end, "step" if end is branch.place else "fold"))
+    raise SolveError(f"a branch does not leave the frequencies in {STEPS} steps")
+
+
+def _passed(omega: Real, piece: tuple[Place, Place]) -> list[float]:
+    """Return the frequencies that a piece passes, in its order."""
+    begin, end = piece[0].p, piece[1].p
+    inside = omega[(omega > min(begin, end)) & (omega < max(begin, end))].tolist()
+    return inside if end > begin else inside[::-1]
+
+
+def _answer(driven: Driven, traces: list[list[State]], start: float) -> Branches:
+    """Put the branches one after another; a fold ends one and begins the next."""
+    asked = driven.asked
+    states: list[State] = []
+    first: list[int] = []
+    for trace in traces:
+        first.append(len(states))
+        for state in trace:
+            states.append(state)
+            if state.kind == "fold":
+                first.append(len(states))
+                states.append(state)
+    folds = [one for trace in traces for one in trace if one.kind == "fold"]
+    frequency = np.array([one.frequency for one in states])
+    value, error = watched(driven, frequency, states)
+    stable = []
+    for k, one in enumerate(states):
+        stable.append(one.kind != "fold" and holds(driven, one))
+        asked.progress((k + 1) / len(states))
+    seconds = clock.perf_counter() - start
+    unknowns = max(len(one.place.x) for one in states)
+    lines = driven.transfer.lines + len(states)
+    cost = Cost(seconds, "balance", len(asked.model.x) - 1, unknowns, sweeps=2 * lines)
+    whole = asked.answer(frequency, value, error, cost, np.array(stable))
+    return Branches(
+        whole.drive,
+        whole.response,
+        quantity=whole.quantity,
+        amplitude=asked.amplitude,
+        first=np.array(first),
+        frequency=frequency,
+        value=whole.value,
+        rounding_error=whole.rounding_error,
+        stable=np.array(stable),
+        folds=np.array([one.frequency for one in folds]),
+        fold_error=np.array([one.moved for one in folds]),
+        mesh_error=whole.mesh_error,
+        cost=cost,
+    )

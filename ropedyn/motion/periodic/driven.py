@@ -1,0 +1,222 @@
+"""A driven scene as harmonic balance takes it: its points, what acts there, and what they move.
+
+Points where dry friction acts are held: their motion is 0, and the force that this takes is H too.
+It is compared with what friction can hold when the motion is known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ... import _core
+from ...base.array import Complex, Real
+from ...base.errors import SceneError, SolveError
+from ...chain.port import Point
+from ...response.frf import FRF
+from ...response.harmonic import solve_harmonic
+from ...scene.tension import Tension
+from .asked import SteppedSine
+from .balance import Balance
+from .laws import ActingLaw, PointForces, PointLaws, StringTension, Together, acting_laws, asked_law
+from .transfer import Transfer
+
+TOGETHER = 1000  # What acts and the drive must both begin anew within so many periods.
+WHOLE = 1e-12  # A number of periods is whole if it is as near to a whole number.
+ALIKE = 1e-9  # A law of time comes back if its forces are as near, relative.
+SHARES = (0.0, 0.1, 0.37, 0.61, 0.83)  # Of a period: when a law is looked at.
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """A scene under a sine."""
+
+    asked: SteppedSine
+    laws: tuple[ActingLaw, ...]  # those of points that move
+    held: tuple[Point, ...]  # by friction
+    grip: Real  # (held,) what friction holds [N, N m]
+    points: tuple[Point, ...]  # that move
+    tension: StringTension | None
+
+    @classmethod
+    def of(cls, asked: SteppedSine) -> Driven:
+        """Sort what acts on the points of a scene."""
+        laws = acting_laws(asked.model)
+        sticking = [one for one in laws if one.is_friction]
+        held = tuple(dict.fromkeys(one.point for one in sticking))
+        grip = np.zeros(len(held))
+        for one in sticking:
+            # what is less than dry friction holds nothing
+            grip[held.index(one.point)] += one.law.value[0] * (one.law.value[1] == 0)
+        moving = tuple(one for one in laws if one.point not in held)
+        nodes, tension = _string(asked, held)
+        points = tuple(dict.fromkeys([*nodes, *(one.point for one in moving)]))
+        if tension is not None:
+            wider = np.zeros((len(tension.length), len(points)))
+            wider[:, : len(nodes)] = tension.free
+            tension = StringTension(tension.length, wider, tension.stretching, tension.pulsation)
+        return cls(asked, moving, held, grip, points, tension)
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether nothing acts but what is in proportion to motion."""
+        return not self.points and not self.held
+
+    @cached_property
+    def force(self) -> PointForces:
+        """What acts on the points."""
+        at = [self.points.index(one.point) for one in self.laws]
+        laws = PointLaws(self.laws, at, len(self.points))
+        return laws if self.tension is None else Together([laws, self.tension])
+
+    @cached_property
+    def transfer(self) -> Transfer:
+        """What points and drive move, (points and held, points and drive); forces where held."""
+        return Transfer(self._transfer)
+
+    def _transfer(self, omega: Real) -> Complex:
+        pushed = [*self.points, *self.held, self.asked.drive]
+        found = self._asked(omega / (2 * np.pi), pushed, [*self.points, *self.held])
+        return self._holding(found.value.transpose(2, 1, 0))
+
+    def _asked(self, frequency: Real, drives: list[Point], responses: list[Point]) -> FRF:
+        return solve_harmonic(
+            self.asked.model, frequency, drive=drives, response=responses, threads=1
+        )
+
+    def _holding(self, H: Complex) -> Complex:
+        """Hold what friction holds: (f, points and held, points, held and drive) to fewer."""
+        m, h = len(self.points), len(self.held)
+        if not h:
+            return H
+        free = [*range(m), m + h]
+        grip = -np.linalg.solve(H[:, m:, m : m + h], H[:, m:][..., free])
+        return np.concatenate([H[:, :m][..., free] + H[:, :m, m : m + h] @ grip, grip], axis=1)
+
+    def balance(self, harmonics: int, turn: int = 1) -> Balance:
+        """Return what is balanced, with harmonics of the drive up to some."""
+        points, amplitude = len(self.points), self.asked.amplitude
+        return Balance(self.transfer, self.force, points, harmonics * turn, amplitude, turn)
+
+    @cached_property
+    def growing(self) -> int:
+        """How many motions grow without what is not linear."""
+        model = self.asked.model
+        zero = np.zeros(1)
+        counts = [_core.count(model.chain.only(c), zero)[0] for c in model.components]
+        return int(sum(counts))
+
+    @cached_property
+    def keeps_time(self) -> bool:
+        """Whether nothing but the drive depends on time."""
+        pulsates = self.tension is not None and _pulsates(self.asked)
+        return not pulsates and all(self._comes_back(one, 0.0) for one in self.laws)
+
+    def turn(self, frequency: float) -> int:
+        """Return after how many periods of the drive everything begins anew."""
+        if self.keeps_time:
+            return 1
+        tension = self.asked.model.scene.tension
+        for n in range(1, TOGETHER + 1):
+            if isinstance(tension, Tension) and tension.pulsates:
+                turns = tension.frequency / frequency * n
+                if abs(turns - round(turns)) > WHOLE * max(turns, 1.0):
+                    continue
+            if all(self._comes_back(one, n / frequency) for one in self.laws):
+                return n
+        what = "a law depends on time"
+        if isinstance(tension, Tension) and tension.pulsates:
+            what = f"the tension pulsates at {tension.frequency!r} Hz"
+        raise SolveError(
+            f"frequency {frequency!r} Hz has no steady state: {what}, and both do not begin anew "
+            f"together within {TOGETHER} periods"
+        )
+
+    def _comes_back(self, one: ActingLaw, period: float) -> bool:
+        """Whether a law says the same after a period, or at all times where that is 0."""
+        if one.law.kind != "call":
+            return True
+        f = float(self.asked.frequency[0])
+        early = np.array(SHARES) / f
+        late = early + period if period else np.zeros_like(early)
+        u, v = self._moves(one.point) * np.array([[1.0], [2 * np.pi * f]])
+        before, after = (asked_law(one, time, u, v) for time in (early, late))
+        near = ALIKE * np.abs(np.append(before, after)).max()
+        return bool((np.abs(after - before) <= near).all())
+
+    def _moves(self, point: Point) -> Real:
+        """Return some motion of a point, as large as without laws."""
+        H = self._asked(self.asked.frequency[:1], [self.asked.drive], [point]).value
+        size = float(np.abs(H).max()) * self.asked.amplitude or 1.0
+        return size * np.linspace(0.3, 1.0, len(SHARES))
+
+    def linear_motion(self, balance: Balance, omega: float) -> Real:
+        """Return the motion of the points without what is not linear."""
+        H = balance.transfer.at(balance.order * omega)[:, : balance.points, -1]
+        return balance.real((H * balance.driven()[:, None]).T)
+
+    def hold(self, balance: Balance | None, x: Real, omega: float) -> Real:
+        """Return the largest force that holds each held point, (held,)."""
+        m = len(self.points)
+        if balance is None:
+            H = self.transfer.at(np.array([omega]))[0, m:, -1]
+            return np.abs(H) * self.asked.amplitude
+        H = balance.transfer.at(balance.order * omega)[:, m:]
+        push = np.concatenate([balance.forces(x, omega), balance.driven()[None]])
+        force = np.einsum("khp,pk->hk", H, push)
+        samples = np.fft.irfft(force, balance.samples, axis=1) * balance.samples
+        return np.asarray(np.abs(samples).max(axis=1))
+
+    def responses(self, frequency: Real, push: Complex) -> tuple[Complex, Real]:
+        """Return what is watched per amplitude, from the forces of points per amplitude.
+
+        push (points, f); value and error (responses, f), absolute.
+        """
+        m, h = len(self.points), len(self.held)
+        pushed = [*self.points, *self.held, self.asked.drive]
+        found = self._asked(frequency, pushed, list(self.asked.responses))
+        push = np.concatenate([push, np.ones((1, len(frequency)))])
+        if h:
+            H = self.transfer.at(2 * np.pi * frequency)[:, m:]
+            grip = np.einsum("fhp,pf->hf", H, push)
+            push = np.concatenate([push[:m], grip, push[m:]])
+        share = found.value * push[:, None]
+        known = found.rounding_error
+        if self.asked.model.element == "continuous":
+            known = known + found.mesh_error
+        known = np.where(share == 0, 0.0, known)
+        return share.sum(axis=0), (np.abs(share) * known).sum(axis=0)
+
+
+def _pulsates(asked: SteppedSine) -> bool:
+    tension = asked.model.scene.tension
+    return isinstance(tension, Tension) and tension.pulsates
+
+
+def _string(
+    asked: SteppedSine, held: tuple[Point, ...]
+) -> tuple[list[Point], StringTension | None]:
+    """Return the nodes that tension beside its mean pushes, and how."""
+    model, scene = asked.model, asked.model.scene
+    tension = scene.tension
+    if "z" not in model.coordinates or not isinstance(tension, Tension) or tension.is_constant:
+        return [], None
+    if model.element == "continuous":
+        raise SceneError(
+            "elements must be given where the tension pulsates or is stretching, such as "
+            "compile(elements=16): its work is summed up over nodes"
+        )
+    chain, at = model.chain, model.coordinates.index("z")
+    free = np.flatnonzero(chain.held[chain.term_of, at] == 0)
+    rises = np.diff(np.eye(len(model.x)), axis=0)[:, free]
+    stretching = (scene.rope.axial_stiffness or 0.0) / (2 * scene.rope.length)
+    nodes: list[Point] = [("z", float(model.x[k])) for k in free]
+    kept = [k for k, node in enumerate(nodes) if node not in held]
+    return [nodes[k] for k in kept], StringTension(
+        chain.length[chain.element_of],
+        rises[:, kept],
+        stretching if tension.stretching else 0.0,
+        tension.pulsation,
+    )

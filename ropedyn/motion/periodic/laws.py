@@ -1,0 +1,248 @@
+"""Forces that are not in proportion to motion, as functions of a whole period of it.
+
+The motion u, v of the points is sampled, (points, samples). A force answers with itself and its
+slopes df/du and df/dv, (points, points, samples).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from ...base import check
+from ...base.array import Real
+from ...base.errors import SolveError
+from ...chain.compiled import Compiled
+from ...chain.port import Point, locate
+from ...scene.parts.node import Law
+from ...scene.parts.part import standing
+
+SMOOTH, BENT = 8, 32  # Samples of a period for each harmonic.
+STEP = 1e-6  # Of the largest motion in a period: numerical slopes of a law in Python.
+TINY = 1e-150  # Motion is taken for at least this there.
+PROBES = 3  # Samples at which a law that takes arrays is held against itself.
+
+
+class Felt(NamedTuple):
+    """Forces over a period and their slopes."""
+
+    force: Real  # (points, samples)
+    by_u: Real  # (points, points, samples)
+    by_v: Real  # (points, points, samples)
+
+
+class PointForces(Protocol):
+    """What acts on some points."""
+
+    @property
+    def samples(self) -> int:
+        """Of a period for each harmonic."""
+
+    def force(self, time: Real, u: Real, v: Real) -> Real:
+        """Return the forces of motion over a period, (points, samples)."""
+
+    def felt(self, time: Real, u: Real, v: Real) -> Felt:
+        """Return them with their slopes."""
+
+
+class ActingLaw(NamedTuple):
+    """A law of a scene."""
+
+    part: int  # number among the parts
+    point: Point
+    law: Law
+
+    @property
+    def is_friction(self) -> bool:
+        """Whether it jumps or bends without limit where the velocity changes its sign."""
+        return self.law.kind == "power" and self.law.value[1] < 1
+
+
+def acting_laws(model: Compiled) -> list[ActingLaw]:
+    """Return the laws that act where something can move."""
+    found = []
+    for i, part in enumerate(model.scene.parts):
+        for one in standing([part]):
+            found += [ActingLaw(i, (law.coordinate, one.x), law) for law in one.term().laws]
+    return [one for one in found if not _is_held(model, one.point)]
+
+
+def _is_held(model: Compiled, point: Point) -> bool:
+    node = locate(model.x, point[1])[0]
+    chain = model.chain
+    term = int(chain.term[chain.stretch(node)])
+    return bool(chain.held[term, model.coordinates.index(point[0])])
+
+
+@dataclass(frozen=True)
+class PointLaws:
+    """Laws of points, each on its own."""
+
+    laws: Sequence[ActingLaw]
+    at: Sequence[int]  # the point of each
+    points: int
+
+    @property
+    def samples(self) -> int:
+        """More where forces bend."""
+        return max(
+            (BENT if one.law.kind in ("stop", "power") else SMOOTH for one in self.laws),
+            default=SMOOTH,
+        )
+
+    def force(self, time: Real, u: Real, v: Real) -> Real:
+        """Return the forces alone."""
+        force = np.zeros((self.points, len(time)))
+        for one, k in zip(self.laws, self.at):
+            if one.law.kind == "call":
+                force[k] += asked_law(one, time, u[k], v[k])
+            else:
+                force[k] += KINDS[one.law.kind](one, time, u[k], v[k])[0]
+        return force
+
+    def felt(self, time: Real, u: Real, v: Real) -> Felt:
+        """Return the forces with their slopes."""
+        force = np.zeros((self.points, len(time)))
+        by_u, by_v = np.zeros((2, self.points, self.points, len(time)))
+        for one, k in zip(self.laws, self.at):
+            f, f_u, f_v = KINDS[one.law.kind](one, time, u[k], v[k])
+            force[k] += f
+            by_u[k, k] += f_u
+            by_v[k, k] += f_v
+        return Felt(force, by_u, by_v)
+
+
+Sampled = tuple[Real, Real, Real]
+"""The force of one law over a period and its slopes by u and v."""
+
+
+def _power(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
+    """-c |v|^p sign v."""
+    c, p = one.law.value
+    size = np.abs(v)
+    return -c * size**p * np.sign(v), np.zeros_like(u), -c * p * size ** (p - 1)
+
+
+def _stop(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
+    """-side k a where a = side u - gap > 0, on average while a sample stands.
+
+    a changes by 2 w meanwhile. So the force has a slope when contact begins at one more sample.
+    """
+    k, gap, side = one.law.value
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    # where v passes 0 it is the acceleration that moves
+    passing = np.hypot(v, np.abs(np.diff(v, append=v[:1])).max() / 4)
+    a, w = side * u - gap, np.maximum(passing * step / 2, TINY)
+    share = np.clip((a + w) / (2 * w), 0.0, 1.0)
+    begins = np.abs(a) < w
+    deep = np.where(begins, share**2 * w, np.maximum(a, 0.0))
+    by_w = np.where(begins, share * (1 - share), 0.0)
+    moves = np.divide(v, passing, out=np.zeros_like(v), where=passing > 0) * step / 2
+    return -side * k * deep, -k * share, -side * k * by_w * moves
+
+
+def _call(one: ActingLaw, time: Real, u: Real, v: Real) -> Sampled:
+    """Ask a function once, for numerical slopes too."""
+    a, b = (STEP * max(float(np.abs(moves).max()), TINY) for moves in (u, v))
+    times, us, vs = np.tile(time, 5), np.tile(u, 5), np.tile(v, 5)
+    n = len(time)
+    us[n : 2 * n] += a
+    us[2 * n : 3 * n] -= a
+    vs[3 * n : 4 * n] += b
+    vs[4 * n :] -= b
+    force, more, less, faster, slower = np.split(asked_law(one, times, us, vs), 5)
+    return force, (more - less) / (2 * a), (faster - slower) / (2 * b)
+
+
+def asked_law(one: ActingLaw, time: Real, u: Real, v: Real) -> Real:
+    """Return what a law in Python says: asked with arrays where it takes them."""
+    call = one.law.call
+    assert call is not None
+    try:
+        with np.errstate(all="ignore"):
+            whole: Any = call(time, u, v)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        whole = None
+    if isinstance(whole, np.ndarray) and whole.shape == u.shape and whole.dtype.kind == "f":
+        probes = range(0, len(u), len(u) // PROBES)
+        alone = [_number(one, call, float(time[n]), float(u[n]), float(v[n])) for n in probes]
+        same = all(abs(whole[n] - x) <= 1e-12 * abs(x) for n, x in zip(probes, alone))
+        if same and np.isfinite(whole).all():
+            return whole
+    each = zip(time.tolist(), u.tolist(), v.tolist())
+    return np.array([_number(one, call, *sample) for sample in each])
+
+
+def _number(
+    one: ActingLaw, call: Callable[[float, float, float], float], t: float, u: float, v: float
+) -> float:
+    where = f"parts[{one.part}].law(t={t!r}, u={u!r}, v={v!r})"
+    try:
+        value = call(t, u, v)
+    except Exception as error:
+        error.add_note(f"raised by {where}")
+        raise
+    try:
+        return check.number(value, where, "N or N m")
+    except (TypeError, ValueError) as error:
+        raise SolveError(str(error).replace("must be", "must return")) from error
+
+
+KINDS: dict[str, Callable[[ActingLaw, Real, Real, Real], Sampled]] = {
+    "power": _power,
+    "stop": _stop,
+    "call": _call,
+}
+
+
+@dataclass(frozen=True)
+class StringTension:
+    """What tension beside its mean does to the transverse motion of nodes.
+
+    The nodes are pushed by -h(t) D^T diag(1/l) D u with D u what each element rises; h is what
+    pulsates and EA/2L times the lengthening sum (D u)^2/l.
+    """
+
+    length: Real  # (elements,) [m]
+    free: Real  # (elements, points) D, of those nodes that can move
+    stretching: float  # EA/2L [N/m]
+    pulsation: Callable[[Real], Real]  # at times [s]
+    samples: int = SMOOTH
+
+    def force(self, time: Real, u: Real, v: Real) -> Real:
+        """Return the forces alone."""
+        return self.felt(time, u, v).force
+
+    def felt(self, time: Real, u: Real, v: Real) -> Felt:
+        """Return the forces with their slopes."""
+        D = self.free
+        K = D.T @ (D / self.length[:, None])
+        pull = K @ u
+        h = self.pulsation(time) + self.stretching * (u * pull).sum(axis=0)
+        by_u = -np.multiply.outer(K, h)
+        by_u -= 2 * self.stretching * pull[:, None] * pull[None]
+        return Felt(-h * pull, by_u, np.zeros_like(by_u))
+
+
+@dataclass(frozen=True)
+class Together:
+    """Several forces on the same points."""
+
+    forces: Sequence[PointForces]
+
+    @property
+    def samples(self) -> int:
+        """As many as one of them needs."""
+        return max(one.samples for one in self.forces)
+
+    def force(self, time: Real, u: Real, v: Real) -> Real:
+        """Return the forces alone."""
+        return np.sum([one.force(time, u, v) for one in self.forces], axis=0)
+
+    def felt(self, time: Real, u: Real, v: Real) -> Felt:
+        """Return the forces with their slopes."""
+        parts = [one.felt(time, u, v) for one in self.forces]
+        return Felt(*(np.sum(kind, axis=0) for kind in zip(*parts)))

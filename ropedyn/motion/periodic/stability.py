@@ -1,0 +1,120 @@
+"""Whether periodic motion comes back to itself when it is disturbed.
+
+A disturbance e^(s t) times a motion of the period goes on where
+
+    D(s) = det(I - H(s + i k omega) (r_u + r_v (s + i l omega))^) = 0.
+
+D repeats itself along i omega, tends to 1 far to the right, and has the poles of H. So it has as
+many zeros with Re s > 0, 0 <= Im s < omega, as it winds about 0 on the way from s = 0 up to
+i omega, backwards, and as many more as the linear scene itself has motions that grow. D(conj s) =
+conj D(s): half the way is enough.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...base.array import Complex, Real
+from ...base.errors import SolveError
+from .balance import Balance
+
+TURN = 0.5  # D turns by at most so much between neighbours and past their middle [rad].
+LOOKS = 17  # At first, beside those where H is known to change.
+ROUNDS = 40  # The way is halved so often at most.
+CLOSED = 0.05  # D is real at both ends, but for so much [rad]: there are enough harmonics.
+FAINT = 0.05  # A harmonic whose response to the forces is less than that takes no part.
+BATCH = 1 << 19  # Numbers of matrices that are looked at together.
+
+
+def growing(balance: Balance, x: Real, omega: float, free: int) -> int:
+    """Return how many disturbances grow, of which the linear scene has `free` itself."""
+    felt = balance.force.felt(*balance.motion(balance.complex(x), omega))
+    if not (felt.by_u.any() or felt.by_v.any()):
+        return free
+    stiff, drag = (np.fft.fft(one, axis=2) / balance.samples for one in (felt.by_u, felt.by_v))
+    harmonics = _enough(balance, np.abs(felt.by_u).max(), np.abs(felt.by_v).max(), omega)
+    while True:
+        strip = _Strip(balance, stiff, drag, omega, harmonics)
+        turns = strip.turns()
+        whole = round(turns)
+        if abs(turns - whole) <= CLOSED / np.pi:
+            return free - whole
+        harmonics *= 2
+        if harmonics > balance.samples // 4:
+            raise SolveError(
+                f"frequency {omega / (2 * np.pi):.6g} Hz: whether the motion is stable cannot be "
+                f"told with {harmonics} harmonics"
+            )
+
+
+def _enough(balance: Balance, stiff: float, drag: float, omega: float) -> int:
+    """Return how many harmonics take part."""
+    most = max(balance.harmonics, 1)
+    k = np.arange(most + 1.0) * omega
+    H = np.abs(balance.transfer.at(k)[:, : balance.points, :-1]).max(axis=(1, 2)) * (
+        stiff + drag * k
+    )
+    loud = np.flatnonzero(H > FAINT)
+    return int(min(most, max(2, int(loud.max(initial=0)) + 2)))
+
+
+class _Strip:
+    """D on the way from 0 to i omega/2."""
+
+    def __init__(
+        self, balance: Balance, stiff: Complex, drag: Complex, omega: float, harmonics: int
+    ) -> None:
+        self.balance, self.omega = balance, omega
+        self.k = np.arange(-harmonics, harmonics + 1)
+        pairs = (self.k[:, None] - self.k) % balance.samples
+        # (k, p, j, l)
+        self.stiff = stiff[..., pairs].transpose(2, 0, 1, 3)
+        self.drag = drag[..., pairs].transpose(2, 0, 1, 3) if drag.any() else None
+
+    def turns(self) -> float:
+        """Return how often D winds about 0 from -i omega/2 to i omega/2."""
+        way = self._looks()
+        D = self._signs(way)
+        for _ in range(ROUNDS):
+            step = np.angle(D[1:] / D[:-1])
+            open_ = np.abs(step) > TURN
+            # a neighbour of what turns is looked at too
+            open_[:-1] |= np.abs(step[1:]) > TURN
+            open_[1:] |= np.abs(step[:-1]) > TURN
+            open_ &= np.diff(way) > 1e-13 * self.omega
+            if not open_.any():
+                break
+            at = np.flatnonzero(open_)
+            middle = (way[at] + way[at + 1]) / 2
+            way = np.insert(way, at + 1, middle)
+            D = np.insert(D, at + 1, self._signs(middle))
+        return float(np.angle(D[1:] / D[:-1]).sum() / np.pi)
+
+    def _looks(self) -> Real:
+        """Return where D is looked at first: also where H changes, folded into the strip."""
+        half = self.omega / 2
+        edge = self.balance.transfer.edge
+        edge = edge[edge <= self.k[-1] * self.omega + half]
+        away = np.abs((edge + half) % self.omega - half)
+        looks = np.unique(np.concatenate([np.linspace(0.0, half, LOOKS), away]))
+        return looks[np.append(True, np.diff(looks) > 1e-12 * half)]
+
+    def _signs(self, nu: Real) -> Complex:
+        """Return D/|D| at s = i nu."""
+        m, n = self.balance.points, len(self.k)
+        most = max(1, BATCH // (m * n) ** 2)
+        parts = [self._sign(nu[a : a + most]) for a in range(0, len(nu), most)]
+        return np.concatenate(parts)
+
+    def _sign(self, nu: Real) -> Complex:
+        m, n = self.balance.points, len(self.k)
+        H = self.balance.transfer.at(nu[:, None] + self.k * self.omega)[..., :m, :-1]
+        felt = self.stiff[None]
+        if self.drag is not None:
+            rate = 1j * (nu[:, None] + self.k * self.omega)
+            felt = felt + self.drag[None] * rate[:, None, None, None]
+        # (nu, k, i, p) (nu, k, p, j l)
+        moved: Complex = (H @ felt.reshape(*felt.shape[:3], m * n)).reshape(len(nu), n * m, m, n)
+        moved = moved.transpose(0, 1, 3, 2).reshape(len(nu), n * m, n * m)
+        sign = np.linalg.slogdet(np.eye(n * m) - moved)[0]
+        return np.where(sign == 0, 1.0, sign)

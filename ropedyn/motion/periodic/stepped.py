@@ -1,0 +1,261 @@
+"""Steady states under a sine whose frequency is stepped, see `Model.stepped_sine`."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from ...base.answer import Cost
+from ...base.array import Complex, Real
+from ...base.errors import SolveError
+from ...response.frf import FRF
+from ...response.harmonic import solve_harmonic
+from ..continuation import Branch, Place
+from ..direct.steady_states import march_steadily
+from .asked import SteppedSine
+from .balance import Balance
+from .driven import Driven
+from .stability import growing
+from .state import HARMONICS, MOST, SMALL, State, by_frequency, settled
+from .transfer import Transfer
+
+FIRST = 1e-3  # Share of the amplitude from which it is raised.
+STEPS = 4000  # A branch is followed for so many at most on the way to one frequency.
+WAY = 3.0  # It may go so far beyond the frequencies that are asked for, times.
+UNDAMPED = 8.0  # Undamped motion up to so many times the highest frequency is looked for.
+
+
+def solve_stepped(asked: SteppedSine) -> FRF:
+    """Find the steady states in the order of the frequencies."""
+    start = clock.perf_counter()
+    driven = Driven.of(asked)
+    if driven.is_linear:
+        return _linear(asked, driven, start)
+    states = _followed(driven) if driven.points else []
+    if _slips(driven, states):
+        return march_steadily(asked)
+    value, error = watched(driven, asked.frequency, states)
+    stable = np.full(len(asked.frequency), driven.growing == 0)
+    for k, state in enumerate(states):
+        stable[k] = holds(driven, state)
+        asked.progress(0.5 + (k + 1) / (2 * len(states)))
+    seconds = clock.perf_counter() - start
+    unknowns = max((len(state.place.x) for state in states), default=0)
+    lines = driven.transfer.lines + len(asked.frequency)
+    cost = Cost(seconds, "balance", len(asked.model.x) - 1, unknowns, sweeps=2 * lines)
+    return asked.answer(asked.frequency, value, error, cost, stable)
+
+
+def watched(driven: Driven, frequency: Real, states: list[State]) -> tuple[Complex, Real]:
+    """Return what is watched per amplitude, (responses, f), and its relative error."""
+    push = off = np.zeros((0, len(frequency)), dtype=np.complex128)
+    if states:
+        push = np.stack([state.push for state in states], axis=1)
+        off = np.stack([state.change for state in states], axis=1)
+    value, error = driven.responses(frequency, push)
+    other, _ = driven.responses(frequency, push + off)
+    error = error + np.abs(other - value)
+    size = np.abs(value)
+    relative = np.where(error == 0, 0.0, np.inf)
+    return value, np.divide(error, size, out=relative, where=size > 0)
+
+
+def holds(driven: Driven, state: State) -> bool:
+    """Whether a motion comes back to itself."""
+    return growing(state.balance, state.place.x, state.place.p, driven.growing) == 0
+
+
+def _linear(asked: SteppedSine, driven: Driven, start: float) -> FRF:
+    """Return the response of a linear scene, where it has a steady state."""
+    if driven.growing:
+        raise SolveError("there is no steady state: the compression is beyond critical")
+    f = asked.frequency
+    solve = partial(
+        solve_harmonic, asked.model, drive=asked.drive, response=asked.responses, threads=1
+    )
+
+    def ask(omega: Real) -> Complex:
+        return solve(omega / (2 * np.pi)).value.T
+
+    Transfer(ask).cover(2 * np.pi * UNDAMPED * float(f.max()))
+    found = solve(f)
+    seconds = clock.perf_counter() - start
+    cost = Cost(seconds, "sweep", found.cost.elements, found.cost.unknowns, found.cost.sweeps)
+    error = found.rounding_error
+    if asked.model.element == "continuous":
+        error = error + found.mesh_error
+    return asked.answer(f, found.value, error, cost, np.ones(len(f), dtype=np.bool_))
+
+
+def _slips(driven: Driven, states: list[State]) -> bool:
+    """Whether friction does not hold at all frequencies."""
+    if not driven.held:
+        return False
+    if driven.points:
+        force = [driven.hold(one.balance, one.place.x, one.place.p) for one in states]
+    else:
+        omega = 2 * np.pi * driven.asked.frequency
+        force = [driven.hold(None, np.zeros(0), one) for one in omega.tolist()]
+    return bool((np.array(force) > driven.grip).any())
+
+
+def _followed(driven: Driven) -> list[State]:
+    """Return the steady states with as many harmonics as they need."""
+    asked, harmonics = driven.asked, HARMONICS
+    while True:
+        path = Path(driven, driven.balance(harmonics)) if driven.keeps_time else None
+        finer: list[State] = []
+        for k, f in enumerate(asked.frequency.tolist()):
+            found = settled(driven, _state(driven, path, harmonics, f))
+            if found is None:
+                break
+            finer.append(found)
+            asked.progress((k + 1) / (2 * len(asked.frequency)))
+        if len(finer) == len(asked.frequency):
+            return finer
+        harmonics *= 2
+        if harmonics >= MOST:
+            raise SolveError(f"{harmonics} harmonics do not tell where the branch leads")
+
+
+def _state(driven: Driven, path: Path | None, harmonics: int, frequency: float) -> State:
+    """Return the state on the way through the frequencies, or from rest where time is kept."""
+    if path is not None:
+        balance, x = path.balance, path.to(frequency)
+    else:
+        balance = driven.balance(harmonics, driven.turn(frequency))
+        x = at_rest(driven, balance, frequency)
+    return State(balance, Place(x, 2 * np.pi * frequency / balance.turn, x, 0.0))
+
+
+def at_rest(driven: Driven, balance: Balance, frequency: float) -> Real:
+    """Return the motion that is reached when the amplitude of the drive is raised from 0."""
+    omega = 2 * np.pi * frequency / balance.turn
+
+    def linearise(x: Real, share: float) -> tuple[Real, Real, Real]:
+        about, by_share = balance.at(x, omega, share)
+        return about.gap, about.jacobian, by_share
+
+    linear = driven.linear_motion(balance, omega)
+    size = float(np.linalg.norm(linear))
+    nowhere = Place(np.zeros(0), FIRST, np.zeros(0), 0.0)
+    branch = Branch(linearise, nowhere, 1.0, SMALL * size, step=0.25)
+    x = branch.settle(FIRST * linear, FIRST)
+    if x is None:
+        x = branch.settle(linear, 1.0)
+        if x is None:
+            raise _lost(frequency)
+        return x
+    branch.place = Place(x, FIRST, x, 0.0)
+    branch.turned(1.0)
+    for _ in range(STEPS):
+        before = branch.place
+        after = branch.advance()
+        if after.p >= 1:
+            found = branch.between(before, after, 1.0)
+            if found is not None:
+                return found
+    raise _lost(frequency)
+
+
+def _lost(frequency: float) -> SolveError:
+    return SolveError(f"frequency {frequency!r} Hz: no steady state was found on the way from rest")
+
+
+@dataclass(eq=False)
+class Path:
+    """The way through the frequencies, from rest at the first."""
+
+    driven: Driven
+    balance: Balance
+    branch: Branch = field(init=False)
+    now: float = 0.0  # the frequency that was answered last [rad/s]
+    x: Real = field(default_factory=lambda: np.zeros(0))  # the motion there
+    heading: float = 0.0  # whether the frequency goes up or down
+    piece: tuple[Place, Place] | None = None  # of the branch, on which that is
+    beyond: tuple[Place, Place] | None = None  # the next piece, where a fold parts a step
+
+    def __post_init__(self) -> None:
+        self.branch = by_frequency(self.driven, self.balance)
+
+    def to(self, frequency: float) -> Real:
+        """Go to a frequency and return the motion there."""
+        omega = 2 * np.pi * frequency
+        if omega == self.now:
+            return self.x
+        heading = float(np.sign(omega - self.now))
+        if self.piece is None:
+            return self._begun(frequency)
+        if heading != self.heading:
+            self._head(heading)
+        fallen = False
+        for _ in range(STEPS):
+            x = self._crossing(omega)
+            if x is not None and (not fallen or self._catches(x, omega)):
+                self.x, self.now = x, omega
+                return x
+            reached = self.piece[1].p
+            if not self._least / WAY <= reached <= self._most * WAY:
+                break
+            self._step()
+            fallen |= not self._ahead
+        return self._begun(frequency)
+
+    @property
+    def _least(self) -> float:
+        return 2 * np.pi * float(self.driven.asked.frequency.min())
+
+    @property
+    def _most(self) -> float:
+        return 2 * np.pi * float(self.driven.asked.frequency.max())
+
+    @property
+    def _ahead(self) -> bool:
+        """Whether the piece leads where the frequency goes."""
+        assert self.piece is not None
+        before, after = self.piece
+        return (after.p - before.p) * self.heading >= 0
+
+    def _begun(self, frequency: float) -> Real:
+        """Begin at rest."""
+        self.x = at_rest(self.driven, self.balance, frequency)
+        self.now = 2 * np.pi * frequency
+        self._head(1.0)
+        return self.x
+
+    def _head(self, heading: float) -> None:
+        """Turn where the last answer is."""
+        self.branch.place = Place(self.x, self.now, self.x, 0.0)
+        self.branch.turned(heading)
+        self.heading, self.beyond = heading, None
+        self.piece = self.branch.place, self.branch.place
+
+    def _step(self) -> None:
+        """Go on to the next piece."""
+        self.piece, self.beyond = self.beyond, None
+        if self.piece is None:
+            self.piece, self.beyond = pieces(self.branch)
+
+    def _crossing(self, omega: float) -> Real | None:
+        assert self.piece is not None
+        before, after = self.piece
+        if not min(before.p, after.p) <= omega <= max(before.p, after.p):
+            return None
+        return self.branch.between(before, after, omega)
+
+    def _catches(self, x: Real, omega: float) -> bool:
+        """Whether motion that fell off its branch stays here."""
+        return self._ahead and growing(self.balance, x, omega, self.driven.growing) == 0
+
+
+def pieces(branch: Branch) -> tuple[tuple[Place, Place], tuple[Place, Place] | None]:
+    """Take a step; return it, parted where the parameter turns."""
+    before = branch.place
+    after = branch.advance()
+    fold = branch.fold(before, after) if before.up * after.up < 0 else None
+    if fold is None:
+        return (before, after), None
+    return (before, fold), (fold, after)

@@ -1,0 +1,218 @@
+"""Harmonic balance: folds, stability and friction, against shooting over time and held points."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+from support.orbits import compared
+
+import ropedyn as rd
+
+# --- a mass on a string, and a spring that hardens ------------------------------------------------
+
+MASS, SOFT, CUBE, DECAY, FORCE = 0.05, 400.0, 1e6, 6.0, 1.0
+"""Of a string of two elements: m x'' + m DECAY x' + SOFT x + CUBE x^3 = FORCE cos."""
+
+
+def duffing(**change):
+    spring = rd.NodeForce(0.5, lambda t, u, v: -CUBE * u**3)
+    how = {"damping": rd.RayleighDamping(DECAY, 0.0), "parts": [spring]} | change
+    return rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how).compile(elements=2)
+
+
+def fold_by_shooting(omega, x, v):
+    """Return the frequency near a guess where a multiplier of a closed orbit is 1."""
+
+    def ends(unknown):
+        x, v, omega = unknown * scale
+
+        def rate(t, y):
+            a = FORCE * np.cos(omega * t) - SOFT * y[0] - CUBE * y[0] ** 3
+            Y = y[2:].reshape(2, 2)
+            stiff = (SOFT + 3 * CUBE * y[0] ** 2) / MASS
+            slope = np.array([Y[1], -stiff * Y[0] - DECAY * Y[1]])
+            return np.concatenate([[y[1], a / MASS - DECAY * y[1]], slope.ravel()])
+
+        begin = np.concatenate([[x, v], np.eye(2).ravel()])
+        end = solve_ivp(rate, (0.0, 2 * np.pi / omega), begin, rtol=1e-12, atol=1e-15).y[:, -1]
+        turn = np.linalg.det(end[2:].reshape(2, 2) - np.eye(2))
+        return np.append((end[:2] - [x, v]) / scale[:2], turn)
+
+    scale = np.array([x, max(abs(v), omega * abs(x)), omega])
+    found, _, status, _ = fsolve(
+        ends, np.array([x, v, omega]) / scale, xtol=1e-12, full_output=True
+    )
+    assert status == 1
+    return found[2] * scale[2] / (2 * np.pi)
+
+
+@pytest.mark.claim(
+    "folds of a spring that hardens by harmonic balance: relative error of their frequencies",
+    reference="closed orbits with a multiplier 1, by shooting with solve_ivp at 1e-12",
+    accepted=1e-8,
+)
+def test_folds_are_where_a_multiplier_of_the_orbit_is_1(claim):
+    options = {"drive": ("z", 0.5), "amplitude": FORCE, "branches": True}
+    branches = duffing().stepped_sine([12.0, 24.0], tolerance=1e-8, **options)
+    assert len(branches) == 3
+    worst = 0.0
+    for k, f in enumerate(branches.folds):
+        at = FORCE * branches[k].value[0, -1]
+        omega = 2 * np.pi * f
+        # the motion at t = 0 is nearly that of its first harmonic
+        exact = fold_by_shooting(omega, at.real, -omega * at.imag)
+        worst = max(worst, abs(f / exact - 1))
+        assert abs(f - exact) <= branches.fold_error[k] + 1e-9 * f
+    claim(worst)
+
+
+def test_three_motions_between_folds_and_the_middle_one_is_unstable():
+    lines = np.linspace(12.0, 24.0, 13)
+    options = {"drive": ("z", 0.5), "amplitude": FORCE}
+    model = duffing()
+    branches = model.stepped_sine(lines, **options, branches=True)
+    upper, middle, lower = branches
+    assert upper.stable[:-1].all()
+    assert lower.stable[1:].all()
+    assert not middle.stable.any()
+    up = model.stepped_sine(lines, **options)
+    down = model.stepped_sine(lines[::-1], **options)
+    for stepped, on in ((up, upper), (down, lower)):
+        assert stepped.stable.all()
+        both = np.flatnonzero(np.isin(stepped.frequency, on.frequency))
+        at = [on.frequency.tolist().index(f) for f in stepped.frequency[both]]
+        assert np.allclose(stepped.value[0, both], on.value[0, at], rtol=1e-4)
+    assert up.value[0, -1] == pytest.approx(down.value[0, 0], rel=1e-4)
+
+
+def test_branches_are_kept_in_files_and_drawn(tmp_path):
+    options = {"drive": ("z", 0.5), "amplitude": FORCE, "branches": True}
+    branches = duffing().stepped_sine([12.0, 24.0], **options)
+    branches.save(tmp_path / "branches.nc")
+    read = rd.load(tmp_path / "branches.nc")
+    assert (read.value == branches.value).all()
+    assert (read[1].stable == branches[1].stable).all()
+    assert (read[-1].frequency == branches[2].frequency).all()
+    assert len(branches.table().rows) == 3
+    assert len(branches.plot().lines) == 6
+    with pytest.raises(rd.SceneError, match="number of a branch must"):
+        branches[3]
+
+
+# --- stability -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("stops", [False, True])
+def test_stability_is_that_of_the_monodromy(stops):
+    orbits = compared(31, stops, 12, 4)
+    assert [one[0] for one in orbits] == [one[1] for one in orbits]
+    assert sum(one[1] > 0 for one in orbits) >= 3
+    assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "orbits of springs that harden and of stops: share whose number of growing disturbances is not "
+    "that of multipliers outside the unit circle",
+    reference="monodromy of the assembled chain by solve_ivp, 200 orbits, 100 of them with stops",
+    accepted=0.0,
+)
+def test_stability_of_200_orbits_is_that_of_the_monodromy(claim):
+    orbits = compared(1901, False, 100, 30) + compared(1902, True, 100, 30)
+    assert sum(one[1] > 0 for one in orbits) >= 50
+    claim(np.mean([one[0] != one[1] for one in orbits]))
+
+
+# --- scenes that steps over time do not take -------------------------------------------------------
+
+BEAM = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
+
+
+@pytest.mark.parametrize(
+    "damping", [rd.ModalDamping(0.02), rd.StiffnessDamping(1e-4), rd.ViscousDamping(8.0)], ids=str
+)
+def test_continuous_spans_with_any_damping_are_the_limit_of_chains(damping):
+    scene = rd.Scene(BEAM, tension=2830.0, damping=damping, parts=[rd.Stop(0.25, 1e4, gap=1e-4)])
+    ask = {"drive": ("z", 0.5), "response": ("z", 0.75), "amplitude": 20.0}
+    lines = [30.0, 50.0, 90.0]
+    exact = scene.compile().stepped_sine(lines, **ask)
+    chain = scene.compile(elements=64).stepped_sine(lines, **ask)
+    # lumping of fourth order: (1/64)^4 times the waves of the harmonics
+    assert np.abs(chain.value / exact.value - 1).max() < 1e-3
+    assert (exact.mesh_error == 0).all()
+    assert np.isinf(chain.mesh_error).all()
+
+
+# --- dry friction ----------------------------------------------------------------------------------
+
+
+def rubbed(friction, **change):
+    parts = [rd.Dashpot(0.25, friction, exponent=0.0)]
+    how = {"damping": rd.RayleighDamping(8.0, 1e-6), "parts": parts} | change
+    return rd.Scene(BEAM, tension=2830.0, **how)
+
+
+def test_friction_that_holds_is_a_support():
+    lines, drive = [20.0, 56.0, 90.0], ("z", 0.6)
+    held = rubbed(1e3).compile().stepped_sine(lines, drive=drive, amplitude=1.0)
+    support = rubbed(1.0, parts=[rd.Support(0.25)]).compile().frf(lines, drive=drive)
+    assert np.abs(held.value / support.value - 1).max() < 1e-9
+    assert held.stable.all()
+
+
+def test_friction_that_slips_on_continuous_spans_is_refused_by_name():
+    with pytest.raises(rd.SceneError, match="elements must be given"):
+        rubbed(1e-3).compile().stepped_sine([40.0], drive=("z", 0.6), amplitude=1.0)
+
+
+def test_friction_that_slips_is_stepped_over_time():
+    parts = [rd.Dashpot(0.5, 0.1, exponent=0.0)]
+    scene = rubbed(0.1, parts=parts, damping=rd.RayleighDamping(40.0, 0.0))
+    model = scene.compile(elements=2, element="rigid")
+    stepped = model.stepped_sine([30.0], drive=("z", 0.5), amplitude=1.0)
+    assert stepped.cost.method == "direct"
+
+
+# --- what is refused -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"damping": rd.LossFactor(0.01)}, "a loss factor has no meaning in time"),
+        ({"parts": []}, "branches must be False where no law"),
+        (
+            {"parts": [rd.NodeForce(0.5, lambda t, u, v: np.sin(50 * t) * u)]},
+            "branches must be False where a law depends on time",
+        ),
+    ],
+)
+def test_scenes_without_branches_say_why(change, message):
+    with pytest.raises(rd.SceneError, match=message):
+        duffing(**change).stepped_sine([12.0, 24.0], drive=("z", 0.5), amplitude=1.0, branches=True)
+
+
+def test_one_frequency_has_no_branches():
+    with pytest.raises(rd.SceneError, match="frequency must hold two"):
+        duffing().stepped_sine([12.0], drive=("z", 0.5), amplitude=1.0, branches=True)
+
+
+def test_tension_of_continuous_spans_that_stretches_is_refused():
+    rope = rd.Rope(1.0, 0.1, axial_stiffness=1e5)
+    scene = rd.Scene(rope, tension=rd.Tension(100.0, stretching=True))
+    with pytest.raises(rd.SceneError, match="elements must be given"):
+        scene.compile().stepped_sine([12.0], drive=("z", 0.5), amplitude=1.0)
+
+
+@pytest.mark.parametrize(
+    ("law", "error", "message"),
+    [
+        (lambda t, u, v: float("nan"), rd.SolveError, r"parts\[0\]\.law.* must return"),
+        (lambda t, u, v: "no", rd.SolveError, r"parts\[0\]\.law.* must return"),
+        (lambda t, u, v: 1 / 0, ZeroDivisionError, "division"),
+    ],
+)
+def test_laws_that_say_nothing_are_named(law, error, message):
+    model = duffing(parts=[rd.NodeForce(0.5, law)])
+    with pytest.raises(error, match=message):
+        model.stepped_sine([12.0], drive=("z", 0.5), amplitude=1.0)
