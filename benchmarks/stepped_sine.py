@@ -1,9 +1,10 @@
-"""The study's amplitude-frequency characteristic: over time by three ways, and directly.
+"""The study's amplitude-frequency characteristic: over time, directly, and with stops.
 
 python benchmarks/stepped_sine.py
 
 At each of a few frequencies the study's model of eight elements is led to the steady state. SciPy's
-`solve_ivp` integrates for as long as free motion takes to decay to the tolerance.
+`solve_ivp` integrates for as long as free motion takes to decay to the tolerance. Beside it
+stand the same rope between two stops, and a span whose spring hardens, by harmonic balance.
 """
 
 # isort: off
@@ -63,13 +64,53 @@ def integrated(method: str, tolerance: float) -> np.ndarray:
     return np.array(found)
 
 
-def stepped(method: str, tolerance: float) -> np.ndarray:
-    options = {"amplitude": 1.0, "method": method, "tolerance": tolerance}
-    return MODEL.stepped_sine(FEW, drive=DRIVE, **options).value[0]
+def stopped(amplitude: float, tolerance: float) -> rd.FRF:
+    """Step the study's chain, between two stops, through all frequencies."""
+    gap = 2e-5
+    stops = [rd.Stop(DRIVE[1], 2e5, gap=gap, side=side) for side in (1, -1)]
+    scene = rd.study2015.scene().replace(parts=stops)
+    model = scene.compile(elements=rd.study2015.ELEMENTS, element="difference")
+    return model.stepped_sine(LINES, drive=DRIVE, amplitude=amplitude, tolerance=tolerance)
+
+
+def hardening() -> rd.Branches:
+    """Follow the branches of a continuous span with a spring that hardens."""
+    spring = rd.NodeForce(0.5, lambda t, u, v: -1e9 * u**3)
+    scene = rd.Scene(
+        rd.Rope(1.0, 0.4, bending_stiffness=1.54),
+        tension=2830.0,
+        damping=rd.RayleighDamping(8.0, 1e-6),
+        parts=[spring],
+    )
+    options = {"drive": ("z", 0.5), "amplitude": 20.0, "branches": True}
+    return scene.compile().stepped_sine([40.0, 90.0], **options)
 
 
 def directly(lines: np.ndarray) -> np.ndarray:
     return MODEL.frf(lines, drive=DRIVE).value[0]
+
+
+def nonlinear() -> str:
+    """Tell what stops and hardening springs cost."""
+    ways = {
+        f"two stops, {amplitude:g} N, tolerance {tolerance:g}": partial(
+            stopped, amplitude, tolerance
+        )
+        for amplitude in (0.2, 1.0)
+        for tolerance in (1e-3, 1e-5)
+    }
+    times = timing.medians({**ways, "hardening spring": hardening}, budget=2.0)
+    rows = []
+    for name, way in ways.items():
+        found = way()
+        each = times[name] / len(LINES)
+        rows.append([name, f"{1e3 * each:.3g}", f"{found.rounding_error.max():.1e}"])
+    branches = hardening()
+    each = times["hardening spring"] / len(branches.frequency)
+    rows.append(["hardening spring, all branches", f"{1e3 * each:.3g}", ""])
+    folds = ", ".join(f"{f:.6g}" for f in branches.folds)
+    head = ["harmonic balance", "time of a frequency or point [ms]", "largest estimated error"]
+    return report.table(head, rows) + f"\nThe hardening spring's folds are at {folds} Hz.\n"
 
 
 def main() -> None:
@@ -77,15 +118,6 @@ def main() -> None:
         f"solve_ivp, {method}, {tolerance:g}": partial(integrated, method, tolerance)
         for method, tolerances in TOLERANCES.items()
         for tolerance in tolerances
-    }
-    ways |= {
-        f"stepped_sine, {method}, {tolerance:g}": partial(stepped, method, tolerance)
-        for method, tolerance in (
-            ("direct", 1e-3),
-            ("direct", 1e-5),
-            ("modal", 1e-6),
-            ("modal", 1e-9),
-        )
     }
     ways["frf"] = partial(directly, FEW)
     true = directly(FEW)
@@ -113,7 +145,7 @@ def main() -> None:
         f"{len(LINES)} frequencies of a curve take `frf` {1e3 * times['all']:.2g} ms.\n\n"
         + report.table(head, rows)
     )
-    report.write("stepped_sine.md", text)
+    report.write("stepped_sine.md", text + "\n" + nonlinear())
 
 
 if __name__ == "__main__":

@@ -576,8 +576,6 @@ class Model(Compiled):
 
         Examples
         --------
-        A string that reaches a stop 2 mm away:
-
         >>> import ropedyn as rd
         >>> how = {"damping": rd.RayleighDamping(6.0, 0.0), "parts": [rd.Stop(0.5, 1e3, gap=2e-3)]}
         >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, **how)
@@ -586,8 +584,9 @@ class Model(Compiled):
         (array([[0.00343, 0.00516]]), array([ True,  True]))
         """
         check.instance(branches, "branches", bool, "True or False")
-        how = quantity, tolerance, progress
-        asked = SteppedSine.of(self, frequency, drive, amplitude, response, *how)
+        how: Any = {"quantity": quantity, "tolerance": tolerance, "progress": progress}
+        ask: Any = {"drive": drive, "amplitude": amplitude, "response": response}
+        asked = SteppedSine.of(self, frequency, **ask, **how)
         refuse_steady(asked)
         return solve_branches(asked) if branches else solve_stepped(asked)
 

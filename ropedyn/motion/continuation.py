@@ -17,8 +17,8 @@ from ..base.errors import SolveError
 
 TURN, SLIGHT = 0.5, 0.25  # The tangent turns by at most so much a step; by less it grows [rad].
 GROWTH = 1.6  # So much.
-LONGEST, SHORTEST = 0.5, 1e-9  # Steps, in parts of the motion and of the scale of the parameter.
-ASTRAY = 0.5  # A step returns to the curve from at most this part of its length.
+LONGEST, SHORTEST = 1.0, 1e-9  # Steps, in parts of the motion and of the scale of the parameter.
+ASTRAY, FAR = 0.5, 0.25  # A step returns to the curve from this part of its length, and at most.
 NEWTON = 10  # Steps of Newton's method at most.
 ENOUGH = 1e-7  # Its last one, relative: what it leaves is about the square of that.
 PLENTY = 3  # A step that takes more is not followed by a longer one.
@@ -55,7 +55,7 @@ class Branch:
             if reached is not None:
                 place, turns, off = reached
                 angle = self._angle(before, place)
-                if angle <= TURN and off <= ASTRAY * self.step:
+                if angle <= TURN and off <= min(ASTRAY * self.step, FAR):
                     if angle <= SLIGHT and turns <= PLENTY:
                         self.step = min(GROWTH * self.step, LONGEST)
                     self.place = place

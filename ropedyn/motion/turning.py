@@ -30,7 +30,8 @@ from ..scene.scene import Scene
 from ..scene.tension import Tension
 from .history import History
 from .modal.superposition import superpose
-from .request import Run, SteppedSine
+from .periodic.asked import SteppedSine
+from .request import Run
 
 WHY = "where lay_coupling turns the rope under a tension"
 

@@ -41,10 +41,10 @@ def plot_branches(branches: Branches, ax: Axes) -> None:
     """Plot amplitudes over frequency on a logarithmic scale, dashed where motion is not stable."""
     for branch in branches:
         for name, r, curve in named_curves(branch):
-            for these, style in ((branch.stable, "-"), (~np.asarray(branch.stable), "--")):
+            stable = np.asarray(branch.stable, dtype=np.bool_)
+            for these, style, told in ((stable, "-", name), (~stable, "--", "_" + name)):
                 shown = np.where(these, np.abs(curve), np.nan)
-                ax.semilogy(branch.frequency, shown, style, color=f"C{r}", label=name)
-                name = "_" + name
+                ax.semilogy(branch.frequency, shown, style, color=f"C{r}", label=told)
     ax.set_title(f"steady motion, driven in {', '.join(map(place, branches.drive))}")
     amplitudes(ax, branches.quantity)
 

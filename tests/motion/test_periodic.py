@@ -8,7 +8,7 @@ from support.orbits import compared
 
 import ropedyn as rd
 
-# --- a mass on a string, and a spring that hardens ------------------------------------------------
+# --- a mass on a string, and a spring that hardens -----------------------------------------------
 
 MASS, SOFT, CUBE, DECAY, FORCE = 0.05, 400.0, 1e6, 6.0, 1.0
 """Of a string of two elements: m x'' + m DECAY x' + SOFT x + CUBE x^3 = FORCE cos."""
@@ -99,14 +99,14 @@ def test_branches_are_kept_in_files_and_drawn(tmp_path):
         branches[3]
 
 
-# --- stability -------------------------------------------------------------------------------------
+# --- stability -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("stops", [False, True])
 def test_stability_is_that_of_the_monodromy(stops):
-    orbits = compared(31, stops, 12, 4)
+    orbits = compared(31, stops, 6, 3)
     assert [one[0] for one in orbits] == [one[1] for one in orbits]
-    assert sum(one[1] > 0 for one in orbits) >= 3
+    assert sum(one[1] > 0 for one in orbits) >= 2
     assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-8)
 
 
@@ -123,7 +123,7 @@ def test_stability_of_200_orbits_is_that_of_the_monodromy(claim):
     claim(np.mean([one[0] != one[1] for one in orbits]))
 
 
-# --- scenes that steps over time do not take -------------------------------------------------------
+# --- scenes that steps over time do not take -----------------------------------------------------
 
 BEAM = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
 
@@ -143,7 +143,7 @@ def test_continuous_spans_with_any_damping_are_the_limit_of_chains(damping):
     assert np.isinf(chain.mesh_error).all()
 
 
-# --- dry friction ----------------------------------------------------------------------------------
+# --- dry friction --------------------------------------------------------------------------------
 
 
 def rubbed(friction, **change):
@@ -173,7 +173,7 @@ def test_friction_that_slips_is_stepped_over_time():
     assert stepped.cost.method == "direct"
 
 
-# --- what is refused -------------------------------------------------------------------------------
+# --- what is refused -----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

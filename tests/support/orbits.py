@@ -58,12 +58,12 @@ def random_states(rng, stops, tolerance=1e-6):
     asked = SteppedSine.of(
         model,
         first * np.array([0.7, 1.1, 1.6]),
-        ("z", float(model.x[1])),
-        float(10 ** rng.uniform(-0.5, 0.7)),
-        None,
-        "receptance",
-        tolerance,
-        None,
+        drive=("z", float(model.x[1])),
+        amplitude=float(10 ** rng.uniform(-0.5, 0.7)),
+        response=None,
+        quantity="receptance",
+        tolerance=tolerance,
+        progress=None,
     )
     driven = Driven.of(asked)
     traces = traced(driven, driven.balance(16))

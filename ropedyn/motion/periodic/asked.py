@@ -42,6 +42,7 @@ class SteppedSine:
         cls,
         model: Compiled,
         frequency: Any,
+        *,
         drive: Any,
         amplitude: float,
         response: Any,

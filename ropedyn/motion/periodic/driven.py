@@ -76,10 +76,10 @@ class Driven:
         """What points and drive move, (points and held, points and drive); forces where held."""
         return Transfer(self._transfer)
 
-    def _transfer(self, omega: Real) -> Complex:
+    def _transfer(self, omega: Real) -> tuple[Complex, Real]:
         pushed = [*self.points, *self.held, self.asked.drive]
         found = self._asked(omega / (2 * np.pi), pushed, [*self.points, *self.held])
-        return self._holding(found.value.transpose(2, 1, 0))
+        return self._holding(found.value.transpose(2, 1, 0)), known_to(found)
 
     def _asked(self, frequency: Real, drives: list[Point], responses: list[Point]) -> FRF:
         return solve_harmonic(
@@ -188,6 +188,13 @@ class Driven:
             known = known + found.mesh_error
         known = np.where(share == 0, 0.0, known)
         return share.sum(axis=0), (np.abs(share) * known).sum(axis=0)
+
+
+def known_to(found: FRF) -> Real:
+    """Return the relative error of responses, of the largest ones at each frequency, (f,)."""
+    size = np.abs(found.value).reshape(-1, len(found.frequency))
+    wrong = size * np.where(size > 0, found.rounding_error.reshape(size.shape), 0.0)
+    return wrong.max(axis=0) / np.maximum(size.max(axis=0), np.finfo(float).tiny)
 
 
 def _pulsates(asked: SteppedSine) -> bool:

@@ -22,7 +22,7 @@ TURN = 0.5  # D turns by at most so much between neighbours and past their middl
 LOOKS = 17  # At first, beside those where H is known to change.
 ROUNDS = 40  # The way is halved so often at most.
 CLOSED = 0.05  # D is real at both ends, but for so much [rad]: there are enough harmonics.
-FAINT = 0.05  # A harmonic whose response to the forces is less than that takes no part.
+FEWEST = 8  # Harmonics at first: twice as many must tell the same.
 BATCH = 1 << 19  # Numbers of matrices that are looked at together.
 
 
@@ -32,30 +32,26 @@ def growing(balance: Balance, x: Real, omega: float, free: int) -> int:
     if not (felt.by_u.any() or felt.by_v.any()):
         return free
     stiff, drag = (np.fft.fft(one, axis=2) / balance.samples for one in (felt.by_u, felt.by_v))
-    harmonics = _enough(balance, np.abs(felt.by_u).max(), np.abs(felt.by_v).max(), omega)
-    while True:
-        strip = _Strip(balance, stiff, drag, omega, harmonics)
-        turns = strip.turns()
-        whole = round(turns)
-        if abs(turns - whole) <= CLOSED / np.pi:
-            return free - whole
-        harmonics *= 2
-        if harmonics > balance.samples // 4:
-            raise SolveError(
-                f"frequency {omega / (2 * np.pi):.6g} Hz: whether the motion is stable cannot be "
-                f"told with {harmonics} harmonics"
-            )
-
-
-def _enough(balance: Balance, stiff: float, drag: float, omega: float) -> int:
-    """Return how many harmonics take part."""
-    most = max(balance.harmonics, 1)
-    k = np.arange(most + 1.0) * omega
-    H = np.abs(balance.transfer.at(k)[:, : balance.points, :-1]).max(axis=(1, 2)) * (
-        stiff + drag * k
+    harmonics = _least(balance, felt.by_u, felt.by_v, omega)
+    before = None
+    while harmonics <= balance.samples // 4:
+        turns = _Strip(balance, stiff, drag, omega, harmonics).turns()
+        told = round(turns) if abs(turns - round(turns)) <= CLOSED / np.pi else None
+        if told is not None and told == before:
+            return free - told
+        harmonics, before = 2 * harmonics, told
+    raise SolveError(
+        f"frequency {omega / (2 * np.pi):.6g} Hz: whether the motion is stable cannot be told with "
+        f"{harmonics // 2} harmonics"
     )
-    loud = np.flatnonzero(H > FAINT)
-    return int(min(most, max(2, int(loud.max(initial=0)) + 2)))
+
+
+def _least(balance: Balance, by_u: Real, by_v: Real, omega: float) -> int:
+    """Return how many harmonics answer to the forces by more than what causes them."""
+    k = np.arange(balance.harmonics + 1.0) * omega
+    H = np.abs(balance.transfer.at(k)[:, : balance.points, :-1]).max(axis=(1, 2))
+    loud = np.flatnonzero(H * (np.abs(by_u).max() + k * np.abs(by_v).max()) > 1)
+    return min(balance.harmonics, max(FEWEST, int(loud.max(initial=0)) + 1))
 
 
 class _Strip:

@@ -49,17 +49,27 @@ def by_frequency(driven: Driven, balance: Balance) -> Branch:
         about, _ = balance.at(x, omega)
         return about.gap, about.jacobian, about.slope
 
-    omega = 2 * np.pi * float(driven.asked.frequency[0]) / balance.turn
+    omega = 2 * np.pi * float(driven.asked.frequency.mean()) / balance.turn
     size = float(np.linalg.norm(driven.linear_motion(balance, omega)))
     nowhere = Place(np.zeros(0), omega, np.zeros(0), 0.0)
     return Branch(linearise, nowhere, SCALE * omega, SMALL * size)
 
 
-def settled(driven: Driven, state: State) -> State | None:
-    """Add harmonics until they change nothing; None where they lead to another motion."""
+def settled(driven: Driven, state: State, least: int = 0) -> State | None:
+    """Add harmonics until they change nothing; None where they lead to another motion.
+
+    `least`: so many of the drive are known not to be enough.
+    """
     tolerance, balance = driven.asked.tolerance or TOLERANCE, state.balance
+    if not balance.forces(state.place.x, state.place.p).any():
+        return state._replace(change=np.zeros(balance.points, dtype=np.complex128))
+    if least * balance.turn > balance.harmonics:
+        finer = _finer(driven, state, least)
+        if finer is None:
+            return None
+        state, balance = finer, finer.balance
     while 2 * balance.harmonics <= MOST * balance.turn:
-        finer = _finer(driven, state)
+        finer = _finer(driven, state, 2 * balance.harmonics // balance.turn)
         if finer is None:
             return None
         left = np.abs(_felt(driven, finer)).max()
@@ -72,10 +82,10 @@ def settled(driven: Driven, state: State) -> State | None:
     )
 
 
-def _finer(driven: Driven, state: State) -> State | None:
-    """Return a state with twice the harmonics, None where they lead to another motion."""
+def _finer(driven: Driven, state: State, harmonics: int) -> State | None:
+    """Return a state with more harmonics, None where they lead to another motion."""
     narrow, place = state.balance, state.place
-    balance = driven.balance(2 * narrow.harmonics // narrow.turn, narrow.turn)
+    balance = driven.balance(harmonics, narrow.turn)
     branch = by_frequency(driven, balance)
     start = narrow.wider(place.x, balance.harmonics)
     if state.kind == "asked":

@@ -17,7 +17,7 @@ from ..continuation import Branch, Place
 from ..direct.steady_states import march_steadily
 from .asked import SteppedSine
 from .balance import Balance
-from .driven import Driven
+from .driven import Driven, known_to
 from .stability import growing
 from .state import HARMONICS, MOST, SMALL, State, by_frequency, settled
 from .transfer import Transfer
@@ -77,8 +77,9 @@ def _linear(asked: SteppedSine, driven: Driven, start: float) -> FRF:
         solve_harmonic, asked.model, drive=asked.drive, response=asked.responses, threads=1
     )
 
-    def ask(omega: Real) -> Complex:
-        return solve(omega / (2 * np.pi)).value.T
+    def ask(omega: Real) -> tuple[Complex, Real]:
+        found = solve(omega / (2 * np.pi))
+        return found.value.T, known_to(found)
 
     Transfer(ask).cover(2 * np.pi * UNDAMPED * float(f.max()))
     found = solve(f)
@@ -108,10 +109,13 @@ def _followed(driven: Driven) -> list[State]:
     while True:
         path = Path(driven, driven.balance(harmonics)) if driven.keeps_time else None
         finer: list[State] = []
+        least = 0
         for k, f in enumerate(asked.frequency.tolist()):
-            found = settled(driven, _state(driven, path, harmonics, f))
+            found = settled(driven, _state(driven, path, harmonics, f), least)
             if found is None:
                 break
+            # frequencies that follow each other need alike
+            least = found.balance.harmonics // (4 * found.balance.turn)
             finer.append(found)
             asked.progress((k + 1) / (2 * len(asked.frequency)))
         if len(finer) == len(asked.frequency):

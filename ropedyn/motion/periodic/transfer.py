@@ -22,10 +22,12 @@ LAST = 2  # So many terms must be small.
 SMALL = 1e-11  # Of the largest value on the panel.
 FLOOR = 1e-5  # An entry counts as if it were at least this part of the largest.
 FIRST = 32  # Panels that cover what is asked for first.
-HALVINGS = 40  # A panel that is still not smooth then has a pole in it.
+HALVINGS = 34  # A panel that is still not smooth then has a pole in it.
 
-Ask = Callable[[Real], Complex]
-"""From frequencies [rad/s], (f,), to transfer functions, (f, ..)."""
+MOST = 1 << 14  # Panels that are solved at once.
+
+Ask = Callable[[Real], tuple[Complex, Real]]
+"""From frequencies [rad/s], (f,), to transfer functions, (f, ..), and relative errors, (f,)."""
 
 
 @cache
@@ -59,11 +61,16 @@ class Transfer:
         low, high = edges[:-1], edges[1:]
         kept: list[tuple[Real, Real, Complex]] = []
         for _ in range(HALVINGS):
-            series = self._solved(low, high)
-            rough = _is_rough(series)
+            series, known = self._solved(low, high)
+            rough = _is_rough(series, known)
             kept.append((low[~rough], high[~rough], series[~rough]))
             if not rough.any():
                 break
+            if rough.sum() > MOST:
+                raise SolveError(
+                    f"up to {limit / (2 * np.pi):.6g} Hz there are too many resonances for {MOST} "
+                    "panels: ask for lower frequencies or a larger tolerance"
+                )
             low, high = low[rough], high[rough]
             middle = (low + high) / 2
             low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
@@ -74,19 +81,20 @@ class Transfer:
         self.edge = np.concatenate([self.edge, end[order]])
         self.series = np.concatenate([self.series, new[order]]) if len(self.series) else new[order]
 
-    def _solved(self, low: Real, high: Real) -> Complex:
-        """Return the series on panels."""
+    def _solved(self, low: Real, high: Real) -> tuple[Complex, Real]:
+        """Return the series on panels, and how well they are known, relative."""
         x, terms, _ = _rule()
         omega = (low + high)[:, None] / 2 + (high - low)[:, None] / 2 * x
         try:
-            value = self.ask(omega.ravel())
+            value, known = self.ask(omega.ravel())
         except SolveError as error:
             if "resonance" not in str(error):
                 raise
             raise _undamped(float(low[(high - low).argmin()])) from error
         self.lines += omega.size
         self.shape = value.shape[1:]
-        return np.asarray(terms @ value.reshape(len(low), TERMS, -1))
+        series = np.asarray(terms @ value.reshape(len(low), TERMS, -1))
+        return series, known.reshape(len(low), TERMS).max(axis=1)
 
     def at(self, omega: Real) -> Complex:
         """Return H at frequencies of any sign, (.., pairs as asked)."""
@@ -111,12 +119,13 @@ class Transfer:
         return panel, np.cos(np.multiply.outer(angle, np.arange(TERMS))), stretch
 
 
-def _is_rough(series: Complex) -> Flags:
-    """Whether the last terms on a panel are not small, (panels,)."""
+def _is_rough(series: Complex, known: Real) -> Flags:
+    """Whether the last terms on a panel are neither small nor rounding, (panels,)."""
     size = np.abs(series)
     largest = size.max(axis=1)
     largest = np.maximum(largest, FLOOR * largest.max(axis=1, initial=0.0, keepdims=True))
-    return np.asarray((size[:, -LAST:] > SMALL * largest[:, None]).any(axis=(1, 2)))
+    small = np.maximum(SMALL, known)[:, None, None] * largest[:, None]
+    return np.asarray((size[:, -LAST:] > small).any(axis=(1, 2)))
 
 
 def _undamped(omega: float) -> SolveError:
