@@ -49,7 +49,7 @@ def fold_by_shooting(omega, x, v):
 @pytest.mark.claim(
     "folds of a spring that hardens by harmonic balance: relative error of their frequencies",
     reference="closed orbits with a multiplier 1, by shooting with solve_ivp at 1e-12",
-    accepted=1e-8,
+    accepted=2e-11,
 )
 def test_folds_are_where_a_multiplier_of_the_orbit_is_1(claim):
     options = {"drive": ("z", 0.5), "amplitude": FORCE, "branches": True}
@@ -107,7 +107,7 @@ def test_stability_is_that_of_the_monodromy(stops):
     orbits = compared(31, stops, 6, 3)
     assert [one[0] for one in orbits] == [one[1] for one in orbits]
     assert sum(one[1] > 0 for one in orbits) >= 2
-    assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-8)
+    assert max(one[2] for one in orbits) < (1e-3 if stops else 1e-10)
 
 
 @pytest.mark.slow
