@@ -28,7 +28,7 @@ class Linear(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Balance:
+class HarmonicBalance:
     """What is balanced: a drive of one amplitude on a scene, harmonics up to K."""
 
     transfer: Transfer  # (points and more, points + 1), the drive last

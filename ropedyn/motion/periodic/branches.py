@@ -18,9 +18,9 @@ from ...chain.port import Point
 from ...response.frf import FRF, MeshOfResponse
 from ..continuation import Place
 from .asked import SteppedSine
-from .balance import Balance
+from .balance import HarmonicBalance
 from .driven import Driven
-from .state import HARMONICS, MOST, State, by_frequency, settled
+from .state import HARMONICS, MOST, SteadyState, by_frequency, settled
 from .stepped import STEPS, at_rest, holds, pieces, watched
 
 SAME = 1e-3  # Motions at one frequency that differ by less are one, relative.
@@ -161,7 +161,7 @@ def _refuse(driven: Driven) -> None:
         )
 
 
-def traced(driven: Driven, balance: Balance) -> list[list[State]]:
+def traced(driven: Driven, balance: HarmonicBalance) -> list[list[SteadyState]]:
     """Follow what is reached from rest at the lowest frequency, and then at the highest."""
     f = np.unique(driven.asked.frequency)
     up = _trace(driven, balance, f, 1)
@@ -172,7 +172,7 @@ def traced(driven: Driven, balance: Balance) -> list[list[State]]:
     return [up, _trace(driven, balance, f, -1)]
 
 
-def _trace(driven: Driven, balance: Balance, f: Real, heading: int) -> list[State]:
+def _trace(driven: Driven, balance: HarmonicBalance, f: Real, heading: int) -> list[SteadyState]:
     """Follow one branch through the frequencies until it leaves them."""
     first = float(f[::heading][0])
     omega = 2 * np.pi * f
@@ -180,17 +180,17 @@ def _trace(driven: Driven, balance: Balance, f: Real, heading: int) -> list[Stat
     branch = by_frequency(driven, balance)
     branch.place = Place(x, 2 * np.pi * first, x, 0.0)
     branch.turned(float(heading))
-    states = [State(balance, branch.place)]
+    states = [SteadyState(balance, branch.place)]
     for _ in range(STEPS):
         for piece in filter(None, pieces(branch)):
             for at in _passed(omega, piece):
                 inside = branch.between(*piece, at)
                 if inside is not None:
-                    states.append(State(balance, Place(inside, at, inside, 0.0)))
+                    states.append(SteadyState(balance, Place(inside, at, inside, 0.0)))
             end = piece[1]
             if not omega[0] <= end.p <= omega[-1]:
                 return states
-            states.append(State(balance, end, "step" if end is branch.place else "fold"))
+            states.append(SteadyState(balance, end, "step" if end is branch.place else "fold"))
     raise SolveError(f"a branch does not leave the frequencies in {STEPS} steps")
 
 
@@ -201,10 +201,10 @@ def _passed(omega: Real, piece: tuple[Place, Place]) -> list[float]:
     return inside if end > begin else inside[::-1]
 
 
-def _answer(driven: Driven, traces: list[list[State]], start: float) -> Branches:
+def _answer(driven: Driven, traces: list[list[SteadyState]], start: float) -> Branches:
     """Put the branches one after another; a fold ends one and begins the next."""
     asked = driven.asked
-    states: list[State] = []
+    states: list[SteadyState] = []
     first: list[int] = []
     for trace in traces:
         first.append(len(states))

@@ -19,7 +19,7 @@ from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
 from ...scene.tension import Tension
 from .asked import SteppedSine
-from .balance import Balance
+from .balance import HarmonicBalance
 from .laws import ActingLaw, PointForces, PointLaws, StringTension, Together, acting_laws, asked_law
 from .transfer import Transfer
 
@@ -95,10 +95,10 @@ class Driven:
         grip = -np.linalg.solve(H[:, m:, m : m + h], H[:, m:][..., free])
         return np.concatenate([H[:, :m][..., free] + H[:, :m, m : m + h] @ grip, grip], axis=1)
 
-    def balance(self, harmonics: int, turn: int = 1) -> Balance:
+    def balance(self, harmonics: int, turn: int = 1) -> HarmonicBalance:
         """Return what is balanced, with harmonics of the drive up to some."""
         points, amplitude = len(self.points), self.asked.amplitude
-        return Balance(self.transfer, self.force, points, harmonics * turn, amplitude, turn)
+        return HarmonicBalance(self.transfer, self.force, points, harmonics * turn, amplitude, turn)
 
     @cached_property
     def growing(self) -> int:
@@ -152,12 +152,12 @@ class Driven:
         size = float(np.abs(H).max()) * self.asked.amplitude or 1.0
         return size * np.linspace(0.3, 1.0, len(SHARES))
 
-    def linear_motion(self, balance: Balance, omega: float) -> Real:
+    def linear_motion(self, balance: HarmonicBalance, omega: float) -> Real:
         """Return the motion of the points without what is not linear."""
         H = balance.transfer.at(balance.order * omega)[:, : balance.points, -1]
         return balance.real((H * balance.driven()[:, None]).T)
 
-    def hold(self, balance: Balance | None, x: Real, omega: float) -> Real:
+    def hold(self, balance: HarmonicBalance | None, x: Real, omega: float) -> Real:
         """Return the largest force that holds each held point, (held,)."""
         m = len(self.points)
         if balance is None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
-from .balance import Balance
+from .balance import HarmonicBalance
 
 TURN = 0.5  # D turns by at most so much between neighbours and past their middle [rad].
 LOOKS = 17  # At first, beside those where H is known to change.
@@ -26,7 +26,7 @@ FEWEST = 8  # Harmonics at first: twice as many must tell the same.
 BATCH = 1 << 19  # Numbers of matrices that are looked at together.
 
 
-def growing(balance: Balance, x: Real, omega: float, free: int) -> int:
+def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int:
     """Return how many disturbances grow, of which the linear scene has `free` itself."""
     felt = balance.force.felt(*balance.motion(balance.complex(x), omega))
     if not (felt.by_u.any() or felt.by_v.any()):
@@ -46,7 +46,7 @@ def growing(balance: Balance, x: Real, omega: float, free: int) -> int:
     )
 
 
-def _least(balance: Balance, by_u: Real, by_v: Real, omega: float) -> int:
+def _least(balance: HarmonicBalance, by_u: Real, by_v: Real, omega: float) -> int:
     """Return how many harmonics answer to the forces by more than what causes them."""
     k = np.arange(balance.harmonics + 1.0) * omega
     H = np.abs(balance.transfer.at(k)[:, : balance.points, :-1]).max(axis=(1, 2))
@@ -58,7 +58,7 @@ class _Strip:
     """D on the way from 0 to i omega/2."""
 
     def __init__(
-        self, balance: Balance, stiff: Complex, drag: Complex, omega: float, harmonics: int
+        self, balance: HarmonicBalance, stiff: Complex, drag: Complex, omega: float, harmonics: int
     ) -> None:
         self.balance, self.omega = balance, omega
         self.k = np.arange(-harmonics, harmonics + 1)

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from ..continuation import Branch, Place
-from .balance import Balance
+from .balance import HarmonicBalance
 from .driven import Driven
 
 HARMONICS, MOST = 8, 256  # Of the drive, that branches are followed with and answered, at most.
@@ -19,10 +19,10 @@ SMALL = 1e-6  # Motion below this part of that of the linear scene is as good as
 ALIKE = 0.1  # More harmonics that move a motion by more may have found another one.
 
 
-class State(NamedTuple):
+class SteadyState(NamedTuple):
     """A steady state."""
 
-    balance: Balance
+    balance: HarmonicBalance
     place: Place  # over the base frequency
     kind: str = "asked"  # an "asked" frequency, a "step" of a branch or a "fold" of it
     change: Complex = np.zeros(
@@ -42,7 +42,7 @@ class State(NamedTuple):
         return np.asarray(force / (self.balance.amplitude / 2))
 
 
-def by_frequency(driven: Driven, balance: Balance) -> Branch:
+def by_frequency(driven: Driven, balance: HarmonicBalance) -> Branch:
     """Return a branch over the base frequency, that nowhere begins yet."""
 
     def linearise(x: Real, omega: float) -> tuple[Real, Real, Real]:
@@ -55,7 +55,7 @@ def by_frequency(driven: Driven, balance: Balance) -> Branch:
     return Branch(linearise, nowhere, SCALE * omega, SMALL * size)
 
 
-def settled(driven: Driven, state: State, least: int = 0) -> State | None:
+def settled(driven: Driven, state: SteadyState, least: int = 0) -> SteadyState | None:
     """Add harmonics until they change nothing; None where they lead to another motion.
 
     `least`: so many of the drive are known not to be enough.
@@ -82,7 +82,7 @@ def settled(driven: Driven, state: State, least: int = 0) -> State | None:
     )
 
 
-def _finer(driven: Driven, state: State, harmonics: int) -> State | None:
+def _finer(driven: Driven, state: SteadyState, harmonics: int) -> SteadyState | None:
     """Return a state with more harmonics, None where they lead to another motion."""
     narrow, place = state.balance, state.place
     balance = driven.balance(harmonics, narrow.turn)
@@ -98,11 +98,11 @@ def _finer(driven: Driven, state: State, harmonics: int) -> State | None:
         found = None if reached is None else reached[0]
     if found is None or np.linalg.norm(found.x - start) > ALIKE * np.linalg.norm(start):
         return None
-    wide = State(balance, found, state.kind, moved=abs(found.p - place.p) / (2 * np.pi))
+    wide = SteadyState(balance, found, state.kind, moved=abs(found.p - place.p) / (2 * np.pi))
     return wide._replace(change=wide.push - state.push)
 
 
-def _felt(driven: Driven, state: State) -> Complex:
+def _felt(driven: Driven, state: SteadyState) -> Complex:
     """Return what the last harmonics moved the points by, relative to the largest motion."""
     omega = state.place.p * state.balance.turn
     H = driven.transfer.at(np.array([omega]))[0, : len(driven.points)]

@@ -16,10 +16,10 @@ from ...response.harmonic import solve_harmonic
 from ..continuation import Branch, Place
 from ..direct.steady_states import march_steadily
 from .asked import SteppedSine
-from .balance import Balance
+from .balance import HarmonicBalance
 from .driven import Driven, known_to
 from .stability import growing
-from .state import HARMONICS, MOST, SMALL, State, by_frequency, settled
+from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled
 from .transfer import Transfer
 
 FIRST = 1e-3  # Share of the amplitude from which it is raised.
@@ -49,7 +49,7 @@ def solve_stepped(asked: SteppedSine) -> FRF:
     return asked.answer(asked.frequency, value, error, cost, stable)
 
 
-def watched(driven: Driven, frequency: Real, states: list[State]) -> tuple[Complex, Real]:
+def watched(driven: Driven, frequency: Real, states: list[SteadyState]) -> tuple[Complex, Real]:
     """Return what is watched per amplitude, (responses, f), and its relative error."""
     push = off = np.zeros((0, len(frequency)), dtype=np.complex128)
     if states:
@@ -63,7 +63,7 @@ def watched(driven: Driven, frequency: Real, states: list[State]) -> tuple[Compl
     return value, np.divide(error, size, out=relative, where=size > 0)
 
 
-def holds(driven: Driven, state: State) -> bool:
+def holds(driven: Driven, state: SteadyState) -> bool:
     """Whether a motion comes back to itself."""
     return growing(state.balance, state.place.x, state.place.p, driven.growing) == 0
 
@@ -91,7 +91,7 @@ def _linear(asked: SteppedSine, driven: Driven, start: float) -> FRF:
     return asked.answer(f, found.value, error, cost, np.ones(len(f), dtype=np.bool_))
 
 
-def _slips(driven: Driven, states: list[State]) -> bool:
+def _slips(driven: Driven, states: list[SteadyState]) -> bool:
     """Whether friction does not hold at all frequencies."""
     if not driven.held:
         return False
@@ -103,12 +103,12 @@ def _slips(driven: Driven, states: list[State]) -> bool:
     return bool((np.array(force) > driven.grip).any())
 
 
-def _followed(driven: Driven) -> list[State]:
+def _followed(driven: Driven) -> list[SteadyState]:
     """Return the steady states with as many harmonics as they need."""
     asked, harmonics = driven.asked, HARMONICS
     while True:
         path = Path(driven, driven.balance(harmonics)) if driven.keeps_time else None
-        finer: list[State] = []
+        finer: list[SteadyState] = []
         least = 0
         for k, f in enumerate(asked.frequency.tolist()):
             found = settled(driven, _state(driven, path, harmonics, f), least)
@@ -125,17 +125,17 @@ def _followed(driven: Driven) -> list[State]:
             raise SolveError(f"{harmonics} harmonics do not tell where the branch leads")
 
 
-def _state(driven: Driven, path: Path | None, harmonics: int, frequency: float) -> State:
+def _state(driven: Driven, path: Path | None, harmonics: int, frequency: float) -> SteadyState:
     """Return the state on the way through the frequencies, or from rest where time is kept."""
     if path is not None:
         balance, x = path.balance, path.to(frequency)
     else:
         balance = driven.balance(harmonics, driven.turn(frequency))
         x = at_rest(driven, balance, frequency)
-    return State(balance, Place(x, 2 * np.pi * frequency / balance.turn, x, 0.0))
+    return SteadyState(balance, Place(x, 2 * np.pi * frequency / balance.turn, x, 0.0))
 
 
-def at_rest(driven: Driven, balance: Balance, frequency: float) -> Real:
+def at_rest(driven: Driven, balance: HarmonicBalance, frequency: float) -> Real:
     """Return the motion that is reached when the amplitude of the drive is raised from 0."""
     omega = 2 * np.pi * frequency / balance.turn
 
@@ -174,7 +174,7 @@ class Path:
     """The way through the frequencies, from rest at the first."""
 
     driven: Driven
-    balance: Balance
+    balance: HarmonicBalance
     branch: Branch = field(init=False)
     now: float = 0.0  # the frequency that was answered last [rad/s]
     x: Real = field(default_factory=lambda: np.zeros(0))  # the motion there
