@@ -145,7 +145,7 @@ def main() -> None:
         f"{len(LINES)} frequencies of a curve take `frf` {1e3 * times['all']:.2g} ms.\n\n"
         + report.table(head, rows)
     )
-    report.write("stepped_sine.md", text + "\n" + nonlinear())
+    report.write("stepped_sine.md", text + "\n\n" + nonlinear())
 
 
 if __name__ == "__main__":

@@ -51,7 +51,8 @@ class Branches(Answer):
     rounding_error : ndarray, as value
         Estimated relative error.
     stable : ndarray of bool, shape (points,)
-        Whether the motion comes back to itself when it is disturbed.
+        Whether the motion comes back to itself when it is disturbed; False too where that cannot
+        be told, as on folds.
     folds : ndarray, shape (f,)
         Frequencies at which a branch turns into the next [Hz], in the order they are passed.
     fold_error : ndarray, shape (f,)

@@ -12,38 +12,42 @@ conj D(s): half the way is enough.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...base.array import Complex, Real
-from ...base.errors import SolveError
 from .balance import HarmonicBalance
 
 TURN = 0.5  # D turns by at most so much between neighbours and past their middle [rad].
 LOOKS = 17  # At first, beside those where H is known to change.
 ROUNDS = 40  # The way is halved so often at most.
 CLOSED = 0.05  # D is real at both ends, but for so much [rad]: there are enough harmonics.
+FINER = 2  # The slopes of forces are sampled so much closer than the forces.
 FEWEST = 8  # Harmonics at first: twice as many must tell the same.
 BATCH = 1 << 19  # Numbers of matrices that are looked at together.
 
 
-def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int:
-    """Return how many disturbances grow, of which the linear scene has `free` itself."""
-    felt = balance.force.felt(*balance.motion(balance.complex(x), omega))
+def growing(balance: HarmonicBalance, x: Real, omega: float, free: int) -> int | None:
+    """Return how many disturbances grow, None where that cannot be told.
+
+    The linear scene has `free` of them itself.
+    """
+    fine = replace(balance, harmonics=FINER * balance.harmonics)
+    x = balance.wider(x, fine.harmonics)
+    felt = fine.force.felt(*fine.motion(fine.complex(x), omega))
     if not (felt.by_u.any() or felt.by_v.any()):
         return free
-    stiff, drag = (np.fft.fft(one, axis=2) / balance.samples for one in (felt.by_u, felt.by_v))
+    stiff, drag = (np.fft.fft(one, axis=2) / fine.samples for one in (felt.by_u, felt.by_v))
     harmonics = _least(balance, felt.by_u, felt.by_v, omega)
     before = None
-    while harmonics <= balance.samples // 4:
-        turns = _Strip(balance, stiff, drag, omega, harmonics).turns()
+    while harmonics <= fine.samples // 4:
+        turns = _Strip(fine, stiff, drag, omega, harmonics).turns()
         told = round(turns) if abs(turns - round(turns)) <= CLOSED / np.pi else None
         if told is not None and told == before:
             return free - told
         harmonics, before = 2 * harmonics, told
-    raise SolveError(
-        f"frequency {omega / (2 * np.pi):.6g} Hz: whether the motion is stable cannot be told with "
-        f"{harmonics // 2} harmonics"
-    )
+    return None
 
 
 def _least(balance: HarmonicBalance, by_u: Real, by_v: Real, omega: float) -> int:
