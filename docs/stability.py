@@ -36,7 +36,7 @@ def mark_boundaries(ax: plt.Axes, scene: rd.Scene, style: str) -> None:
     """Draw a dot wherever stability changes."""
     stability = scene.compile().stability_map(FREQUENCY[[0, -1]], [0.0])
     for amplitude in LEVELS:
-        edge = stability.boundary(float(amplitude))
+        edge = stability.boundary(float(amplitude)).frequency
         ax.plot(edge, np.full_like(edge, amplitude), style, markersize=1.5)
 
 

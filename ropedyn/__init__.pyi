@@ -29,6 +29,7 @@ from .motion.history import History
 from .motion.periodic.branches import Branches
 from .parametric.floquet import Floquet
 from .parametric.stability import StabilityMap
+from .parametric.tongues import Boundary
 from .response.deflection import Deflection
 from .response.frf import FRF
 from .response.second_harmonic import SecondHarmonic
@@ -68,6 +69,7 @@ __all__ = [
     "Animation",
     "Answer",
     "BendingTest",
+    "Boundary",
     "Branches",
     "BrokenWire",
     "Chirp",

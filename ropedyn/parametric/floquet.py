@@ -15,12 +15,16 @@ from ..base.errors import SceneError
 from ..base.table import Table
 from ..chain.compiled import Compiled
 from ..scene.tension import Tension
+from .hill import motion_next_to
 from .modal_system import ModalSystem, modal_system
-from .monodromy import finite, monodromy, steps_for
+from .monodromy import finite, monodromy, rates, scales, steps_for
 
 EPS = float(np.finfo(float).eps)
 FINE = 0.6  # The highest mode turns so far in a step at first [rad].
 CONVERGED = 1e-13  # Half as long steps change motion over a period by less than this part of it.
+LOST = 1e-3  # A multiplier whose error is this part of it is lost beside larger ones.
+TRACE = 1e-9  # Rates add up to what they must to this part of it.
+AGREES = 10.0  # So many errors of it a multiplier may be from that of Hill's matrix.
 PART = 0.1  # A mode with more of the energy of a motion takes part in it.
 MOST_MODES = 200
 
@@ -38,12 +42,14 @@ class Floquet(Answer):
         Of the tension [s].
     multiplier : ndarray of complex, shape (2k,)
         1.
+    rate : ndarray of complex, shape (2k,)
+        ln(multiplier)/period [1/s]. Also of motion that decays so fast that its multiplier
+        is lost beside the others.
     growth : ndarray, shape (2k,)
-        ln|multiplier|/period [1/s], negative where motion decays.
+        Real part of the rate [1/s], negative where motion decays.
     rounding_error : ndarray, shape (2k,)
-        Estimated absolute error of each multiplier: what half as long steps change in the motion
-        over a period, times the condition of the multiplier. Two of them that nearly meet, as on
-        the boundary of instability, lose half of the digits.
+        Estimated absolute error of each multiplier. Two of them that nearly meet, as on the
+        boundary of instability, lose half of the digits.
     stable : bool
         Whether no |multiplier| is larger than 1 by more than its error. Without damping those of
         stable motion are 1.
@@ -72,6 +78,7 @@ class Floquet(Answer):
     period: float
     modes: Index = field(metadata=axes("mode"))
     frequency: Real = field(metadata=axes("mode", unit="Hz"))
+    rate: Complex = field(metadata=axes("motion", unit="1/s"))
     multiplier: Complex = field(metadata=axes("motion"))
     rounding_error: Real = field(metadata=axes("motion"))
     participation: Real = field(metadata=axes("motion", "mode"))
@@ -80,8 +87,7 @@ class Floquet(Answer):
     @property
     def growth(self) -> Real:
         """Growth rates [1/s], shape (2k,)."""
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.log(np.abs(self.multiplier)) / self.period)
+        return self.rate.real
 
     @property
     def stable(self) -> bool:
@@ -122,37 +128,91 @@ def solve_floquet(model: Compiled, modes: int | None) -> Floquet:
     start = time.perf_counter()
     system = modal_system(model, checked_modes(model, modes))
     count = len(system.eigenvalue)
-    multiplier: list[Complex] = []
-    error: list[Real] = []
     share = np.zeros((2 * count, count))
-    steps = 0
+    rate: list[Complex] = []
+    error: list[Real] = []
+    steps, harmonics = 0, 0
     for block in system.blocks:
-        matrix, off, made = converged(system.only(block), tension.frequency, tension.amplitude)
-        value, right = np.linalg.eig(matrix)
-        part = np.abs(right[: len(block)]) ** 2 + np.abs(right[len(block) :]) ** 2
-        begin = sum(map(len, multiplier))
-        share[begin : begin + len(value), block] = (part / part.sum(axis=0)).T
-        multiplier.append(value)
-        error.append(_errors(matrix, off, right))
-        steps = max(steps, made)
-    value = np.concatenate(multiplier)
-    size = np.abs(value)
+        part = system.only(block)
+        matrix, off, made = converged(part, tension.frequency, tension.amplitude)
+        found = _motions(part, tension.amplitude, 1 / tension.frequency, matrix, off)
+        begin = sum(map(len, rate))
+        share[begin : begin + len(found.rate), block] = found.share
+        rate.append(found.rate)
+        error.append(found.error)
+        steps, harmonics = max(steps, made), max(harmonics, found.harmonics)
+    every = np.concatenate(rate)
+    value = np.exp(every / tension.frequency)
+    value.imag[np.abs(value.imag) <= 4 * EPS * np.abs(value)] = 0.0
     # of a pair of the same size the one above the real axis comes first
-    order = np.lexsort((-value.imag, -np.round(size / size.max(initial=1.0), 12)))
+    order = np.lexsort((-value.imag, -np.round(every.real / tension.frequency, 12)))
     return Floquet(
         period=1 / tension.frequency,
         modes=np.arange(1, count + 1),
         frequency=system.omega / (2 * np.pi),
+        rate=every[order],
         multiplier=value[order],
         rounding_error=np.concatenate(error)[order],
         participation=share[order],
         cost=Cost(
             time.perf_counter() - start,
-            f"composition of order 10, {steps} steps",
+            f"Hill's matrix, {harmonics} harmonics; composition of order 10, {steps} steps",
             len(model.x) - 1,
             2 * count,
         ),
     )
+
+
+@dataclass
+class _Motions:
+    """Motions of coupled modes."""
+
+    rate: Complex  # (2k,) [1/s]
+    error: Real  # (2k,) of the multiplier
+    share: Real  # (2k, k) of modes in the energy
+    harmonics: int = 0  # so many were needed
+
+
+def _motions(
+    system: ModalSystem, amplitude: float, period: float, matrix: Real, off: float
+) -> _Motions:
+    """Find the motions by Hill's matrix, from those of the motion over a period and its error."""
+    value, right = np.linalg.eig(matrix)
+    error = _errors(matrix, off, right)
+    lost = error > LOST * np.abs(value)
+    with np.errstate(divide="ignore"):
+        rate = np.log(value.astype(complex)) / period
+    # what decays so fast is nearly as without pulsation
+    decays = np.linalg.eigvals(rates(system))
+    rate[lost] = decays[np.argsort(decays.real)[: lost.sum()]]
+    found = _Motions(rate, error, _shares(right))
+    for n, guess in enumerate(rate):
+        motion = motion_next_to(system, amplitude, period, complex(guess))
+        if motion is None:
+            continue
+        multiplier = np.exp(motion.rate * period)
+        if lost[n] or abs(multiplier - value[n]) <= AGREES * error[n]:
+            found.rate[n] = motion.rate
+            found.error[n] = min(AGREES * motion.error * period * abs(multiplier), error[n])
+            k = len(system.eigenvalue)
+            state = np.concatenate([motion.start[:k] * scales(system), motion.start[k:]])
+            found.share[n] = _shares(state[:, None])[0]
+            found.harmonics = max(found.harmonics, motion.harmonics)
+    # the rates of all motions add up to the trace of the damping
+    off_trace = abs(float(found.rate.real.sum() + np.trace(system.damping)))
+    if lost.any() and not off_trace * period <= TRACE * max(
+        float(np.trace(system.damping)) * period, 1.0
+    ):
+        with np.errstate(divide="ignore"):
+            found.rate[lost] = np.log(value[lost].astype(complex)) / period
+        found.error[lost] = error[lost]
+    return found
+
+
+def _shares(state: Complex) -> Real:
+    """Return the share of each mode in the energy of states, columns."""
+    part = np.abs(state[: len(state) // 2]) ** 2 + np.abs(state[len(state) // 2 :]) ** 2
+    return np.asarray((part / part.sum(axis=0)).T)
 
 
 def checked_modes(model: Compiled, modes: int | None) -> int | None:

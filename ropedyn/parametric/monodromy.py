@@ -1,5 +1,8 @@
 """How motion in modes is carried on over one period of the tension.
 
+Over a period p the motion is an entire function of p: polynomials between a few dozen periods give
+it at all others.
+
 With W = diag(w) and the state (W q, q') the modes by themselves move exactly, by the exponential of
 their rates; the pulsation kicks them, q' -= h a cos(2 pi f t) Gamma q. Kicks between half steps of
 motion are of second order and symmetric in time; a symmetric composition of 35 of them, some of
@@ -15,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -41,6 +45,9 @@ MOST_STEPS = 200_000  # A period takes so many steps at most.
 ANGLE = 1.0
 """The highest mode turns so far in a step [rad]: the error of ln|multiplier| is 1e-10 where the
 tension pulsates by half of it."""
+SMALL_ANGLE = 0.4  # The same where motion is to be right to rounding.
+NODES = 40  # A polynomial goes through the motion over so many periods,
+TURN = 6.0  # between which the highest mode turns by twice this [rad].
 
 
 def steps_for(system: ModalSystem, frequency: float, amplitude: float, angle: float) -> int:
@@ -152,3 +159,50 @@ def finite(matrix: Real) -> Real:
     if not np.isfinite(matrix).all():
         raise SolveError("motion grows out of all numbers within one period of the tension")
     return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Propagator:
+    """Motion over a period as polynomials in the period."""
+
+    edge: Real  # (p + 1,) where polynomials meet [s]
+    coefficient: Real  # (p, NODES, 2k, 2k) of Chebyshev's
+
+    @classmethod
+    def of(cls, system: ModalSystem, low: float, high: float, amplitude: float) -> Propagator:
+        """Return that between two periods."""
+        stiffest = np.abs(system.eigenvalue).max() + amplitude * np.abs(system.geometric).max()
+        rate = math.sqrt(stiffest) + float(np.abs(system.damping).max())
+        pieces = max(math.ceil(rate * (high - low) / (2 * TURN)), 1)
+        edge = np.linspace(low, high, pieces + 1)
+        angle = np.pi * (np.arange(NODES) + 0.5) / NODES
+        middle, half = (edge[1:] + edge[:-1])[:, None] / 2, np.diff(edge)[:, None] / 2
+        frequency = 1 / (middle + half * np.cos(angle)).ravel()
+        size = 2 * len(system.eigenvalue)
+        motion = np.empty((len(frequency), size, size))
+        given = np.full((len(frequency), 1), amplitude)
+        for these, matrix in periods(system, frequency, given, SMALL_ANGLE):
+            motion[these] = matrix[:, 0]
+        series = np.cos(np.arange(NODES)[:, None] * angle) * 2 / NODES
+        series[0] /= 2
+        coefficient = np.einsum("mj,pjab->pmab", series, motion.reshape(pieces, NODES, size, size))
+        return cls(edge, coefficient)
+
+    @property
+    def tail(self) -> float:
+        """The last terms of the polynomials beside the largest: what is left out is smaller."""
+        size = np.abs(self.coefficient).max(axis=(2, 3))
+        return float((size[:, -2:].max(axis=1) / size.max(axis=1)).max())
+
+    def __call__(self, period: Real) -> Real:
+        """Return the motion over periods, shape (m, 2k, 2k)."""
+        at = np.clip(np.searchsorted(self.edge, period) - 1, 0, len(self.edge) - 2)
+        size = self.coefficient.shape[-1]
+        motion = np.empty((len(period), size, size))
+        for piece in np.unique(at):
+            these = at == piece
+            low, high = self.edge[piece : piece + 2]
+            x = (2 * period[these] - low - high) / (high - low)
+            series = np.polynomial.chebyshev.chebvander(x, NODES - 1)
+            motion[these] = np.tensordot(series, self.coefficient[piece], 1)
+        return motion

@@ -19,7 +19,7 @@ from ..chain.compiled import Compiled
 from .floquet import checked_modes
 from .modal_system import ModalSystem, modal_system
 from .monodromy import exponent
-from .tongue import Tongue, boundaries, threshold, tongues_of
+from .tongues import Boundary, Tongue, boundary, threshold, tongues_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +97,8 @@ class StabilityMap(Answer):
         """Where instability begins, lowest frequency first."""
         return tongues_of(self.system, float(self.frequency[0]), float(self.frequency[-1]))
 
-    def boundary(self, amplitude: float) -> Real:
-        """Find the frequencies where stability changes.
-
-        Between the frequencies of the map, and closer to each other near every resonance up to
-        the fourth order: tongues are found however narrow, down to 1e-6 of their frequency. What is
-        between two tongues of strong pulsation that nearly touch may be missed.
+    def boundary(self, amplitude: float) -> Boundary:
+        """Find the frequencies where stability changes, between the frequencies of the map.
 
         Parameters
         ----------
@@ -111,16 +107,17 @@ class StabilityMap(Answer):
 
         Returns
         -------
-        ndarray
-            [Hz], increasing. Their relative error is about 1e-10, and where there is no damping
-            1e-12 over the relative width of the tongue.
+        Boundary
+            `frequency` [Hz], `order` of the tongue, and whether it is `proved` that no tongue is
+            missed.
 
         Raises
         ------
         TypeError
             If it is not a number.
         SceneError
-            If it is negative or not finite.
+            If it is negative or not finite, or larger than the mean tension of a rope without
+            bending stiffness.
         SolveError
             If a period takes too many steps or motion grows out of all numbers in it.
 
@@ -131,11 +128,11 @@ class StabilityMap(Answer):
         >>> import ropedyn as rd
         >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile()
         >>> stability = model.stability_map([90.0, 110.0], [0.0, 100.0], modes=1)
-        >>> stability.boundary(100.0).round(3)
+        >>> stability.boundary(100.0).frequency.round(3)
         array([ 97.485, 102.484])
         """
         value = check.number(amplitude, "amplitude", "N", sign="nonnegative")
-        return boundaries(self.system, self.frequency, value)
+        return boundary(self.system, float(self.frequency[0]), float(self.frequency[-1]), value)
 
     def table(self) -> Table:
         """Return one row for each amplitude: where it is unstable, and what grows most."""

@@ -5,7 +5,7 @@ import pytest
 
 import ropedyn as rd
 from ropedyn.parametric.monodromy import exponent
-from ropedyn.parametric.tongue import threshold
+from ropedyn.parametric.tongues import threshold
 
 BOUNDARY = {
     (0.1, 0.0): (1.949698438262927689492, 2.049678773154419840148),
@@ -34,7 +34,7 @@ def mapped(scene, frequency, modes):
 @pytest.mark.claim(
     "relative error of the frequencies where a string becomes unstable",
     reference="Taylor series with 40 digits",
-    accepted=1e-9,
+    accepted=1e-11,
 )
 @pytest.mark.parametrize("given", BOUNDARY)
 def test_string_becomes_unstable_where_mathieu_says(given, claim):
@@ -43,15 +43,15 @@ def test_string_becomes_unstable_where_mathieu_says(given, claim):
     scene = STRING.replace(damping=rd.ModalDamping(ratio))
     stability = mapped(scene, [40.0, 60.0], 1)
     first = stability.mode_frequency[0]
-    found = stability.boundary(1000.0 * amplitude) / first
+    found = stability.boundary(1000.0 * amplitude).frequency / first
     claim(np.abs(found / BOUNDARY[given] - 1).max())
 
 
 def test_damping_closes_the_tongue_below_its_threshold():
     """amplitude/mean = 4 zeta, but for zeta^3."""
     stability = mapped(STRING.replace(damping=rd.ModalDamping(0.01)), [40.0, 60.0], 1)
-    assert len(stability.boundary(0.999 * 40.0)) == 0
-    assert len(stability.boundary(1.001 * 40.0)) == 2
+    assert len(stability.boundary(0.999 * 40.0).frequency) == 0
+    assert len(stability.boundary(1.001 * 40.0).frequency) == 2
 
 
 def test_damping_closes_the_tongue_of_two_modes_below_its_threshold():
@@ -63,7 +63,7 @@ def test_damping_closes_the_tongue_of_two_modes_below_its_threshold():
     middle = stability.mode_frequency.sum()
 
     def near(amplitude):
-        return np.abs(stability.boundary(amplitude) - middle) < 1.0
+        return np.abs(stability.boundary(amplitude).frequency - middle) < 1.0
 
     assert not near(0.99 * needed).any()
     assert near(1.01 * needed).sum() == 2
@@ -76,7 +76,7 @@ def test_two_modes_grow_together_as_first_order_theory_says():
     assert tongue.modes == (1, 2)
     off = []
     for amplitude in (5.0, 10.0):
-        found = stability.boundary(amplitude)
+        found = stability.boundary(amplitude).frequency
         found = found[np.abs(found - tongue.frequency) < 1.0]
         off.append(found - tongue.frequency - amplitude * tongue.spread * np.array([-1.0, 1.0]))
     assert off[1] / off[0] == pytest.approx([4.0, 4.0], rel=0.05)
@@ -87,7 +87,7 @@ def test_principal_tongue_of_every_mode_is_as_wide_as_first_order_theory_says():
     stability = mapped(BEAM, [80.0, 400.0], 3)
     for tongue in stability.tongues:
         if tongue.kind == "principal":
-            found = stability.boundary(1.0)
+            found = stability.boundary(1.0).frequency
             found = found[np.abs(found - tongue.frequency) < 1.0]
             assert np.ptp(found) == pytest.approx(2 * tongue.spread, rel=1e-3)
 
@@ -101,7 +101,7 @@ def test_no_tongue_of_a_scan_is_missed(damping):
     grows = growth > threshold(stability.system, scan)
     at = np.flatnonzero(grows[1:] != grows[:-1])
     assert len(at) > 6
-    found = stability.boundary(150.0)
+    found = stability.boundary(150.0).frequency
     for low, high in zip(scan[at], scan[at + 1]):
         assert ((low <= found) & (found <= high)).any()
     # what the scan steps over are tongues, two boundaries each
@@ -126,7 +126,7 @@ def test_map_is_as_the_multipliers_are():
 def test_undamped_rope_without_pulsation_is_stable():
     stability = BEAM.compile().stability_map(np.linspace(50.0, 250.0, 41), [0.0], modes=4)
     assert stability.stable.all()
-    assert len(stability.boundary(0.0)) == 0
+    assert len(stability.boundary(0.0).frequency) == 0
 
 
 def test_tongues_have_names():
@@ -154,7 +154,7 @@ def test_answer_is_a_table_a_figure_and_a_file(tmp_path):
     stability.save(tmp_path / "map.nc")
     again = rd.load(tmp_path / "map.nc")
     assert np.array_equal(again.growth, stability.growth)
-    assert np.array_equal(again.boundary(200.0), stability.boundary(200.0))
+    assert np.array_equal(again.boundary(200.0).frequency, stability.boundary(200.0).frequency)
     assert again.tongues == stability.tongues
 
 

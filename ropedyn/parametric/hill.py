@@ -1,0 +1,264 @@
+"""Hill's matrix: motion exp(s t) sum_h v_h exp(i h Omega t) under a tension that pulsates.
+
+    [(s + i h Omega)^2 + C (s + i h Omega) + Lambda] v_h + (a/2) Gamma (v_{h-1} + v_{h+1}) = 0
+
+Without damping and with s = i nu Omega it is real and symmetric: at every phase 2 pi nu by which
+motion turns in a period it has bands of eigenvalues Omega^2,
+
+    [Lambda delta + (a/2) Gamma] v = Omega^2 (h + nu)^2 v,
+
+and instability begins where a band is flat: G. W. Hill, Acta Mathematica 8 (1886) 1-36.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.array import Complex, Real
+from ..base.computed import computed
+from .modal_system import ModalSystem
+
+Numbers = NDArray[Any]  # Real where motion turns without damping, complex elsewhere.
+EPS = float(np.finfo(float).eps)
+BEYOND = 12  # So many harmonics are added above the frequency of the stiffest mode,
+MORE = 2  # and this many times as many where that was not enough.
+OUTER = 1e-9  # The two outer harmonics on each side hold less than this part of a motion.
+INVERSE = 8  # So many steps of inverse iteration lead to two bands.
+BESIDE = 1 + 1e-6  # Inverse iteration so far beside a band leaves the other one what it is.
+FINE = 1e-3  # A step is so short beside the phase in which a band bends.
+STEPS = 6  # So many lead to where two bands nearly meet.
+SYMMETRIC = 1e-9  # Bands are flat at phases 0 and pi.
+MOVES = 1e-8  # Where a band is flat it lies so close to where it was looked for, in parts of it.
+SETTLED = 1e-14  # Phases are known so well, in turns.
+
+
+@dataclass(frozen=True, eq=False)
+class Hill:
+    """Hill's matrix of some harmonics."""
+
+    system: ModalSystem
+    amplitude: float  # of the tension [N]
+    harmonic: Real  # (h,) from -H to H
+
+    @classmethod
+    def of(cls, system: ModalSystem, amplitude: float, period: float) -> Hill:
+        """Return one with harmonics enough for a guess."""
+        stiffest = np.abs(system.eigenvalue).max() + amplitude * np.abs(system.geometric).max()
+        most = math.ceil(math.sqrt(stiffest) * period / (2 * math.pi)) + BEYOND
+        return cls(system, amplitude, np.arange(-most, most + 1.0))
+
+    def larger(self) -> Hill:
+        """Return one with more harmonics."""
+        most = MORE * self.harmonic[-1]
+        return Hill(self.system, self.amplitude, np.arange(-most, most + 1))
+
+    @computed
+    def _still(self) -> Real:
+        """The matrix by its diagonals, without rates."""
+        k, h = len(self.system.eigenvalue), len(self.harmonic)
+        wide = 2 * k - 1
+        band = np.zeros((2 * wide + 1, k * h))
+        i, j = np.indices((k, k))
+        start = k * np.arange(h)[:, None, None]
+        side = self.amplitude / 2 * self.system.geometric
+        band[wide + i - j - k, start[1:] + j] = side
+        band[wide + i - j + k, start[:-1] + j] = side
+        band[wide] += np.tile(self.system.eigenvalue, h)
+        return band
+
+    def bands(self, rate: Numbers) -> Numbers:
+        """Return the matrix by its diagonals, of rates s + i h Omega; real where it is."""
+        k, resists = len(self.system.eigenvalue), self.system.damping.any()
+        square: Numbers = np.repeat(rate * rate, k)
+        wide = 2 * k - 1
+        if not resists and not rate.real.any():
+            square = square.real
+        band = self._still.astype(square.dtype)
+        band[wide] += square
+        if resists:
+            i, j = np.indices((k, k))
+            start = k * np.arange(len(rate))[:, None, None]
+            band[wide + i - j, start + j] += rate[:, None, None] * self.system.damping
+        return band
+
+    def solve(self, rate: Numbers, right: Numbers) -> Numbers:
+        """Return the matrix' inverse times columns."""
+        from scipy.linalg import solve_banded
+
+        wide = 2 * len(self.system.eigenvalue) - 1
+        return solve_banded((wide, wide), self.bands(rate), right, check_finite=False)
+
+    def times(self, rate: Numbers, motion: Numbers) -> Numbers:
+        """Return the matrix times columns."""
+        system, m = self.system, motion.shape[1]
+        v = motion.reshape(len(rate), -1, m)
+        square = (rate * rate)[:, None, None]
+        out = (system.eigenvalue[:, None] + (square if np.iscomplexobj(v) else square.real)) * v
+        if system.damping.any():
+            out = out + rate[:, None, None] * (system.damping @ v)
+        side = self.amplitude / 2 * (system.geometric @ v)
+        out[1:] += side[:-1]
+        out[:-1] += side[1:]
+        return out.reshape(-1, m)
+
+    def enough(self, motion: Numbers) -> bool:
+        """Return whether the outer harmonics of motions, columns, hold next to nothing."""
+        size = np.abs(motion.reshape(len(self.harmonic), -1, motion.shape[1])).max(axis=1)
+        outer = np.concatenate([size[:2], size[-2:]])
+        return bool((outer < OUTER * size.max(axis=0)).all())
+
+
+class HillMotion(NamedTuple):
+    """HillMotion exp(s t) sum_h v_h exp(i h Omega t)."""
+
+    rate: complex  # s [1/s]
+    error: float  # of rounding [1/s]
+    start: Complex  # (2k,) q and q' at the beginning of a period
+    harmonics: int  # h in all
+
+
+def motion_next_to(
+    system: ModalSystem, amplitude: float, period: float, rate: complex
+) -> HillMotion | None:
+    """Return the motion whose rate is next to a given one, None if it leads to none."""
+    hill, k = Hill.of(system, amplitude, period), len(system.eigenvalue)
+    for _ in range(STEPS):
+        turning = 2j * np.pi / period * hill.harmonic
+        column: Numbers = np.random.default_rng(0).normal(size=(k * len(turning), 1))
+        try:
+            for _ in range(2):
+                column = hill.solve(rate + turning, column)
+                column /= np.linalg.norm(column)
+        except np.linalg.LinAlgError:
+            return None  # motion that does not feel the pulsation, as rigid motion
+        if not hill.enough(column):
+            hill = hill.larger()
+            continue
+        each, v = np.repeat(rate + turning, k)[:, None], column.reshape(-1, k)
+        # the matrix is symmetric: a motion is its own left one
+        slope = complex((2 * each * column**2).sum() + np.einsum("hi,ij,hj", v, system.damping, v))
+        change = complex((column * hill.times(rate + turning, column)).sum()) / slope
+        rate -= change
+        stiff = np.abs(each) ** 2 + np.abs(system.eigenvalue).max()
+        error = EPS * float((stiff * np.abs(column) ** 2).sum()) / abs(slope)
+        if abs(change) <= max(error, EPS * abs(rate)):
+            start = np.concatenate([v.sum(axis=0), ((rate + turning)[:, None] * v).sum(axis=0)])
+            return HillMotion(rate, error, start, len(turning))
+    return None
+
+
+def turns(system: ModalSystem, amplitude: float, period: float) -> int:
+    """Return how many bands lie above Omega^2 at phase 0: multipliers that have come through 1."""
+    from scipy.linalg import eigvals_banded
+
+    hill = Hill.of(system, amplitude, period)
+    rate = 2j * np.pi / period * hill.harmonic
+    half = 2 * len(system.eigenvalue) - 1
+    lower = hill.bands(rate)[half:]
+    return int((eigvals_banded(lower, lower=True, check_finite=False) > 0).sum())
+
+
+def order_of(rate: Numbers, motion: Numbers) -> int:
+    """Return n of the resonance n Omega = omega_i + omega_j of two that meet, columns of motions.
+
+    The mean rate of the one that turns forward and of the other, by the action they carry.
+    """
+    size = (np.abs(motion.reshape(len(rate), -1)) ** 2).sum(axis=1)
+    turning = rate.imag
+    forward, backward = size * (turning > 0), size * (turning < 0)
+    means = [(turning**2 @ part) / (np.abs(turning) @ part) for part in (forward, backward)]
+    return round(float(sum(means) * (len(rate) - 1) / (turning[-1] - turning[0])))
+
+
+class Flat(NamedTuple):
+    """Where bands that meet are flat."""
+
+    period: Real  # (1,) or (2,) [s], of the upper band first
+    order: int
+
+
+class _Pair(NamedTuple):
+    """The two bands next to a period at a phase."""
+
+    rate: Numbers  # (h,) of the harmonics [1/s]
+    motion: Real  # (h k, 2)
+    level: Real  # (2,) Omega^2 beside that of the period, of the upper band first
+    slope: Real  # (2, 2) -d Omega^2/d nu
+
+
+def _pair(hill: Hill, square: float, nu: float) -> _Pair:
+    """Return the bands next to Omega^2 at a phase in turns."""
+    from scipy.linalg import eigh
+
+    k = len(hill.system.eigenvalue)
+    rate = 1j * math.sqrt(square) * (hill.harmonic + nu)
+    turning = np.repeat(hill.harmonic + nu, k)[:, None]
+    basis = np.random.default_rng(0).normal(size=(len(turning), 2))
+    for _ in range(INVERSE):
+        basis = np.linalg.qr(hill.solve(BESIDE * rate, turning**2 * basis))[0]
+    level, mixed = eigh(basis.T @ hill.times(rate, basis), basis.T @ (turning**2 * basis))
+    motion = (basis @ mixed)[:, ::-1]
+    slope = 2 * square * (motion.T @ (turning * motion))
+    return _Pair(rate, motion, level[::-1], slope)
+
+
+def _enough(system: ModalSystem, amplitude: float, period: float, nu: float) -> Hill:
+    """Return Hill's matrix with harmonics enough for the bands next to a period and a phase."""
+    hill = Hill.of(system, amplitude, period)
+    while True:
+        pair = _pair(hill, (2 * np.pi / period) ** 2, nu)
+        if hill.enough(pair.motion[:, [int(np.abs(pair.level).argmin())]]):
+            return hill
+        hill = hill.larger()
+
+
+def flat_band(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat:
+    """Return where the band next to a period and a phase is flat."""
+    nu, square = phase / (2 * np.pi), (2 * np.pi / period) ** 2
+    hill = _enough(system, amplitude, period, nu)
+
+    def nearest(x: float) -> tuple[float, float, _Pair, int]:
+        pair = _pair(hill, square, x)
+        which = int(np.abs(pair.level).argmin())
+        return float(pair.level[which]), float(pair.slope[which, which]), pair, which
+
+    level, slope, pair, which = nearest(nu)
+    if abs(math.remainder(nu, 0.5)) > SYMMETRIC:
+        # where two bands nearly meet they bend in a phase as short as they are apart
+        step = FINE * min(abs(pair.level[0] - pair.level[1]) / square, 1.0)
+        bend = (nearest(nu + step)[1] - slope) / step
+        better = nearest(nu - slope / bend)[0] if bend else level
+        level = better if abs(better - level) < MOVES * square else level
+    found = np.array([2 * np.pi / math.sqrt(square + level)])
+    return Flat(found, order_of(pair.rate, pair.motion[:, which]))
+
+
+def flat_pair(system: ModalSystem, amplitude: float, period: float, phase: float) -> Flat:
+    """Return where the two bands that nearly meet at a period and a phase are flat."""
+    nu, square = phase / (2 * np.pi), (2 * np.pi / period) ** 2
+    hill = _enough(system, amplitude, period, nu)
+    for _ in range(STEPS):
+        pair = _pair(hill, square, nu)
+        level, step = _two_bands(pair.level, pair.slope)
+        if abs(step) <= SETTLED:
+            break
+        nu += step
+    return Flat(2 * np.pi / np.sqrt(square + level), order_of(pair.rate, pair.motion))
+
+
+def _two_bands(level: Real, slope: Real) -> tuple[Real, float]:
+    """Return where the eigenvalues of diag(level) - x slope are flat, and near which x."""
+    # mean - drift x +- sqrt(r^2 (x - x0)^2 + gap^2)
+    mean, half = level.mean(), (level[0] - level[1]) / 2
+    drift, tilt = (slope[0, 0] + slope[1, 1]) / 2, (slope[0, 0] - slope[1, 1]) / 2
+    r = math.hypot(tilt, slope[0, 1])
+    if r <= abs(drift):
+        return level, 0.0  # they turn the same way
+    middle, gap = half * tilt / r**2, abs(half * slope[0, 1]) / r
+    side = gap * math.sqrt(1 - (drift / r) ** 2)
+    return mean - drift * middle + np.array([side, -side]), middle

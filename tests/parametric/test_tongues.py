@@ -1,0 +1,163 @@
+"""Edges of tongues: Mathieu's numbers, scans by brute force, and what a count can prove."""
+
+import numpy as np
+import pytest
+from scipy.special import mathieu_a, mathieu_b
+
+from ropedyn.parametric import decay, hill, krein
+from ropedyn.parametric.modal_system import ModalSystem
+from ropedyn.parametric.monodromy import Propagator, exponent
+from ropedyn.parametric.tongues import boundary, threshold
+
+ONE = ModalSystem(np.array([1.0]), np.array([[1.0]]), np.zeros((1, 1)))
+"""q'' + (1 + a cos(2 pi f t)) q = 0."""
+NO_GROWTH = 1e-8
+"""A scan cannot tell growth below this over a period from none, beside its threshold."""
+
+
+def random_system(rng):
+    """One to four coupled modes: undamped, with ratios, or with damping that couples them."""
+    k = int(rng.integers(1, 5))
+    omega = np.sort(rng.uniform(1.0, 4.0, k))
+    slopes = rng.normal(size=(k, k + 1))
+    slopes *= (omega / np.linalg.norm(slopes, axis=1))[:, None]
+    kind = rng.integers(3)
+    damping = np.zeros((k, k))
+    if kind == 1:
+        damping = np.diag(2 * omega * 10 ** rng.uniform(-3.5, -1.3, k))
+    if kind == 2:
+        dashpots = rng.normal(size=(k, k))
+        damping = dashpots @ dashpots.T * 10 ** rng.uniform(-3.5, -1.5)
+    return ModalSystem(omega**2, slopes @ slopes.T, damping)
+
+
+def wrong_points(rng, points):
+    """How many points of a scan find another stability than the edges tell; whether proved."""
+    system, amplitude = random_system(rng), rng.uniform(0.05, 0.6)
+    top = 2 * system.omega.max() / (2 * np.pi)
+    low, high = top / rng.uniform(1.5, 9.5), 1.15 * top
+    found = boundary(system, low, high, amplitude)
+    scan = np.linspace(low, high, points)
+    motion = Propagator.of(system, 1 / high, 1 / low, amplitude)
+    growth = np.log(np.abs(np.linalg.eigvals(motion(1 / scan))).max(axis=1))
+    some = scan[:: points // 5]
+    exact = exponent(system, some, np.full((len(some), 1), amplitude), angle=0.4)[:, 0]
+    assert growth[:: points // 5] == pytest.approx(exact, abs=1e-6)
+    least = threshold(system, scan)
+    # one state of the scan is given, where it is clear
+    inside = np.searchsorted(found.frequency, scan) % 2 == 1
+    clear = np.abs(growth - least).argmax()
+    expected = inside ^ inside[clear] ^ (growth[clear] > least[clear])
+    off = np.where(expected, least - growth, growth - least)
+    # tongues without damping may grow by less than is seen, and only they
+    hidden = expected & (growth > -NO_GROWTH) & (least > 0)
+    return int(((off > NO_GROWTH) & ~hidden).sum()), found
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_edges_are_those_of_a_scan(number):
+    """Of modes up to the ninth order; none missed, none invented."""
+    wrong, found = wrong_points(np.random.default_rng([2, number]), 4000)
+    assert wrong == 0
+    assert found.proved
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "points of scans of 20 000 where tongues of 100 random systems are missed or invented",
+    reference="multipliers at every point",
+    accepted=0.0,
+)
+def test_edges_are_those_of_scans(claim):
+    claim(sum(wrong_points(np.random.default_rng([7, n]), 20_000)[0] for n in range(100)))
+
+
+@pytest.mark.claim(
+    "relative error of both edges of nine tongues of a string",
+    reference="Mathieu's characteristic values (SciPy)",
+    accepted=5e-14,
+)
+@pytest.mark.parametrize("amplitude", [0.2, 0.9])
+def test_tongues_of_one_mode_are_those_of_mathieu(amplitude, claim):
+    """Down to a width of 1e-8: alpha(Omega) = 4/Omega^2 is a_n or b_n of q = a alpha/2."""
+    found = boundary(ONE, 0.21 / (2 * np.pi), 2.5 / (2 * np.pi), amplitude)
+    assert found.proved
+    assert found.highest_order == 9
+    for order in range(1, found.order.max() + 1):
+        edge = 2 * np.pi * found.frequency[found.order == order]
+        assert len(edge) == 2
+        alpha = 4 / edge**2
+        known = np.array(
+            [[one(order, amplitude * x / 2) for one in (mathieu_a, mathieu_b)] for x in alpha]
+        )
+        off = np.abs(known / alpha[:, None] - 1)
+        claim(off.min(axis=1).max())
+        assert sorted(off.argmin(axis=1)) == [0, 1]
+
+
+def test_a_tongue_as_narrow_as_rounding_has_its_edges():
+    """Of order 9 at a tenth of the mean tension: 3e-11 of its frequency wide."""
+    found = boundary(ONE, 0.2220 / (2 * np.pi), 0.2222 / (2 * np.pi), 0.1)
+    assert found.order.tolist() == [9, 9]
+    assert 1e-11 < np.ptp(found.frequency) / found.frequency[0] < 1e-10
+
+
+def test_modes_that_do_not_couple_pass_without_a_tongue():
+    """f1 + f2 of a system without Gamma_12 is counted, and has no width."""
+    coupled = ModalSystem(
+        np.array([1.0, 2.25]), np.array([[1.0, 1e-3], [1e-3, 2.0]]), np.zeros((2, 2))
+    )
+    apart = ModalSystem(coupled.eigenvalue, np.diag([1.0, 2.0]), coupled.damping)
+    near = (2.49 / (2 * np.pi), 2.51 / (2 * np.pi))
+    wide = boundary(coupled, *near, 0.01)
+    assert wide.order.tolist() == [1, 1]
+    assert wide.resonances == 1
+    assert len(boundary(apart, *near, 0.01).frequency) == 0
+
+
+def test_unlike_damping_opens_a_combination():
+    """Half width (c1 + c2)/2 sqrt((a Gamma_12)^2/(4 w1 w2 c1 c2) - 1), to first order."""
+    c = np.array([0.002, 0.02])
+    w, coupling, amplitude = np.array([1.0, 1.6]), 1.0, 0.04
+    gamma = np.array([[1.0, coupling], [coupling, 2.0]])
+    expected = c.sum() / 2 * np.sqrt((amplitude * coupling) ** 2 / (4 * w.prod() * c.prod()) - 1)
+    near = (2.45 / (2 * np.pi), 2.75 / (2 * np.pi))
+    damped = boundary(ModalSystem(w**2, gamma, np.diag(c)), *near, amplitude)
+    still = boundary(ModalSystem(w**2, gamma, np.zeros((2, 2))), *near, amplitude)
+    width = np.pi * np.array([np.ptp(damped.frequency), np.ptp(still.frequency)])
+    assert width[0] == pytest.approx(expected, rel=0.02)
+    assert width[0] > 1.5 * width[1]
+
+
+def test_growth_lost_in_rounding_is_not_proved():
+    weak = ModalSystem(ONE.eigenvalue, ONE.geometric, np.array([[1e-9]]))
+    found = boundary(weak, 0.2, 0.5, 0.1)
+    assert not found.proved
+    assert len(found.frequency) == 2
+    assert "some may be missed" in str(found.table())
+
+
+def test_what_polynomials_cannot_resolve_is_not_proved(monkeypatch):
+    system = ModalSystem(ONE.eigenvalue, ONE.geometric, np.array([[0.01]]))
+    monkeypatch.setattr(decay, "RESOLVED", 0.0)
+    assert not boundary(system, 0.2, 0.5, 0.1).proved
+
+
+def test_a_turn_too_many_is_not_proved(monkeypatch):
+    """The count of Hill's matrix holds the phases to account."""
+    monkeypatch.setattr(krein, "turns", lambda *given: 2 * hill.turns(*given) + 1)
+    assert not boundary(ONE, 0.1, 0.5, 0.1).proved
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.02])
+def test_where_a_tension_that_changes_sign_lets_it_stand(damping):
+    """Beyond the mean tension tongues cover nearly everything; what is left is found."""
+    system = ModalSystem(ONE.eigenvalue, ONE.geometric, np.array([[damping]]))
+    found = boundary(system, 0.05, 0.6, 2.0)
+    assert found.proved
+    scan = np.linspace(0.05, 0.6, 3001)
+    growth = exponent(system, scan, np.full((len(scan), 1), 2.0), angle=0.5)[:, 0]
+    grows = growth > threshold(system, scan)
+    at = np.flatnonzero(grows[1:] != grows[:-1])
+    for begin, end in zip(scan[at], scan[at + 1]):
+        assert ((begin <= found.frequency) & (found.frequency <= end)).sum() % 2 == 1
