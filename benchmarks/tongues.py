@@ -80,9 +80,9 @@ def main() -> None:
     head = ["damping", "edges", "a scan's", "proved", "boundary [s]", "scan [s]", "solve_ivp [s]"]
     text = (
         f"{report.machine()}.\n\nFrequencies of the tension from {BETWEEN[0]:g} to "
-        f"{BETWEEN[1]:g} Hz at {AMPLITUDE:g} N of 1000 N: edges of instability by `boundary`, and those that "
-        f"{len(SCAN)} multipliers show; processor time of both, and of as many by `solve_ivp` "
-        f"(DOP853 at 1e-10, from {len(FEW)}).\n\n" + report.table(head, rows)
+        f"{BETWEEN[1]:g} Hz at {AMPLITUDE:g} N of 1000 N: edges of instability by `boundary`, and "
+        f"those that {len(SCAN)} multipliers show; processor time of both, and of as many by "
+        f"`solve_ivp` (DOP853 at 1e-10, from {len(FEW)}).\n\n" + report.table(head, rows)
     )
     report.write("tongues.md", text)
 
