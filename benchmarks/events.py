@@ -34,7 +34,7 @@ def rows() -> list[list[str]]:
             history = model.transient(TIME, **PUSH)
             seconds = timing.seconds(lambda m=model: m.transient(TIME, **PUSH), 3)
             size = np.abs(history.value).max()
-            error = f"{history.truncation_error.max() / size:.0e}" if size else "0"
+            error = f"{history.error.max() / size:.0e}" if size else "0"
             found.append([name, label, f"{1e3 * seconds:.0f}", error, f"{history.sure_until:g}"])
     return found
 

@@ -349,7 +349,7 @@ class MotionQuestion(Frozen):
 
     def rounding(self, answer: History) -> Real:
         """Return the estimated error of the method, over the largest value of each response."""
-        return of_largest(answer.truncation_error[:, None] + answer.step_error, answer.value)
+        return of_largest(answer.error, answer.value)
 
     def change(self, answer: History, model: Model, *, solver: str = "auto") -> AnswerChange:
         """Compare an answer with that of a model from which something was left out."""

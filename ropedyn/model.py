@@ -316,7 +316,8 @@ class Model(Compiled):
         force: Any = None,
         response: Point | Sequence[Point] | None = None,
         quantity: str = "displacement",
-        start: Mapping[Point, float] | Deflection | None = None,
+        start: Any = None,
+        velocity: Any = None,
         method: str = "auto",
         modes: int | None = None,
         step: float | None = None,
@@ -333,34 +334,34 @@ class Model(Compiled):
         time : array_like, shape (t,)
             When the motion is asked for [s], increasing; it begins at the first.
         drive : point or list of points, optional
-            What the force acts on, such as ``("z", 0.5)``; ``("end", 0, "z")`` is the left end,
-            whose motion [m, rad] is then given in place of a force. None: free motion.
+            What the force acts on, such as ``("z", 0.5)``, or ``("end", 0, "z")``, an end whose
+            motion [m, rad] is given in place of a force. None: free motion.
         force : array_like, shape (t,), Sine, Chirp, Step or Impulse, or a tuple of them (their sum)
-            [N, N m]; one for each where a list of drives is given. An array is a straight line
-            between its samples; the others act as the functions they are.
+            [N, N m]; one for each of a list of drives. An array is straight between its samples.
         response : point or list of points, optional
             What is watched, as in `frf`; the drive points where left out.
         quantity : {"displacement", "velocity", "acceleration"}
             Of the responses.
-        start : mapping from points to float, or Deflection, optional
-            Static loads [N, N m] under which the rope rests, at the mean tension and without what
-            is not linear (a `Stop`, friction), before it is let go at the first time.
-        method : {"auto", "modal", "events", "direct"}
-            ``"modal"``: linear scenes, the sum over modes, complex ones where damping is not
-            proportional, each integrated exactly, with the static motion of those left out.
-            ``"direct"``: chains, linear or not, an implicit scheme of second order, unconditionally
-            stable, along the chain (csrc/march/form/march.h). ``"events"``: stops and friction,
-            in closed form between events. ``"auto"``: modal where it can be, else events or direct.
+        start : mapping from points to float, Deflection, or function, optional
+            Static loads [N, N m] that are let go at the first time, at the mean tension and without
+            what is not linear; or the shape, a function of x [m] for z, or {coordinate: function}.
+        velocity : mapping from points to float, or function, optional
+            Impulses at the first time [N s, N m s], or the velocity as `start` gives the shape.
+        method : {"auto", "modal", "line", "events", "direct"}
+            ``"modal"``: the sum over modes, each exact, where damping does not couple them.
+            ``"line"``: exact transfer functions inverted, for any damping. ``"events"``: stops and
+            friction, in closed form between events. ``"direct"``: chains, linear or not, an
+            implicit scheme of second order (csrc/march/form/march.h). ``"auto"``: modal, else the
+            line; of what is not linear events, collocation of smooth laws, or direct.
         modes : int, optional
             Of each component, that the modal method sums; where left out all of a chain of at most
             1000 unknowns, else those below eight times what force and times resolve, from 64 to
-            400. Where damping is not proportional 200 is the most.
+            400.
         step : float, optional
-            Of the direct method [s], at most; a whole number of them lies between two times.
+            Of the direct method [s], at most.
         tolerance : float, optional
-            Of the direct method, instead of `step`: steps are made finer until two runs say that
-            their error (`History.total_error` adds that of elements) is within this part of each
-            response's largest value; 1e-4 where left out.
+            Part of each response's largest value that errors keep to (`History.total_error` adds
+            that of elements); 1e-3, of steps 1e-4.
         spectral_radius : float
             Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
             motion (with a given `step` to the last digits), less takes it from frequencies that the
@@ -370,8 +371,8 @@ class Model(Compiled):
         progress : None, True or callable
             True: a line on stderr; a callable takes the fraction that is done.
         partial : bool
-            True: where the numbers fail, or at Ctrl-C, what was computed before is the answer, and
-            `History.stopped` says why it ends.
+            True: where steps fail, or at Ctrl-C, what was computed before is the answer, see
+            `History.stopped`.
 
         Returns
         -------
@@ -382,19 +383,17 @@ class Model(Compiled):
         TypeError
             If an argument is of the wrong type.
         SceneError
-            If a value has no meaning, such as times that do not increase or a force that is not
-            finite, or the method does not take the scene.
+            If a value has no meaning, or the method does not take the scene.
         SolveError
-            If a step does not converge; the message says when, and how far it was off. Its
-            `history` is what was computed before, as with `partial`.
+            If the error exceeds the tolerance: by how much. If a step does not converge: when; its
+            `history` is what was computed before.
 
         Notes
         -----
-        A law of a `NodeForce` that raises ends the run; its exception says for which part and when.
-
-        The direct method lumps all inertia at nodes: tensed elements are of second order in it.
-        What has no inertia follows forces at once (rotations of a rope without rotary inertia,
-        driven points between nodes); accelerations there under a force are refused.
+        The direct method lumps all inertia of a chain at its nodes: tensed elements are of second
+        order in it. What has no inertia follows forces at once (rotations of a rope without rotary
+        inertia, driven points between nodes); accelerations there under a force are refused. A
+        law of a `NodeForce` that raises ends the run; its exception says for which part and when.
 
         Examples
         --------
@@ -413,6 +412,7 @@ class Model(Compiled):
             response=response,
             quantity=quantity,
             start=start,
+            velocity=velocity,
             method=method,
             modes=modes,
             step=step,

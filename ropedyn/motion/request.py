@@ -15,14 +15,15 @@ from ..base.progress import reporter, silent
 from ..base.unit import MOTIONS, push_unit
 from ..chain.compiled import Compiled
 from ..chain.place import observed, points
-from ..chain.port import Point
-from ..response.deflection import Deflection, checked_loads
-from ..scene.force import Force, forces
+from ..chain.port import Point, locate
+from ..response.moved_end import is_end
+from ..scene.force import Force, Impulse, forces
 from ..scene.parts.part import standing
 from ..scene.tension import Tension
+from .start import kicked, released
 
-METHODS = ("auto", "modal", "direct")
-EVENTS = "events"  # Of `Model.transient` alone.
+EVENTS = "events"
+METHODS = ("auto", "modal", "line", EVENTS, "direct")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,10 +41,13 @@ class Run:
     order: int = 0  # how often the displacement is differentiated
     # under which the rope rests before the first time, when it is let go
     loads: Mapping[Point, float] = field(default_factory=dict)
+    kicks: Mapping[Point, float] = field(default_factory=dict)  # impulses at the first time
+    coarse: Run | None = None  # the same with shapes and velocities at fewer places
     snapshots: Real = field(default_factory=lambda: np.zeros(0))  # (s,) looks at all of it [s]
     modes: int | None = None  # of each component, that the modal method sums
     step: float | None = None  # of the direct method: one of them at most [s]
-    tolerance: float | None = None  # of the direct method: one of them at most
+    tolerance: float | None = None  # of the largest value of each response
+    together: bool = False  # of all responses of one coordinate instead
     spectral_radius: float = 1.0  # of the direct method at infinite frequency
     progress: Callable[[float], Any] = silent  # takes the fraction that is done
     partial: bool = False  # whether what was computed until the numbers fail is an answer
@@ -58,7 +62,8 @@ class Run:
         force: Any,
         response: Any,
         quantity: str,
-        start: Mapping[Point, float] | Deflection | None,
+        start: Any,
+        velocity: Any,
         method: str,
         modes: int | None,
         step: float | None,
@@ -69,20 +74,19 @@ class Run:
         partial: bool,
     ) -> Run:
         """Check what is asked."""
-        check.one_of(method, "method", (*METHODS, EVENTS))
-        direct = is_direct(model, "auto" if method == EVENTS else method)
+        direct = is_direct(model, method)
         check.one_of(quantity, "quantity", MOTIONS)
         t = checked_times(time)
         drives, given = _driven(model, drive, force, t)
         radius = check.number(spectral_radius, "spectral_radius", sign="nonnegative")
         if radius > 1:
             raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
-        loads: Mapping[Point, float] = {}
-        if isinstance(start, Deflection):
-            loads = dict(start.load)
-        elif start is not None:
-            loads = checked_loads(model, start, "start")
-        return cls(
+        if direct and velocity is not None:
+            raise SceneError("velocity must be None where something is not linear, got one")
+        loads, kicks = released(model, start), kicked(model, velocity)
+        if direct and loads.coarse is not None:
+            raise SceneError("start must be loads where something is not linear, got a shape")
+        run = cls(
             model,
             t,
             drives,
@@ -91,7 +95,8 @@ class Run:
             direct=direct,
             method=method,
             order=MOTIONS[quantity],
-            loads=loads,
+            loads=loads.given,
+            kicks=kicks.given,
             snapshots=_snapshots(snapshots, t),
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
             step=check.optional(step, "step", "s", sign="positive"),
@@ -100,16 +105,25 @@ class Run:
             progress=reporter(progress),
             partial=check.instance(partial, "partial", bool, "True or False"),
         )
+        if loads.coarse is None and kicks.coarse is None:
+            return run
+        fewer = [one.given if one.coarse is None else one.coarse for one in (loads, kicks)]
+        return replace(run, coarse=replace(run, loads=fewer[0], kicks=fewer[1]))
 
     @property
     def places(self) -> list[Any]:
         """What forces and loads act on."""
-        return [*self.drives, *self.loads]
+        return [*self.drives, *self.kicks, *self.loads]
 
     @property
     def pushes(self) -> list[Force | float]:
         """What acts there: forces, and loads that are let go."""
-        return [*self.forces, *self.loads.values()]
+        return [*self.forces, *self.blows, *self.loads.values()]
+
+    @property
+    def blows(self) -> list[Force]:
+        """The impulses that begin motion."""
+        return [Impulse(size, time=float(self.time[0])) for size in self.kicks.values()]
 
     @property
     def push(self) -> Real:
@@ -139,12 +153,12 @@ class Run:
 
 
 def is_direct(model: Compiled, method: str) -> bool:
-    """Whether a method is the direct one; refuse modes where they do not tell the motion."""
+    """Whether something is not linear, or steps are asked for; refuse what tells linear motion."""
     check.one_of(method, "method", METHODS)
     why = why_direct(model)
-    if method == "modal" and why:
-        raise SceneError(f'method must be "direct" or "auto" where {why}, got "modal"')
-    return method == "direct" or (method == "auto" and bool(why))
+    if method in ("modal", "line") and why:
+        raise SceneError(f'method must be "direct" or "auto" where {why}, got "{method}"')
+    return method == "direct" or (method in ("auto", EVENTS) and bool(why))
 
 
 def why_direct(model: Compiled) -> str:
@@ -182,6 +196,8 @@ def _driven(
     if drive is None:
         return (), ()
     drives, several = points(model, drive, "drive", forces=False, ends=True)
+    for point in drives:
+        _refuse_held(model, point)
     if not several:
         return drives, (forces(force, "force", time, push_unit(drives[0])),)
     if not isinstance(force, (tuple, list, np.ndarray)) or len(force) != len(drives):
@@ -192,6 +208,16 @@ def _driven(
         forces(one, f"force[{k}]", time, push_unit(drive))
         for k, (one, drive) in enumerate(zip(force, drives))
     )
+
+
+def _refuse_held(model: Compiled, drive: Point) -> None:
+    """Refuse a force on what a support holds."""
+    if is_end(drive):
+        return
+    node, between = locate(model.x, drive[1])
+    held = model.chain.held[model.chain.term_of[node], model.coordinates.index(drive[0])]
+    if between is None and held:
+        raise SceneError(f"drive must be free to move, got {drive}, which a support holds")
 
 
 def _snapshots(given: Any, time: Real) -> Real:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .direct.direct import march
 from .history import History
-from .modal.superposition import superpose
+from .linear import solve_linear
 from .phases.components import why_not_events
 from .phases.events import solve_events
 from .request import EVENTS, Run
@@ -18,4 +18,4 @@ def follow_motion(run: Run) -> History:
         return solve_events(run)
     if run.direct and takes(run):
         return collocate(run)
-    return march(run) if run.direct else superpose(run)
+    return march(run) if run.direct else solve_linear(run)

@@ -29,7 +29,7 @@ from ..scene.parts.part import standing
 from ..scene.scene import Scene
 from ..scene.tension import Tension
 from .history import History
-from .modal.superposition import superpose
+from .linear import solve_linear
 from .periodic.asked import SteppedSine
 from .request import Run
 
@@ -108,16 +108,16 @@ def _with_twist(run: Run, history: History) -> History:
     extra = _pulsation(tension, history.time, run.order)
     for k, point in enumerate(run.responses):
         value[k] += {"F_x": 1.0, "M_alpha": share}.get(point[0], 0.0) * extra
-    error = history.truncation_error.copy()
+    error = history.error.copy()
     ends = turning_ends(scene)
     own = [k for k, point in enumerate(run.responses) if moving(point) == "alpha"]
     if ends and (own or len(history.snapshot_time)):
-        twist = superpose(_twisting(run, history, tension, share, ends))
+        twist = solve_linear(_twisting(run, history, tension, share, ends))
         value[own] += twist.value
-        error[own] += twist.truncation_error
+        error[own] += twist.error
         at = run.model.coordinates.index("alpha")
         snapshot[:, :, at] += twist.snapshot[:, :, 0]
-    return changed(history, value=value, truncation_error=error, snapshot=snapshot)
+    return changed(history, value=value, error=error, snapshot=snapshot)
 
 
 def _pulsation(tension: Tension, time: Real, order: int) -> Real:

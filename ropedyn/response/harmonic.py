@@ -60,7 +60,7 @@ def solve_harmonic(
         refuse_other_damping(model, drives, responses)
     start = time.perf_counter()
     whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers, decay)
-    got = _by_components(whole, partial(modal_sum if is_modal else _line_by_line, solver=solve))
+    got = by_components(whole, partial(modal_sum if is_modal else line_by_line, solver=solve))
     value, error, truncation = got.value.copy(), got.error, got.truncation
     if any(map(tip.is_tip, responses)):
         _, truncation = tip.gather(model, responses, factor, value, truncation)
@@ -110,7 +110,7 @@ class Receptance(NamedTuple):
     answered: list[Answered]
 
 
-def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:
+def by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:
     """Ask each component for what it has of the drives and responses; nothing else moves."""
     model, drives, responses = whole.model, whole.drives, whole.responses
     value = np.zeros((len(drives), len(responses), len(whole.frequency)), dtype=np.complex128)
@@ -133,7 +133,7 @@ def _by_components(whole: Question, answer: Callable[[Question], Summed]) -> Rec
     return Receptance(value, error, truncation, unknowns, lines, answered)
 
 
-def _line_by_line(question: Question, solver: Solver) -> Summed:
+def line_by_line(question: Question, solver: Solver) -> Summed:
     """Solve at each frequency, with the damping that acts at it."""
     value, error = solver(question)
     return Summed(value, error, np.zeros(error.shape), len(question.frequency))

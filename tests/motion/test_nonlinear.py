@@ -68,7 +68,7 @@ def test_stretching_mass_on_a_string_is_duffings(tolerance, claim):
     )
     claim(error(history, duffing(TIME, CUBIC)) / tolerance)
     assert np.isinf(history.mesh_error).all()
-    assert history.step_error.max() <= tolerance * AMPLITUDE
+    assert history.error.max() <= tolerance * AMPLITUDE
 
 
 def test_stretching_keeps_energy():
@@ -293,9 +293,9 @@ def test_law_that_raises_is_named_and_nothing_is_lost():
 
 def test_history_of_a_law_without_a_name_pickles_once_it_is_asked():
     history = pushed(rd.NodeForce(LENGTH / 2, lambda t, u, v: -u))
-    error, energy = history.step_error, history.energy
+    error, energy = history.error, history.energy
     copy = pickle.loads(pickle.dumps(history))
-    assert np.array_equal(copy.step_error, error)
+    assert np.array_equal(copy.error, error)
     assert energy.keys() == copy.energy.keys()
 
 

@@ -20,6 +20,7 @@ BEAM = rd.Scene(
 ).compile(elements=64)
 WHERE = {"drive": ("z", 0.3), "response": ("z", 0.7)}
 RATE = 2000.0
+LOOSE = 2.0  # A string that is hit at an instant moves by steps, which no finite sum tells.
 TIME = np.arange(16_000) / RATE
 BEGIN, END = 0.1, 0.35
 SAMPLED = np.linspace(BEGIN, END, 26)
@@ -73,7 +74,7 @@ def test_the_transform_of_a_blow_at_an_instant_is_its_impulse():
 
 def away(model, force, time=TIME, below=100.0, **how):
     """Return the largest distance to the exact response below a frequency, over its largest."""
-    found = model.transient(time, force=force, **WHERE).frf(**how)
+    found = model.transient(time, force=force, tolerance=LOOSE, **WHERE).frf(**how)
     kept = (found.frequency > 0) & (found.frequency < below)
     exact = model.frf(found.frequency[kept], **WHERE).value
     return np.abs(found.value[:, kept] - exact).max() / np.abs(exact).max(), found.notes
@@ -154,7 +155,9 @@ def test_what_was_let_go_is_no_response_per_force():
 @pytest.mark.parametrize("other", [rd.Impulse(0.1), rd.Impulse(0.1, duration=1e-4), TIME[:500]])
 def test_what_acts_at_another_drive_is_seen(other):
     drives = [("z", 0.3), ("z", 0.6)]
-    history = STRING.transient(TIME[:500], drive=drives, force=[BLOWS["1 ms"], other])
+    history = STRING.transient(
+        TIME[:500], drive=drives, force=[BLOWS["1 ms"], other], tolerance=LOOSE
+    )
     with pytest.raises(rd.SceneError, match="force must be 0 at other drives than 0, got some at"):
         history.frf()
 

@@ -58,8 +58,8 @@ def test_hardening_spring_is_duffings_within_the_error_it_says(tolerance, claim)
     time = np.linspace(0.0, 5.0, 5001)
     history = released(mass_on_a_string(hardening()), time, tolerance=tolerance)
     assert history.cost.method == "collocation"
-    assert (history.step_error <= tolerance * np.abs(history.value).max()).all()
-    claim((np.abs(history.value[0] - duffing(time)) / history.step_error[0]).max())
+    assert (history.error <= tolerance * np.abs(history.value).max()).all()
+    claim((np.abs(history.value[0] - duffing(time)) / history.error[0]).max())
 
 
 def test_law_that_takes_arrays_is_called_with_them_and_says_the_same():
@@ -141,7 +141,7 @@ def test_stretching_of_one_mass_is_duffings():
     history = released(stretched_string(2), time, tolerance=1e-7)
     assert history.cost.method == "collocation"
     wrong = np.abs(history.value[0] - duffing(time))
-    assert (wrong <= history.step_error[0]).all()
+    assert (wrong <= history.error[0]).all()
 
 
 @pytest.mark.claim(
@@ -168,7 +168,7 @@ def test_stretching_couples_modes_as_kirchhoffs_string_does(drag, claim):
         time, drive=("z", 0.25), force=force, response=[("z", 0.25), ("z", 0.75)], tolerance=1e-6
     )
     assert history.cost.method == "collocation"
-    assert (np.abs(history.value - exact) <= history.step_error).all()
+    assert (np.abs(history.value - exact) <= history.error).all()
     claim(error(history, exact))
 
 
@@ -239,8 +239,8 @@ def worst_of(seed, count):
         assert history.cost.method == "collocation"
         exact = explicit(model, laws, at, force, time, order)
         wrong, size = np.abs(history.value[0] - exact), np.abs(exact).max()
-        said.append(wrong.max() / history.step_error[0].max())
-        relative.append(history.step_error[0].max() / size / tolerance)
+        said.append(wrong.max() / history.error[0].max())
+        relative.append(history.error[0].max() / size / tolerance)
     return np.array(said), np.array(relative)
 
 

@@ -399,7 +399,7 @@ def test_no_error_of_motion_is_seen_below_that_of_the_method():
     question = rd.ask.motion(TIMES, **PUSH)
     answer = cost(SWUNG, question, element="continuous")
     exact = SWUNG.compile().transient(TIMES, **PUSH, tolerance=1e-3)
-    left = (exact.truncation_error / np.abs(exact.value).max(axis=1)).max()
+    left = (exact.error / np.abs(exact.value).max(axis=1)).max()
     assert answer.error[0] >= left > 1e-12
 
 

@@ -55,7 +55,7 @@ PAIRS = {
 
 def bits(answer):
     value = answer.frequency if isinstance(answer, rd.Modes) else answer.value
-    error = answer.truncation_error if isinstance(answer, rd.History) else answer.rounding_error
+    error = answer.error if isinstance(answer, rd.History) else answer.rounding_error
     return value.shape, value.tobytes(), error.tobytes()
 
 

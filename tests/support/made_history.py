@@ -3,7 +3,7 @@
 import numpy as np
 
 import ropedyn as rd
-from ropedyn.motion.history import Balance, Deviation
+from ropedyn.motion.history import Balance
 
 
 def made(time, value, *, force=None, response=None, quantity="displacement", **changes):
@@ -18,13 +18,13 @@ def made(time, value, *, force=None, response=None, quantity="displacement", **c
         "time": time,
         "value": value,
         "force": np.zeros((0, len(time))) if force is None else np.atleast_2d(force),
-        "truncation_error": np.zeros(len(value)),
         "snapshot_time": time[:2],
         "x": nodes,
         "snapshot": np.stack([np.outer(nodes, [1.0, 0.1]), np.outer(nodes**2, [1.0, 0.1])]),
         "cost": rd.Cost(0.5, "modal", 2, 3),
         "balance": Balance({"kinetic": np.ones(len(time))}),
-        "deviation": Deviation(np.zeros(value.shape), np.zeros(value.shape)),
+        "error": np.zeros(value.shape),
+        "mesh_error": np.zeros(value.shape),
     }
     return rd.History(**fields | changes)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -13,8 +14,8 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import WIRE
 from ...chain.port import is_force
-from ..history import Balance, Deviation, History
-from ..modal.superposition import mesh_error
+from ..history import Balance, History
+from ..linear import mesh_error_of
 from ..request import Run, why_direct
 from .lumped import Lumps, lumped_chains, refuse_model
 from .march import stage_of
@@ -77,25 +78,25 @@ def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) ->
     if error is not None:
         told = f"{type(error).__name__}: {error}"
         stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
-    deviation = partial(_deviation, asked, value, passage.step_error[:, kept])
+    mesh_error: Real | Callable[[], Real] = np.full(value.shape, np.inf)
+    if not why_direct(run.model):
+        mesh_error = partial(mesh_error_of, asked, value)
     return History(
         **asked.told,
         value=value,
-        truncation_error=np.zeros(len(run.responses)),
         x=run.model.x,
         snapshot=passage.snapshot[seen],
         cost=Cost(seconds, "direct", len(run.model.x) - 1, unknowns, *work),
         balance=Balance(energy),
-        deviation=deviation,
+        error=partial(_error, asked, value, passage.step_error[:, kept]),
+        mesh_error=mesh_error,
         stopped=stopped,
     )
 
 
-def _deviation(run: Run, value: Real, step_error: Real) -> Deviation:
-    """Return how far the values are from those without steps and without elements."""
-    if run.step is not None and len(run.time) > 1:
-        finer = march_given(run, lumped_chains(run), stage_of(run.spectral_radius), 2).value
-        step_error = 4 / 3 * np.abs(value - finer)
-    if why_direct(run.model):
-        return Deviation(step_error, np.full(value.shape, np.inf))
-    return Deviation(step_error, mesh_error(run, value))
+def _error(run: Run, value: Real, step_error: Real) -> Real:
+    """Return how far the values are from those without steps."""
+    if run.step is None or len(run.time) < 2:
+        return step_error
+    finer = march_given(run, lumped_chains(run), stage_of(run.spectral_radius), 2).value
+    return np.asarray(4 / 3 * np.abs(value - finer))

@@ -43,7 +43,7 @@ def convolve(expansion: Expansion, drive: int, force: Force, time: Real, order: 
         elif isinstance(force, Samples):
             value = straight_lines(modes, rest, force, time, order)
         else:
-            value = _sines(modes, rest, _pieces(force, float(time[0])), time, order)
+            value = _sines(modes, rest, pieces(force, float(time[0])), time, order)
     return _checked(value, time)
 
 
@@ -161,7 +161,7 @@ class SinePiece(NamedTuple):
         return np.asarray(np.float64(self.frequency) ** order * wave)
 
 
-def _pieces(force: Force, begin: float) -> list[SinePiece]:
+def pieces(force: Force, begin: float) -> list[SinePiece]:
     """Return what acts from a time on, in turn."""
     if isinstance(force, Sine):
         w = 2 * math.pi * force.frequency

@@ -43,6 +43,7 @@ from ...signal import contour
 LARGEST, MANY = 1000, 400
 """All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
 SEARCHED = 200  # At most so many modes are searched for where damping is not proportional.
+ROUND = 1e-11  # A rest of this part of the sum over modes is rounding.
 EDGE = 0.8  # Overdamped modes are few up to this part of the rate where they accumulate.
 WIDER, ATTEMPTS = 2, 4
 """The radius to search in is doubled so often, and so many searches are made, at most."""
@@ -240,7 +241,10 @@ def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[R
         a = -contour.residues(asked.undamped, eigenvalue, circles).real
     shift = shift_of(eigenvalue)
     whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
-    return a, whole - a @ (1 / (eigenvalue + shift))
+    soft = 1 / (eigenvalue + shift)
+    rest = whole - a @ soft
+    # of all modes only rounding is left, which what is damped fast would make large
+    return a, np.where(np.abs(rest) > ROUND * (np.abs(a) @ np.abs(soft)), rest, 0.0)
 
 
 def _bound(asked: _Asked, left: Any) -> Real:

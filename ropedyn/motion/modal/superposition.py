@@ -2,58 +2,45 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-import time as clock
-from collections.abc import Callable
-from functools import partial
+from dataclasses import replace
 
 import numpy as np
 
-from ...base.answer import Cost
 from ...base.array import Real
-from ...base.errors import SceneError, SolveError
-from ...base.progress import silent
-from ...chain.compile import compile_scene
-from ...eigen.vectors import within
-from ...response.deflection import POINTS
-from ..history import Deviation, History
+from ..moved import Moved
 from ..request import Run
 from .convolution import motion_under
-from .energy_balance import balance
 from .expansion import Share, expand
 from .truncation import left_out, ratio_beyond
 
+RESIDUES = 4e-12  # Residues are known to so much of the largest value,
+PHASES = 64 * np.finfo(float).eps  # and phases to this for each rad of the fastest mode.
+SHARES, TIMES, AROUND = (0.5, 0.7, 0.85), 3.0, 4
+"""So much fewer modes tell the error, this many times over, within so many steps."""
 WAVE = 8  # Times resolve a period of so many samples.
 
 
-def superpose(run: Run) -> History:
+def superpose(run: Run) -> Moved:
     """Sum up the modes of a linear model; see `Model.transient`."""
-    start = clock.perf_counter()
-    resolved = _fastest(run)
-    shares = expand(run.model, run.places, run.responses, modes=run.modes, resolved=resolved)
+    shares = expand(run.model, run.places, run.responses, modes=run.modes, resolved=fastest(run))
     value = _responses(run, shares, len(run.responses))
-    x, snapshot = _snapshots(run, resolved)
-    seconds = clock.perf_counter() - start
-    truncation = _truncation(run, shares)
-    modes = sum(share.expansion.modes for share in shares)
-    run = run.kept
-    deviation: Deviation | Callable[[], Deviation] = partial(_deviation, run, value)
-    if run.model.element == "continuous":
-        deviation = Deviation(np.zeros(value.shape), np.zeros(value.shape))
-    return History(
-        **run.told,
-        value=value,
-        truncation_error=truncation,
-        x=x,
-        snapshot=snapshot,
-        cost=Cost(seconds, "modal", len(run.model.x) - 1, modes),
-        balance=partial(balance, run, resolved),
-        deviation=deviation,
-    )
+    error = np.add(_truncation(run, shares)[:, None], _rounding(run, shares, value))
+    return Moved(value, error, "modal", modes=sum(share.expansion.modes for share in shares))
 
 
-def _fastest(run: Run) -> float:
+def estimated(run: Run, moved: Moved) -> Moved:
+    """Return the same where fewer modes tell the error, if that is less than its bound."""
+    from scipy.ndimage import maximum_filter1d
+
+    fewer = [superpose(replace(run, modes=max(1, int(part * moved.modes)))) for part in SHARES]
+    apart = np.max([np.abs(moved.value - one.value) for one in fewer], axis=0)
+    apart = TIMES * maximum_filter1d(apart, 2 * AROUND + 1, axis=-1)
+    rounding = RESIDUES * np.abs(moved.value).max(axis=1, initial=0.0)
+    return moved._replace(error=np.minimum(moved.error, apart + rounding[:, None]))
+
+
+def fastest(run: Run) -> float:
     """Return the highest angular frequency that forces have or times resolve [rad/s]."""
     resolved = 2 * math.pi / WAVE * (len(run.time) - 1) / float(run.time[-1] - run.time[0])
     return max([resolved, *(2 * math.pi * force.bandwidth for force in run.forces)])
@@ -90,31 +77,9 @@ def _truncation(run: Run, shares: tuple[Share, ...]) -> Real:
     return error
 
 
-def _snapshots(run: Run, resolved: float) -> tuple[Real, Real]:
-    """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
-    model = run.model
-    x = within(model.x, POINTS) if model.element == "continuous" else model.x
-    width = len(model.coordinates)
-    if len(run.snapshots) == 0:
-        return x, np.zeros((0, len(x), width))
-    points = [(c, float(at)) for at in x for c in model.coordinates]
-    shares = expand(model, run.places, points, modes=run.modes, resolved=resolved, bound=False)
-    time = np.unique(np.append(run.time[0], run.snapshots))
-    looks = dataclasses.replace(run, time=time, order=0, progress=silent)
-    kept = _responses(looks, shares, len(points))[:, len(time) - len(run.snapshots) :]
-    return x, np.ascontiguousarray(kept.T).reshape(-1, len(x), width)
-
-
-def _deviation(run: Run, value: Real) -> Deviation:
-    """Return how far exact steps are from the motion of continuous spans."""
-    return Deviation(np.zeros(value.shape), mesh_error(run, value))
-
-
-def mesh_error(run: Run, value: Real) -> Real:
-    """Return the distance to the motion of continuous spans and the error of that, as value."""
-    try:
-        model = compile_scene(run.model.scene)
-        true = superpose(dataclasses.replace(run, model=model, modes=None, snapshots=np.zeros(0)))
-    except (SceneError, SolveError):
-        return np.full(value.shape, np.inf)
-    return np.asarray(np.abs(value - true.value) + true.truncation_error[:, None])
+def _rounding(run: Run, shares: tuple[Share, ...], value: Real) -> Real:
+    """Estimate what rounding does to value: the phases of modes drift with time, shape as value."""
+    square = np.concatenate([np.abs(share.expansion.square) for share in shares] or [np.zeros(1)])
+    turns = math.sqrt(float(square.max(initial=0.0))) * (run.time - run.time[0])
+    most = np.abs(value).max(axis=1, initial=0.0)
+    return np.multiply.outer(most, RESIDUES + PHASES * turns)

@@ -17,7 +17,7 @@ from ...base.errors import SceneError, SolveError
 from ...chain.compile import compile_scene
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
-from ..history import Deviation, History
+from ..history import History
 from ..request import Run
 from .components import Look, moving_components, rest, why_not_events
 from .energy import balance
@@ -100,12 +100,12 @@ def solve_events(run: Run) -> History:
     return History(
         **run.kept.told,
         value=value,
-        truncation_error=np.where(np.isfinite(error), error, 0.0).max(axis=1, initial=0.0),
         x=x,
         snapshot=np.ascontiguousarray(kept.T).reshape(-1, len(x), width),
         cost=Cost(seconds, "events", len(run.model.x) - 1, found.modes),
         balance=partial(balance, run.kept, found.modes),
-        deviation=partial(_deviation, run.kept, value, error),
+        error=error,
+        mesh_error=partial(_mesh_error, run.kept, value),
         sure_until=sure,
     )
 
@@ -148,12 +148,12 @@ def _sure_until(run: Run, found: Followed, error: Real) -> float:
     return float(run.time[max(int(wrong.argmax()) - 1, 0)])
 
 
-def _deviation(run: Run, value: Real, error: Real) -> Deviation:
-    """Return the errors of modes and rounding, and of elements."""
+def _mesh_error(run: Run, value: Real) -> Real:
+    """Return the distance to the motion of continuous spans and the error of that, as value."""
     if run.model.element == "continuous":
-        return Deviation(error, np.zeros(value.shape))
+        return np.zeros(value.shape)
     try:
         true = solve_events(replace(run, model=compile_scene(run.model.scene), snapshots=NONE))
     except (SceneError, SolveError):
-        return Deviation(error, np.full(value.shape, np.inf))
-    return Deviation(error, np.abs(value - true.value) + true.step_error)
+        return np.full(value.shape, np.inf)
+    return np.abs(value - true.value) + true.error

@@ -25,8 +25,8 @@ from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ...scene.damping import having
 from ..direct.direct import march
-from ..history import Balance, Deviation, History
-from ..modal.superposition import superpose
+from ..history import Balance, History
+from ..linear import solve_linear
 from ..request import Run
 from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
@@ -254,8 +254,8 @@ class _Answer:
             responses=tuple(run.responses[k] for k in watched),
             loads=loads,
         )
-        found = superpose(some)
-        self.value[watched], self.truncation[watched] = found.value, found.truncation_error
+        found = solve_linear(some)
+        self.value[watched], self.step_error[watched] = found.value, found.error
         self.snapshot[:, :, at] = found.snapshot[:, :, at]
         self.modes += found.cost.unknowns
 
@@ -276,12 +276,12 @@ class _Answer:
         return History(
             **asked.told,
             value=value,
-            truncation_error=self.truncation,
             x=self.x,
             snapshot=self.snapshot[seen],
             cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
             balance=partial(_balance, asked),
-            deviation=Deviation(self.step_error[:, kept], mesh_error),
+            error=self.step_error[:, kept] + self.truncation[:, None],
+            mesh_error=mesh_error,
             stopped=stopped,
         )
 

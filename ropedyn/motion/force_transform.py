@@ -1,0 +1,102 @@
+"""Forces as functions of the rate s: f(s) = integral of f(t) e^(-s (t - begin)) from `begin` on."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..base.array import Complex, Real
+from ..scene.force import Chirp, Force, Samples, Sum
+from .grid import Grid
+from .modal.chirp import chirp_between, follow
+from .modal.convolution import SinePiece, pieces
+
+SMALL = 0.5  # Up to this |z| a hat is Taylor's series,
+TERMS = 14  # of so many terms.
+
+
+def transform(force: Force, grid: Grid) -> Complex:
+    """Return the transform of a force at the rates of a grid, shape (lines,)."""
+    if isinstance(force, Sum):
+        still = np.zeros(len(grid.s), dtype=np.complex128)
+        return sum((transform(one, grid) for one in force.forces), still)
+    if isinstance(force, Samples):
+        even = grid.even and len(force.time) == len(grid.time)
+        return _of_samples(force, grid) if even else _of_corners(force, grid)
+    if isinstance(force, Chirp):
+        return _of_chirp(force, grid)
+    turns = pieces(force, grid.begin)
+    return _of_sines([one for one in turns if one.start <= grid.time[-1]], grid)
+
+
+def _of_sines(turns: list[SinePiece], grid: Grid) -> Complex:
+    """Transform pieces of sines, each until the next one."""
+    s = grid.s
+    total = np.zeros(len(s), dtype=np.complex128)
+    for piece, following in zip(turns, [*turns[1:], None]):
+        now = np.exp(-s * (piece.start - grid.begin))
+        total += now * piece.kick
+        w = piece.frequency
+        if piece.cosine == 0 and piece.sine == 0:
+            continue
+        both = s * s + w * w
+        total += now * (piece.cosine * s + piece.sine * w) / both
+        if following is not None:
+            at = np.array([following.start])
+            value, rate = (float(piece.value(at, k)[0]) for k in range(2))
+            total -= np.exp(-s * (following.start - grid.begin)) * (value * s + rate) / both
+    return total
+
+
+def _of_chirp(force: Chirp, grid: Grid) -> Complex:
+    """Transform a chirp: what it does to a motion e^(s t) by its end, undone."""
+    end = min(force.duration, grid.begin + grid.period)
+    if end <= grid.begin:
+        return np.zeros(len(grid.s), dtype=np.complex128)
+    now = chirp_between(force, grid.begin, end)
+    if now.is_steady:
+        w, f = now.frequency, now.amplitude
+        sine = SinePiece(grid.begin, w, f * np.sin(now.phase), f * np.cos(now.phase))
+        return _of_sines([sine, SinePiece(end)], grid)
+    whole = follow(grid.s, now, np.array([now.span]))[:, 0]
+    return np.asarray(np.exp(-grid.s * now.span) * whole)
+
+
+def _of_samples(force: Samples, grid: Grid) -> Complex:
+    """Transform straight lines between even samples: hats, half of one at the first."""
+    # after the last sample the force goes to 0 smoothly
+    h, count, given = grid.step, grid.count, len(force.sample)
+    spare = (count - given) // 2
+    f = np.zeros(count)
+    f[:given], f[given : given + spare] = force.sample, force.sample[-1] * _taper(spare)
+    spectrum = np.fft.fft(f * np.exp(-grid.a * h * np.arange(count)))
+    z = grid.s * h
+    k = np.arange(len(z)) % count
+    hat = np.ones(len(z), dtype=np.complex128)
+    np.divide(np.sinh(z / 2), z / 2, out=hat, where=z != 0)
+    return np.asarray(h * (spectrum[k] * hat * hat - force.sample[0] * _half_hat(-z)))
+
+
+def _taper(count: int) -> Real:
+    """Return half a cosine from 1 to 0 without its ends."""
+    return np.asarray((1 + np.cos(np.pi * np.arange(1, count + 1) / (count + 1))) / 2)
+
+
+def _half_hat(z: Complex) -> Complex:
+    """Return the integral of (1 - u) e^(-z u) from 0 to 1, (e^-z - 1 + z)/z^2."""
+    small = np.abs(z) < SMALL
+    result, term = np.zeros_like(z), np.full(z.shape, 0.5, dtype=np.complex128)
+    for n in range(TERMS):
+        result += term
+        term = term * -z / (n + 3)
+    large = ~small
+    result[large] = (np.expm1(-z[large]) + z[large]) / z[large] ** 2
+    return result
+
+
+def _of_corners(force: Samples, grid: Grid) -> Complex:
+    """Transform samples at any times: jumps over s and corners over s^2."""
+    time = np.append(force.time - grid.begin, grid.period)
+    sample = np.append(force.sample, 0.0)
+    slope = np.diff(sample) / np.diff(time)
+    corner = np.diff(slope, prepend=0.0, append=0.0)
+    return np.asarray(sample[0] / grid.s + grid.exponentials(time, corner) / grid.s**2)

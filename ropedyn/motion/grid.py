@@ -1,0 +1,127 @@
+"""The rates on a line Re s = a at which motion over a record is looked at."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..base.array import Complex, Index, Real
+
+EVEN = 1e-6  # Times whose steps differ by this part of one are even.
+FINEST = 64  # Lines reach so many times as far as the times resolve at first, at most.
+LEAST = 256  # Other times are looked at by so many even steps at least.
+MOST = 1 << 22  # So many numbers are computed at a time.
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Rates s_k = a + 2 pi i k/P, of motion over a period P that begins with the record.
+
+    y(t) = e^(a t)/P sum over all k of y(s_k) e^(2 pi i k t/P) is the motion and e^(-a P) times that
+    of a period later.
+    """
+
+    time: Real  # (t,) when motion is asked for [s]
+    even: bool  # whether in equal steps
+    steps: int  # of equal length, that the record has
+    count: int  # and the period
+    a: float  # [1/s]
+    finer: int  # lines reach so many times as far as these steps resolve
+
+    @classmethod
+    def over(cls, time: Real, longer: float, decay: float, growth: float, omega: float) -> Grid:
+        """Return one of a period so much longer than the record, e^(-a P) = decay but for growth.
+
+        Its lines reach twice as far as the times resolve, and up to an angular frequency.
+        """
+        from scipy.fft import next_fast_len
+
+        steps = len(time) - 1
+        span = float(time[-1] - time[0])
+        even = bool(np.abs(np.diff(time) * steps / span - 1).max() <= EVEN)
+        if not even:
+            steps = max(steps, LEAST)
+        count = next_fast_len(math.ceil(longer * (steps + 1)), real=True)
+        a = growth - math.log(decay) * steps / (count * span)
+        resolved = math.pi * steps / span
+        finer = max(2, math.ceil(min(omega / resolved, FINEST)), math.ceil(2 * LEAST / count))
+        return cls(time, even, steps, count, a, finer + finer % 2)
+
+    @property
+    def begin(self) -> float:
+        """The first time [s]."""
+        return float(self.time[0])
+
+    @property
+    def step(self) -> float:
+        """Of the even times [s]."""
+        return float(self.time[-1] - self.time[0]) / self.steps
+
+    @property
+    def period(self) -> float:
+        """P [s]."""
+        return self.step * self.count
+
+    @property
+    def lines(self) -> int:
+        """How many rates there are beside a."""
+        return self.finer * self.count // 2
+
+    @property
+    def omega(self) -> float:
+        """The highest angular frequency [rad/s]."""
+        return 2 * math.pi * self.lines / self.period
+
+    @cached_property
+    def s(self) -> Complex:
+        """The rates, shape (lines + 1,)."""
+        return np.asarray(self.a + 2j * math.pi / self.period * np.arange(self.lines + 1))
+
+    @property
+    def _digits(self) -> tuple[Index, Index]:
+        """Numbers of which k is the sum: low ones, and high ones in even steps."""
+        inner = math.isqrt(len(self.s)) + 1
+        return np.arange(inner), np.arange(-(-len(self.s) // inner)) * inner
+
+    def exponentials(self, since: Real, weight: Real) -> Complex:
+        """Return the sum of weight e^(-s t) at each rate, of times (n,) since the first."""
+        low, high = self._digits
+        turn = -2j * math.pi / self.period
+        total = np.zeros((len(high), len(low)), dtype=np.complex128)
+        most = max(1, MOST // (len(low) + len(high)))
+        for k in range(0, len(since), most):
+            t = since[k : k + most]
+            size = weight[k : k + most] * np.exp(-self.a * t)
+            far = np.exp(turn * np.multiply.outer(high, t)) * size
+            total += far @ np.exp(turn * np.multiply.outer(t, low))
+        return total.ravel()[: len(self.s)]
+
+    def summed(self, spectrum: Complex, since: Real) -> Real:
+        """Return the motion of spectra (r, lines + 1) at times (n,) since the first, (r, n)."""
+        low, high = self._digits
+        table = np.zeros((len(spectrum), len(high) * len(low)), dtype=np.complex128)
+        table[:, : len(self.s)] = spectrum * (2 / self.period)
+        table[:, 0] /= 2
+        table = table.reshape(-1, len(low))
+        turn = 2j * math.pi / self.period
+        value = np.empty((len(spectrum), len(since)))
+        most = max(1, MOST // (len(table) + len(low)))
+        for k in range(0, len(since), most):
+            t = since[k : k + most]
+            near = table @ np.exp(turn * np.multiply.outer(low, t))
+            far = np.exp(turn * np.multiply.outer(high, t))
+            near = near.reshape(len(spectrum), len(high), len(t))
+            wave = np.einsum("rot,ot->rt", near, far).real
+            value[:, k : k + most] = np.exp(self.a * t) * wave
+        return value
+
+    def finely(self, spectrum: Complex) -> Real:
+        """Return the motion of spectra at so many even times of the period, (.., 2 lines)."""
+        from scipy.fft import irfft
+
+        count = 2 * self.lines
+        growth = np.exp(self.a * self.period / count * np.arange(count)) * (count / self.period)
+        return np.asarray(growth * irfft(spectrum, count, axis=-1))

@@ -1,0 +1,209 @@
+"""Linear motion of any damping by inversion of its exact transfer functions on a line Re s = a.
+
+    y(t) = e^(a t)/P sum over k of W_k y(s_k) e^(2 pi i k t/P),   s_k = a + 2 pi i k/P,
+
+of y(s) = s^order H(s) f(s) without what it does at once (at_once.py): that is added in closed form.
+W = exp(-36 (omega/Omega)^p) ends the sum smoothly. The error is told by sums that end earlier.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..base.array import Complex, Real
+from ..base.errors import SceneError, SolveError
+from ..base.unit import MOTIONS
+from ..chain.chain import Chain
+from ..eigen.damped.rates import Rates
+from ..eigen.spectrum import count_component, spectrum
+from ..scene import damping
+from ..scene.force import Force, Step
+from .at_once import LOOKS, at_once, response
+from .force_transform import transform
+from .grid import Grid
+from .modal.convolution import convolve
+from .moved import Moved
+from .request import Run
+from .transfer import Transfer
+
+PERIODS = ((1e-6, 1.25, 1e-9), (0.0, 2.0, 1e-11))
+"""From this tolerance on the period is so much longer than the record, and this alias is left."""
+SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
+TIMES = 3.0  # so many times over,
+LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
+AROUND = 4  # where they differ most within so many steps.
+SHARP = 20  # p.
+ALIAS = 4.0  # A period later motion may be so much larger.
+ROUNDING = 0.05  # Of the error that the sweep bounds, this part, by which rates do not depend.
+MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
+MOST_LINES = 1 << 19  # At most so many rates are looked at, where times resolve fewer.
+EPS = 16 * np.finfo(float).eps
+FAR = 1e4  # So many times the highest rate no mode of a chain is left: what is infinite there is.
+GROWS = 2.0**0.25  # What grows by this with the rate has no bound
+STRONG = 1e-3  # where it is more than this part of the largest value.
+REACH = 4.0  # They reach so many times as far as the forces do, at first.
+
+
+def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
+    """Return the motion, of as many rates as it takes to be within the tolerance."""
+    line = Line.of(run, tolerance)
+    while True:
+        with np.errstate(all="ignore"):  # numbers that are not finite are refused
+            moved = line.motion()
+        if not np.isfinite(moved.value).all():
+            raise SolveError("the numbers overflow: check the units and the times")
+        is_known = (moved.shares(kinds) <= tolerance).all()
+        if is_known or 2 * line.grid.lines > MOST_LINES or 2 * line.value.size > MOST_NUMBERS:
+            line.refuse_infinite(moved)
+            return moved
+        line = line.further()
+
+
+@dataclass(frozen=True)
+class Line:
+    """Transfer functions at the rates of a grid."""
+
+    run: Run
+    transfer: Transfer
+    forces: tuple[Force, ...]
+    grid: Grid
+    value: Complex  # (drives, responses, lines + 1)
+    error: Real  # of rounding, relative, as value
+    decay: float  # e^(-a P)
+
+    @classmethod
+    def of(cls, run: Run, tolerance: float) -> Line:
+        """Look at as many as the times resolve, twice."""
+        longer, decay = next(pair for least, *pair in PERIODS if tolerance >= least)
+        begin = float(run.time[0])
+        loads = [Step(-load, time=begin) for load in run.loads.values()]
+        forces = (*run.forces, *run.blows, *loads)
+        omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
+        grid = Grid.over(run.time, longer, decay, growth_of(run), omega)
+        transfer = Transfer(run.model, tuple(run.places), run.responses)
+        return cls(run, transfer, forces, grid, *transfer.at(grid.s), decay)
+
+    def further(self) -> Line:
+        """Look twice as far."""
+        grid = replace(self.grid, finer=2 * self.grid.finer)
+        more = self.transfer.at(grid.s[len(self.grid.s) :])
+        known = zip((self.value, self.error), more)
+        value, error = (np.concatenate(both, axis=2) for both in known)
+        return replace(self, grid=grid, value=value, error=error)
+
+    def motion(self) -> Moved:
+        """Return the motion."""
+        grid, run, order = self.grid, self.run, self.run.order
+        looked, _ = self.transfer.at(grid.omega * LOOKS)
+        fast = at_once(looked, grid.omega, self.value[..., 0])
+        quick = response(fast, grid.s)
+        force = np.stack([transform(one, grid) for one in self.forces]) * grid.s**order
+        smooth = np.einsum("drk,dk->rk", self.value - quick, force)
+        value, differ = self._summed(smooth)
+        largest = np.abs(value).max(axis=1, initial=0.0)
+        value += self._resting()
+        for d, one in enumerate(self.forces):
+            value += convolve(fast, d, one, run.time, order)
+        size = np.abs(self.value)
+        wrong = np.where(size > 0, size * self.error, 0.0) + EPS * np.abs(quick)
+        wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
+        wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
+        rounding = np.multiply.outer(wrong, np.exp(grid.a * (run.time - grid.begin)))
+        alias = ALIAS * self.decay * largest
+        # modes beyond the rates, where none is near their end, are seen by what they do there
+        last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
+        alias += grid.omega / math.pi * last
+        error = TIMES * differ + rounding + alias[:, None]
+        return Moved(value, error, "line", lines=grid.lines)
+
+    def refuse_infinite(self, moved: Moved) -> None:
+        """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
+        run, omega = self.run, self.grid.omega
+        if run.model.element != "continuous":
+            omega *= FAR
+        s = omega * LOOKS[-2:]
+        far, _ = self.transfer.at(s)
+        for d, (place, force) in enumerate(zip(run.places, self.forces)):
+            for more, size in enumerate(_jumps(force, run.time)):
+                reach = np.abs(far[d] * s ** (run.order + more))
+                grows = reach[:, 1] > GROWS * reach[:, 0]
+                seen = size * reach[:, 1] > STRONG * np.abs(moved.value).max(axis=1)
+                for r in np.flatnonzero(grows & seen):
+                    raise SceneError(
+                        f'quantity must not be "{list(MOTIONS)[run.order]}" of '
+                        f"{run.responses[r]}, which is infinite when what acts at {place} "
+                        f"{('jumps', 'is a blow at an instant')[more]}"
+                    )
+
+    def _resting(self) -> Real:
+        """Return the deflection under the loads that are let go, (responses, 1)."""
+        count = len(self.run.loads)
+        if not count or self.run.order:
+            return np.zeros((len(self.run.responses), 1))
+        try:
+            still, _ = self.transfer.at(np.zeros(1, dtype=np.complex128))
+        except SolveError as refusal:
+            raise SceneError(
+                "start must be None where the rope has no rest under a load"
+            ) from refusal
+        loads = np.array(list(self.run.loads.values()))
+        return np.asarray(loads @ still[-count:, :, 0].real)[:, None]
+
+    def _summed(self, smooth: Complex) -> tuple[Real, Real]:
+        """Return the sum at the times, and how far sums that end earlier are from it."""
+        from scipy.ndimage import maximum_filter1d
+
+        grid = self.grid
+        share = np.arange(grid.lines + 1) / grid.lines
+        whole, *earlier = (
+            grid.finely(smooth * np.exp(-36 * np.minimum(share / end, 2.0) ** SHARP))
+            for end in (1.0, *SHARES)
+        )
+        differ = np.max([np.abs(one - whole) for one in earlier], axis=0)
+        differ = maximum_filter1d(differ, 2 * AROUND * grid.finer + 1, axis=-1)
+        since = grid.time - grid.begin
+        if grid.even:
+            even = slice(0, len(since) * grid.finer, grid.finer)
+            return whole[:, even].copy(), differ[:, even].copy()
+        at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
+        ended = smooth * np.exp(-36 * share**SHARP)
+        return grid.summed(ended, since), differ[:, at]
+
+
+def _jumps(force: Force, time: Real) -> tuple[float, float]:
+    """Return the largest jump of a force within times, and its largest blow at an instant."""
+    begin, end = float(time[0]), float(time[-1])
+    inside = np.array([at for at in force.breaks if begin < at <= end])
+    steps = force.value(inside) - force.value(np.nextafter(inside, -np.inf))
+    jump = np.abs(np.append(steps, force.value(time[:1]))).max()
+    blows = [abs(size) for at, size in force.blows if begin <= at <= end]
+    return float(jump), max(blows, default=0.0)
+
+
+def growth_of(run: Run) -> float:
+    """Return how fast motion of the model grows at most [1/s]."""
+    model, growth = run.model, 0.0
+    rates = Rates.of(model.scene.dampings)
+    _refuse_driven(model.chain, rates)
+    gain = float(rates.linear[damping.TENSION].real)
+    for component in model.components:
+        if count_component(model, component, 0.0):
+            value, _ = spectrum(model, component, 1)
+            pushed = max(0.0, -float(value[0]))
+            half = gain * pushed / 2
+            growth = max(growth, half + math.sqrt(half * half + pushed))
+    return growth
+
+
+def _refuse_driven(chain: Chain, rates: Rates) -> None:
+    """Refuse damping that drives, so that nothing bounds how fast motion grows."""
+    section, tension, spring, *_ = rates.linear.real
+    pushes = bool((np.linalg.eigvalsh(chain.stiffness) < 0).any())
+    if spring > 0 and pushes and not section == tension == spring:
+        raise SceneError(
+            "a spring's stiffness must be > 0 beside stiffness damping, which drives where it "
+            'pushes away, got less; method "direct" takes it'
+        )

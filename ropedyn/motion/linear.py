@@ -1,0 +1,184 @@
+"""Motion of a linear model: by its modes where they tell it, else by the line."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from ..base.answer import Cost
+from ..base.array import Real
+from ..base.errors import SceneError, SolveError
+from ..base.progress import silent
+from ..chain.compile import compile_scene
+from ..chain.port import is_force, moving
+from ..chain.tip import is_tip, tip_of
+from ..eigen.damped.proportional import proportional
+from ..eigen.damped.rates import Rates
+from ..eigen.vectors import within
+from ..response.deflection import POINTS
+from ..response.moved_end import is_end
+from ..scene import damping
+from .history import History
+from .line import invert
+from .modal.energy_balance import balance
+from .modal.superposition import estimated, fastest, superpose
+from .moved import Moved
+from .request import Run
+from .transfer import Transfer
+
+TOLERANCE = 1e-3  # Of each response's largest value, where none is given.
+LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
+STILL = 1e-9
+"""A response does not move where it is this part of what drive and response could move at most."""
+RATES = 9  # It is looked at by so many rates,
+OCTAVES = 12.0  # which span so many octaves down from the fastest that times resolve.
+
+
+def solve_linear(run: Run) -> History:
+    """Return the motion of a linear model within the tolerance; see `Model.transient`."""
+    start = clock.perf_counter()
+    moved = within_tolerance(run)
+    x, snapshot = _snapshots(run)
+    seconds = clock.perf_counter() - start
+    kept, model = run.kept, run.model
+    mesh_error: Real | Callable[[], Real] = partial(mesh_error_of, kept, moved.value)
+    if model.element == "continuous":
+        mesh_error = np.zeros(moved.value.shape)
+    return History(
+        **kept.told,
+        value=moved.value,
+        x=x,
+        snapshot=snapshot,
+        cost=Cost(seconds, moved.method, len(model.x) - 1, moved.modes, sweeps=2 * moved.lines),
+        error=moved.error,
+        mesh_error=mesh_error,
+        balance=partial(balance, kept, fastest(kept)),
+    )
+
+
+def within_tolerance(run: Run) -> Moved:
+    """Return the motion within the tolerance, or raise."""
+    if run.coarse is None:
+        return _by_methods(run)
+    loose = run.coarse if run.tolerance is None else replace(run.coarse, tolerance=None)
+    moved, coarse = _by_methods(run), _by_methods(loose)
+    moved = moved._replace(error=moved.error + np.abs(moved.value - coarse.value))
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    share = moved.shares()
+    if (share > tolerance).any():
+        raise SolveError(
+            f"start and velocity are known to {share.max():.1e} of the largest value, with "
+            f"{len(run.loads) + len(run.kicks)} places along the rope, not to {tolerance:g}"
+        )
+    return moved
+
+
+def _by_methods(run: Run) -> Moved:
+    """Return the motion by the first method whose error is within the tolerance, or raise."""
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    kinds = [moving(point) for point in run.responses] if run.together else None
+    is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
+    refused: list[str] = []
+    for method in _methods(run):
+        try:
+            moved = superpose(run) if method == "modal" else invert(run, tolerance, kinds)
+        except SolveError as refusal:
+            refused.append(f"{method}: {refusal}")
+            continue
+        share = moved.shares(kinds)
+        if is_modal and run.modes is None and not (share <= tolerance).all():
+            # modes with ratios of their own have no transfer function that the line could take
+            moved = estimated(run, moved)
+            share = moved.shares(kinds)
+        late = np.flatnonzero(~(share <= tolerance))
+        if all(_is_still(run, int(r)) for r in late):
+            return moved
+        worst = int(np.nan_to_num(share, nan=np.inf).argmax())
+        how = f"{moved.modes} modes" if method == "modal" else f"the line at {moved.lines} rates"
+        refused.append(f"{how}: up to {share[worst]:.1e} of it for {run.responses[worst]}")
+    raise SolveError(
+        f"the motion is not known to {tolerance:g} of its largest value. Error by "
+        f"{'; by '.join(refused)}. A larger tolerance, more times or a smoother force help"
+    )
+
+
+def _methods(run: Run) -> list[str]:
+    """Return the methods that take the model, in turn."""
+    is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
+    if run.method == "line":
+        if is_modal:
+            raise SceneError('method must be "modal" or "auto" where damping is modal, got "line"')
+        return ["line"]
+    if is_modal or is_proportional(run):
+        return ["modal", "line"][: 2 if run.method == "auto" and not (is_modal or run.modes) else 1]
+    if run.method == "modal" or run.modes:
+        raise SceneError(
+            'method must be "line" or "auto", without modes, where damping is not proportional, '
+            f'got "{run.method}"'
+        )
+    return ["line"]
+
+
+def is_proportional(run: Run) -> bool:
+    """Whether modes without damping are not coupled in any component that takes part."""
+    model, rates = run.model, Rates.of(run.model.scene.dampings)
+    roots = [tip_of(model, p).root[0] if is_tip(p) else p for p in run.responses]
+    driven, watched = ({moving(p) for p in some} for some in (run.places, roots))
+    taking = [c for c in model.components if driven & set(c) and watched & set(c)]
+    return all(proportional(model.chain.only(c), rates) is not None for c in taking)
+
+
+def _is_still(run: Run, response: int) -> bool:
+    """Whether a response is 0 but for rounding, as where symmetry holds it."""
+    own = run.responses[response]
+    if is_force(own) or is_tip(own) or damping.having(run.model.scene.dampings, "ratio"):
+        return False
+    places = tuple(dict.fromkeys([*run.places, own]))
+    omega = np.pi * (len(run.time) - 1) / float(run.time[-1] - run.time[0])
+    s = omega * 2.0 ** -np.linspace(0.0, OCTAVES, RATES) * np.exp(0.4j * np.pi)
+    across, _ = Transfer(run.model, places, (own,)).at(s)
+    itself = np.abs(across[places.index(own), 0])
+    for place in run.places:
+        if is_end(place):
+            return False
+        most = np.sqrt(itself * np.abs(Transfer(run.model, (place,), (place,)).at(s)[0][0, 0]))
+        if (np.abs(across[places.index(place), 0]) > STILL * most).any():
+            return False
+    return True
+
+
+def _snapshots(run: Run) -> tuple[Real, Real]:
+    """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
+    model = run.model
+    x = within(model.x, POINTS) if model.element == "continuous" else model.x
+    width = len(model.coordinates)
+    if len(run.snapshots) == 0:
+        return x, np.zeros((0, len(x), width))
+    points = tuple((c, float(at)) for at in x for c in model.coordinates)
+    time = np.unique(np.concatenate([run.time[[0, -1]], run.snapshots]))
+    looks = replace(run, time=time, responses=points, order=0, together=True, progress=silent)
+    kept = within_tolerance(looks).value[:, np.searchsorted(time, run.snapshots)]
+    return x, np.ascontiguousarray(kept.T).reshape(-1, len(x), width)
+
+
+def mesh_error_of(run: Run, value: Real) -> Real:
+    """Return the distance to the motion of continuous spans and the error of that, as value."""
+    nothing = np.full(value.shape, np.inf)
+    try:
+        model = compile_scene(run.model.scene)
+    except SceneError:
+        return nothing
+    exact = replace(run, model=model, modes=None, method="auto", snapshots=np.zeros(0))
+    for tolerance in LOOSER:
+        try:
+            true = within_tolerance(replace(exact, tolerance=tolerance))
+        except SolveError:
+            continue
+        except SceneError:
+            return nothing
+        return np.asarray(np.abs(value - true.value) + true.error)
+    return nothing
