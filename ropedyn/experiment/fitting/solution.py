@@ -122,11 +122,6 @@ class Solution:
         """Return that of some of the ropes."""
         return replace(self, rows=self.rows[some], record=self.record[some])
 
-    def with_others(self, others: Solution) -> Solution:
-        """Return that of these and other ropes."""
-        rows = np.concatenate([self.rows, others.rows])
-        return Solution(others.task, rows, np.concatenate([self.record, others.record]))
-
     @property
     def u(self) -> Real:
         """The best variables, shape (n, p)."""

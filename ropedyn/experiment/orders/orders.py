@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...base import check
-from ...base.array import Index, Real
+from ...base.array import Index
 from ...base.errors import SceneError
 from ...curves.peaks import Peaks
 
@@ -29,8 +29,3 @@ def given_orders(orders: Any, peaks: Peaks) -> Index | None:
     if len(each) != k or len(set(modes)) < len(modes) or not modes:
         raise SceneError(f"orders must be {what}, got {check.shown(orders)}")
     return np.array(each, dtype=np.intp)
-
-
-def lowest_orders(frequency: Real) -> Index:
-    """Return the lowest modes for peaks in any order, shape (..., k)."""
-    return np.argsort(np.argsort(frequency, axis=-1, kind="stable"), axis=-1) + 1

@@ -16,7 +16,7 @@ import numpy as np
 
 from ...base.array import Complex, Index, Real
 from .laws import Felt, PointForces
-from .transfer import Transfer
+from .transfer import PanelledTransfer
 
 
 class Linear(NamedTuple):
@@ -31,7 +31,7 @@ class Linear(NamedTuple):
 class HarmonicBalance:
     """What is balanced: a drive of one amplitude on a scene, harmonics up to K."""
 
-    transfer: Transfer  # (points and more, points + 1), the drive last
+    transfer: PanelledTransfer  # (points and more, points + 1), the drive last
     force: PointForces
     points: int
     harmonics: int  # K

@@ -21,7 +21,7 @@ from ...scene.tension import Tension
 from .asked import SteppedSine
 from .balance import HarmonicBalance
 from .laws import ActingLaw, PointForces, PointLaws, StringTension, Together, acting_laws, asked_law
-from .transfer import Transfer
+from .transfer import PanelledTransfer
 
 TOGETHER = 1000  # What acts and the drive must both begin anew within so many periods.
 WHOLE = 1e-12  # A number of periods is whole if it is as near to a whole number.
@@ -72,9 +72,9 @@ class Driven:
         return laws if self.tension is None else Together([laws, self.tension])
 
     @cached_property
-    def transfer(self) -> Transfer:
+    def transfer(self) -> PanelledTransfer:
         """What points and drive move, (points and held, points and drive); forces where held."""
-        return Transfer(self._transfer)
+        return PanelledTransfer(self._transfer)
 
     def _transfer(self, omega: Real) -> tuple[Complex, Real]:
         pushed = [*self.points, *self.held, self.asked.drive]

@@ -20,7 +20,7 @@ from .balance import HarmonicBalance
 from .driven import Driven, known_to
 from .stability import growing
 from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled
-from .transfer import Transfer
+from .transfer import PanelledTransfer
 
 FIRST = 1e-3  # Share of the amplitude from which it is raised.
 STEPS = 4000  # A branch is followed for so many at most on the way to one frequency.
@@ -81,7 +81,7 @@ def _linear(asked: SteppedSine, driven: Driven, start: float) -> FRF:
         found = solve(omega / (2 * np.pi))
         return found.value.T, known_to(found)
 
-    Transfer(ask).cover(2 * np.pi * UNDAMPED * float(f.max()))
+    PanelledTransfer(ask).cover(2 * np.pi * UNDAMPED * float(f.max()))
     found = solve(f)
     seconds = clock.perf_counter() - start
     cost = Cost(seconds, "sweep", found.cost.elements, found.cost.unknowns, found.cost.sweeps)

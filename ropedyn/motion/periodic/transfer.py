@@ -40,7 +40,7 @@ def _rule() -> tuple[Real, Real, Real]:
     return x, np.asarray(terms, dtype=np.float64), slope
 
 
-class Transfer:
+class PanelledTransfer:
     """H(i omega) between points, on the whole real axis."""
 
     def __init__(self, ask: Ask) -> None:

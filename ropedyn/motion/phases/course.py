@@ -24,10 +24,6 @@ class Course(NamedTuple):
         """Return some of the outputs."""
         return Course(self.rate, self.c[which], self.d[which], self.a[which])
 
-    def combined(self, rows: Real) -> Course:
-        """Return linear combinations of the outputs."""
-        return Course(self.rate, rows @ self.c, rows @ self.d, rows @ self.a)
-
     def beside(self, other: Course) -> Course:
         """Return the outputs of both, of one phase."""
         return Course(

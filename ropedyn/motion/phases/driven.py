@@ -31,7 +31,7 @@ class Forcing(NamedTuple):
     slope: Real  # (drives,)
 
 
-class Driven(NamedTuple):
+class UnderDrives(NamedTuple):
     """z over time, as in the head of the file."""
 
     first: Real  # (j,) size of what z is the sum of at the beginning
@@ -74,7 +74,7 @@ class Driven(NamedTuple):
 
 def drive(
     poles: Poles, matrices: Matrices, z: Complex, push: Forcing, *, fixed: Real, ahead: float
-) -> Driven:
+) -> UnderDrives:
     """Return the motion from z on while nothing happens, for a time."""
     p = poles.rate
     driven = poles.left @ matrices.Bd
@@ -98,7 +98,7 @@ def drive(
     if slow.any():
         power[slow] = _expanded(p[slow], (own[slow], level[slow], slope[slow]))
         own[slow] = 0.0
-    return Driven(np.abs(z), push, fixed, own, forced, near, grows, power)
+    return UnderDrives(np.abs(z), push, fixed, own, forced, near, grows, power)
 
 
 def _expanded(p: Complex, values: tuple[Complex, Complex, Complex]) -> Complex:

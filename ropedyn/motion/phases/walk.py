@@ -11,7 +11,7 @@ import numpy as np
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from .course import Course
-from .driven import Driven, Forcing, drive
+from .driven import Forcing, UnderDrives, drive
 from .phase import Matrices, PhaseSystem, matrices
 from .pieces import ForcePiece
 from .poles import Poles, poles_of
@@ -39,12 +39,12 @@ class Phase:
         poles = poles_of(m.A, m.E.shape[1], system.span)
         return cls(mode, m, poles, m.Y @ poles.right, np.abs(poles.left))
 
-    def outputs(self, driven: Driven, which: slice) -> Course:
+    def outputs(self, driven: UnderDrives, which: slice) -> Course:
         """Return some of responses, displacements and forces of laws."""
         m = self.matrices
         return driven.seen(self.poles, self.seen[which], m.Dd[which], m.Ds[which])
 
-    def state(self, driven: Driven, hold: Real) -> Course:
+    def state(self, driven: UnderDrives, hold: Real) -> Course:
         """Return q, q' and e."""
         m, n = self.matrices, self.matrices.E.shape[1]
         right = self.poles.right
@@ -69,7 +69,7 @@ class Visit(NamedTuple):
     start: float  # [s]
     stop: float  # [s]
     phase: Phase
-    driven: Driven  # since its start
+    driven: UnderDrives  # since its start
     hold: Real  # (frictions,) where friction holds
 
     def outputs(self, which: slice) -> Course:
@@ -140,7 +140,7 @@ class PhaseWalk:
 
     def _enter(
         self, now: Instant, mode: tuple[int, ...], forcing: Forcing, ahead: float
-    ) -> tuple[Phase, Driven]:
+    ) -> tuple[Phase, UnderDrives]:
         phase = self._phase(mode)
         m = phase.matrices
         x = np.concatenate([m.E.T @ (now.q - m.b @ now.hold), m.E.T @ now.v, now.e])
@@ -149,7 +149,7 @@ class PhaseWalk:
         driven = drive(phase.poles, m, z, forcing, fixed=fixed, ahead=ahead)
         return phase, driven._replace(first=np.abs(z) + SHARE * (phase.loss @ np.abs(x)))
 
-    def _leave(self, phase: Phase, driven: Driven, now: Instant, time: float) -> Instant:
+    def _leave(self, phase: Phase, driven: UnderDrives, now: Instant, time: float) -> Instant:
         m, n = phase.matrices, phase.matrices.E.shape[1]
         x = (phase.poles.right @ driven.at(phase.poles, time)).real
         q, v = m.E @ x[:n] + m.b @ now.hold, m.E @ x[n : 2 * n]
@@ -172,7 +172,7 @@ class PhaseWalk:
                 found += [_scaled(force.some(one), sign, friction.force) for sign in (1.0, -1.0)]
         return _stacked(found, outputs)
 
-    def _scale(self, phase: Phase, driven: Driven, mode: tuple[int, ...]) -> Real:
+    def _scale(self, phase: Phase, driven: UnderDrives, mode: tuple[int, ...]) -> Real:
         """Return the size of the numbers that each guard is a difference of."""
         laws, first, m = self.system.laws, self.system.responses, phase.matrices
         size = np.abs(phase.seen) * driven.first

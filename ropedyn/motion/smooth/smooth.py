@@ -32,7 +32,7 @@ from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
 from .passage import LawPassage
 from .stretching import StretchedPassage, StretchedSystem, is_stretched, stretched_points
-from .system import LawQuestion, LawSystem, Look
+from .system import LawQuestion, LawSystem, OutputTimes
 
 TOLERANCE = 1e-3  # Errors are within this part of the largest value where none is given.
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
@@ -229,8 +229,8 @@ class _Answer:
             return
         seen = [(c, float(x)) for x in self.x for c in component] if len(run.snapshots) else []
         points = [*(run.responses[k] for k in watched), *seen]
-        looks = [Look(slice(0, len(watched)), run.time, run.order)]
-        looks.append(Look(slice(len(watched), len(points)), run.snapshots, 0))
+        looks = [OutputTimes(slice(0, len(watched)), run.time, run.order)]
+        looks.append(OutputTimes(slice(len(watched), len(points)), run.snapshots, 0))
         found = component_motion(run, LawQuestion(component, laws, points, looks))
         self.value[watched], self.step_error[watched] = found.looked[0], found.step_error
         self.truncation[watched] = found.truncation

@@ -21,7 +21,7 @@ LEAST = 32  # A run has so many steps at least,
 PER_PERIOD = 4  # and a period of the lowest mode, and of what pushes, so many.
 
 
-class Look(NamedTuple):
+class OutputTimes(NamedTuple):
     """When outputs are asked for."""
 
     output: slice
@@ -35,7 +35,7 @@ class LawQuestion(NamedTuple):
     component: tuple[str, ...]
     laws: list[PointLaw]
     outputs: list[Point]
-    looks: list[Look]  # at the outputs
+    looks: list[OutputTimes]  # at the outputs
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class LawSystem:
     driven: list[Expansion]  # of each drive: the same outputs
     pushes: list[Force | float]  # of each drive
     time: Real  # (t,) [s]
-    looks: list[Look]
+    looks: list[OutputTimes]
     beyond: float  # lowest angular frequency that is left out [rad/s]
 
     @classmethod
