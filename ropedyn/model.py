@@ -361,7 +361,7 @@ class Model(Compiled):
             Of the direct method [s], at most.
         tolerance : float, optional
             Part of each response's largest value that errors keep to (`History.total_error` adds
-            that of elements); 1e-3, of steps 1e-4.
+            that of elements); 1e-3, of steps 1e-4, with `modes` given any.
         spectral_radius : float
             Of the direct method at infinite frequency, from 0 to 1: 1 keeps the energy of undamped
             motion (with a given `step` to the last digits), less takes it from frequencies that the

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from collections.abc import Callable
 from dataclasses import replace
@@ -67,7 +68,7 @@ def within_tolerance(run: Run) -> Moved:
     loose = run.coarse if run.tolerance is None else replace(run.coarse, tolerance=None)
     moved, coarse = _by_methods(run), _by_methods(loose)
     moved = moved._replace(error=moved.error + np.abs(moved.value - coarse.value))
-    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    tolerance = _tolerance(run)
     share = moved.shares()
     if (share > tolerance).any():
         raise SolveError(
@@ -79,7 +80,7 @@ def within_tolerance(run: Run) -> Moved:
 
 def _by_methods(run: Run) -> Moved:
     """Return the motion by the first method whose error is within the tolerance, or raise."""
-    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    tolerance = _tolerance(run)
     kinds = [moving(point) for point in run.responses] if run.together else None
     is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
     refused: list[str] = []
@@ -104,6 +105,13 @@ def _by_methods(run: Run) -> Moved:
         f"the motion is not known to {tolerance:g} of its largest value. Error by "
         f"{'; by '.join(refused)}. A larger tolerance, more times or a smoother force help"
     )
+
+
+def _tolerance(run: Run) -> float:
+    """Return the tolerance; of modes whose number is given the error is said, however large."""
+    if run.tolerance is not None:
+        return run.tolerance
+    return TOLERANCE if run.modes is None else math.inf
 
 
 def _methods(run: Run) -> list[str]:
