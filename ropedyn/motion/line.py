@@ -17,10 +17,13 @@ from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
 from ..base.unit import MOTIONS
 from ..chain.chain import Chain
+from ..chain.port import Point, is_force
+from ..chain.tip import is_tip
 from ..eigen.damped.rates import Rates
 from ..eigen.spectrum import count_component, spectrum
+from ..response.moved_end import is_end
 from ..scene import damping
-from ..scene.force import Force, Step
+from ..scene.force import Force, Step, is_sampled
 from .at_once import LOOKS, at_once, response
 from .force_transform import transform
 from .grid import Grid
@@ -32,8 +35,9 @@ from .transfer import Transfer
 PERIODS = ((1e-6, 1.25, 1e-9), (0.0, 2.0, 1e-11))
 """From this tolerance on the period is so much longer than the record, and this alias is left."""
 SHARES = (0.5, 0.7, 0.85)  # Sums that end at this part of the rates tell the error,
-TIMES = 3.0  # so many times over,
+TIMES = 2.0  # so many times over,
 LAST = 8  # What is left beyond the rates is told by the last of so many parts of them.
+DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not ring.
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
 ALIAS = 4.0  # A period later motion may be so much larger.
@@ -115,9 +119,36 @@ class Line:
         alias = ALIAS * self.decay * largest
         # modes beyond the rates, where none is near their end, are seen by what they do there
         last = np.median(np.abs(smooth[:, -(grid.lines // LAST) :]), axis=1)
-        alias += grid.omega / math.pi * last
+        alias += grid.omega / math.pi * last + self._unseen()
         error = TIMES * differ + rounding + alias[:, None]
         return Moved(value, error, "line", lines=grid.lines)
+
+    def _unseen(self) -> Real:
+        """Bound what modes of a chain beyond the rates do under the forces, (responses,)."""
+        run, omega = self.run, self.grid.omega
+        bound = np.zeros(len(run.responses))
+        lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
+        if run.model.element == "continuous" or lag > DEAD or _is_indefinite(run.model.chain):
+            # modes of spans are dense, damped ones over at once, and some of no motion are counted
+            return bound
+        own = {point: self._light(point) for point in {*run.places, *run.responses}}
+        watched = np.array([own[point] for point in run.responses])
+        for place, force in zip(run.places, self.forces):
+            excited = _excited(force, run.time, omega)[run.order]
+            bound += excited * omega**-2.0 * np.sqrt(own[place] * watched)
+        return bound
+
+    def _light(self, point: Point) -> float:
+        """Bound the sum of the residues of modes beyond the rates where a point is driven."""
+        # s^2 H is the sum of r s^2/(s^2 + omega^2): all r far out, less x/(1 + x) of each nearer,
+        # x = (omega/s)^2: two places leave x^2 of modes below, and up to 3 of those beyond
+        if is_end(point) or is_force(point) or is_tip(point):
+            return 0.0
+        s = self.grid.omega * LOOKS[0] * np.array([1.0, 2.0, FAR, 2 * FAR])
+        value, _ = Transfer(self.run.model, (point,), (point,)).at(s)
+        near, next_, far, farther = value[0, 0] * s * s
+        has_mass = abs(farther) < GROWS * abs(far)
+        return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
 
     def refuse_infinite(self, moved: Moved) -> None:
         """Refuse by name what has no bound, as velocity where a blow at an instant hits a beam."""
@@ -181,6 +212,23 @@ def _jumps(force: Force, time: Real) -> tuple[float, float]:
     jump = np.abs(np.append(steps, force.value(time[:1]))).max()
     blows = [abs(size) for at, size in force.blows if begin <= at <= end]
     return float(jump), max(blows, default=0.0)
+
+
+def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, float]:
+    """Bound how far a force moves a mode from omega on, over r/omega^2, and derivatives of that."""
+    jump, blow = _jumps(force, time)
+    begin, end = float(time[0]), float(time[-1])
+    inside = np.array([at for at in force.breaks if begin < at <= end])
+    corners = force.rate(inside) - force.rate(np.nextafter(inside, -np.inf))
+    slopes = force.rate(time) if is_sampled(force) else force.rate(time[:1])
+    corners = np.concatenate([corners, np.diff(slopes, prepend=0.0)])
+    most = jump + omega * blow + TIMES / omega * float(np.sqrt((corners**2).sum()))
+    return most, most * omega, most * omega**2
+
+
+def _is_indefinite(chain: Chain) -> bool:
+    """Whether lumps have negative masses."""
+    return bool((np.linalg.eigvalsh(chain.mass) < 0).any())
 
 
 def growth_of(run: Run) -> float:

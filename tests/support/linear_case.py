@@ -127,6 +127,7 @@ class Exact:
 
     case: Case
     A: np.ndarray = field(init=False)
+    is_still: bool = False  # By symmetry: what is there is rounding
 
     def __post_init__(self):
         model = self.case.model
@@ -164,6 +165,8 @@ class Exact:
             states = sum(self._piecewise(pieces(one, 0.0), still) for one in several)
             acts = sum(one.value(case.time) for one in several)
         row = self.row(case.response)
+        most = np.abs(states[:, :n]).max(axis=0)
+        self.is_still = bool(most[row] < 1e-9 * most.max())
         if case.quantity == "acceleration":
             return states @ self.A[n + row] + self.b[n + row] * acts
         return states[:, row + n * (case.quantity == "velocity")]

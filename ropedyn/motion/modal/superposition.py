@@ -15,7 +15,7 @@ from .expansion import Share, expand
 from .truncation import left_out, ratio_beyond
 
 RESIDUES = 4e-12  # Residues are known to so much of the largest value,
-PHASES = 64 * np.finfo(float).eps  # and phases to this for each rad of the fastest mode.
+PHASES = 2048 * np.finfo(float).eps  # and phases to this for each rad of the fastest mode.
 SHARES, TIMES, AROUND = (0.5, 0.7, 0.85), 3.0, 4
 """So much fewer modes tell the error, this many times over, within so many steps."""
 WAVE = 8  # Times resolve a period of so many samples.
