@@ -32,6 +32,7 @@ from .request import Run
 from .transfer import Transfer
 
 TOLERANCE = 1e-3  # Of each response's largest value, where none is given.
+MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
 STILL = 1e-9
 """A response does not move where it is this part of what drive and response could move at most."""
@@ -82,19 +83,15 @@ def _by_methods(run: Run) -> Moved:
     """Return the motion by the first method whose error is within the tolerance, or raise."""
     tolerance = _tolerance(run)
     kinds = [moving(point) for point in run.responses] if run.together else None
-    is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
     refused: list[str] = []
     for method in _methods(run):
         try:
-            moved = superpose(run) if method == "modal" else invert(run, tolerance, kinds)
+            take = _summed if method == "modal" else invert
+            moved = take(run, tolerance, kinds)
         except SolveError as refusal:
             refused.append(f"{method}: {refusal}")
             continue
         share = moved.shares(kinds)
-        if is_modal and run.modes is None and not (share <= tolerance).all():
-            # modes with ratios of their own have no transfer function that the line could take
-            moved = estimated(run, moved)
-            share = moved.shares(kinds)
         late = np.flatnonzero(~(share <= tolerance))
         if all(_is_still(run, int(r)) for r in late):
             return moved
@@ -105,6 +102,24 @@ def _by_methods(run: Run) -> Moved:
         f"the motion is not known to {tolerance:g} of its largest value. Error by "
         f"{'; by '.join(refused)}. A larger tolerance, more times or a smoother force help"
     )
+
+
+def _summed(run: Run, tolerance: float, kinds: list[str] | None) -> Moved:
+    """Return the sum over modes, over more of them while its error exceeds the tolerance."""
+    moved, count = superpose(run), run.modes
+    is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
+    while run.modes is None and not (moved.shares(kinds) <= tolerance).all():
+        if is_modal:
+            # modes with ratios of their own have no transfer function that the line could take
+            moved = estimated(run, moved)
+        count = MORE * (moved.modes if count is None else count)
+        if count > MOST or (moved.shares(kinds) <= tolerance).all():
+            break
+        more = superpose(replace(run, modes=count))
+        if more.modes <= moved.modes:
+            break
+        moved = more
+    return moved
 
 
 def _tolerance(run: Run) -> float:

@@ -57,18 +57,6 @@ def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
     return _circles(pole, members, room)
 
 
-def in_the_plane(pole: Complex, error: Real, beyond: float) -> Circles:
-    """Draw circles around poles, all there are but for those beyond a modulus."""
-    size = np.abs(pole)
-    limit = ALIKE * np.maximum.outer(size, size) + 4 * np.add.outer(error, error)
-    members, room = clusters(np.abs(pole[:, None] - pole) <= limit), []
-    for own in members:
-        center = pole[own].mean()
-        others = np.abs(np.delete(pole, own) - center)
-        room.append(float(others.min(initial=beyond - abs(center))))
-    return _circles(pole, members, np.array(room))
-
-
 def _circles(pole: Complex | Real, members: list[Index], room: Real) -> Circles:
     """Draw circles around poles that have so much room."""
     first = np.array([one[0] for one in members], dtype=np.intp)
@@ -106,13 +94,12 @@ def moments(function: Function, circles: Circles, count: int, points: int) -> Co
 
 def residues(function: Function, pole: Complex | Real, circles: Circles) -> Complex:
     """Return residues whose sum is right, shape (..., poles); poles in no circle have none."""
-    count, is_real = circles.size, circles.center.imag == 0
+    count = circles.size
     parts: list[tuple[Index, Complex]] = []
-    for alone in ((count == 1) & is_real, (count == 1) & ~is_real):
-        if alone.any():
-            some = circles.some(np.flatnonzero(alone))
-            own = moments(function, some, 1, ALONE)[:, 0]
-            parts.append((np.concatenate(some.members), np.moveaxis(own, 0, -1)))
+    if (count == 1).any():
+        some = circles.some(np.flatnonzero(count == 1))
+        own = moments(function, some, 1, ALONE)[:, 0]
+        parts.append((np.concatenate(some.members), np.moveaxis(own, 0, -1)))
     for k in np.flatnonzero(count > 1):
         one = circles.some(np.array([k]))
         moment = moments(function, one, int(count[k]), TOGETHER)[0]

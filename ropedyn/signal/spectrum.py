@@ -47,7 +47,7 @@ class Spectrum(Answer):
     >>> spectrum = history.spectrum(window="boxcar")
     >>> line = spectrum.amplitude[0].argmax()
     >>> print(spectrum.frequency[line], spectrum.amplitude[0, line].round(6))
-    5.0 0.008116
+    5.0 0.008122
     >>> mean_square = (spectrum.psd[0] * spectrum.bandwidth).sum()
     >>> print((mean_square / (history.value**2).mean()).round(9))
     1.0

@@ -46,7 +46,7 @@ def test_plucked_string_is_two_waves():
             # that of modes is attained at t = 0
             assert (np.abs(value - exact) <= most * (1 + 1e-9)).all()
             assert most.max() < 1e-2 * np.abs(exact).max()
-    assert found[0].cost.method == "line"
+    assert found[0].cost.method == "modal"
     assert found[0].error.max() < 1e-3 * np.abs(found[0].value).max()
     assert found[2].error.max() < found[1].error.max()
 

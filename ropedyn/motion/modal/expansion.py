@@ -10,7 +10,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,9 +20,8 @@ from ...chain import tip
 from ...chain.chain import Chain
 from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, moving
-from ...eigen.damped.damped_roots import Undamped, damped_roots, most_roots
 from ...eigen.damped.proportional import Proportional, proportional
-from ...eigen.damped.rates import Rates, horizon
+from ...eigen.damped.rates import Rates
 from ...eigen.spectrum import HIGHEST, count_component, spectrum
 from ...response.modal_sum import (
     LEAST,
@@ -42,11 +40,7 @@ from ...signal import contour
 
 LARGEST, MANY = 1000, 400
 """All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
-SEARCHED = 200  # At most so many modes are searched for where damping is not proportional.
 ROUND = 1e-11  # A rest of this part of the sum over modes is rounding.
-EDGE = 0.8  # Overdamped modes are few up to this part of the rate where they accumulate.
-WIDER, ATTEMPTS = 2, 4
-"""The radius to search in is doubled so often, and so many searches are made, at most."""
 
 
 class Expansion(NamedTuple):
@@ -150,10 +144,6 @@ class _Asked:
         """Return those without damping at z = -s^2."""
         return self.at(undamped_factors(z))
 
-    def damped(self, rates: Rates, s: Complex) -> Complex:
-        """Return those at rates s."""
-        return self.at(rates.at(s))
-
     def own(self, point: Point) -> _Asked:
         """Return the same of one point, driven there."""
         return dataclasses.replace(self, drives=[point], responses=[point])
@@ -164,8 +154,7 @@ def _expansion(asked: _Asked) -> Expansion:
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     rates = Rates.of(model.scene.dampings)
     closed = proportional(model.chain.only(component), rates)
-    most = LARGEST if is_modal or closed else SEARCHED
-    eigenvalue, error, beyond = _eigenvalues(asked, most)
+    eigenvalue, error, beyond = _eigenvalues(asked)
     if is_modal:
         ratio = known_ratios(model, component, eigenvalue)
         if len(ratio) < len(eigenvalue):
@@ -176,15 +165,15 @@ def _expansion(asked: _Asked) -> Expansion:
     if closed is not None:
         sigma = (closed.drag.real + closed.soften.real * eigenvalue) / 2
         return _closed(asked, (eigenvalue, error), beyond, closed, sigma)
-    return _searched(asked, rates, eigenvalue, beyond)
+    raise SceneError("damping must not couple modes, which are summed one by one")
 
 
-def _eigenvalues(asked: _Asked, most: int) -> tuple[Real, Real, float]:
+def _eigenvalues(asked: _Asked) -> tuple[Real, Real, float]:
     """Return those of the undamped modes that are summed, their errors, and the next one."""
     chain, finite = asked.chain, asked.chain.finite
     if asked.modes is not None:
         wanted = asked.modes
-    elif finite is not None and chain.free <= most:
+    elif finite is not None and chain.free <= LARGEST:
         wanted = finite
     else:
         try:
@@ -192,7 +181,7 @@ def _eigenvalues(asked: _Asked, most: int) -> tuple[Real, Real, float]:
             below = count_component(asked.model, asked.component, limit)
         except SolveError:  # more than can be walked
             below = MANY
-        wanted = min(max(below, LEAST), MANY, most)
+        wanted = min(max(below, LEAST), MANY)
     value, error = spectrum(asked.model, asked.component, wanted + 1)
     beyond = float(value[wanted]) if len(value) > wanted else np.inf
     return value[:wanted], error[:wanted], beyond
@@ -261,85 +250,6 @@ def _bound(asked: _Asked, left: Any) -> Real:
         return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)
 
 
-# --- damping that couples -----------------------------------------------------------------------
-
-
-class _DampedRates(NamedTuple):
-    """Rates of a component with their conjugates [rad/s]."""
-
-    value: Complex
-    error: Real
-    radius: float  # None of a modulus below this is missing
-
-
-def _searched(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> Expansion:
-    """Sum damped modes, which have residues of their own."""
-    poles = _rates(asked, rates, eigenvalue, beyond)
-    circles = contour.in_the_plane(poles.value, poles.error, poles.radius)
-    terms, rest = _taken(asked, rates, poles, circles)
-    bound = np.zeros(rest.shape)
-    if np.isfinite(poles.radius):
-        bound = _bound(asked, lambda own: _taken(own, rates, poles, circles)[1])
-    far = horizon(asked.chain, rates)
-    if np.isfinite(far) and np.isfinite(poles.radius):
-        terms, rest = _relaxing(asked, terms, rest, far)
-    return Expansion(*terms, rest, bound, poles.radius)
-
-
-def _relaxing(asked: _Asked, terms: Terms, rest: Real, far: float) -> tuple[Terms, Real]:
-    """Let what is left out follow forces as overdamped motion does that accumulates at a rate."""
-    # the higher the mode, the more g lambda outweighs inertia and tension: g = 1 + s/far
-    sigma, square, a, b, p, r = terms
-    follows = np.logical_or.outer(
-        np.array([is_end(drive) for drive in asked.drives]),
-        np.array([is_force(point) for point in asked.responses]),
-    )
-    relaxing = np.where(follows, 0.0, rest * far)[:, :, None]
-    more = np.append(p, -far), np.concatenate([r, relaxing], axis=2)
-    return (sigma, square, a, b, *more), np.where(follows, rest, 0.0)
-
-
-def _rates(asked: _Asked, rates: Rates, eigenvalue: Real, beyond: float) -> _DampedRates:
-    """Find the rates below a radius between undamped modes; of a whole chain all there are."""
-    # those before the place where overdamped ones accumulate, and fewer where rounding hides some
-    chain = asked.chain
-    spans = [chain.between(*span) for span in chain.spans]
-    most = [most_roots(span, rates) for span in spans]
-    there_are = [np.inf if n is None else n - 2 * _spurious(s) for n, s in zip(most, spans)]
-    edge = EDGE * horizon(chain, rates)
-    radius = 1.5 * float(np.sqrt(np.abs(eigenvalue).max(initial=1.0)))
-    if np.isfinite(beyond):
-        radius = float(np.sqrt(np.abs(eigenvalue[-1])) + np.sqrt(beyond)) / 2
-    grows, undamped = not np.isfinite(beyond), [Undamped(span) for span in spans]
-    for attempt in range(ATTEMPTS):
-        radius = min(radius, edge)
-        try:
-            found = [damped_roots(span, rates, radius) for span in undamped]
-        except SolveError as refusal:
-            if attempt == ATTEMPTS - 1:
-                raise SolveError(f"({', '.join(asked.component)}): {refusal}") from refusal
-            radius, grows = radius / 2, False
-            continue
-        count = [len(one.value) + int((one.value.imag > 0).sum()) for one in found]
-        whole = [n >= all_of for n, all_of in zip(count, there_are)]
-        if not grows or all(whole) or attempt >= WIDER or radius == edge:
-            break
-        radius *= 2
-    value = np.concatenate([one.value for one in found])
-    error = np.concatenate([one.error for one in found])
-    if any(_spurious(span) for span in spans):
-        # masses are indefinite: what grows faster than the rope is no motion of it
-        fastest = np.sqrt(max(0.0, -float(eigenvalue.min(initial=0.0))))
-        is_motion = value.real <= 1.01 * fastest + error
-        value, error = value[is_motion], error[is_motion]
-    twin = value.imag > 0
-    return _DampedRates(
-        np.concatenate([value, value[twin].conj()]),
-        np.concatenate([error, error[twin]]),
-        np.inf if all(whole) else min(one.radius for one in found),
-    )
-
-
 def _spurious(chain: Chain) -> int:
     """Return how many modes of lumps there are whose mass is negative, which are no motion."""
     # the end correction of tensed elements makes the mass matrix indefinite
@@ -348,59 +258,3 @@ def _spurious(chain: Chain) -> int:
     kept = free[:, :, None] & free[:, None, :]
     negative = (np.linalg.eigvalsh(np.where(kept, chain.mass, 0.0)) < 0).sum(axis=1)
     return int(negative @ each)
-
-
-Terms = tuple[Real, Real, Real, Real, Real, Real]
-
-
-def _taken(
-    asked: _Asked, rates: Rates, poles: _DampedRates, circles: contour.Circles
-) -> tuple[Terms, Real]:
-    """Return sigma, square, a, b, p, r and what is left."""
-    shape = (len(asked.drives), len(asked.responses))
-    terms = _terms(partial(asked.damped, rates), poles.value, circles, shape)
-    sigma, square, a, b, p, r = terms
-    rigid = (square == 0) & (sigma == 0)
-    elastic = np.abs(poles.value[poles.value != 0])
-    s = float(elastic.min(initial=np.inf)) if rigid.any() else 0.0
-    s = s if np.isfinite(s) else 1.0
-    whole = asked.damped(rates, np.array([s], dtype=np.complex128))[..., 0].real
-    rest = whole - ((a + b * s) / (s * s + 2 * sigma * s + square)).sum(axis=-1)
-    return terms, rest - (r / (s - p)).sum(axis=-1)
-
-
-def _terms(
-    function: contour.Function, pole: Complex, circles: contour.Circles, shape: tuple[int, int]
-) -> Terms:
-    """Turn residues into real terms."""
-    # two real rates, or two that are nearly one, of residues known together alone, are a pair:
-    # (m_0 (s - c) + m_1 rho - m_0 (d_1 + d_2))/((s - p_1)(s - p_2)), p = c + d
-    still = np.array([bool((pole[one] == 0).all()) for one in circles.members], dtype=np.bool_)
-    is_pair = (circles.center.imag == 0) & (still | (circles.size == 2))
-    upper = circles.center.imag >= 0
-    joined, others = (np.flatnonzero(upper & one) for one in (is_pair, ~is_pair))
-    pairs: list[tuple[float, float, Real, Real]] = []
-    for k in joined:
-        one = circles.some(np.array([k]))
-        m0, m1 = contour.moments(function, one, 2, contour.TOGETHER)[0].real
-        p = pole[one.members[0]] if len(one.members[0]) == 2 else np.zeros(2)
-        total, product = float(p.sum().real), float(p.prod().real)
-        a = m1 * one.radius[0] - m0 * one.center[0].real
-        pairs.append((-total / 2, product, a, m0))
-    real: list[tuple[float, Real]] = []
-    R = contour.residues(function, pole, circles.some(others)) if len(others) else np.zeros(0)
-    for k in np.concatenate([circles.members[i] for i in others]) if len(others) else ():
-        own = R[..., k]
-        if pole[k].imag > 0:
-            a, b = -2 * (own * pole[k].conj()).real, 2 * own.real
-            pairs.append((-pole[k].real, abs(pole[k]) ** 2, a, b))
-        elif pole[k].imag == 0:
-            real.append((pole[k].real, own.real))
-
-    def stacked(arrays: list[Real]) -> Real:
-        return np.stack(arrays, axis=-1) if arrays else np.zeros((*shape, 0))
-
-    sigma, square = (np.array([one[i] for one in pairs]) for i in range(2))
-    a_k, b_k = stacked([one[2] for one in pairs]), stacked([one[3] for one in pairs])
-    p_j, r_j = np.array([one[0] for one in real]), stacked([one[1] for one in real])
-    return sigma, square, a_k, b_k, p_j, r_j
