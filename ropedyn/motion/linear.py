@@ -7,6 +7,8 @@ import time as clock
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +28,8 @@ from ..scene import damping
 from .history import History
 from .line import invert
 from .modal.energy_balance import balance
-from .modal.superposition import estimated, fastest, superpose
+from .modal.expansion import refuse_losses
+from .modal.superposition import apart, estimated, fastest, superpose
 from .moved import Moved
 from .request import Run
 from .transfer import Transfer
@@ -34,6 +37,7 @@ from .transfer import Transfer
 TOLERANCE = 1e-3  # Of each response's largest value, where none is given.
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
+SHAPED = 64  # Modes that the places of a shape resolve.
 STILL = 1e-9
 """A response does not move where it is this part of what drive and response could move at most."""
 RATES = 9  # It is looked at by so many rates,
@@ -66,11 +70,10 @@ def within_tolerance(run: Run) -> Moved:
     """Return the motion within the tolerance, or raise."""
     if run.coarse is None:
         return _by_methods(run)
-    loose = run.coarse if run.tolerance is None else replace(run.coarse, tolerance=None)
-    moved, coarse = _by_methods(run), _by_methods(loose)
-    moved = moved._replace(error=moved.error + np.abs(moved.value - coarse.value))
+    is_modal = run.modes is None and _methods(run)[0] == "modal"
+    moved = _shaped(run, run.coarse) if is_modal else _shaped_by_line(run, run.coarse)
     tolerance = _tolerance(run)
-    share = moved.shares()
+    share = moved.shares(_kinds(run))
     if (share > tolerance).any():
         raise SolveError(
             f"start and velocity are known to {share.max():.1e} of the largest value, with "
@@ -79,10 +82,42 @@ def within_tolerance(run: Run) -> Moved:
     return moved
 
 
+def _kinds(run: Run) -> list[str] | None:
+    """Return of which kind each response is, where errors are shares of the largest of a kind."""
+    return [moving(point) for point in run.responses] if run.together else None
+
+
+def _shaped(run: Run, coarse: Run) -> Moved:
+    """Return the motion from shapes and velocities, by modes that their places resolve."""
+    coarser = coarse if coarse.coarse is None else coarse.coarse
+    still: dict[str, Any] = {"drives": (), "forces": ()}
+    each = [
+        superpose(replace(one, **still, modes=SHAPED >> k))
+        for k, one in enumerate((run, coarse, coarser))
+    ]
+    # shapes between places are of second order in their distance
+    better, worse = (
+        one._replace(value=one.value + (one.value - less.value) / 3) for one, less in pairwise(each)
+    )
+    moved = better._replace(error=apart(better, [worse]))
+    if not run.drives:
+        return moved
+    driven = _by_methods(replace(run, loads={}, kicks={}, coarse=None))
+    value, error = moved.value + driven.value, moved.error + driven.error
+    return driven._replace(value=value, error=error)
+
+
+def _shaped_by_line(run: Run, coarse: Run) -> Moved:
+    """Return the motion from shapes and velocities where damping couples modes."""
+    moved = _by_methods(run)
+    other = _by_methods(replace(coarse, tolerance=None))
+    return moved._replace(error=moved.error + np.abs(moved.value - other.value))
+
+
 def _by_methods(run: Run) -> Moved:
     """Return the motion by the first method whose error is within the tolerance, or raise."""
     tolerance = _tolerance(run)
-    kinds = [moving(point) for point in run.responses] if run.together else None
+    kinds = _kinds(run)
     refused: list[str] = []
     for method in _methods(run):
         try:
@@ -131,6 +166,7 @@ def _tolerance(run: Run) -> float:
 
 def _methods(run: Run) -> list[str]:
     """Return the methods that take the model, in turn."""
+    refuse_losses(run.model)
     is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
     if run.method == "line":
         if is_modal:

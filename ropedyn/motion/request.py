@@ -20,7 +20,7 @@ from ..response.moved_end import is_end
 from ..scene.force import Force, Impulse, forces
 from ..scene.parts.part import standing
 from ..scene.tension import Tension
-from .start import kicked, released
+from .start import Begun, kicked, released
 
 EVENTS = "events"
 METHODS = ("auto", "modal", "line", EVENTS, "direct")
@@ -95,8 +95,6 @@ class Run:
             direct=direct,
             method=method,
             order=MOTIONS[quantity],
-            loads=loads.given,
-            kicks=kicks.given,
             snapshots=_snapshots(snapshots, t),
             modes=None if modes is None else check.count(modes, "modes", most=1_000_000),
             step=check.optional(step, "step", "s", sign="positive"),
@@ -105,10 +103,15 @@ class Run:
             progress=reporter(progress),
             partial=check.instance(partial, "partial", bool, "True or False"),
         )
+        return run.beginning(loads, kicks)
+
+    def beginning(self, loads: Begun, kicks: Begun) -> Run:
+        """Return the same from this beginning, and from it at fewer places."""
+        run = replace(self, loads=loads.given, kicks=kicks.given)
         if loads.coarse is None and kicks.coarse is None:
             return run
-        fewer = [one.given if one.coarse is None else one.coarse for one in (loads, kicks)]
-        return replace(run, coarse=replace(run, loads=fewer[0], kicks=fewer[1]))
+        fewer = [one if one.coarse is None else one.coarse for one in (loads, kicks)]
+        return replace(run, coarse=self.beginning(*fewer))
 
     @property
     def places(self) -> list[Any]:

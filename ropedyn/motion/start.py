@@ -18,7 +18,8 @@ from .transfer import Transfer
 
 Shape = Callable[[Any], Any]
 """What a user gives: motion at a position x [m]."""
-PARTS = (64, 32)  # Continuous spans take a shape at so many places, and at fewer to tell the error.
+PARTS = (128, 64, 32)
+"""Continuous spans take a shape at so many places, and at fewer to tell the error."""
 ROUND = 1e-9  # A shape is 0 where it is this part of its largest value,
 FLAT = 1e-3  # and has no slope where it is this part of that over the length.
 STEP = 1e-6  # Of a slope, over the length.
@@ -28,7 +29,7 @@ class Begun(NamedTuple):
     """What acts at the first time; `coarse` is what the shapes are with fewer places."""
 
     given: dict[Point, float]
-    coarse: dict[Point, float] | None = None
+    coarse: Begun | None = None
 
 
 def released(model: Compiled, start: Any) -> Begun:
@@ -57,8 +58,8 @@ def kicked(model: Compiled, velocity: Any) -> Begun:
 def _at_places(model: Compiled, at: Callable[[int], dict[Point, float]]) -> Begun:
     if model.element != "continuous":
         return Begun(at(0))
-    fine, coarse = map(at, PARTS)
-    return Begun(fine, coarse)
+    fine, coarse, coarser = map(at, PARTS)
+    return Begun(fine, Begun(coarse, Begun(coarser)))
 
 
 def _shapes(model: Compiled, given: Any, name: str) -> dict[str, Shape]:

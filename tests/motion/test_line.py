@@ -176,3 +176,10 @@ def test_response_that_symmetry_holds_still_is_answered():
     asked = {"drive": ("z", LENGTH / 2), "force": rd.Step(1.0)}
     history = model.transient(TIME, **asked, response=[("z", LENGTH / 2), ("beta", LENGTH / 2)])
     assert np.abs(history.value[1]).max() < 1e-9 * np.abs(history.value[0]).max()
+
+
+def test_complex_moduli_have_no_meaning_in_time_beside_dashpots_either():
+    damping, parts = rd.LossFactor(0.01), [rd.Dashpot(0.3, 0.1)]
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=damping, parts=parts)
+    with pytest.raises(rd.SceneError, match=r"got loss factor: .* ModalDamping\(eta/2\)"):
+        scene.compile().transient(TIME, drive=("z", 0.3), force=rd.Sine(1.0, 20.0))

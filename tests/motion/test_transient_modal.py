@@ -399,3 +399,47 @@ def test_progress_ends_at_one():
     drive = [("z", 0.4), ("z", 0.7)]
     model.transient(TIME, drive=drive, force=[rd.Sine(1.0, 20.0)] * 2, progress=told.append)
     assert told == [0.5, 1.0]
+
+
+# --- shapes -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mode", [1, 3])
+def test_a_string_that_begins_as_a_sine_stays_one(mode):
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    omega = mode * np.pi * SPEED / LENGTH
+    time, where = np.linspace(0.0, 3.3 * LENGTH / SPEED, 200), 0.4
+    seen = np.sin(mode * np.pi * where / LENGTH)
+
+    def sine(x):
+        return np.sin(mode * np.pi * x / LENGTH)
+
+    shaped = model.transient(time, start=sine, response=("z", where))
+    moving = model.transient(time, velocity=sine, response=("z", where))
+    exact = {shaped: seen * np.cos(omega * time), moving: seen * np.sin(omega * time) / omega}
+    for history, true in exact.items():
+        assert (np.abs(history.value[0] - true) <= history.error[0]).all()
+        assert history.error.max() <= 2e-5 * np.abs(true).max()  # 1.5e-5 of mode 3
+    pushed = {"drive": ("z", 0.9), "force": rd.Sine(1.0, 0.3 * SPEED / LENGTH)}
+    both = model.transient(time, start=sine, response=("z", where), **pushed)
+    alone = model.transient(time, response=("z", where), **pushed)
+    apart = np.abs(both.value - shaped.value - alone.value)
+    assert (apart <= shaped.error + alone.error + both.error).all()
+
+
+def test_a_shape_with_a_kink_is_within_its_error():
+    model = rd.Scene(STRING, tension=TENSION).compile()
+    time, where, kink = np.linspace(0.0, 2.0 * LENGTH / SPEED, 300), 0.4, 0.37 * LENGTH
+
+    def triangle(x):
+        return np.minimum(x / kink, (LENGTH - x) / (LENGTH - kink))
+
+    def wave(x):
+        x = np.mod(x, 2 * LENGTH)
+        return np.where(x > LENGTH, -triangle(2 * LENGTH - x), triangle(x))
+
+    history = model.transient(time, start=triangle, response=("z", where), tolerance=0.02)
+    exact = (wave(where - SPEED * time) + wave(where + SPEED * time)) / 2
+    assert (np.abs(history.value[0] - exact) <= history.error[0]).all()
+    with pytest.raises(rd.SolveError, match="start and velocity are known to"):
+        model.transient(time, start=triangle, response=("z", where))

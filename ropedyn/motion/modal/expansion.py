@@ -79,6 +79,17 @@ class Share(NamedTuple):
     expansion: Expansion
 
 
+def refuse_losses(model: Compiled) -> None:
+    """Refuse complex moduli, which have a meaning at each frequency, not in time."""
+    losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
+    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    if losses:
+        raise SceneError(
+            "damping must be in proportion to velocity, or modal, to have a meaning in time, got "
+            f"{', '.join(losses)}: in modes a loss factor eta acts as ModalDamping(eta/2)"
+        )
+
+
 def expand(
     model: Compiled,
     drives: Sequence[Any],
@@ -89,13 +100,7 @@ def expand(
     bound: bool = True,
 ) -> tuple[Share, ...]:
     """Expand the transfer functions of each component."""
-    losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
-    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
-    if losses:  # a complex modulus has a meaning at each frequency, not in time
-        raise SceneError(
-            "damping must be in proportion to velocity, or modal, to have a meaning in time, got "
-            f"{', '.join(losses)}"
-        )
+    refuse_losses(model)
     if damping.having(model.scene.dampings, "ratio"):
         refuse_other_damping(model, drives, responses)
     roots = [tip.tip_of(model, p).root[0] if tip.is_tip(p) else p for p in responses]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -31,13 +32,17 @@ def superpose(run: Run) -> Moved:
 
 def estimated(run: Run, moved: Moved) -> Moved:
     """Return the same where fewer modes tell the error, if that is less than its bound."""
+    fewer = [superpose(replace(run, modes=max(1, int(part * moved.modes)))) for part in SHARES]
+    return moved._replace(error=np.minimum(moved.error, apart(moved, fewer)))
+
+
+def apart(moved: Moved, fewer: Sequence[Moved]) -> Real:
+    """Return the error that sums of fewer modes tell, shape as their values."""
     from scipy.ndimage import maximum_filter1d
 
-    fewer = [superpose(replace(run, modes=max(1, int(part * moved.modes)))) for part in SHARES]
-    apart = np.max([np.abs(moved.value - one.value) for one in fewer], axis=0)
-    apart = TIMES * maximum_filter1d(apart, 2 * AROUND + 1, axis=-1)
+    distance = np.max([np.abs(moved.value - one.value) for one in fewer], axis=0)
     rounding = RESIDUES * np.abs(moved.value).max(axis=1, initial=0.0)
-    return moved._replace(error=np.minimum(moved.error, apart + rounding[:, None]))
+    return TIMES * maximum_filter1d(distance, 2 * AROUND + 1, axis=-1) + rounding[:, None]
 
 
 def fastest(run: Run) -> float:
