@@ -50,6 +50,13 @@ def locate(x: Real, at: float) -> tuple[int, float | None]:
     return right - 1, float(at - x[right - 1])
 
 
+def is_held(chain: Chain, x: Real, coordinates: Sequence[str], point: Point) -> bool:
+    """Whether a point cannot move."""
+    node, inside = locate(x, point[1])
+    at = list(coordinates).index(moving(point))
+    return inside is None and bool(chain.held[chain.term_of[node], at])
+
+
 def ports(chain: Chain, x: Real, coordinates: Sequence[str], points: Iterable[Point]) -> Ports:
     """Return the rows of points."""
     points = list(points)

@@ -31,10 +31,9 @@ from .modal.energy_balance import balance
 from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
 from .moved import Moved
-from .request import Run
+from .request import TOLERANCE, Run
 from .transfer import Transfer
 
-TOLERANCE = 1e-3  # Of each response's largest value, where none is given.
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
 SHAPED = 64  # Modes that the places of a shape resolve.
@@ -142,7 +141,7 @@ def _by_methods(run: Run) -> Moved:
 def _summed(run: Run, tolerance: float, kinds: list[str] | None) -> Moved:
     """Return the sum over modes, over more of them while its error exceeds the tolerance."""
     moved, count = superpose(run), run.modes
-    is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
+    is_modal = _has_ratios(run)
     while run.modes is None and not (moved.shares(kinds) <= tolerance).all():
         if is_modal:
             # modes with ratios of their own have no transfer function that the line could take
@@ -167,7 +166,7 @@ def _tolerance(run: Run) -> float:
 def _methods(run: Run) -> list[str]:
     """Return the methods that take the model, in turn."""
     refuse_losses(run.model)
-    is_modal = bool(damping.having(run.model.scene.dampings, "ratio"))
+    is_modal = _has_ratios(run)
     if run.method == "line":
         if is_modal:
             raise SceneError('method must be "modal" or "auto" where damping is modal, got "line"')
@@ -182,6 +181,11 @@ def _methods(run: Run) -> list[str]:
     return ["line"]
 
 
+def _has_ratios(run: Run) -> bool:
+    """Whether modes have damping ratios of their own."""
+    return bool(damping.having(run.model.scene.dampings, "ratio"))
+
+
 def is_proportional(run: Run) -> bool:
     """Whether modes without damping are not coupled in any component that takes part."""
     model, rates = run.model, Rates.of(run.model.scene.dampings)
@@ -194,7 +198,7 @@ def is_proportional(run: Run) -> bool:
 def _is_still(run: Run, response: int) -> bool:
     """Whether a response is 0 but for rounding, as where symmetry holds it."""
     own = run.responses[response]
-    if is_force(own) or is_tip(own) or damping.having(run.model.scene.dampings, "ratio"):
+    if is_force(own) or is_tip(own) or _has_ratios(run):
         return False
     places = tuple(dict.fromkeys([*run.places, own]))
     omega = np.pi * (len(run.time) - 1) / float(run.time[-1] - run.time[0])

@@ -15,7 +15,7 @@ from ..base.progress import reporter, silent
 from ..base.unit import MOTIONS, push_unit
 from ..chain.compiled import Compiled
 from ..chain.place import observed, points
-from ..chain.port import Point, locate
+from ..chain.port import Point, is_held
 from ..response.moved_end import is_end
 from ..scene.force import Force, Impulse, forces
 from ..scene.parts.part import standing
@@ -23,6 +23,8 @@ from ..scene.tension import Tension
 from .start import Begun, kicked, released
 
 EVENTS = "events"
+TOLERANCE = 1e-3
+"""Part of the largest value of each response that errors keep to where none is given."""
 METHODS = ("auto", "modal", "line", EVENTS, "direct")
 
 
@@ -217,9 +219,7 @@ def _refuse_held(model: Compiled, drive: Point) -> None:
     """Refuse a force on what a support holds."""
     if is_end(drive):
         return
-    node, between = locate(model.x, drive[1])
-    held = model.chain.held[model.chain.term_of[node], model.coordinates.index(drive[0])]
-    if between is None and held:
+    if is_held(model.chain, model.x, model.coordinates, drive):
         raise SceneError(f"drive must be free to move, got {drive}, which a support holds")
 
 

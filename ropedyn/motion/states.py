@@ -22,7 +22,7 @@ from ..base.array import Complex, Flags, Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain import tip
 from ..chain.compiled import Compiled
-from ..chain.port import Point, is_force, locate, moving
+from ..chain.port import Point, is_force, locate
 from ..eigen.damped.proportional import Proportional, proportional
 from ..eigen.damped.rates import Rates
 from ..eigen.spectrum import spectrum
@@ -331,10 +331,3 @@ def _rank_one(R: Real, size: Real, floor: Real, twin: list[int]) -> tuple[Real, 
         i, o = np.intp(best), np.intp(twin[best])
     scale = np.sqrt(np.abs(R[i, o]))
     return R[:, o] / (scale * np.sign(R[i, o])), R[i, :] / scale
-
-
-def held(model: Compiled, component: tuple[str, ...], point: Point) -> bool:
-    """Whether a point cannot move."""
-    node, inside = locate(model.x, point[1])
-    at = model.coordinates.index(moving(point))
-    return inside is None and bool(model.chain.held[model.chain.term_of[node], at])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...base.array import Real
 from ...chain.chain import Chain
 from ...chain.compiled import Compiled
-from ...chain.port import locate, ports
+from ...chain.port import is_held, ports
 from ...scene.parts.node import Law
 from ...scene.parts.part import standing
 
@@ -56,7 +56,8 @@ def laws_of(
     chain: Chain, x: Real, component: tuple[str, ...], laws: list[StandingLaw]
 ) -> tuple[Laws, tuple[PythonLaw, ...]]:
     """Return the laws where something can move, and those among them that Python knows."""
-    free = [one for one in laws if not _is_held(chain, x, component, one)]
+    points = [(one.law.coordinate, one.x) for one in laws]
+    free = [one for one, p in zip(laws, points) if not is_held(chain, x, component, p)]
     where = ports(chain, x, component, [(law.coordinate, at) for _, at, law in free])
     value = np.zeros((len(free), 4))
     for k, (_, _, law) in enumerate(free):
@@ -64,8 +65,3 @@ def laws_of(
     kind = np.array([KINDS.index(law.kind) for _, _, law in free], dtype=np.int32)
     calls = tuple(PythonLaw(k, i, law.call) for k, (i, _, law) in enumerate(free) if law.call)
     return Laws(where.node, where.row, kind, value), calls
-
-
-def _is_held(chain: Chain, x: Real, component: tuple[str, ...], one: StandingLaw) -> bool:
-    node = locate(x, one.x)[0]
-    return bool(chain.held[chain.term[chain.stretch(node)], component.index(one.law.coordinate)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time as clock
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,6 @@ from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from ...response.frf import FRF
 from ...scene.force import Sine
-from ...scene.tension import Tension
 from ...signal.spectrum import amplitudes
 from ..periodic.asked import SteppedSine
 from ..request import Run
@@ -23,7 +23,6 @@ from .march import Motion, stage_of
 
 FEWEST, MOST = 32, 1 << 14  # A period takes from so many steps to so many.
 WINDOW = 8  # The amplitude is looked at after so many periods at least.
-TOGETHER = 1000  # Drive and tension must both begin anew within so many periods.
 BLOCK = 4096  # The core takes so many steps in one call, or a period: a look for Ctrl-C.
 LOOKS = 4  # So many looks in a row must agree.
 LONGEST = 100_000  # A motion that changes after so many periods is said not to settle.
@@ -31,8 +30,11 @@ KEEPS = stage_of(1.0)
 TOLERANCE = 1e-3  # Of the steady state where none is given.
 
 
-def march_steadily(asked: SteppedSine) -> FRF:
-    """Follow the motion through the frequencies in their order, see `Model.stepped_sine`."""
+def march_steadily(asked: SteppedSine, turn: Callable[[float], int]) -> FRF:
+    """Follow the motion through the frequencies in their order, see `Model.stepped_sine`.
+
+    `turn` says after how many periods of a frequency everything that acts begins anew.
+    """
     start = clock.perf_counter()
     refuse_model(asked.model)
     still = np.array([0.0, 1.0])
@@ -43,7 +45,7 @@ def march_steadily(asked: SteppedSine) -> FRF:
     value = np.zeros((len(asked.responses), len(asked.frequency)), dtype=np.complex128)
     error = np.zeros(value.shape)
     for k, f in enumerate(asked.frequency.tolist()):
-        found, wrong = _converged(asked, motions, f)
+        found, wrong = _converged(asked, motions, f, turn(f))
         size = np.abs(found)
         relative = np.divide(wrong, size, out=np.zeros_like(size), where=size > 0)
         value[:, k], error[:, k] = found / asked.amplitude, relative
@@ -56,13 +58,15 @@ def march_steadily(asked: SteppedSine) -> FRF:
     return asked.answer(asked.frequency, value, error, cost, stable)
 
 
-def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> tuple[Complex, Real]:
+def _converged(
+    asked: SteppedSine, motions: list[Motion], frequency: float, turn: int
+) -> tuple[Complex, Real]:
     """Return the amplitudes with ever shorter steps, extrapolated, and how far they are off."""
     count = FEWEST
-    before, _ = _settled(asked, motions, frequency, count)
+    before, _ = _settled(asked, motions, frequency, count, turn)
     while count < MOST:
         count *= 2
-        after, left = _settled(asked, motions, frequency, count)
+        after, left = _settled(asked, motions, frequency, count, turn)
         # of second order: a third of the change is what is left of it
         off = np.abs(after - before) / 3
         if (off <= (asked.tolerance or TOLERANCE) * np.abs(after).max()).all():
@@ -75,14 +79,14 @@ def _converged(asked: SteppedSine, motions: list[Motion], frequency: float) -> t
 
 
 def _settled(
-    asked: SteppedSine, motions: list[Motion], frequency: float, count: int
+    asked: SteppedSine, motions: list[Motion], frequency: float, count: int, turn: int
 ) -> tuple[Complex, float]:
     """Return the amplitudes when they stay, with so many steps a period, and what is left."""
     push = (Sine(asked.amplitude, frequency, phase=math.pi / 2),)
     for motion in motions:
         drives, ends = push * len(motion.lumps.forces), push * len(motion.lumps.motions)
         motion.lumps = replace(motion.lumps, forces=drives, motions=ends)
-    periods = _together(asked, frequency)
+    periods = math.ceil(WINDOW / turn) * turn
     seen: list[Complex] = []
     for k in range(max(LONGEST // periods, LOOKS + 1)):
         these = range(k * periods, (k + 1) * periods)
@@ -98,23 +102,6 @@ def _settled(
         f"frequency {frequency!r} Hz has no steady state: after {LONGEST} periods the amplitude "
         f"changes by {float(changes[-1] / size):.1e} of itself in {periods} periods"
     )
-
-
-def _together(asked: SteppedSine, frequency: float) -> int:
-    """Return after how many periods drive and tension both begin anew, `WINDOW` at least."""
-    tension = asked.model.scene.tension
-    if not isinstance(tension, Tension) or not tension.pulsates:
-        return WINDOW
-    turns = tension.frequency / frequency * np.arange(1, TOGETHER + 1)
-    whole = np.flatnonzero(np.abs(turns - np.rint(turns)) <= 1e-12 * np.maximum(turns, 1.0))
-    if len(whole) == 0:
-        raise SolveError(
-            f"frequency {frequency!r} Hz has no steady state: the tension pulsates at "
-            f"{tension.frequency!r} Hz, and both do not begin anew together within {TOGETHER} "
-            "periods"
-        )
-    least = int(whole[0]) + 1
-    return math.ceil(WINDOW / least) * least
 
 
 def _left(changes: Real) -> float:

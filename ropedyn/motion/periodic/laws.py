@@ -16,7 +16,7 @@ from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
-from ...chain.port import Point, locate
+from ...chain.port import Point, is_held
 from ...scene.parts.node import Law
 from ...scene.parts.part import standing
 
@@ -67,14 +67,8 @@ def acting_laws(model: Compiled) -> list[ActingLaw]:
     for i, part in enumerate(model.scene.parts):
         for one in standing([part]):
             found += [ActingLaw(i, (law.coordinate, one.x), law) for law in one.term().laws]
-    return [one for one in found if not _is_held(model, one.point)]
-
-
-def _is_held(model: Compiled, point: Point) -> bool:
-    node = locate(model.x, point[1])[0]
-    chain = model.chain
-    term = int(chain.term[chain.stretch(node)])
-    return bool(chain.held[term, model.coordinates.index(point[0])])
+    chain, place = model.chain, (model.x, model.coordinates)
+    return [one for one in found if not is_held(chain, *place, one.point)]
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ def solve_stepped(asked: SteppedSine) -> FRF:
         return _linear(asked, driven, start)
     states = _followed(driven) if driven.points else []
     if _slips(driven, states):
-        return march_steadily(asked)
+        return march_steadily(asked, driven.turn)
     value, error = watched(driven, asked.frequency, states)
     stable = np.full(len(asked.frequency), driven.growing == 0)
     for k, state in enumerate(states):

@@ -18,14 +18,13 @@ from ...chain.compile import compile_scene
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import History
-from ..request import Run
+from ..request import TOLERANCE, Run
 from .components import Look, moving_components, rest, why_not_events
 from .energy import balance
 from .pieces import pieces
 from .walk import PhaseWalk, Visit
 
 MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at most.
-TOLERANCE = 1e-3  # Of the largest value, where none is given.
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
 HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...chain.compiled import Compiled
-from ...chain.port import Point
+from ...chain.port import Point, is_held
 from ...scene.parts.part import standing
-from ..states import Resistance, held, without_dashpots
+from ..states import Resistance, without_dashpots
 
 
 class Contact(NamedTuple):
@@ -43,10 +43,11 @@ def phase_laws(model: Compiled, component: tuple[str, ...]) -> PhaseLaws:
     """Return the laws of a component."""
     contacts: list[Contact] = []
     friction: dict[Point, float] = {}
+    place = model.x, model.coordinates
     for part in standing(model.scene.parts):
         for law in part.term().laws:
             point = (law.coordinate, part.x)
-            if law.coordinate not in component or held(model, component, point):
+            if law.coordinate not in component or is_held(model.chain, *place, point):
                 continue
             if law.kind == "stop":
                 contacts.append(Contact(point, *law.value))

@@ -12,10 +12,10 @@ from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
-from ...chain.port import Point
+from ...chain.port import Point, is_held
 from ...scene.parts.part import standing
 from ...scene.tension import Tension
-from ..states import held, without_dashpots
+from ..states import without_dashpots
 
 POWER, CALL = 0, 1  # Kinds of laws in the core's order.
 SAME = 1e-9  # Values of a law that takes arrays are these parts of those one by one apart.
@@ -39,12 +39,12 @@ class PointLaw(NamedTuple):
 
 def laws_on(model: Compiled, component: tuple[str, ...]) -> list[PointLaw]:
     """Return the laws of a component where something moves, and what else its points resist."""
-    found = []
+    found, place = [], (model.x, model.coordinates)
     for i, part in enumerate(model.scene.parts):
         for one in standing([part]):
             for law in one.term().laws:
                 point = (law.coordinate, one.x)
-                if law.coordinate in component and not held(model, component, point):
+                if law.coordinate in component and not is_held(model.chain, *place, point):
                     own = SmoothLaw(f"parts[{i}]", law.call, *law.value)
                     found.append(PointLaw(point, own))
     if found:

@@ -27,14 +27,13 @@ from ...scene.damping import having
 from ..direct.direct import march
 from ..history import Balance, History
 from ..linear import solve_linear
-from ..request import Run
+from ..request import TOLERANCE, Run
 from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
 from .passage import LawPassage
 from .stretching import StretchedPassage, StretchedSystem, is_stretched, stretched_points
 from .system import LawQuestion, LawSystem, OutputTimes
 
-TOLERANCE = 1e-3  # Errors are within this part of the largest value where none is given.
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
 MOST_STEPS = 2_000_000  # A run takes so many steps at most,
 HARD = 10  # or so many halvings of steps that do not converge.
