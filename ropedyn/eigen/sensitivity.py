@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 SECTIONS = 9
 """An element has so many slopes (section, tension, length, sag) before those of its inertia."""
-SAG = 8  # Number of the slope of the sag among those of an element.
+TENSION, SAG = 6, 8  # Numbers of the slopes by tension and sag among those of an element.
 NOTHING = 1e-12
 """Less than this part of the largest change that a shape of its size could make is rounding."""
 
@@ -216,3 +216,23 @@ class Sensitivity:
 def sizes(of: _Arrays) -> _Arrays:
     """Return the same with the sizes of all its numbers."""
     return type(of)(*(np.abs(array) for array in vars(of).values()))
+
+
+def by_tension(chain: Chain, shape: Real) -> Real:
+    """Return the derivative of the stiffness by the tension, (k, k), of shapes between elements.
+
+    Sums and differences of shapes give the products.
+    """
+
+    def slope(of: Real) -> Real:
+        element, _, _ = _core.sensitivity(chain, of, np.zeros(len(of)))
+        return np.asarray(element[:, :, TENSION].sum(axis=1))
+
+    size = np.sqrt(np.abs(slope(shape)))
+    unit = shape / np.where(size > 0, size, 1.0)[:, None, None]
+    form = np.diag(slope(unit))
+    for k in range(len(unit) - 1):
+        others = unit[k + 1 :]
+        product = (slope(unit[k] + others) - slope(unit[k] - others)) / 4
+        form[k, k + 1 :] = form[k + 1 :, k] = product
+    return np.asarray(form * np.outer(size, size), dtype=np.float64)

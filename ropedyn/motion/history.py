@@ -27,6 +27,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+def ended_by(error: BaseException | None) -> str:
+    """Return why a motion ends before it should; nothing where it does not."""
+    if error is None:
+        return ""
+    told = f"{type(error).__name__}: {error}"
+    return "interrupted" if isinstance(error, KeyboardInterrupt) else told
+
+
 @dataclass(frozen=True, eq=False)
 class Balance(Frozen):
     """Where the energy is; see `History`."""

@@ -14,12 +14,12 @@ from ..base.errors import SceneError, SolveError
 from ..chain.chain import ATTACHED, Chain
 from ..chain.compile import divided
 from ..chain.compiled import Compiled
+from ..eigen.sensitivity import by_tension
 from ..eigen.spectrum import SOLVERS, ComponentModes, pieces_of, spectrum
 from ..response.modal_sum import numbered_ratios
 from ..scene.damping import INERTIA, SECTION, TENSION, factors, having
 from ..signal.contour import clusters
 
-SLOPE_OF_TENSION = 6  # The slope by the tension is this one of an element, see `_core.sensitivity`.
 GAUSS = 12
 """So many points in each piece of a span shorter than its waves integrate products of two shapes to
 rounding."""
@@ -144,7 +144,7 @@ class _Basis:
         if "broken wire" in chain.carried:
             mass = np.diag(np.diag(mass))  # what is not known of wires makes modes orthogonal
         if weight is None:
-            geometric = _of_elements(chain, shape)
+            geometric = by_tension(chain, shape)
         elif "beta" in component:
             slope = shape[:, :, component.index("beta")]
             geometric = (slope * weight) @ slope.T
@@ -205,24 +205,6 @@ def _integral(chain: Chain, along: Real | None, weight: Real, shape: Real) -> Re
     beside = along[np.append(chain.element_of, chain.element_of[-1])] * weight[:, None]
     count = len(shape)
     return np.asarray((shape * beside).reshape(count, -1) @ shape.reshape(count, -1).T)
-
-
-def _of_elements(chain: Chain, shape: Real) -> Real:
-    """Return the derivative of the stiffness by the tension: sums of shapes give the products."""
-    size = np.sqrt(np.abs(_slope(chain, shape)))
-    unit = shape / np.where(size > 0, size, 1.0)[:, None, None]
-    form = np.diag(_slope(chain, unit))
-    for k in range(len(unit) - 1):
-        others = unit[k + 1 :]
-        product = (_slope(chain, unit[k] + others) - _slope(chain, unit[k] - others)) / 4
-        form[k, k + 1 :] = form[k + 1 :, k] = product
-    return form * np.outer(size, size)
-
-
-def _slope(chain: Chain, shape: Real) -> Real:
-    """Return d/dT of twice the strain energy of shapes of massless elements."""
-    element, _, _ = _core.sensitivity(chain, shape, np.zeros(len(shape)))
-    return np.asarray(element[:, :, SLOPE_OF_TENSION].sum(axis=1))
 
 
 def _structures(chain: Chain, found: ComponentModes) -> Real:

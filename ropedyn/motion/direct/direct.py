@@ -14,7 +14,7 @@ from ...base.array import Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import WIRE
 from ...chain.port import is_force
-from ..history import Balance, History
+from ..history import Balance, History, ended_by
 from ..linear import mesh_error_of
 from ..request import Run, why_direct
 from .lumped import Lumps, lumped_chains, refuse_model
@@ -74,10 +74,6 @@ def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) ->
         del energy["laws"]
     unknowns = sum(lumps.chain.free for lumps in chains)
     work = passage.stages, passage.factorisations
-    error, stopped = passage.error, ""
-    if error is not None:
-        told = f"{type(error).__name__}: {error}"
-        stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
     mesh_error: Real | Callable[[], Real] = np.full(value.shape, np.inf)
     if not why_direct(run.model):
         mesh_error = partial(mesh_error_of, asked, value)
@@ -90,7 +86,7 @@ def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) ->
         balance=Balance(energy),
         error=partial(_error, asked, value, passage.step_error[:, kept]),
         mesh_error=mesh_error,
-        stopped=stopped,
+        stopped=ended_by(passage.error),
     )
 
 

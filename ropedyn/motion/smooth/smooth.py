@@ -25,7 +25,7 @@ from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ...scene.damping import having
 from ..direct.direct import march
-from ..history import Balance, History
+from ..history import Balance, History, ended_by
 from ..linear import solve_linear
 from ..request import TOLERANCE, Run
 from ..states import without_dashpots
@@ -264,10 +264,6 @@ class _Answer:
         kept = run.time <= self.reached if self.error is not None else np.isfinite(run.time)
         seen = run.snapshots <= self.reached
         asked = replace(run, time=run.time[kept], snapshots=run.snapshots[seen])
-        error, stopped = self.error, ""
-        if error is not None:
-            told = f"{type(error).__name__}: {error}"
-            stopped = "interrupted" if isinstance(error, KeyboardInterrupt) else told
         value = self.value[:, kept]
         elements = len(run.model.x) - 1
         is_exact = run.model.element == "continuous"
@@ -281,7 +277,7 @@ class _Answer:
             balance=partial(_balance, asked),
             error=self.step_error[:, kept] + self.truncation[:, None],
             mesh_error=mesh_error,
-            stopped=stopped,
+            stopped=ended_by(self.error),
         )
 
 

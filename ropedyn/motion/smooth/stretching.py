@@ -17,15 +17,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ... import _core
 from ...base.array import Real
 from ...base.errors import SolveError
-from ...chain.chain import Chain
 from ...chain.compiled import Compiled
 from ...chain.port import Point, is_force, locate, moving
 from ...chain.tip import is_tip
 from ...eigen.damped.proportional import proportional
 from ...eigen.damped.rates import Rates
+from ...eigen.sensitivity import by_tension
 from ...eigen.spectrum import SOLVERS
 from ...response.modal_sum import known_ratios
 from ...response.moved_end import is_end
@@ -38,7 +37,6 @@ from .collocation import STAGES, Oscillating, lagrange, nodes
 from .passage import LawPassage, Passed
 from .system import LawQuestion, LawSystem, shifted
 
-SLOPE_OF_TENSION = 6  # The slope by the tension is this one of an element, see `_core.sensitivity`.
 MOST = 40  # Newton steps.
 ENOUGH, LEAST = 1e-13, 1e-10  # They end here, or here where rounding lets gaps fall no more.
 
@@ -83,7 +81,7 @@ class StretchedSystem(LawSystem):
             time=run.time,
             looks=[look._replace(output=shifted(look.output, count)) for look in looks],
             beyond=np.inf,
-            forms=(Form(stiffness, geometric(chain, shape)),),
+            forms=(Form(stiffness, by_tension(chain, shape)),),
         )
 
     @property
@@ -143,23 +141,6 @@ def moved_by(model: Compiled, component: tuple[str, ...], shape: Real, points: l
     """Return how modes move points at nodes, (points, k)."""
     at = [(locate(model.x, x)[0], component.index(c)) for c, x in points]
     return np.array([shape[:, n, c] for n, c in at]).reshape(len(points), len(shape))
-
-
-def geometric(chain: Chain, shape: Real) -> Real:
-    """Return the derivative of the stiffness by the tension between modes."""
-
-    def slope(of: Real) -> Real:
-        element, _, _ = _core.sensitivity(chain, of, np.zeros(len(of)))
-        return np.asarray(element[:, :, SLOPE_OF_TENSION].sum(axis=1))
-
-    size = np.sqrt(np.abs(slope(shape)))
-    unit = shape / np.where(size > 0, size, 1.0)[:, None, None]
-    form = np.diag(slope(unit))
-    for k in range(len(unit) - 1):
-        others = unit[k + 1 :]
-        product = (slope(unit[k] + others) - slope(unit[k] - others)) / 4
-        form[k, k + 1 :] = form[k + 1 :, k] = product
-    return np.asarray(form * np.outer(size, size), dtype=np.float64)
 
 
 # --- steps --------------------------------------------------------------------------------------
