@@ -11,7 +11,7 @@ from ..base.errors import IdentifyWarning, SceneError
 from ..base.unit import MOTIONS
 from ..curves.peaks import Peaks
 from ..curves.record.record import Record
-from ..experiment.identify.identify import ENDS, identify, said_of
+from ..experiment.identify.identify import ENDS, identify, peaks_of_record, said_of
 from ..scene.scene import Scene
 from . import text
 from .experiment import STD_OF_FITTED
@@ -52,7 +52,10 @@ WIDE = ("tension", "bending_stiffness")
 def _tension(options: argparse.Namespace) -> int:
     scene = Scene.load(options.scene)
     record = _record(options)
-    peaks = Peaks(options.peaks, std=options.std) if record is None else _peaks(options, record)
+    if record is None:
+        peaks = Peaks(options.peaks, std=options.std)
+    else:
+        peaks = peaks_of_record(record, options.below)
     bends = "beta" in scene.coordinates
     unknown = options.unknown or list(WIDE[: 1 + bends])
     with warnings.catch_warnings():
@@ -70,15 +73,6 @@ def _tension(options: argparse.Namespace) -> int:
     if record is None:
         return shown_fit(options, fit)
     return shown_fit(options, changed(fit, record=said_of(record)), peaks)
-
-
-def _peaks(options: argparse.Namespace, record: Record) -> Peaks:
-    """Return the peaks of a record, by its force where it has one."""
-    if record.force is None:
-        return record.peaks(options.below)
-    if options.below is not None:
-        raise SceneError("--below must be left out of a record with a force, got both")
-    return Peaks.of(record.frf())
 
 
 def _record(options: argparse.Namespace) -> Record | None:

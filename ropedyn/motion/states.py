@@ -259,7 +259,7 @@ def _residues(asked: _Responses, eigenvalue: Real, error: Real, beyond: float) -
     residue = np.zeros(shape)
     if len(eigenvalue):
         circles = contour.on_a_line(eigenvalue, error, beyond**2)
-        residue = -contour.residues(asked.undamped, eigenvalue, circles).real
+        residue = -contour.residues(asked.undamped, eigenvalue, circles)
     shift = shift_of(eigenvalue)
     whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
     rest = whole - residue @ (1 / (eigenvalue + shift))

@@ -30,7 +30,7 @@ MOST = 1 << 21  # So many numbers are computed at a time.
 class Circles(NamedTuple):
     """Around poles, with no others in them."""
 
-    center: Complex  # (n,)
+    center: Real  # (n,)
     radius: Real  # (n,)
     members: list[Index]  # which poles, n arrays
 
@@ -57,10 +57,10 @@ def on_a_line(pole: Real, error: Real, beyond: float) -> Circles:
     return _circles(pole, members, room)
 
 
-def _circles(pole: Complex | Real, members: list[Index], room: Real) -> Circles:
+def _circles(pole: Real, members: list[Index], room: Real) -> Circles:
     """Draw circles around poles that have so much room."""
     first = np.array([one[0] for one in members], dtype=np.intp)
-    center, spread = pole[first].astype(np.complex128), np.zeros(len(members))
+    center, spread = pole[first].copy(), np.zeros(len(members))
     several = [k for k, one in enumerate(members) if len(one) > 1]
     for k in several:
         center[k] = pole[members[k]].mean()
@@ -72,10 +72,9 @@ def _circles(pole: Complex | Real, members: list[Index], room: Real) -> Circles:
     return Circles(center, radius, members)
 
 
-def moments(function: Function, circles: Circles, count: int, points: int) -> Complex:
+def moments(function: Function, circles: Circles, count: int, points: int) -> Real:
     """Return the sums of r_k ((p_k - c)/rho)^j in each circle, j < count."""
-    is_real = not circles.center.imag.any()
-    half = points // 2 if is_real else points
+    half = points // 2  # the other half is conjugate
     t = np.exp(2j * np.pi * (np.arange(half) + 0.5) / points)
     power = t[:, None] ** np.arange(1, count + 1) / half
     every: list[Complex] = []
@@ -88,14 +87,13 @@ def moments(function: Function, circles: Circles, count: int, points: int) -> Co
         every.append(np.moveaxis(mean, (-2, -1), (0, 1)))
         at += step
         step = max(1, MOST * len(z) // max(value.size, 1))
-    result: Complex = np.concatenate(every)
-    return np.asarray(result.real, dtype=np.complex128) if is_real else result
+    return np.concatenate(every).real
 
 
-def residues(function: Function, pole: Complex | Real, circles: Circles) -> Complex:
+def residues(function: Function, pole: Real, circles: Circles) -> Real:
     """Return residues whose sum is right, shape (..., poles); poles in no circle have none."""
     count = circles.size
-    parts: list[tuple[Index, Complex]] = []
+    parts: list[tuple[Index, Real]] = []
     if (count == 1).any():
         some = circles.some(np.flatnonzero(count == 1))
         own = moments(function, some, 1, ALONE)[:, 0]
@@ -105,18 +103,18 @@ def residues(function: Function, pole: Complex | Real, circles: Circles) -> Comp
         moment = moments(function, one, int(count[k]), TOGETHER)[0]
         parts.append((circles.members[k], _split(pole, one, moment)))
     assert parts
-    result = np.zeros((*parts[0][1].shape[:-1], len(pole)), dtype=np.complex128)
+    result = np.zeros((*parts[0][1].shape[:-1], len(pole)))
     for members, own in parts:
         result[..., members] = own
     return result
 
 
-def _split(pole: Complex | Real, circle: Circles, moment: Complex) -> Complex:
+def _split(pole: Real, circle: Circles, moment: Real) -> Real:
     """Return the residues of least size that have these moments, shape (..., members)."""
     place = (pole[circle.members[0]] - circle.center[0]) / circle.radius[0]
     powers = place ** np.arange(len(place))[:, None]
     own = np.linalg.lstsq(powers, moment.reshape(len(moment), -1), rcond=1e-13)[0]
-    return np.asarray(np.moveaxis(own.reshape(moment.shape), 0, -1), dtype=np.complex128)
+    return np.moveaxis(own.reshape(moment.shape), 0, -1)
 
 
 def clusters(near: Flags) -> list[Index]:

@@ -5,19 +5,13 @@ import time as clock
 
 import numpy as np
 import pytest
+from mass_on_a_string import AMPLITUDE, LENGTH, MIDDLE, PERIOD, STIFFNESS, coulomb, mass_on_a_string
 from scipy.integrate import solve_ivp
 
 import ropedyn as rd
 from ropedyn.motion.phases.components import Look
 from ropedyn.motion.phases.events import follow
 from ropedyn.motion.request import Run
-
-LENGTH, DENSITY, TENSION = 1.0, 0.1, 100.0
-MASS, STIFFNESS = DENSITY * LENGTH / 2, 4 * TENSION / LENGTH
-OMEGA = math.sqrt(STIFFNESS / MASS)
-PERIOD = 2 * math.pi / OMEGA
-AMPLITUDE = 0.01
-MIDDLE = ("z", LENGTH / 2)
 
 ROPE = rd.Rope(1.0, 0.4, bending_stiffness=1.54)
 DRAG = rd.ViscousDamping(1.0)
@@ -28,28 +22,12 @@ def rope(*parts, damping=DRAG, tension=2830.0):
     return rd.Scene(ROPE, tension=tension, damping=damping, parts=parts)
 
 
-def mass_on_a_string(*parts):
-    return rd.Scene(rd.Rope(LENGTH, DENSITY), tension=TENSION, parts=parts).compile(elements=2)
-
-
 def kept(history):
     e = history.energy
     return e["kinetic"] + e["strain"] - e["input"] + e["dissipated"] + e.get("laws", 0.0)
 
 
 # --- friction -----------------------------------------------------------------------------------
-
-
-def coulomb(time, friction):
-    """The mass between turning points, half a period each; it loses 4 F/k a period."""
-    found, shift = [], friction / STIFFNESS
-    for t in time:
-        x, left = AMPLITUDE, t
-        while abs(x) > shift and left > PERIOD / 2:
-            x, left = 2 * math.copysign(shift, x) - x, left - PERIOD / 2
-        centre = math.copysign(shift, x)
-        found.append(x if abs(x) <= shift else centre + (x - centre) * math.cos(OMEGA * left))
-    return np.array(found)
 
 
 @pytest.mark.claim(

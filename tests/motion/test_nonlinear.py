@@ -5,24 +5,26 @@ import pickle
 
 import numpy as np
 import pytest
+from mass_on_a_string import (
+    AMPLITUDE,
+    DENSITY,
+    LENGTH,
+    MASS,
+    MIDDLE,
+    OMEGA,
+    PERIOD,
+    STIFFNESS,
+    TENSION,
+    coulomb,
+    mass_on_a_string,
+)
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipj
 
 import ropedyn as rd
 
-LENGTH, DENSITY, TENSION = 1.0, 0.1, 100.0
-MASS, STIFFNESS = DENSITY * LENGTH / 2, 4 * TENSION / LENGTH
-OMEGA = math.sqrt(STIFFNESS / MASS)
-PERIOD = 2 * math.pi / OMEGA
-AMPLITUDE = 0.01
 TIME = np.linspace(0.0, 3 * PERIOD, 31)
-MIDDLE = ("z", LENGTH / 2)
-
-
-def mass_on_a_string(*parts, tension=TENSION, **rope):
-    scene = rd.Scene(rd.Rope(LENGTH, DENSITY, **rope), tension=tension, parts=parts)
-    return scene.compile(elements=2)
 
 
 def released(model, time=TIME, **asked):
@@ -123,18 +125,6 @@ def test_quadratic_dashpot_takes_amplitude_as_its_first_integral_says(claim):
     claim(np.abs(peak / exact - 1).max())
     assert history.energy["dissipated"][-1] > 0
     assert "laws" not in history.energy
-
-
-def coulomb(time, friction):
-    """The mass between sticking points, half a period at a time; it loses 4 F/k a period."""
-    found, shift = [], friction / STIFFNESS
-    for t in time:
-        x, left = AMPLITUDE, t
-        while abs(x) > shift and left > PERIOD / 2:
-            x, left = 2 * math.copysign(shift, x) - x, left - PERIOD / 2
-        centre = math.copysign(shift, x)
-        found.append(x if abs(x) <= shift else centre + (x - centre) * math.cos(OMEGA * left))
-    return np.array(found)
 
 
 @pytest.mark.claim(

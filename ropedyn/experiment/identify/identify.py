@@ -236,6 +236,15 @@ def identify(
     return fit
 
 
+def peaks_of_record(record: Record, below: float | None = None) -> Peaks:
+    """Return its peaks, below a frequency [Hz], by its force where it has one."""
+    if record.force is None:
+        return record.peaks(below)
+    if below is not None:
+        raise SceneError(f"below must be None where a record has a force [Hz], got {below!r}")
+    return Peaks.of(record.frf())
+
+
 def said_of(record: Record) -> dict[str, Any]:
     """Return what a record says of itself, as JSON knows it."""
     return {
@@ -353,7 +362,7 @@ def _peaks(measured: Any, name: str) -> Peaks:
     if isinstance(measured, Peaks):
         return measured
     if isinstance(measured, Record):
-        return measured.peaks() if measured.force is None else Peaks.of(measured.frf())
+        return peaks_of_record(measured)
     many = isinstance(measured, (list, tuple)) and any(isinstance(m, Resonances) for m in measured)
     if many or isinstance(measured, (Measured, Resonances)):
         return Peaks.of(measured)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Integer, Real
-from ...base.computed import changed
+from ...base.computed import changed, computed
 from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
@@ -113,6 +113,11 @@ class RopeTask:
     tell: Callable[[Peaks, Integer, Scene], Told]  # what peaks of given orders tell of a scene
     record: dict[str, Any] | None = None  # what the peaks are of
 
+    @computed
+    def said(self) -> Integer | None:
+        """Which mode each peak is, where somebody says it."""
+        return given_orders(self.how.orders, self.peaks)
+
     def fit(self) -> Fit:
         """Find its orders and its numbers."""
         began = time.perf_counter()
@@ -122,7 +127,7 @@ class RopeTask:
             return self._refused(time.perf_counter() - began)
         orders = np.array(found[0].orders, dtype=np.int64)
         told, damped = self._both(orders)
-        if given_orders(self.how.orders, self.peaks) is None:
+        if self.said is None:
             slipped = slips_of_peaks(np.asarray(self.peaks.frequency), self.scene.compile())
             told = replace(told, notes=(*told.notes, *slipped))
         fit = self._fit(told, damped, orders, self._decision(status, found, told, damped))
@@ -191,9 +196,8 @@ class RopeTask:
 
     def _numbered(self) -> tuple[Sequence[Numbering], str]:
         """Return the numberings worth naming, the likeliest first, and what they decide."""
-        said = given_orders(self.how.orders, self.peaks)
-        if said is not None:
-            return [Numbering(tuple(said.tolist()), 1.0, 0.0, ())], "trusted"
+        if self.said is not None:
+            return [Numbering(tuple(self.said.tolist()), 1.0, 0.0, ())], "trusted"
         peaks, how = self.peaks, self.how
         self._refuse_unseen()
         found = numberings(
@@ -287,7 +291,7 @@ class RopeTask:
         """Whether the guess of the tension took part in the choice of orders."""
         how = self.how
         sought = TENSION in how.paths and TENSION not in how.prior
-        return sought and given_orders(how.orders, self.peaks) is None
+        return sought and self.said is None
 
     def _assumed(self) -> tuple[str, ...]:
         """Say what the search of orders took the guess of the tension for."""

@@ -232,7 +232,7 @@ def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[R
     shape = (len(asked.drives), len(asked.responses))
     a = np.zeros((*shape, len(eigenvalue)))
     if len(eigenvalue):
-        a = -contour.residues(asked.undamped, eigenvalue, circles).real
+        a = -contour.residues(asked.undamped, eigenvalue, circles)
     shift = shift_of(eigenvalue)
     whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
     soft = 1 / (eigenvalue + shift)
