@@ -20,23 +20,22 @@ import numpy as np
 
 from ..base.array import Complex, Flags, Index, Real
 from ..base.errors import SceneError, SolveError
-from ..chain import tip
 from ..chain.compiled import Compiled
 from ..chain.port import Point, is_force, locate
 from ..eigen.damped.proportional import Proportional, proportional
 from ..eigen.damped.rates import Rates
 from ..eigen.spectrum import spectrum
-from ..response.modal_sum import known_ratios, shift_of, undamped_factors
-from ..response.moved_end import is_end, moves_ends
-from ..response.question import Question
-from ..response.solvers import SOLVERS
-from ..scene.damping import INERTIA, having
+from ..response.modal_sum import known_ratios
+from ..response.moved_end import is_end
+from ..scene.damping import having
 from ..scene.end import end_of
 from ..scene.parts.part import standing
 from ..signal import contour
+from .undamped import UndampedResponses, losses_of
 
 LARGEST = 200  # All modes of a chain with so many are taken.
 EQUAL = 1e-9  # Eigenvalues that differ by this share are one, of as many shapes.
+ROUND = 1e-11  # What modes leave of this share is rounding.
 UNMOVED = 1e-20  # Below this share of the largest residue of a point it does not move.
 
 
@@ -164,9 +163,12 @@ def states(
         if len(ratio) < len(eigenvalue):
             beyond = float(np.sqrt(eigenvalue[len(ratio)]))
             eigenvalue, error = eigenvalue[: len(ratio)], error[: len(ratio)]
-    asked = _Responses(model, component, list(inputs), list(outputs))
-    residue, rest = _residues(asked, eigenvalue, error, beyond)
-    left = _left(asked, rest, beyond, lambda own: _residues(own, eigenvalue, error, beyond)[1])
+    asked = UndampedResponses(model, component, list(inputs), list(outputs))
+    circles = contour.on_a_line(eigenvalue, error, beyond**2)
+    residue, rest = _parted(asked, eigenvalue, circles, beyond)
+    left = np.zeros(rest.shape)
+    if np.isfinite(beyond):
+        left = asked.bounded(lambda own: _parted(own, eigenvalue, circles, beyond)[1]).T
     own, push, seen = _factored(residue, eigenvalue, asked)
     omega = np.sqrt(np.maximum(eigenvalue, 0.0))
     gamma, drag = closed.soften.real, closed.drag.real
@@ -197,8 +199,7 @@ def states(
 
 def why_coupled(model: Compiled, component: tuple[str, ...]) -> str:
     """Say that damping couples undamped modes, with nothing where it does not."""
-    losses = [one.kind for one in having(model.scene.dampings, "loss")]
-    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    losses = losses_of(model)
     rates = Rates.of(model.scene.dampings)
     if not losses and proportional(model.chain.only(component), rates) is not None:
         return ""
@@ -232,64 +233,26 @@ def _eigenvalues(
     return value, beyond, error
 
 
-@dataclasses.dataclass(frozen=True)
-class _Responses:
-    """Which transfer functions of one component."""
-
-    model: Compiled
-    component: tuple[str, ...]
-    inputs: list[Any]
-    outputs: list[Point]
-
-    def undamped(self, z: Complex) -> Complex:
-        """Return those without damping at z = -s^2, shape (inputs, outputs, n)."""
-        model, factor = self.model, np.ascontiguousarray(undamped_factors(z))
-        hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
-        asked = tip.spread(model, self.outputs)
-        question = Question(model, self.component, hertz, factor, self.inputs, asked, 1)
-        value, error = moves_ends(SOLVERS["sweep"])(question)
-        if any(map(tip.is_tip, self.outputs)):
-            value, error = tip.gather(model, self.outputs, factor, value, error)
-        return value
-
-
-def _residues(asked: _Responses, eigenvalue: Real, error: Real, beyond: float) -> tuple[Real, Real]:
+def _parted(
+    asked: UndampedResponses, eigenvalue: Real, circles: contour.Circles, beyond: float
+) -> tuple[Real, Real]:
     """Return the residues, (inputs, outputs, k), and the rest as (outputs, inputs)."""
-    shape = (len(asked.inputs), len(asked.outputs), len(eigenvalue))
-    residue = np.zeros(shape)
-    if len(eigenvalue):
-        circles = contour.on_a_line(eigenvalue, error, beyond**2)
-        residue = -contour.residues(asked.undamped, eigenvalue, circles)
-    shift = shift_of(eigenvalue)
-    whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
-    rest = whole - residue @ (1 / (eigenvalue + shift))
+    parted = asked.parted(eigenvalue, circles)
+    rest = parted.rest
     if not np.isfinite(beyond):  # only rounding is there, but of what has no inertia
-        size = np.abs(whole) + np.abs(residue) @ np.abs(1 / (eigenvalue + shift))
-        rest = np.where(np.abs(rest) <= 1e-11 * size, 0.0, rest)
-    return residue, rest.T
-
-
-def _left(asked: _Responses, rest: Real, beyond: float, rest_of: Any) -> Real:
-    """Bound the flexibility of left-out modes as an inner product, (outputs, inputs)."""
-    if not np.isfinite(beyond):
-        return np.zeros(rest.shape)
-    own: dict[Any, float] = {}
-    for point in dict.fromkeys([*asked.inputs, *asked.outputs]):
-        plain = not (is_end(point) or is_force(point) or tip.is_tip(point))
-        alone = dataclasses.replace(asked, inputs=[point], outputs=[point])
-        own[point] = float(np.abs(rest_of(alone)[0, 0])) if plain else np.inf
-    o, i = ([own[p] for p in some] for some in (asked.outputs, asked.inputs))
-    with np.errstate(invalid="ignore"):
-        return np.nan_to_num(np.sqrt(np.multiply.outer(o, i)), nan=np.inf, posinf=np.inf)
+        rest = np.where(np.abs(rest) <= ROUND * (np.abs(parted.whole) + parted.size), 0.0, rest)
+    return parted.residue, rest.T
 
 
 # --- residues as products -----------------------------------------------------------------------
 
 
-def _factored(residue: Real, eigenvalue: Real, asked: _Responses) -> tuple[Index, Real, Real]:
+def _factored(
+    residue: Real, eigenvalue: Real, asked: UndampedResponses
+) -> tuple[Index, Real, Real]:
     """Return of each state its mode, its push and how it is seen."""
     inputs, outputs, _ = residue.shape
-    twin = [asked.outputs.index(p) if p in asked.outputs else -1 for p in asked.inputs]
+    twin = [asked.responses.index(p) if p in asked.responses else -1 for p in asked.drives]
     size = np.abs(residue).max(axis=2, initial=0.0)
     floor = UNMOVED * size
     number: list[int] = []

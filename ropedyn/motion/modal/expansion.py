@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...base.array import Complex, Index, Real
+from ...base.array import Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain import tip
 from ...chain.chain import Chain
@@ -28,15 +28,11 @@ from ...response.modal_sum import (
     REACH,
     known_ratios,
     refuse_other_damping,
-    shift_of,
-    undamped_factors,
 )
-from ...response.moved_end import is_end, moves_ends
-from ...response.question import Question
-from ...response.solvers import SOLVERS
+from ...response.moved_end import is_end
 from ...scene import damping
-from ...scene.damping import INERTIA
 from ...signal import contour
+from ..undamped import UndampedResponses, losses_of
 
 LARGEST, MANY = 1000, 400
 """All modes of a chain with so many unknowns are summed at most, and so many modes of others."""
@@ -81,8 +77,7 @@ class Share(NamedTuple):
 
 def refuse_losses(model: Compiled) -> None:
     """Refuse complex moduli, which have a meaning at each frequency, not in time."""
-    losses = [one.kind for one in damping.having(model.scene.dampings, "loss")]
-    losses += ["damping ratio of a broken wire"] if model.chain.is_hysteretic else []
+    losses = losses_of(model)
     if losses:
         raise SceneError(
             "damping must be in proportion to velocity, or modal, to have a meaning in time, got "
@@ -119,13 +114,9 @@ def expand(
 
 
 @dataclasses.dataclass(frozen=True)
-class _Asked:
-    """Which transfer functions of one component; see `expand`."""
+class _Asked(UndampedResponses):
+    """What else is asked of them; see `expand`."""
 
-    model: Compiled
-    component: tuple[str, ...]
-    drives: list[Any]
-    responses: list[Point]
     modes: int | None
     resolved: float
     bound: bool
@@ -133,25 +124,6 @@ class _Asked:
     @property
     def chain(self) -> Chain:
         return self.model.chain.only(self.component)
-
-    def at(self, factor: Complex) -> Complex:
-        """Return them at the factors (5, n) of the parts, shape (drives, responses, n)."""
-        model, asked = self.model, tip.spread(self.model, self.responses)
-        hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
-        factor = np.ascontiguousarray(factor)
-        question = Question(model, self.component, hertz, factor, self.drives, asked, 1)
-        value, error = moves_ends(SOLVERS["sweep"])(question)
-        if len(asked) > len(self.responses) or any(map(tip.is_tip, self.responses)):
-            value, error = tip.gather(model, self.responses, factor, value, error)
-        return value
-
-    def undamped(self, z: Complex) -> Complex:
-        """Return those without damping at z = -s^2."""
-        return self.at(undamped_factors(z))
-
-    def own(self, point: Point) -> _Asked:
-        """Return the same of one point, driven there."""
-        return dataclasses.replace(self, drives=[point], responses=[point])
 
 
 def _expansion(asked: _Asked) -> Expansion:
@@ -222,37 +194,19 @@ def _closed(
     if not np.isfinite(beyond) and _spurious(asked.chain):
         beyond = float(eigenvalue.max(initial=0.0))
     if np.isfinite(beyond):
-        bound = _bound(asked, lambda own: _apart(own, eigenvalue, circles)[1])
+        bound = np.full(rest.shape, np.inf)
+        if asked.bound:
+            bound = asked.bounded(lambda own: _apart(own, eigenvalue, circles)[1])
     lowest = float(np.sqrt(max(beyond, 0.0)))
     return Expansion(sigma, stiff * eigenvalue, a, b, p, r, rest, bound, lowest)
 
 
 def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[Real, Real]:
     """Return residues, (drives, responses, k), and what is left of the response at one place."""
-    shape = (len(asked.drives), len(asked.responses))
-    a = np.zeros((*shape, len(eigenvalue)))
-    if len(eigenvalue):
-        a = -contour.residues(asked.undamped, eigenvalue, circles)
-    shift = shift_of(eigenvalue)
-    whole = asked.undamped(np.array([-shift], dtype=np.complex128))[..., 0].real
-    soft = 1 / (eigenvalue + shift)
-    rest = whole - a @ soft
+    parted = asked.parted(eigenvalue, circles)
     # of all modes only rounding is left, which what is damped fast would make large
-    return a, np.where(np.abs(rest) > ROUND * (np.abs(a) @ np.abs(soft)), rest, 0.0)
-
-
-def _bound(asked: _Asked, left: Any) -> Real:
-    """Return |H| of the modes that are left out, bounded as an inner product."""
-    # there is no bound of internal forces, tips and motion of ends
-    if not asked.bound:
-        return np.full((len(asked.drives), len(asked.responses)), np.inf)
-    own: dict[Any, float] = {}
-    for point in dict.fromkeys([*asked.drives, *asked.responses]):
-        plain = not (is_end(point) or is_force(point) or tip.is_tip(point))
-        own[point] = float(np.abs(left(asked.own(point))[0, 0])) if plain else np.inf
-    d, r = ([own[point] for point in some] for some in (asked.drives, asked.responses))
-    with np.errstate(invalid="ignore"):
-        return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)
+    rest = np.where(np.abs(parted.rest) > ROUND * parted.size, parted.rest, 0.0)
+    return parted.residue, rest
 
 
 def _spurious(chain: Chain) -> int:

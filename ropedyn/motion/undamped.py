@@ -1,0 +1,89 @@
+"""Responses of a component without damping, as a sum over its modes and what that leaves out."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from ..base.array import Complex, Real
+from ..chain import tip
+from ..chain.compiled import Compiled
+from ..chain.port import Point, is_force
+from ..response.modal_sum import shift_of, undamped_factors
+from ..response.moved_end import is_end, moves_ends
+from ..response.question import Question
+from ..response.solvers import SOLVERS
+from ..scene.damping import INERTIA, having
+from ..signal import contour
+
+
+class Parted(NamedTuple):
+    """Responses at z = -s^2 = -shift, and the parts that modes have in them."""
+
+    residue: Real  # (drives, responses, k)
+    whole: Real  # (drives, responses)
+    soft: Real  # (k,) of each residue, 1/(eigenvalue + shift)
+
+    @property
+    def rest(self) -> Real:
+        """What modes leave of the whole."""
+        return np.asarray(self.whole - self.residue @ self.soft)
+
+    @property
+    def size(self) -> Real:
+        """What modes are without their signs."""
+        return np.asarray(np.abs(self.residue) @ np.abs(self.soft))
+
+
+@dataclasses.dataclass(frozen=True)
+class UndampedResponses:
+    """Which transfer functions of one component."""
+
+    model: Compiled
+    component: tuple[str, ...]
+    drives: list[Any]
+    responses: list[Point]
+
+    def at(self, z: Complex) -> Complex:
+        """Return them at z = -s^2, shape (drives, responses, n)."""
+        model, factor = self.model, np.ascontiguousarray(undamped_factors(z))
+        hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
+        asked = tip.spread(model, self.responses)
+        question = Question(model, self.component, hertz, factor, self.drives, asked, 1)
+        value, error = moves_ends(SOLVERS["sweep"])(question)
+        if any(map(tip.is_tip, self.responses)):
+            value, error = tip.gather(model, self.responses, factor, value, error)
+        return value
+
+    def own(self, point: Point) -> Self:
+        """Return the same of one point, driven there."""
+        return dataclasses.replace(self, drives=[point], responses=[point])
+
+    def parted(self, eigenvalue: Real, circles: contour.Circles) -> Parted:
+        """Part what modes do from what they leave, by means over circles around eigenvalues."""
+        residue = np.zeros((len(self.drives), len(self.responses), len(eigenvalue)))
+        if len(eigenvalue):
+            residue = -contour.residues(self.at, eigenvalue, circles)
+        shift = shift_of(eigenvalue)
+        whole = self.at(np.array([-shift], dtype=np.complex128))[..., 0].real
+        return Parted(residue, whole, 1 / (eigenvalue + shift))
+
+    def bounded(self, left: Callable[[Self], Real]) -> Real:
+        """Bound what is left out, (drives, responses), as an inner product; see `own`."""
+        # there is no bound of internal forces, tips and motion of ends
+        own: dict[Any, float] = {}
+        for point in dict.fromkeys([*self.drives, *self.responses]):
+            plain = not (is_end(point) or is_force(point) or tip.is_tip(point))
+            own[point] = float(np.abs(left(self.own(point))[0, 0])) if plain else np.inf
+        d, r = ([own[point] for point in some] for some in (self.drives, self.responses))
+        with np.errstate(invalid="ignore"):
+            return np.nan_to_num(np.sqrt(np.multiply.outer(d, r)), nan=np.inf, posinf=np.inf)
+
+
+def losses_of(model: Compiled) -> list[str]:
+    """Name the complex moduli, which have a meaning at each frequency, not in time."""
+    losses = [one.kind for one in having(model.scene.dampings, "loss")]
+    return losses + ["damping ratio of a broken wire"] * model.chain.is_hysteretic
