@@ -99,6 +99,19 @@ def collocate(
     size: _Real,
     /,
 ) -> tuple[_Real, _Real, _Real, _Real, int, int, float, _Failure | None]: ...
+def volterra(
+    laws: tuple[_Integers, _Real, _SmoothCalls],
+    begin: float,
+    h: float,
+    kernel: _Real,
+    linear: _Real,
+    force: _Real,
+    motion: _Real,
+    size: _Real,
+    first: int,
+    until: int,
+    /,
+) -> tuple[int, float, _Failure | None]: ...
 def march_factor(
     chain: Chain, beside: _Beside, law: _Law, theta: float, extra: float, /
 ) -> _Plan: ...

@@ -5,6 +5,7 @@
 #include "collocation/collocation.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "base/lapack.h"

@@ -2,22 +2,17 @@
 #ifndef RD_COLLOCATION_H
 #define RD_COLLOCATION_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "base/status.h"
 #include "base/workspace.h"
+#include "law/law.h"
 
 enum rd_smooth_kind {
     RD_SMOOTH_POWER, /* force = -value[0] |v|^value[1] sign(v) */
     RD_SMOOTH_CALL,  /* force is what `call` says              */
 };
-
-/* forces (count) of a law at times [s], displacements and velocities of its point; false: it
-   failed, and the run ends */
-typedef bool rd_law_call(void *context, size_t law, size_t count, const double *time,
-                         const double *u, const double *v, double *force);
 
 struct rd_smooth_laws {
     size_t count;

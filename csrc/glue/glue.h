@@ -98,6 +98,7 @@ PyObject *py_carried_pair_slopes(PyObject *module, PyObject *arguments);
 PyObject *py_tip(PyObject *module, PyObject *arguments);
 PyObject *py_recurrence(PyObject *module, PyObject *arguments);
 PyObject *py_collocate(PyObject *module, PyObject *arguments);
+PyObject *py_volterra(PyObject *module, PyObject *arguments);
 PyObject *py_march_factor(PyObject *module, PyObject *arguments);
 PyObject *py_march(PyObject *module, PyObject *arguments);
 PyObject *py_march_stage(PyObject *module, PyObject *arguments);

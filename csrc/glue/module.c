@@ -56,6 +56,9 @@ static PyMethodDef methods[] = {
     {"collocate", py_collocate, METH_VARARGS,
      "collocate(step, laws, begin, known, force, state, size) -> force, state, motion, size, steps "
      "made, iterations, residual, failure"},
+    {"volterra", py_volterra, METH_VARARGS,
+     "volterra(laws, begin, h, kernel, linear, force, motion, size, first, until) -> steps made, "
+     "residual, failure; force, motion and size go on in place"},
     {"march_factor", py_march_factor, METH_VARARGS,
      "march_factor(chain, beside, law, theta, extra) -> plan"},
     {"march", py_march, METH_VARARGS,

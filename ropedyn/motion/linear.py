@@ -26,13 +26,13 @@ from ..response.deflection import POINTS
 from ..response.moved_end import is_end
 from ..scene import damping
 from .history import History
-from .line import invert
+from .line.inversion import invert
+from .line.transfer import Transfer
 from .modal.energy_balance import balance
 from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
 from .moved import Moved
 from .request import TOLERANCE, Run
-from .transfer import Transfer
 
 MORE, MOST = 4, 1600  # So many times more modes are summed next, and so many at most.
 LOOSER = (TOLERANCE, 0.1, 2.0)  # That the motion of continuous spans keeps to, if it can.
@@ -47,7 +47,7 @@ def solve_linear(run: Run) -> History:
     """Return the motion of a linear model within the tolerance; see `Model.transient`."""
     start = clock.perf_counter()
     moved = within_tolerance(run)
-    x, snapshot = _snapshots(run)
+    x, snapshot = snapshots_of(run)
     seconds = clock.perf_counter() - start
     kept, model = run.kept, run.model
     mesh_error: Real | Callable[[], Real] = partial(mesh_error_of, kept, moved.value)
@@ -79,6 +79,23 @@ def within_tolerance(run: Run) -> Moved:
             f"{len(run.loads) + len(run.kicks)} places along the rope, not to {tolerance:g}"
         )
     return moved
+
+
+def nearest(run: Run, tolerance: float) -> Moved:
+    """Return the motion within the tolerance, or the nearest to it that a method finds."""
+    found: list[Moved] = []
+    refused: list[SolveError] = []
+    for method in ["modal"] if _has_ratios(run) else ["line", *_methods(run)[:1]]:
+        try:
+            found.append((_summed if method == "modal" else invert)(run, tolerance, None))
+        except SolveError as refusal:
+            refused.append(refusal)
+            continue
+        if (found[-1].shares() <= tolerance).all():
+            return found[-1]
+    if not found:
+        raise refused[-1]
+    return min(found, key=lambda moved: float(np.nan_to_num(moved.shares(), nan=np.inf).max()))
 
 
 def _kinds(run: Run) -> list[str] | None:
@@ -214,7 +231,7 @@ def _is_still(run: Run, response: int) -> bool:
     return True
 
 
-def _snapshots(run: Run) -> tuple[Real, Real]:
+def snapshots_of(run: Run) -> tuple[Real, Real]:
     """Return where the rope is looked at, and its motion, (s, nodes, coordinates)."""
     model = run.model
     x = within(model.x, POINTS) if model.element == "continuous" else model.x

@@ -83,11 +83,7 @@ class Run:
         radius = check.number(spectral_radius, "spectral_radius", sign="nonnegative")
         if radius > 1:
             raise SceneError(f"spectral_radius must be at most 1, got {radius!r}")
-        if direct and velocity is not None:
-            raise SceneError("velocity must be None where something is not linear, got one")
         loads, kicks = released(model, start), kicked(model, velocity)
-        if direct and loads.coarse is not None:
-            raise SceneError("start must be loads where something is not linear, got a shape")
         run = cls(
             model,
             t,
@@ -114,6 +110,16 @@ class Run:
             return run
         fewer = [one if one.coarse is None else one.coarse for one in (loads, kicks)]
         return replace(run, coarse=self.beginning(*fewer))
+
+    def but(self, **fields: Any) -> Run:
+        """Return the same with other fields, also from the beginning at fewer places."""
+        coarse = None if self.coarse is None else self.coarse.but(**fields)
+        return replace(self, **({"coarse": coarse} | fields))
+
+    @property
+    def is_shaped(self) -> bool:
+        """Whether motion begins with more than loads that are let go."""
+        return bool(self.kicks) or self.coarse is not None
 
     @property
     def places(self) -> list[Any]:

@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
-from .direct.direct import march
+import math
+
+from ..base.errors import SolveError
+from .direct.direct import march, why_not_march
 from .history import History
 from .linear import solve_linear
 from .phases.components import why_not_events
 from .phases.events import solve_events
 from .request import EVENTS, Run
 from .smooth.smooth import collocate, takes
+from .volterra import follows, has_calls, integrate
+
+
+def _by_events(run: Run) -> History:
+    """Return the motion from event to event, or by another method that is sure of more of it."""
+    found: History | None = None
+    try:
+        found = solve_events(run)
+        if math.isinf(found.sure_until) or not follows(run):
+            return found
+        return integrate(run)
+    except SolveError:
+        if found is None:
+            return integrate(run)
+        return found
 
 
 def follow_motion(run: Run) -> History:
     """Return the motion by the method that was asked for; see `Model.transient`."""
-    # steps where they are asked for, and where phases do not take the scene
-    if run.method == EVENTS or (run.method == "auto" and run.direct and not why_not_events(run)):
+    if not run.direct:
+        return solve_linear(run)
+    is_open = run.method == "auto"
+    if run.method == EVENTS:
         return solve_events(run)
-    if run.direct and takes(run):
+    if is_open and not why_not_events(run):
+        return _by_events(run)
+    if takes(run):
         return collocate(run)
-    return march(run) if run.direct else solve_linear(run)
+    if follows(run) and (why_not_march(run) or has_calls(run.model)):
+        return integrate(run)
+    return march(run)

@@ -14,7 +14,7 @@ from ..base.errors import SceneError
 from ..chain.compiled import Compiled
 from ..chain.port import Point
 from ..response.deflection import Deflection, checked_loads
-from .transfer import Transfer
+from .line.transfer import Transfer
 
 Shape = Callable[[Any], Any]
 """What a user gives: motion at a position x [m]."""

@@ -21,12 +21,15 @@ FLOORS = [
     "energy",
     "assembled",
     "mixed",
+    "law",
     "collocation",
+    "volterra",
     "march/form",
     "march/kernel",
     "march",
     "glue",
     "glue/closed",
+    "glue/laws",
     "glue/march",
 ]
 """Folders of csrc from the ground up: a file may include what lies in its own or one before it."""

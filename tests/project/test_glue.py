@@ -77,6 +77,14 @@ COLLOCATED = (
     np.zeros((2, 2, 3)),
     np.ones((3, 2)),
 )
+# two steps of a law in the core and one in Python
+VOLTERRA = (
+    (np.array([0, 2], np.int32), np.array([[2.0, 0.0, 0.0, 0.0]] * 2), (None, lambda t, u, v: -u)),
+    0.0,
+    0.1,
+    np.full((2, 2, 2), 0.01),
+    np.full((2, 3), 0.1),
+)
 # stations, elements, ropes and rounding of three spans, two of them alike
 DIVIDED = (
     np.array([0.0, 1.0, 1.5, 2.5]),
@@ -251,6 +259,9 @@ OTHERS = {
         LAW_NUMBERS, 1e-3, np.ones(2), MATRIX, np.zeros(2), np.zeros(2)
     ),
     "recurrence": lambda _: _core.recurrence(*STEPPED),
+    "volterra": lambda _: _core.volterra(
+        *VOLTERRA, np.zeros((2, 2)), np.zeros((2, 3)), np.zeros(2), 0, 2
+    )[:-1],
     "collocate": lambda _: _core.collocate(*COLLOCATED)[:-1],
     "closed_modes": lambda _: _core.closed_modes(*STRINGS, np.eye(5), 2),
     "closed_count": lambda _: _core.closed_count(*STRINGS, 30.0),
@@ -587,6 +598,31 @@ REFUSED = {
         lambda: _core.collocate(*COLLOCATED[:3], COLLOCATED[3][1:], *COLLOCATED[4:]),
         ValueError,
         "known must have 2 entries along axis 0, got 1",
+    ),
+    "a law of the core that there is not": (
+        lambda: _core.volterra(
+            (np.array([0, 3], np.int32), *VOLTERRA[0][1:]),
+            *VOLTERRA[1:],
+            np.zeros((2, 2)),
+            np.zeros((2, 3)),
+            np.zeros(2),
+            0,
+            2,
+        ),
+        ValueError,
+        r"kind\[1\] must be 0, 1, or 2 of what is called, got 3",
+    ),
+    "forces that cannot go on in place": (
+        lambda: _core.volterra(
+            *VOLTERRA, np.zeros((2, 2), np.float32), np.zeros((2, 3)), np.zeros(2), 0, 2
+        ),
+        ValueError,
+        "force must be a writable array of float64 in C order",
+    ),
+    "more steps than there are": (
+        lambda: _core.volterra(*VOLTERRA, np.zeros((2, 2)), np.zeros((2, 3)), np.zeros(2), 0, 3),
+        ValueError,
+        r"steps must lie in 0 \.\.\. 2, got 0 to 3",
     ),
     "modes that do not fill the lanes": (
         lambda: _core.recurrence(STEPPED[0][:, :, 1:], STEPPED[1][:, :, 1:], *STEPPED[2:]),

@@ -6,7 +6,7 @@
 #include "base/workspace.h"
 #include "chain/chain.h"
 #include "chain/ports.h"
-#include "march/form/law.h"
+#include "law/law.h"
 
 #include <stdbool.h>
 

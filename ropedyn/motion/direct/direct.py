@@ -34,8 +34,9 @@ STOPS = (Exception, KeyboardInterrupt)  # May end a march early and leave an ans
 
 def march(run: Run) -> History:
     """Integrate step by step; see `Model.transient`."""
-    refuse_model(run.model)
-    refuse_responses(run)
+    why = why_not_march(run)
+    if why:
+        raise SceneError(why)
     chains = lumped_chains(run)
     g = stage_of(run.spectral_radius)
     start = time.perf_counter()
@@ -50,6 +51,18 @@ def march(run: Run) -> History:
             error.history = history
         raise error
     return history
+
+
+def why_not_march(run: Run) -> str:
+    """Say what steps along the chain do not take, with nothing where they take all."""
+    if run.is_shaped:
+        return 'velocity must be None and start loads where the method is "direct"'
+    try:
+        refuse_model(run.model)
+        refuse_responses(run)
+    except SceneError as refusal:
+        return str(refusal)
+    return ""
 
 
 def refuse_responses(run: Run) -> None:

@@ -19,7 +19,7 @@ KINDS = ("power", "stop", "call")  # The laws are in the core's order.
 
 
 class Laws(NamedTuple):
-    """Laws of single points as the core takes them; see csrc/march/form/law.h."""
+    """Laws of single points as the core takes them; see csrc/law/law.h."""
 
     node: NDArray[np.int32]
     row: Real

@@ -16,9 +16,9 @@ from ...base.errors import SceneError, SolveError
 from ...base.table import Table
 from ...chain.port import Point
 from ...response.frf import FRF, MeshOfResponse
-from ..continuation import Place
 from .asked import SteppedSine
 from .balance import HarmonicBalance
+from .continuation import Place
 from .driven import Driven
 from .state import HARMONICS, MOST, SteadyState, by_frequency, settled
 from .stepped import STEPS, at_rest, holds, pieces, watched

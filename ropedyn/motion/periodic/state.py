@@ -8,8 +8,8 @@ import numpy as np
 
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
-from ..continuation import Branch, Place
 from .balance import HarmonicBalance
+from .continuation import Branch, Place
 from .driven import Driven
 
 HARMONICS, MOST = 8, 256  # Of the drive, that branches are followed with and answered, at most.

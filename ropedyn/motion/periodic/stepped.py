@@ -13,10 +13,10 @@ from ...base.array import Complex, Real
 from ...base.errors import SolveError
 from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
-from ..continuation import Branch, Place
 from ..direct.steady_states import march_steadily
 from .asked import SteppedSine
 from .balance import HarmonicBalance
+from .continuation import Branch, Place
 from .driven import Driven, known_to
 from .stability import growing
 from .state import HARMONICS, MOST, SMALL, SteadyState, by_frequency, settled

@@ -97,8 +97,8 @@ def rest(one: Moving, nudge: float) -> Instant:
 def why_not_events(run: Run) -> str:
     """Say what phases do not take, with nothing where they take all."""
     model = run.model
-    if run.partial or run.step is not None or run.spectral_radius != 1:
-        return "partial, step and spectral_radius must be left out"
+    if run.partial or run.step is not None or run.spectral_radius != 1 or run.is_shaped:
+        return "partial, step, spectral_radius, velocity and shapes must be left out"
     for i, part in enumerate(model.scene.parts):
         for law in part.term().laws if part in standing([part]) else ():
             if not (law.kind == "stop" or (law.kind == "power" and law.value[1] == 0)):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -13,11 +12,11 @@ import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Real
-from ...base.errors import SceneError, SolveError
-from ...chain.compile import compile_scene
+from ...base.errors import SceneError
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ..history import History
+from ..mesh_error import against_spans
 from ..request import TOLERANCE, Run
 from .components import Look, moving_components, rest, why_not_events
 from .energy import balance
@@ -28,7 +27,6 @@ MODES, MOST = 64, 128  # Of continuous spans and long chains, at first and at mo
 NUDGE = 1e-11  # Rounding is at most this part of what drives.
 MARGIN = 2.0  # Half the modes are off by more than all of them, at least by this.
 HELD = 1e-9  # Of the modes that move a point: where it moves less, it is held.
-NONE = np.zeros(0)
 
 
 class Followed(NamedTuple):
@@ -104,7 +102,7 @@ def solve_events(run: Run) -> History:
         cost=Cost(seconds, "events", len(run.model.x) - 1, found.modes),
         balance=partial(balance, run.kept, found.modes),
         error=error,
-        mesh_error=partial(_mesh_error, run.kept, value),
+        mesh_error=partial(against_spans, run.kept, value, solve_events),
         sure_until=sure,
     )
 
@@ -145,14 +143,3 @@ def _sure_until(run: Run, found: Followed, error: Real) -> float:
     if not wrong.any():
         return math.inf
     return float(run.time[max(int(wrong.argmax()) - 1, 0)])
-
-
-def _mesh_error(run: Run, value: Real) -> Real:
-    """Return the distance to the motion of continuous spans and the error of that, as value."""
-    if run.model.element == "continuous":
-        return np.zeros(value.shape)
-    try:
-        true = solve_events(replace(run, model=compile_scene(run.model.scene), snapshots=NONE))
-    except (SceneError, SolveError):
-        return np.full(value.shape, np.inf)
-    return np.abs(value - true.value) + true.error

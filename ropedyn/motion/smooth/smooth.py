@@ -27,6 +27,7 @@ from ...scene.damping import having
 from ..direct.direct import march
 from ..history import Balance, History, ended_by
 from ..linear import solve_linear
+from ..mesh_error import against_spans
 from ..request import TOLERANCE, Run
 from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
@@ -50,7 +51,7 @@ def takes(run: Run) -> bool:
     """Whether collocation answers: the method is open, laws are smooth and modes uncoupled."""
     given = run.step is not None or run.spectral_radius != 1 or run.modes is not None
     model = run.model
-    if run.method != "auto" or given or why_not_smooth(model):
+    if run.method != "auto" or given or run.is_shaped or why_not_smooth(model):
         return False
     if having(model.scene.dampings, "loss") or model.chain.is_hysteretic:
         return False
@@ -266,8 +267,6 @@ class _Answer:
         asked = replace(run, time=run.time[kept], snapshots=run.snapshots[seen])
         value = self.value[:, kept]
         elements = len(run.model.x) - 1
-        is_exact = run.model.element == "continuous"
-        mesh_error = np.full(value.shape, 0.0 if is_exact else np.inf)
         return History(
             **asked.told,
             value=value,
@@ -276,7 +275,7 @@ class _Answer:
             cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
             balance=partial(_balance, asked),
             error=self.step_error[:, kept] + self.truncation[:, None],
-            mesh_error=mesh_error,
+            mesh_error=partial(against_spans, asked.kept, value, collocate),
             stopped=ended_by(self.error),
         )
 

@@ -1,8 +1,15 @@
 /* Forces that depend on the motion of single points. */
-#ifndef RD_MARCH_LAW_H
-#define RD_MARCH_LAW_H
+#ifndef RD_LAW_H
+#define RD_LAW_H
+
+#include <stdbool.h>
 
 #include "chain/ports.h"
+
+/* forces (count) of a law that the caller knows, at times [s], displacements and velocities of its
+   point; false: it failed, and the run ends */
+typedef bool rd_law_call(void *context, size_t law, size_t count, const double *time,
+                         const double *u, const double *v, double *force);
 
 /* On q = row (u_node, u_node+1), dq/dt = v, the rope is pushed by
        RD_POWER  -c |v|^p sign v    value: c, p; p = 0: dry friction, any force up to c at v = 0

@@ -1,10 +1,10 @@
 /* Steps under smooth laws, which Python may know. */
 #include "glue/glue.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "collocation/collocation.h"
+#include "glue/laws/calls.h"
 
 enum { KEPT = 12 }; /* arrays that a call holds */
 
@@ -12,12 +12,9 @@ struct py_collocation {
     struct rd_collocation step;
     struct rd_smooth_laws laws;
     struct rd_collocated run;
-    PyObject *calls;       /* of laws that Python knows, None for others */
-    const uint8_t *arrays; /* (laws,) whether a law takes arrays         */
+    struct py_calls calls;
     PyArrayObject *keep[KEPT];
     size_t kept;
-    double failed[4]; /* law, time, u and v where one failed                          */
-    PyObject *error;  /* what it raised; NULL where it returned what is no number, [N] */
 };
 
 /* an array that lives as long as the call; NULL and an exception */
@@ -36,100 +33,6 @@ static npy_intp length_of(const struct py_collocation *call, int axis)
     return PyArray_DIM(call->keep[call->kept - 1], axis);
 }
 
-/* --- laws --------------------------------------------------------------------------------------*/
-
-/* remembers where a law failed, and what it raised */
-static bool fail(struct py_collocation *call, size_t law, double t, double u, double v)
-{
-    const double at[4] = {(double)law, t, u, v};
-    memcpy(call->failed, at, sizeof at);
-    if (PyErr_Occurred()) {
-        PyObject *type, *trace;
-        PyErr_Fetch(&type, &call->error, &trace);
-        PyErr_NormalizeException(&type, &call->error, &trace);
-        if (trace != NULL)
-            PyException_SetTraceback(call->error, trace);
-        Py_XDECREF(type);
-        Py_XDECREF(trace);
-    }
-    return false;
-}
-
-/* the number of an object, NAN of what is none; an exception of the law stays */
-static double number_of(PyObject *value)
-{
-    if (value == NULL || PyFloat_CheckExact(value))
-        return value == NULL ? NAN : PyFloat_AS_DOUBLE(value);
-    const double number = PyBool_Check(value) ? NAN : PyFloat_AsDouble(value);
-    if (PyErr_Occurred()) {
-        PyErr_Clear();
-        return NAN;
-    }
-    return number;
-}
-
-static bool say_one(struct py_collocation *call, size_t law, double t, double u, double v,
-                    double *force)
-{
-    PyObject *number[3] = {PyFloat_FromDouble(t), PyFloat_FromDouble(u), PyFloat_FromDouble(v)};
-    PyObject *value = NULL, *function = PyTuple_GET_ITEM(call->calls, (Py_ssize_t)law);
-    if (number[0] != NULL && number[1] != NULL && number[2] != NULL)
-        value = PyObject_Vectorcall(function, number, 3, NULL);
-    *force = number_of(value);
-    Py_XDECREF(value);
-    for (int k = 0; k < 3; k++)
-        Py_XDECREF(number[k]);
-    return isnan(*force) ? fail(call, law, t, u, v) : true;
-}
-
-static PyObject *copied(size_t count, const double *from)
-{
-    PyObject *array = py_new(NPY_DOUBLE, 1, (npy_intp[]){(npy_intp)count});
-    if (array != NULL)
-        memcpy(PyArray_DATA((PyArrayObject *)array), from, count * sizeof *from);
-    return array;
-}
-
-/* one call for all; what it raises or returns is looked for one by one by the caller */
-static bool say_all(struct py_collocation *call, size_t law, size_t count, const double *t,
-                    const double *u, const double *v, double *force)
-{
-    PyObject *number[3] = {copied(count, t), copied(count, u), copied(count, v)}, *value = NULL;
-    PyArrayObject *array = NULL;
-    if (number[0] != NULL && number[1] != NULL && number[2] != NULL)
-        value =
-            PyObject_Vectorcall(PyTuple_GET_ITEM(call->calls, (Py_ssize_t)law), number, 3, NULL);
-    if (value != NULL)
-        array = py_array(value, NPY_DOUBLE, 1, (npy_intp[]){(npy_intp)count}, "law");
-    bool right = array != NULL;
-    if (right)
-        memcpy(force, PyArray_DATA(array), count * sizeof *force);
-    for (size_t i = 0; right && i < count; i++)
-        right = !isnan(force[i]);
-    Py_XDECREF(array);
-    Py_XDECREF(value);
-    for (int k = 0; k < 3; k++)
-        Py_XDECREF(number[k]);
-    return right;
-}
-
-static bool say(void *context, size_t law, size_t count, const double *t, const double *u,
-                const double *v, double *force)
-{
-    struct py_collocation *call = context;
-    if (PyErr_CheckSignals() < 0)
-        return fail(call, law, t[0], u[0], v[0]);
-    if (call->arrays[law]) {
-        if (say_all(call, law, count, t, u, v, force))
-            return true;
-        PyErr_Clear();
-    }
-    for (size_t i = 0; i < count; i++)
-        if (!say_one(call, law, t[i], u[i], v[i], force + i))
-            return false;
-    return true;
-}
-
 /* --- arguments ---------------------------------------------------------------------------------*/
 
 /* laws: (kind, value, calls, arrays) */
@@ -137,9 +40,9 @@ static int parse_laws(PyObject *object, struct py_collocation *call)
 {
     PyObject *kind, *value, *arrays;
     if (!PyArg_ParseTuple(object, "OOO!O;laws must be (kind, value, calls, arrays)", &kind, &value,
-                          &PyTuple_Type, &call->calls, &arrays))
+                          &PyTuple_Type, &call->calls.law, &arrays))
         return -1;
-    const npy_intp count = PyTuple_GET_SIZE(call->calls);
+    const npy_intp count = PyTuple_GET_SIZE(call->calls.law);
     call->laws.count = (size_t)count;
     call->laws.kind = keep(call, kind, NPY_INT32, 1, (npy_intp[]){count}, "kind");
     if (call->laws.kind == NULL)
@@ -147,19 +50,19 @@ static int parse_laws(PyObject *object, struct py_collocation *call)
     for (npy_intp d = 0; d < count; d++) {
         const int32_t one = call->laws.kind[d];
         if ((one != RD_SMOOTH_POWER && one != RD_SMOOTH_CALL) ||
-            (one == RD_SMOOTH_CALL && !PyCallable_Check(PyTuple_GET_ITEM(call->calls, d)))) {
+            (one == RD_SMOOTH_CALL && !PyCallable_Check(PyTuple_GET_ITEM(call->calls.law, d)))) {
             PyErr_Format(PyExc_ValueError, "kind[%zd] must be 0, or 1 of what is called, got %d",
                          (Py_ssize_t)d, (int)one);
             return -1;
         }
     }
     call->laws.value = keep(call, value, NPY_DOUBLE, 2, (npy_intp[]){count, 2}, "value");
-    call->arrays = call->laws.value == NULL
-                       ? NULL
-                       : keep(call, arrays, NPY_UINT8, 1, (npy_intp[]){count}, "arrays");
-    call->laws.call = say;
-    call->laws.context = call;
-    return call->arrays == NULL ? -1 : 0;
+    call->calls.arrays = call->laws.value == NULL
+                             ? NULL
+                             : keep(call, arrays, NPY_UINT8, 1, (npy_intp[]){count}, "arrays");
+    call->laws.call = py_say;
+    call->laws.context = &call->calls;
+    return call->calls.arrays == NULL ? -1 : 0;
 }
 
 /* step: (h, node, change, push, seen, own, ahead) */
@@ -244,16 +147,6 @@ static bool calls_python(const struct py_collocation *call)
     return false;
 }
 
-/* None, or where a law failed and what it raised, None of no number */
-static PyObject *failure_of(const struct py_collocation *call, enum rd_status status)
-{
-    if (status != RD_INTERRUPTED)
-        return Py_NewRef(Py_None);
-    PyObject *error = call->error == NULL ? Py_None : call->error;
-    return Py_BuildValue("(Oiddd)", error, (int)call->failed[0], call->failed[1], call->failed[2],
-                         call->failed[3]);
-}
-
 PyObject *py_collocate(PyObject *module, PyObject *arguments)
 {
     (void)module;
@@ -279,7 +172,7 @@ PyObject *py_collocate(PyObject *module, PyObject *arguments)
         status = rd_collocation_run(&call.step, &call.laws, &work, &call.run);
         Py_END_ALLOW_THREADS
     }
-    failure = failure_of(&call, status);
+    failure = py_failure(&call.calls, status);
     if (failure != NULL)
         result =
             Py_BuildValue("OOOOnndO", made[0], made[1], made[2], made[3], (Py_ssize_t)call.run.made,
@@ -287,7 +180,7 @@ PyObject *py_collocate(PyObject *module, PyObject *arguments)
 done:
     PyMem_RawFree(workspace.base);
     Py_XDECREF(failure);
-    Py_XDECREF(call.error);
+    Py_XDECREF(call.calls.error);
     for (int k = 0; k < 4; k++)
         Py_XDECREF(made[k]);
     while (call.kept > 0)

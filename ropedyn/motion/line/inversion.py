@@ -13,23 +13,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.array import Complex, Real
-from ..base.errors import SceneError, SolveError
-from ..base.unit import MOTIONS
-from ..chain.chain import Chain
-from ..chain.port import Point, is_force
-from ..chain.tip import is_tip
-from ..eigen.damped.rates import Rates
-from ..eigen.spectrum import count_component, spectrum
-from ..response.moved_end import is_end
-from ..scene import damping
-from ..scene.force import Force, Step, is_sampled
+from ...base.array import Complex, Real
+from ...base.errors import SceneError, SolveError
+from ...base.unit import MOTIONS
+from ...chain.chain import Chain
+from ...chain.port import Point, is_force
+from ...chain.tip import is_tip
+from ...eigen.damped.rates import Rates
+from ...eigen.spectrum import count_component, spectrum
+from ...response.moved_end import is_end
+from ...scene import damping
+from ...scene.force import Force, Step, is_sampled
+from ..modal.convolution import convolve
+from ..moved import Moved
+from ..request import Run
 from .at_once import LOOKS, at_once, response
 from .force_transform import transform
 from .grid import Grid
-from .modal.convolution import convolve
-from .moved import Moved
-from .request import Run
 from .transfer import Transfer
 
 PERIODS = ((1e-6, 1.25, 1e-9), (0.0, 2.0, 1e-11))

@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from ..base.array import Complex, Real
-from .modal.expansion import Expansion
+from ...base.array import Complex, Real
+from ..modal.expansion import Expansion
 
 LOOKS = 2.0 ** np.arange(4) * np.exp(0.25j * math.pi)
 """H is looked at here over the highest rate: away from real rates and from resonances."""

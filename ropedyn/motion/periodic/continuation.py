@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base.array import Real
-from ..base.errors import SolveError
+from ...base.array import Real
+from ...base.errors import SolveError
 
 TURN, SLIGHT = 0.5, 0.25  # The tangent turns by at most so much a step; by less it grows [rad].
 GROWTH = 1.6  # So much.

@@ -1,5 +1,5 @@
 /* Forces that depend on the motion of single points. */
-#include "march/form/law.h"
+#include "law/law.h"
 
 #include <float.h>
 #include <math.h>

@@ -8,12 +8,18 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base.array import Complex, Index, Real
+from ...base.array import Complex, Index, Real
 
 EVEN = 1e-6  # Times whose steps differ by this part of one are even.
 FINEST = 64  # Lines reach so many times as far as the times resolve at first, at most.
 LEAST = 256  # Other times are looked at by so many even steps at least.
 MOST = 1 << 22  # So many numbers are computed at a time.
+
+
+def is_even(time: Real) -> bool:
+    """Whether times are in equal steps."""
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    return bool(np.abs(np.diff(time) / step - 1).max() <= EVEN)
 
 
 @dataclass(frozen=True)
@@ -41,7 +47,7 @@ class Grid:
 
         steps = len(time) - 1
         span = float(time[-1] - time[0])
-        even = bool(np.abs(np.diff(time) * steps / span - 1).max() <= EVEN)
+        even = is_even(time)
         if not even:
             steps = max(steps, LEAST)
         count = next_fast_len(math.ceil(longer * (steps + 1)), real=True)

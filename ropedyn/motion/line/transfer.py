@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from ..base.array import Complex, Real
-from ..chain import tip
-from ..chain.compiled import Compiled
-from ..chain.port import Point
-from ..response.harmonic import by_components, line_by_line
-from ..response.moved_end import moves_ends
-from ..response.question import Question
-from ..response.solvers import SOLVERS
-from ..scene import damping
+from ...base.array import Complex, Real
+from ...chain import tip
+from ...chain.compiled import Compiled
+from ...chain.port import Point
+from ...response.harmonic import by_components, line_by_line
+from ...response.moved_end import moves_ends
+from ...response.question import Question
+from ...response.solvers import SOLVERS
+from ...scene import damping
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.array import Complex, Real
-from ..scene.force import Chirp, Force, Samples, Sum
+from ...base.array import Complex, Real
+from ...scene.force import Chirp, Force, Samples, Sum
+from ..modal.chirp import chirp_between, follow
+from ..modal.convolution import SinePiece, pieces
 from .grid import Grid
-from .modal.chirp import chirp_between, follow
-from .modal.convolution import SinePiece, pieces
 
 SMALL = 0.5  # Up to this |z| a hat is Taylor's series,
 TERMS = 14  # of so many terms.

@@ -1,0 +1,1 @@
+"""Linear motion by inversion of transfer functions on a line of complex rates."""

@@ -1,0 +1,255 @@
+"""Motion under laws of points of any linear model: Volterra's equation for their forces.
+
+    u(t) = linear(t) + integral of S'(t - s) f(s) ds,   f = law(t, u, u'),
+
+u of the laws' points, S what steps of force move them. `linear` and S are linear motion, by modes
+or by the line: any damping, continuous spans, structures, moved ends. In each step the forces are
+constant and a law sees the means of the step (csrc/volterra), so that friction holds without
+creeping. The forces, as straight lines through them, then drive the linear model. Runs with steps
+half as long tell the error.
+"""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..base.answer import Cost
+from ..base.array import Real
+from ..base.computed import computed
+from ..base.errors import SolveError
+from ..base.progress import silent
+from ..chain.compiled import Compiled
+from ..chain.port import Point, is_held
+from ..scene.force import Samples, Step
+from ..scene.parts.part import standing
+from ..scene.tension import Tension
+from .direct.direct import march
+from .direct.point_law import KINDS
+from .history import Balance, History
+from .line.grid import is_even
+from .linear import nearest, snapshots_of, within_tolerance
+from .mesh_error import against_spans
+from .moved import Moved
+from .request import TOLERANCE, Run
+from .smooth.laws import LawFailure, SmoothLaw
+from .smooth.smooth import scale
+from .undamped import losses_of
+
+FIRST, MOST_STEPS = 512, 1 << 16  # Steps of a record, at first at least and at most.
+SHARPER = 0.2  # Linear motion is known to this part of the tolerance, if it can be,
+SHAPED = 0.25  # from shapes and velocities to this.
+TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long.
+BLOCK = 2048  # So many steps are taken at a time.
+NUMBERS = 4  # of a law at most
+NONE = np.zeros(0)
+
+
+class Acting(NamedTuple):
+    """The laws of a model where something moves, as the core takes them."""
+
+    points: tuple[Point, ...]
+    told: list[SmoothLaw]  # as messages name them
+    kind: NDArray[np.int32]
+    value: Real
+
+    @property
+    def core(self) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
+        """What `_core.volterra` takes."""
+        return self.kind, self.value, tuple(one.call for one in self.told)
+
+
+def acting_laws(model: Compiled) -> Acting:
+    """Return the laws where something moves."""
+    found = [
+        ((law.coordinate, one.x), SmoothLaw(f"parts[{i}]", law.call), law)
+        for i, part in enumerate(model.scene.parts)
+        for one in standing([part])
+        for law in one.term().laws
+        if law.coordinate in model.coordinates
+    ]
+    place = model.chain, model.x, model.coordinates
+    found = [one for one in found if not is_held(*place, one[0])]
+    value = np.array([np.resize([*law.value, *[0.0] * NUMBERS], NUMBERS) for *_, law in found])
+    kind = np.array([KINDS.index(law.kind) for *_, law in found], dtype=np.int32)
+    points, told = tuple(one[0] for one in found), [one[1] for one in found]
+    return Acting(points, told, kind, value.reshape(-1, NUMBERS))
+
+
+def has_calls(model: Compiled) -> bool:
+    """Whether Python knows some of the laws, which steps along the chain ask one by one."""
+    return any(law.call for part in standing(model.scene.parts) for law in part.term().laws)
+
+
+def follows(run: Run) -> bool:
+    """Whether this answers: the method is open, and all but laws of points is linear."""
+    given = run.partial or run.step is not None or run.spectral_radius != 1 or run.modes is not None
+    tension = run.model.scene.tension
+    changes = isinstance(tension, Tension) and (tension.pulsates or tension.stretching)
+    return run.method == "auto" and not given and not changes and not losses_of(run.model)
+
+
+# --- one run --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Stepped:
+    """Forces of the laws in steps of one length."""
+
+    run: Run
+    laws: Acting
+    count: int
+    tolerance: float
+
+    @property
+    def accuracy(self) -> float:
+        """To which linear motion is known, if it can be."""
+        return SHARPER * self.tolerance
+
+    @property
+    def time(self) -> Real:
+        """When steps begin and end [s]."""
+        begin, end = float(self.run.time[0]), float(self.run.time[-1])
+        return np.asarray(begin + (end - begin) / self.count * np.arange(self.count + 1))
+
+    def moved(self) -> Moved:
+        """Return the motion of the responses."""
+        return self._nearest(self.pushed())
+
+    def pushed(self) -> Run:
+        """Return the linear run that the laws' forces drive too."""
+        force = self.force
+        node = np.concatenate([force[:, :1], (force[:, 1:] + force[:, :-1]) / 2, force[:, -1:]], 1)
+        run, time = self.run, self.time
+        drives = (*run.drives, *self.laws.points)
+        return run.but(drives=drives, forces=(*run.forces, *(Samples(time, f) for f in node)))
+
+    def _nearest(self, run: Run) -> Moved:
+        if run.coarse is None:
+            return nearest(run, self.accuracy)
+        return within_tolerance(run.but(tolerance=SHAPED * self.tolerance))
+
+    def _linear(self, **asked: Any) -> Real:
+        """Return how the points move without the laws, or as something else drives them."""
+        plain = {"responses": self.laws.points, "order": 0, "snapshots": NONE, "progress": silent}
+        some = self.run.but(time=self.time, **(plain | asked))
+        if not some.places:
+            return np.zeros((len(self.laws.points), self.count + 1))
+        return self._nearest(some).value
+
+    @computed
+    def force(self) -> Real:
+        """The forces of the laws in each step, (laws, steps)."""
+        run, laws, count = self.run, self.laws, len(self.laws.points)
+        linear = self._linear()
+        step = Step(1.0, time=float(run.time[0]))
+        alone: dict[str, Any] = {"forces": (step,), "loads": {}, "kicks": {}, "coarse": None}
+        answer = np.stack([self._linear(drives=(point,), **alone) for point in laws.points], axis=1)
+        kernel = np.ascontiguousarray(np.diff(answer, axis=2)[..., ::-1])
+        force, motion = np.zeros((count, self.count)), np.zeros((count, self.count + 1))
+        motion[:, 0] = linear[:, 0]
+        h, size = float(self.time[1] - self.time[0]), np.zeros(count)
+        known = laws.core, float(run.time[0]), h, kernel, linear, force, motion, size
+        for first in range(0, self.count, BLOCK):
+            until = min(first + BLOCK, self.count)
+            made, residual, failure = _core.volterra(*known, first, until)
+            if made < until:
+                raise self._error(failure, float(self.time[made]), residual)
+            run.progress(until / self.count)
+        return force
+
+    def _error(self, failure: Any, when: float, residual: float) -> BaseException:
+        if failure is not None:
+            return LawFailure(*failure).told(self.laws.told)
+        return Unsettled(
+            f"the laws of {', '.join(dict.fromkeys(law.name for law in self.laws.told))} do not "
+            f"converge at t = {when!r} s in steps of {self.time[1] - self.time[0]:.3g} s: the "
+            f"residual is {residual:.3g} of their forces"
+        )
+
+
+class Unsettled(SolveError):
+    """Forces of a step that were not found."""
+
+
+# --- runs that agree ------------------------------------------------------------------------------
+
+
+def integrate(run: Run) -> History:
+    """Find the motion under laws of points; see `Model.transient`."""
+    start = clock.perf_counter()
+    tolerance = TOLERANCE if run.tolerance is None else run.tolerance
+    stepped, moved = _agreed(run, tolerance)
+    x, snapshot = snapshots_of(stepped.pushed().but(tolerance=tolerance))
+    seconds = clock.perf_counter() - start
+    kept, elements = run.kept, len(run.model.x) - 1
+    return History(
+        **kept.told,
+        value=moved.value,
+        x=x,
+        snapshot=snapshot,
+        cost=Cost(seconds, "volterra", elements, moved.modes, stepped.count),
+        error=moved.error,
+        mesh_error=partial(against_spans, kept, moved.value, integrate),
+        balance=partial(_balance, kept),
+    )
+
+
+def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
+    """Halve the steps until two runs agree within the tolerance."""
+    count, before, apart = _first(run), None, None
+    laws = acting_laws(run.model)
+    while True:
+        stepped = Stepped(run, laws, count, tolerance)
+        try:
+            found = stepped.moved()
+        except Unsettled:
+            if 2 * count > MOST_STEPS:
+                raise
+            count, before, apart = 2 * count, None, None
+            continue
+        if before is not None:
+            now = np.maximum.accumulate(np.abs(found.value - before.value), axis=1)
+            # where velocities turn, runs may agree by chance
+            apart = now if apart is None else np.maximum(now, apart / 2)
+            known = found._replace(error=found.error + TIMES * apart)
+            most = tolerance * scale(found.value)[:, None]
+            late = known.error > most
+            if not late.any():
+                return stepped, known
+            # shorter steps do not help where linear motion is not known
+            if 2 * count > MOST_STEPS or (np.minimum(found.error, before.error) > most).any():
+                raise _unknown(run, tolerance, count, late, known)
+        count, before = 2 * count, found
+
+
+def _first(run: Run) -> int:
+    """Return how many steps are taken at first: so many in each of even times."""
+    times = len(run.time) - 1
+    highest = max((force.highest for force in run.forces), default=0.0)
+    least = max(FIRST, 4 * math.ceil(highest * float(run.time[-1] - run.time[0])))
+    if not is_even(run.time):
+        return max(least, times)
+    return times * -(-least // times)
+
+
+def _unknown(run: Run, tolerance: float, count: int, late: Any, known: Moved) -> SolveError:
+    until = float(run.time[max(int(late.any(axis=0).argmax()) - 1, 0)])
+    return SolveError(
+        f"the motion is known to {tolerance:g} of its largest value until t = {until:.4g} s only: "
+        f"with {count} steps the error grows to {known.shares().max():.1e}. A larger tolerance or "
+        "an earlier end help"
+    )
+
+
+def _balance(run: Run) -> Balance:
+    """Return the energies, which steps along the chain account for."""
+    return march(replace(run, snapshots=NONE)).balance
