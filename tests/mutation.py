@@ -285,7 +285,7 @@ class Run:
                 break
             chosen.append(test)
         command = [sys.executable, *PYTEST, "-x", "--tb=no", *chosen]
-        status, words = run(command, self.work, 60 + 3 * self.seconds)
+        status, words = run(command, self.work, 40 + 2 * self.seconds)
         whole = f"{len(chosen)} of {len(tests)}"
         return ("survived", whole) if status in (0, 5) else ("killed", words)
 
