@@ -12,7 +12,6 @@ What survived when it was run last, and why, is in tests/mutation.md.
 """
 
 import argparse
-import ctypes
 import json
 import os
 import random
@@ -34,24 +33,26 @@ UNASKED = "not code_of_an_effect and not notebook and not c_tests_pass and not f
 """Tests of many seconds that see everything, and the C tests, which are asked one by one."""
 SUFFIX = sysconfig.get_config_var("EXT_SUFFIX")
 FLAGS = ["-std=c17", "-w", "-fPIC", "-ffp-contract=off", "-fno-math-errno", "-DRD_ONE_COPY"]
+FLAGS += ["-Werror=incompatible-pointer-types", "-Werror=int-conversion"]
 FLAGS += ["-DNPY_TARGET_VERSION=NPY_1_23_API_VERSION", "-DNPY_NO_DEPRECATED_API=7", "-pthread"]
-NEXT = """
-extern void __gcov_dump(void), __gcov_reset(void);
-__attribute__((visibility("default"))) void counts_next(void) { __gcov_dump(); __gcov_reset(); }
-"""
+CHAPTERS = {
+    "assembled": ("eigen", "response", "chain"),
+    "base": ("response", "eigen", "motion"),
+    "chain": ("chain", "response", "eigen"),
+    "closed": ("family", "eigen", "response", "experiment"),
+    "collocation": ("motion",),
+    "damped": ("eigen", "response"),
+    "element": ("chain", "response", "eigen"),
+    "energy": ("eigen", "response", "chain"),
+    "glue": ("project", "response", "eigen", "motion", "family", "chain"),
+    "march": ("motion",),
+    "mixed": ("chain", "response", "motion"),
+    "modes": ("eigen", "chain"),
+    "span": ("eigen", "response", "chain"),
+    "sweep": ("response", "eigen", "chain"),
+}
+"""Folders of Python tests that ask a chapter of the core, besides the C tests."""
 ENVIRONMENT = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-
-
-# --- a plugin of pytest: after each module of tests the counts of the core go to its own folder ---
-
-
-def pytest_runtest_teardown(item, nextitem):
-    counts = os.environ.get("MUTATION_COUNTS")
-    if counts and (nextitem is None or nextitem.path != item.path):
-        os.environ["GCOV_PREFIX"] = f"{counts}/{item.path.relative_to(item.config.rootpath)}"
-        import ropedyn._core
-
-        ctypes.CDLL(ropedyn._core.__file__).counts_next()
 
 
 # --- the core, compiled file by file --------------------------------------------------------------
@@ -107,9 +108,9 @@ class Core:
         command = ["gcc", *shared, *map(str, made), *self.links, "-pthread", "-o", str(target)]
         subprocess.run(command, check=True, cwd=self.work)
 
-    def extension(self, changed=(), more=()):
+    def extension(self, changed=()):
         sources = [s for s in self.sources if s.startswith("csrc")]
-        self.link(self.work / "ropedyn" / f"_core{SUFFIX}", [*sources, *more], changed)
+        self.link(self.work / "ropedyn" / f"_core{SUFFIX}", sources, changed)
 
     def program(self, source, changed=()):
         """Link one of the C tests."""
@@ -139,24 +140,16 @@ def survey_python(work):
 
 
 def survey_core(work):
-    """Count the lines of the core that each C test and each module of the Python tests executes."""
+    """Count the lines of the core that each C test executes: core.json."""
     core = Core(work, "counted", "-O0", "--coverage")
     core.build()
-    (work / "counts_next.c").write_text(NEXT)
-    core.compile("counts_next.c")
-    core.extension(more=["counts_next.c"])
-    counts = work / "counts"
+    counts, found = work / "counts", defaultdict(list)
     for source in core.programs:
         prefix = {"GCOV_PREFIX": str(counts / source)}
         subprocess.run([core.program(source)], env=environment_of(work, **prefix), check=True)
-    command = [sys.executable, *PYTEST, "-p", "mutation", "tests"]
-    counting = environment_of(work, MUTATION_COUNTS=str(counts))
-    subprocess.run(command, cwd=work, env=counting, check=False)
-    found = defaultdict(list)
-    for place in sorted(counts.glob("tests/*/*")):
-        name = place.relative_to(counts).as_posix()
-        for file, line in counted(place / core.objects.relative_to("/"), core.objects, work):
-            found[f"{file}:{line}"].append(name)
+        place = counts / source / core.objects.relative_to("/")
+        for file, line in counted(place, core.objects, work):
+            found[f"{file}:{line}"].append(source)
     (work / "core.json").write_text(json.dumps(found))
 
 
@@ -189,6 +182,8 @@ class Survey:
             self.home[f"{Path(file).stem}.{function}"] = node = f"{file}::{function}"
             self.seconds[node] += float(case.get("time"))
             self.seconds[file] += float(case.get("time"))
+        names = {node.split("::")[0] for node in self.home.values()}
+        self.words = {name: (work / name).read_text() for name in names}
         self.core = json.loads((work / "core.json").read_text())
         self.lines = self._python(work)
 
@@ -216,17 +211,20 @@ class Survey:
             said = [k for k, row in enumerate(text.split("\n"), 1) if used and used.search(row)]
             found = sorted({node for k in said for node in rows.get(k, ())})
         found = found or sorted({node for row in rows.values() for node in row})
-        return sorted(found, key=lambda node: self.rank(node, mutant))
+        return sorted(found, key=lambda node: (self.rank(node, mutant), node))
 
     def of_core(self, mutant):
-        """Return C tests, and modules of Python tests, of a line or of the nearest before it."""
+        """Return C tests of a line or of the nearest before it, and modules of Python tests."""
         line = mutant.line
         while line > 1 and f"{mutant.path}:{line}" not in self.core:
             line -= 1
-        names = self.core.get(f"{mutant.path}:{line}", [])
-        modules = [name for name in names if name.endswith(".py")]
-        programs = [name for name in names if name.endswith(".c")]
-        return programs, sorted(modules, key=lambda name: self.rank(name, mutant))
+        chapter = mutant.path.split("/")[1]
+        asked = [name for name in self.words if name.split("/")[1] in CHAPTERS[chapter]]
+        programs = self.core.get(f"{mutant.path}:{line}", [])
+        said = (chapter, Path(mutant.path).stem)
+        near = {name: sum(word in self.words[name] for word in said) for name in asked}
+        order = {name: (0.5 + self.seconds[name]) / 4 ** near[name] for name in asked}
+        return programs, sorted(asked, key=lambda name: (order[name], name))
 
     def rank(self, test, mutant):
         """Seconds, fewer for a test of the same chapter and of the same name."""

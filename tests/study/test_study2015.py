@@ -78,6 +78,10 @@ def test_solid_rod_is_within_what_the_peaks_imply_and_the_study_is_not():
     assert low == 0
     assert study2015.solid_rod_stiffness() < high < study2015.BENDING_STIFFNESS
     assert "wide intervals" in str(found)
+    scene = found.fits["clamped"].scene
+    more = scene.replace(tension=1.1 * scene.mean_tension)
+    third = [one.compile().modes(3).frequency[2] for one in (scene, more)]
+    assert f"raises the transverse mode by {100 * (third[1] / third[0] - 1):.1f} %" in found.verdict
     assert len(found.table().rows) == 6
     assert "<table>" in found._repr_html_()
 
