@@ -177,6 +177,8 @@ class Survey:
     def __init__(self, work):
         self.seconds, self.home = defaultdict(float), {}
         for case in ElementTree.parse(work / "python.xml").iter("testcase"):
+            if case.find("failure") is not None or case.find("error") is not None:
+                continue  # what fails by itself says nothing of a mutant
             file = case.get("classname").replace(".", "/") + ".py"
             function = case.get("name").split("[")[0]
             self.home[f"{Path(file).stem}.{function}"] = node = f"{file}::{function}"
@@ -354,6 +356,8 @@ def main():
     parser.add_argument("--under", default="", help="only files whose path begins so")
     parser.add_argument("--again", action="store_true", help="meet the survivors again")
     given = parser.parse_args()
+    # of what a shell runs in the background it lets Ctrl-C be ignored, which tests send
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     work = given.work.resolve()
     prepared(work)
     sys.path.insert(0, str(ROOT / "tests" / "support"))

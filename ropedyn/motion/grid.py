@@ -16,7 +16,7 @@ LEAST = 256  # Other times are looked at by so many even steps at least.
 MOST = 1 << 22  # So many numbers are computed at a time.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """Rates s_k = a + 2 pi i k/P, of motion over a period P that begins with the record.
 
