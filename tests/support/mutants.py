@@ -62,7 +62,7 @@ WORDS = {
 """Operators and what takes their place."""
 UNSEEN = (ast.JoinedStr, ast.Import, ast.ImportFrom)
 """What is not entered: words of messages, and names."""
-EITHER_WAY = re.compile(r"\w*(?:_mul|_add|max|min|maximum|minimum|hypot)")
+EITHER_WAY = re.compile(r"at|\w*(?:_mul|_add|max|min|maximum|minimum|hypot)")
 """Functions of two arguments that may be swapped."""
 DELETED = (ast.AugAssign, ast.Raise, ast.Continue, ast.Break)
 
