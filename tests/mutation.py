@@ -260,8 +260,8 @@ def run(command, work, seconds):
 class Run:
     """Meets mutants with tests."""
 
-    def __init__(self, work, seconds):
-        self.work, self.seconds = work, seconds
+    def __init__(self, work, seconds, also=()):
+        self.work, self.seconds, self.also = work, seconds, list(also)
         self.core = Core(work, "objects", "-O1")
         self.core.build()
         self.core.extension()
@@ -280,10 +280,10 @@ class Run:
 
     def _pytest(self, tests):
         """Run tests, the first of them first, until one fails or time is over."""
-        chosen, left = [], self.seconds
+        chosen, left = list(self.also), self.seconds
         for test in tests:
             left -= self.survey.seconds[test]
-            if chosen and left < 0:
+            if len(chosen) > len(self.also) and left < 0:
                 break
             chosen.append(test)
         command = [sys.executable, *PYTEST, "-x", "--tb=no", *chosen]
@@ -357,6 +357,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=30.0, help="of tests for each mutant")
     parser.add_argument("--under", default="", help="only files whose path begins so")
     parser.add_argument("--again", action="store_true", help="meet the survivors again")
+    parser.add_argument("--also", nargs="*", default=(), help="tests that each meets first")
     given = parser.parse_args()
     # of what a shell runs in the background it lets Ctrl-C be ignored, which tests send
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -367,7 +368,7 @@ def main():
 
     kept = work / f"found-{given.seed}{given.under.replace('/', '-')}.json"
     found = json.loads(kept.read_text()) if kept.exists() else []
-    meets = Run(work, given.seconds)
+    meets = Run(work, given.seconds, given.also)
     if given.again:
         drawn = [Mutant(*row["mutant"]) for row in found if row["verdict"] == "survived"]
         found = [row for row in found if row["verdict"] != "survived"]

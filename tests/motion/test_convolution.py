@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import ropedyn as rd
 from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
-from ropedyn.motion.modal.exponentials import is_uniform
+from ropedyn.motion.modal.exponentials import _close, is_uniform
 from ropedyn.motion.modal.truncation import left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
 
@@ -434,3 +434,12 @@ def test_bound_of_modes_left_out_falls_with_their_frequency():
 
 def test_bound_takes_every_response():
     assert left_out(Step(2.0), GRID, np.array([1.0, 0.0, 3.0]), 1e4).tolist() == [2.0, 0.0, 6.0]
+
+
+def test_poles_are_close_by_half_of_what_time_or_decay_tells_apart():
+    """1/(2 span) without decay and a quarter of the decay of both more; none is close to itself."""
+    still = np.array([10j, 10.4j, 11j])
+    expected = np.array([[False, True, False], [True, False, False], [False, False, False]])
+    np.testing.assert_array_equal(_close(still, 1.0), expected)
+    decaying = np.array([-8.0, -6.0, -3.6]) + 0j
+    np.testing.assert_array_equal(_close(decaying, 1.0), expected)

@@ -70,6 +70,14 @@ def test_peaks_imply_tension_and_stiffness_over_density():
     assert (np.abs(other.value - heavier * fit.value) < 1e-3 * heavier * fit.std).all()
 
 
+def test_densities_are_those_of_the_readings():
+    """0.13725 kg over 1.35 m, and over each of eight elements."""
+    whole, catalogue, each = study2015.DENSITIES.values()
+    assert whole == pytest.approx(0.13725 / 1.35, rel=1e-15)
+    assert catalogue == study2015.CATALOGUE_DENSITY
+    assert each == pytest.approx(8 * whole, rel=1e-15)
+
+
 def test_solid_rod_is_within_what_the_peaks_imply_and_the_study_is_not():
     found = study2015.implied()
     low, high = found.intervals["clamped"]["bending_stiffness"]
