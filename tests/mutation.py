@@ -247,7 +247,7 @@ def run(command, work, seconds):
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
     try:
-        words, _ = process.communicate(timeout=20 * seconds)  # of a machine that others use too
+        words, _ = process.communicate(timeout=8 * seconds)  # of a machine that others use too
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         words, _ = process.communicate()
