@@ -32,7 +32,7 @@ COPIED = ("ropedyn", "csrc", "tests", "pyproject.toml", "setup.py", "README.md")
 UNASKED = "not code_of_an_effect and not notebook and not c_tests_pass and not figures_are_drawn"
 """Tests of many seconds that see everything, and the C tests, which are asked one by one."""
 SUFFIX = sysconfig.get_config_var("EXT_SUFFIX")
-FLAGS = ["-std=c17", "-w", "-fPIC", "-ffp-contract=off", "-fno-math-errno", "-DRD_ONE_COPY"]
+FLAGS = ["-std=c17", "-Wno-psabi", "-fPIC", "-ffp-contract=off", "-fno-math-errno", "-DRD_ONE_COPY"]
 FLAGS += ["-Werror=incompatible-pointer-types", "-Werror=int-conversion"]
 FLAGS += ["-DNPY_TARGET_VERSION=NPY_1_23_API_VERSION", "-DNPY_NO_DEPRECATED_API=7", "-pthread"]
 CHAPTERS = {

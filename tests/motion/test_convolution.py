@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import ropedyn as rd
 from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
-from ropedyn.motion.modal.exponentials import _close, is_uniform
+from ropedyn.motion.modal.exponentials import _circle, _close, is_uniform
 from ropedyn.motion.modal.truncation import left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
 
@@ -443,3 +443,10 @@ def test_poles_are_close_by_half_of_what_time_or_decay_tells_apart():
     np.testing.assert_array_equal(_close(still, 1.0), expected)
     decaying = np.array([-8.0, -6.0, -3.6]) + 0j
     np.testing.assert_array_equal(_close(decaying, 1.0), expected)
+
+
+def test_a_circle_has_as_few_nodes_as_its_digits_ask_for():
+    """Between a quarter and 4 over the span it is 1 wide, and 20! > e^38 > 18!."""
+    poles = np.array([10j - 1e-6, 10j + 1e-6, 1000j])
+    radius, nodes = _circle(poles, np.array([True, True, False]), 1.0)
+    assert (radius, nodes) == (pytest.approx(1.0, rel=1e-15), 20)
