@@ -329,6 +329,11 @@ REFUSED = {
     "stated for another": ([function()], {"unit": "mm/N"}, "unit and quantity must agree"),
     "unit of rotation": ([function()], {"unit": "rad/N"}, "unit must be m .* per N"),
     "no unit at all": ([function()], {"unit": "fast"}, "unit must be motion per force"),
+    "no such quantity": (
+        [function()],
+        {"unit": "g/N", "quantity": "speed"},
+        "quantity must be one of",
+    ),
     "unit of no motion": ([function()], {"unit": "furlong/N"}, "unit must be motion per force"),
     "unit per unknown force": ([function()], {"unit": "m/st"}, "unit must be motion per force"),
     "too many units": ([function()], {"unit": ["g/N", "g/N"]}, "unit must be one, or 1"),

@@ -13,7 +13,7 @@ import ropedyn as rd
 from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
 from ropedyn.motion.modal.exponentials import _circle, _close, is_uniform
-from ropedyn.motion.modal.truncation import left_out
+from ropedyn.motion.modal.truncation import _variation, left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
 
 # sigma [1/s], square [rad^2/s^2]
@@ -450,3 +450,10 @@ def test_a_circle_has_as_few_nodes_as_its_digits_ask_for():
     poles = np.array([10j - 1e-6, 10j + 1e-6, 1000j])
     radius, nodes = _circle(poles, np.array([True, True, False]), 1.0)
     assert (radius, nodes) == (pytest.approx(1.0, rel=1e-15), 20)
+
+
+def test_a_sine_varies_by_what_it_turns_from_where_it_begins():
+    """sin(pi/6) at first, and no more than 2 pi f (end - begin) after that."""
+    jump, whole = _variation(Sine(3.0, 1.0), 1 / 12, 1 / 12 + 0.01, 0)
+    assert jump == pytest.approx(1.5, rel=1e-14)
+    assert whole == pytest.approx(1.5 + 3.0 * 2 * np.pi * 0.01, rel=1e-14)
