@@ -151,3 +151,9 @@ def test_what_does_not_move_has_no_mode():
 def test_questions_without_meaning_are_refused(options, words):
     with pytest.raises(rd.SceneError, match=words):
         made(TIME, decaying(TIME, *MODES)).damping(**options)
+
+
+def test_a_history_has_its_errors_over_responses_and_time():
+    found = made(TIME[:5], np.ones((2, 5))).to_xarray()
+    for name in ("value", "error", "mesh_error"):
+        assert found[name].dims == ("response", "time")
