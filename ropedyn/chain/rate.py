@@ -91,7 +91,7 @@ def inertia_rate(scene: Scene, name: str) -> Real:
     return np.where(has_inertia(scene), own, 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Weights:
     """By what the slopes of a form are multiplied, see `_core.sensitivity`.
 
@@ -115,7 +115,7 @@ class Weights:
     damped: Real  # (attached,) of their damping ratios, which undamped modes do not feel
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Places:
     """Where the spans and stations of a model are among the stretches of its chain."""
 

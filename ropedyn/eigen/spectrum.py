@@ -25,7 +25,7 @@ HIGHEST = 1e100
 """Eigenvalues are counted up to this [rad^2/s^2], so that their products do not overflow."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ComponentModes:
     """Modes of one component, lowest first."""
 

@@ -32,7 +32,7 @@ class Cut(NamedTuple):
     node: Index  # (points,)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Asked:
     """A response, as all rows are asked for it."""
 

@@ -163,7 +163,7 @@ def solve_floquet(model: Compiled, modes: int | None) -> Floquet:
     )
 
 
-@dataclass
+@dataclass(eq=False)
 class _Motions:
     """Motions of coupled modes."""
 

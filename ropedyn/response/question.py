@@ -21,7 +21,7 @@ from ..chain.reaction import at_start
 from ..scene import damping
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Question:
     """What is asked of one component."""
 

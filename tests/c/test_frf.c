@@ -146,6 +146,8 @@ static void string_of_masses_follows_its_closed_form(double damping)
             CHECK_ABS(cabs(value[p] - expected), 0, (8 * rounding[p] + 64 * EPS) * cabs(expected),
                       "8 times the estimate reported, and 64 eps of the closed form's own");
         }
+        CHECK_REL(ready.motion[4], ready.motion[0], 1e-9,
+                  "driven at either end the motion is mirrored, and known as well to 1e-9");
         /* halfway between nodes a string moves by the mean */
         const complex_t mean = (value[2 * 6 + 0] + value[3 * 6 + 0]) / 2;
         CHECK_ABS(cabs(value[5 * 6 + 0] - mean), 0,

@@ -73,10 +73,19 @@ static void continuous_matrix(const struct rd_chain *chain, double *K)
         }
 }
 
+/* the coordinate of the left end in which a hinge opens, or the last */
+static size_t hinged(const struct rd_chain *chain)
+{
+    size_t e = 0;
+    while (e + 1 < chain->width && !(chain->hinge && chain->hinge[e] != 0))
+        e++;
+    return e;
+}
+
 /* Pi = u^T K u with the left hinge open; size <- |u|^T |K| |u| */
 static double form(const struct rd_chain *chain, const double *u, double *size)
 {
-    const size_t n = 2 * chain->width, e = chain->width - 1;
+    const size_t n = 2 * chain->width, e = hinged(chain);
     double K[N * N], sum = 0;
     if (chain->kind == RD_CONTINUOUS)
         continuous_matrix(chain, K);
@@ -171,14 +180,15 @@ static enum rd_status stretch_of(struct mode *asked, size_t k, double *slope, do
     return status;
 }
 
-static void slopes_are_those_of_the_form(enum rd_kind kind, const char *names, double tension,
-                                         double compliance)
+/* the hinge opens in coordinate e */
+static void hinged_slopes_are_those_of_the_form(enum rd_kind kind, const char *names,
+                                                double tension, double compliance, size_t e)
 {
     const struct recipe recipe = recipe_of(kind, names, tension);
     struct rope rope = rope_make(&recipe);
     const size_t w = rope.chain.width;
     double hinge[4 * W] = {0}, u[N], slope[RD_PROPERTIES], jump[W];
-    hinge[LEFT_END * w + w - 1] = compliance;
+    hinge[LEFT_END * w + e] = compliance;
     rope.chain.hinge = compliance != 0 ? hinge : NULL;
     for (size_t i = 0; i < 2 * w; i++)
         u[i] = check_random();
@@ -197,6 +207,12 @@ static void slopes_are_those_of_the_form(enum rd_kind kind, const char *names, d
                   "truncation and rounding of the difference");
     }
     rope_free(&rope);
+}
+
+static void slopes_are_those_of_the_form(enum rd_kind kind, const char *names, double tension,
+                                         double compliance)
+{
+    hinged_slopes_are_those_of_the_form(kind, names, tension, compliance, strlen(names) - 1);
 }
 
 /* d Pi/d(1/C) = jump^2, by the form at neighbouring compliances */
@@ -335,6 +351,11 @@ int main(void)
         slopes_are_those_of_the_form(RD_RIGID, "xzab", tension[k], INFINITY);
     }
     slopes_are_those_of_the_form(RD_RIGID, "zab", 30, 0.04);
+    /* an element may come off its node in each coordinate */
+    for (size_t e = 0; e < 4; e++) {
+        hinged_slopes_are_those_of_the_form(RD_TENSED, "xzab", 30, 0.01, e);
+        hinged_slopes_are_those_of_the_form(RD_RIGID, "xzab", 30, INFINITY, e);
+    }
     slopes_are_those_of_the_form(RD_DIFFERENCE, "xzab", 0, 0);
     slopes_are_those_of_the_form(RD_TENSED, "xza", 30, 0);
     for (size_t k = 0; k < 4; k++) {

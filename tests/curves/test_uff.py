@@ -259,6 +259,17 @@ def test_frequencies_are_turned_into_hertz(tmp_path, label, factor):
     np.testing.assert_allclose(found.frequency, [factor, 1.25 * factor], rtol=1e-15)
 
 
+@pytest.mark.parametrize(("step", "same"), [("2.50001e-01", True), ("2.50002e-01", False)])
+def test_frequencies_are_the_same_to_one_part_in_a_million(tmp_path, step, same):
+    """1.25 Hz and 0.8 or 1.6 millionths more, which is far less than 1 Hz."""
+    other = function(response=(3, 3), labels=SI).replace("2.50000e-01", step)
+    if same:
+        assert len(read(tmp_path, function(labels=SI), other).value) == 2
+    else:
+        with pytest.raises(rd.SceneError, match="others in dataset 1 than in 0"):
+            read(tmp_path, function(labels=SI), other)
+
+
 def test_several_responses_and_their_coherences_are_joined_by_nodes_and_directions(tmp_path):
     share = {"function_type": 6, "kinds": (0, 0)}
     found = read(
@@ -318,6 +329,13 @@ REFUSED = {
     "stated for another": ([function()], {"unit": "mm/N"}, "unit and quantity must agree"),
     "unit of rotation": ([function()], {"unit": "rad/N"}, "unit must be m .* per N"),
     "no unit at all": ([function()], {"unit": "fast"}, "unit must be motion per force"),
+    "no such quantity": (
+        [function()],
+        {"unit": "g/N", "quantity": "speed"},
+        "quantity must be one of",
+    ),
+    "unit of no motion": ([function()], {"unit": "furlong/N"}, "unit must be motion per force"),
+    "unit per unknown force": ([function()], {"unit": "m/st"}, "unit must be motion per force"),
     "too many units": ([function()], {"unit": ["g/N", "g/N"]}, "unit must be one, or 1"),
     "no such drive": ([function()], {"drive": ("z", 0.3)}, r"drive must be one of .*\('z', 0.2\)"),
     "no such response": ([function()], {"response": ("z", 0.3)}, "response must be one of"),

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
+from ropedyn.experiment.compare.calculated import CalculatedPeaks
+from ropedyn.experiment.compare.cause import _start, chance, tension_alone
 from ropedyn.scene.path import value_at, with_values
 
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
@@ -61,6 +63,52 @@ def test_each_number_of_the_scene_is_recognised_by_its_own_shifts(path):
     text = hint(LOADED, {path: 1.1 * value_at(LOADED, path)})
     assert factor(text, path) == pytest.approx(1.1, rel=1e-3)
     assert text.count("times the scene's") == 1
+
+
+@pytest.mark.parametrize("log", [2.9, 3.1])
+def test_a_number_is_looked_for_up_to_twenty_times_what_it_is(log):
+    """exp(3); the length, by a root, is within it."""
+    text = hint(STRING, {"tension": 100.0 * math.exp(log)})
+    assert ("tension" in text) == (log < 3)
+    assert factor(text, "length") == pytest.approx(math.exp(-log / 2), rel=1e-4)
+
+
+def test_three_pairs_are_enough():
+    assert factor(hint(STRING, {"tension": 110.0}, count=3), "tension") == pytest.approx(1.1)
+
+
+def test_a_tension_alone_leaves_what_is_not_alike():
+    """ln f_k moves by ln(T)/2: its mean is the tension's, the rms of the rest is left."""
+    modes = STRING.compile().modes(4)
+    wanted = np.array([0.01, 0.02, 0.04, 0.01])
+    f = modes.frequency * np.exp(wanted)
+    none = np.full(4, np.nan)
+    found = CalculatedPeaks(modes.frequency, np.zeros(4), none, np.arange(4), modes)
+    text = tension_alone(found, np.array([1, 2, 3, 0, 4]), np.insert(f, 3, 5.0))
+    share, left = math.exp(2 * wanted.mean()), 100 * np.std(wanted)
+    assert text == f"a tension {share:.3g} times the scene's would leave {left:.2g} %"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "words"),
+    [
+        ([0.0200, 0.0201, 0.0199], "All shifts are alike within their uncertainty: measured are "),
+        ([0.010, 0.020, 0.040], "The shifts grow with the order."),
+        ([-0.010, 0.020, -0.040], "The shifts grow with the order."),
+        ([0.010, 0.040, 0.020], "The shifts are beyond their uncertainty."),
+    ],
+)
+def test_the_hint_begins_with_what_the_shifts_are_like(wanted, words):
+    text = _start(np.array(wanted), np.full(3, 1e6))
+    assert text.startswith(words)
+    if text.startswith("All"):
+        assert f"{math.exp(np.mean(wanted)):.5g} times" in text
+
+
+def test_chance_of_squares_is_that_of_their_distribution():
+    """exp(-x/2) of two squares, 1 of none."""
+    assert chance(2, 3.0) == pytest.approx(math.exp(-1.5), rel=1e-14)
+    assert chance(2, 0.0) == 1.0
 
 
 def test_a_stiff_spring_at_an_end_is_recognised():

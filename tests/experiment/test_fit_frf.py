@@ -227,6 +227,9 @@ def test_intervals_are_symmetric_where_numbers_are_well_told(noisy):
 def test_fit_reads_as_tables_and_a_figure(noisy, tmp_path):
     assert "tension" in str(noisy)
     assert "z at 0.330 m" in noisy.report()
+    sums = [(np.abs(one) ** 2).sum(axis=1) for one in (noisy.residual, noisy.measured)]
+    off = noisy.lines.column("off, rms over rms")
+    assert off == pytest.approx(np.sqrt(sums[0] / sums[1]), rel=1e-12)
     ax = noisy.plot()
     assert len(ax.lines) == 2 * len(POINTS)
     assert "identified: tension" in ax.get_title()

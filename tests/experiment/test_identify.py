@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ropedyn as rd
+from ropedyn.experiment.identify.identify import _guessed
 
 LENGTH, DENSITY, TENSION = 2.0, 0.5, 1000.0
 BOTH = ["tension", "bending_stiffness"]
@@ -119,6 +121,16 @@ def test_a_scene_without_tension_needs_no_guess_of_it():
     peaks = pinned_beam(6, TENSION, 2.0)
     fit = fitted(scene(0.0, 10.0), peaks, BOTH)
     np.testing.assert_allclose(fit.value, [TENSION, 2.0], rtol=1e-10)
+
+
+def test_the_guess_of_a_tension_is_that_of_a_string_with_the_lowest_peak():
+    """T = 4 mu L^2 f^2, where one is sought and the scene has none."""
+    peaks, sought = rd.Peaks([11.0, 23.0, 35.0]), SimpleNamespace(paths=("tension",))
+    guess = _guessed(scene(0.0, 2.0), sought, peaks).tension
+    assert guess == pytest.approx(4 * DENSITY * (LENGTH * 11.0) ** 2, rel=4 * EPS)
+    assert _guessed(scene(7.0, 2.0), sought, peaks).tension == 7.0
+    other = SimpleNamespace(paths=("bending_stiffness",))
+    assert _guessed(scene(0.0, 2.0), other, peaks).tension == 0.0
 
 
 def test_compression_is_found_as_compression():

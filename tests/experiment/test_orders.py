@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from ropedyn.experiment.orders.chances import EXCITED, Chances, _seen
 from ropedyn.experiment.orders.evidence import FREEDOM, Evidence
 from ropedyn.experiment.orders.lattice import Lattice
 from ropedyn.experiment.orders.numbering import Numbering, decided, numberings
+from ropedyn.experiment.orders.search import SortedPeaks, _around
 from ropedyn.experiment.orders.sensed import FAINT, Sensed
 from ropedyn.experiment.orders.standardised import Standardised
 
@@ -167,6 +169,16 @@ def test_candidates_have_the_right_orders_with_strays_and_modes_missing():
     lattice = Lattice.of(standardised, 20)
     found, _ = lattice.candidates(log_peaks, np.full(8, 1e-3), chances, 150)
     assert np.array(orders)[order].tolist() in found.tolist()
+
+
+def test_near_a_numbering_are_the_nearest_modes_and_those_without_one_peak():
+    standardised = Standardised.of(SCENE, BOTH, {}, any_ends=False)
+    chances = Chances(np.ones(20), 2.0, np.zeros((3, 20)))
+    peaks = SortedPeaks(np.log(exact(3)), np.full(3, 1e-3))
+    best = SimpleNamespace(orders=np.array([[1, 3, 4]]), v=np.zeros((1, 2)))
+    orders, v = _around(best, standardised, peaks, chances)
+    assert orders.tolist() == [[1, 2, 3], [0, 3, 4], [1, 0, 4], [1, 3, 0]]
+    np.testing.assert_array_equal(v, np.zeros((4, 2)))
 
 
 # --- numberings -------------------------------------------------------------------------------

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 import ropedyn as rd
 from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
-from ropedyn.motion.modal.exponentials import is_uniform
-from ropedyn.motion.modal.truncation import left_out
+from ropedyn.motion.modal.exponentials import _circle, _close, is_uniform
+from ropedyn.motion.modal.truncation import _variation, left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
 
 # sigma [1/s], square [rad^2/s^2]
@@ -434,3 +434,26 @@ def test_bound_of_modes_left_out_falls_with_their_frequency():
 
 def test_bound_takes_every_response():
     assert left_out(Step(2.0), GRID, np.array([1.0, 0.0, 3.0]), 1e4).tolist() == [2.0, 0.0, 6.0]
+
+
+def test_poles_are_close_by_half_of_what_time_or_decay_tells_apart():
+    """1/(2 span) without decay and a quarter of the decay of both more; none is close to itself."""
+    still = np.array([10j, 10.4j, 11j])
+    expected = np.array([[False, True, False], [True, False, False], [False, False, False]])
+    np.testing.assert_array_equal(_close(still, 1.0), expected)
+    decaying = np.array([-8.0, -6.0, -3.6]) + 0j
+    np.testing.assert_array_equal(_close(decaying, 1.0), expected)
+
+
+def test_a_circle_has_as_few_nodes_as_its_digits_ask_for():
+    """Between a quarter and 4 over the span it is 1 wide, and 20! > e^38 > 18!."""
+    poles = np.array([10j - 1e-6, 10j + 1e-6, 1000j])
+    radius, nodes = _circle(poles, np.array([True, True, False]), 1.0)
+    assert (radius, nodes) == (pytest.approx(1.0, rel=1e-15), 20)
+
+
+def test_a_sine_varies_by_what_it_turns_from_where_it_begins():
+    """sin(pi/6) at first, and no more than 2 pi f (end - begin) after that."""
+    jump, whole = _variation(Sine(3.0, 1.0), 1 / 12, 1 / 12 + 0.01, 0)
+    assert jump == pytest.approx(1.5, rel=1e-14)
+    assert whole == pytest.approx(1.5 + 3.0 * 2 * np.pi * 0.01, rel=1e-14)

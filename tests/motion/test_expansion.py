@@ -146,6 +146,18 @@ def test_circle_around_close_poles_keeps_what_they_are_together():
     np.testing.assert_allclose(both, function(far), rtol=1e-13)
 
 
+@pytest.mark.parametrize(("apart", "spread"), [(1e-9, 0.0), (4e-3, 2e-3)])
+def test_circles_are_as_wide_as_their_poles_and_their_room_ask_for(apart, spread):
+    """1/50 of the way to the next pole, or the mean, of squares, of that way and the spread."""
+    pole = np.array([10.0, 10.0 + apart, 14.0])
+    circles = contour.on_a_line(pole, np.full(3, 1e-3), 20.0)
+    assert circles.size.tolist() == [2, 1]
+    np.testing.assert_allclose(circles.center, [10.0 + apart / 2, 14.0], rtol=1e-15)
+    room = 4.0 - apart
+    own = max(contour.RADIUS * room, np.sqrt(spread * room))
+    np.testing.assert_allclose(circles.radius, [own, contour.RADIUS * room], rtol=1e-12)
+
+
 def test_modal_damping_is_that_of_the_frequency_response():
     scene = rd.Scene(ROPE, tension=100.0, damping=rd.ModalDamping(0.02))
     drive, response = [("z", 0.31)], [("z", 0.4)]

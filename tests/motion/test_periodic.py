@@ -1,5 +1,7 @@
 """Harmonic balance: folds, stability and friction, against shooting over time and held points."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -7,6 +9,7 @@ from scipy.optimize import fsolve
 from support.orbits import compared
 
 import ropedyn as rd
+from ropedyn.motion.periodic.stability import FEWEST, _least
 
 # --- a mass on a string, and a spring that hardens -----------------------------------------------
 
@@ -216,3 +219,13 @@ def test_laws_that_say_nothing_are_named(law, error, message):
     model = duffing(parts=[rd.NodeForce(0.5, law)])
     with pytest.raises(error, match=message):
         model.stepped_sine([12.0], drive=("z", 0.5), amplitude=1.0)
+
+
+@pytest.mark.parametrize("loud", [2, 11])
+def test_harmonics_of_stability_reach_as_far_as_any_point_answers(loud):
+    """And no less than those that are taken at first; what is watched beside does not count."""
+    H = np.full((16, 3, 3), 1e-3)
+    H[loud, 1, 1] = H[14, 2, 0] = H[13, 0, 2] = 2.0
+    transfer = SimpleNamespace(at=lambda omega: H)
+    balance = SimpleNamespace(harmonics=15, points=2, transfer=transfer)
+    assert _least(balance, np.ones(1), np.zeros(1), 1.0) == max(FEWEST, loud + 1)

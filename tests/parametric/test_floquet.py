@@ -7,8 +7,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import ropedyn as rd
+from ropedyn.parametric.floquet import converged
 from ropedyn.parametric.modal_system import modal_system
-from ropedyn.parametric.monodromy import exponential, finite, monodromy, rates
+from ropedyn.parametric.monodromy import exponential, finite, monodromy, rates, steps_for
 
 MATHIEU = {
     (0.2, 0.0, 2.0): (-1.169874022626923772607909, -0.8547928927890237525543388),
@@ -153,6 +154,23 @@ def test_composition_is_of_order_ten():
     exact = monodromy(system, *given, 64)
     error = [np.abs(monodromy(system, *given, steps) - exact).max() for steps in (8, 16)]
     assert 8.0 < np.log2(error[0] / error[1]) < 12.0
+
+
+@pytest.mark.parametrize(("modes", "frequency"), [(3, 700.0), (3, 60.0), (1, 8.0)])
+def test_steps_over_a_period_are_halved_until_rounding_is_left(modes, frequency):
+    """And how much the last halving changed is the error, at least that of so many steps."""
+    ends = ("pinned", "clamped")
+    system = modal_system(rd.Scene(BEAM, tension=1000.0, ends=ends).compile(), modes)
+    found, error, steps = converged(system, frequency, 500.0)
+    given = np.array([frequency]), np.array([[500.0]])
+    made = [finite(monodromy(system, *given, steps // k))[0, 0] for k in (1, 2, 4)]
+    np.testing.assert_array_equal(found, made[0])
+    size = np.abs(found).max()
+    last, before = (float(np.abs(made[k] - made[k + 1]).max()) for k in (0, 1))
+    assert error == pytest.approx(max(last, np.sqrt(steps) * EPS * size), rel=1e-12)
+    assert before > 1e-13 * size
+    assert last <= 1e-13 * size or last > before / 4
+    assert steps <= 8 * steps_for(system, frequency, 500.0, 0.6)
 
 
 @pytest.mark.claim(

@@ -1,5 +1,7 @@
 """Fit of one mode to the lines of a band, and sinusoids in noise."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -132,3 +134,22 @@ def test_noise_shows_no_sinusoid():
     found, (rest,) = take_lines(pieces, 20.0, 0.5, 8.0)
     assert found == []
     assert rest is pieces[0]
+
+
+def test_the_shape_is_that_of_lines_above_the_noise():
+    """Each counts as signal over all it holds; peak and rise are those of the form."""
+    form, top, noise, other = np.array([1e-3, 500.0, 1e-2]), 2.0, 1.0, 0.01
+    mode, rest = np.array([0.6, 0.8]), np.array([0.8, -0.6])
+    square = np.stack([np.outer(s, s) * size for s, size in ((rest, 9), (mode, 1), (rest, 9))])
+    band = SimpleNamespace(amplified=lambda best: (form,), square=square)
+    best = np.array([np.log(F0), np.log(0.01), np.log(top), np.log(noise), 0.0, np.log(other / 2)])
+    found = band_fit._mode(band, best, np.diag([1e-8, 1e-4, 1.0, 1.0, 1.0, 1.0]), 3.0)
+    share = 1 - noise / (top * form + other + noise)
+    weighted = share[1] * np.outer(mode, mode) + (share[0] + share[2]) * 9 * np.outer(rest, rest)
+    largest = np.linalg.eigh(weighted)[1][:, 1]
+    assert np.abs(found.shape) == pytest.approx(np.abs(largest), rel=1e-12)
+    assert (found.frequency, found.ratio) == (pytest.approx(F0), pytest.approx(0.01))
+    assert found.log_std == (pytest.approx(1e-4), pytest.approx(1e-2))
+    assert found.signal == pytest.approx(top * 500.0 / (other + noise), rel=1e-12)
+    every = other + noise
+    assert found.rise == pytest.approx((top * 500.0 + every) / (top * 1e-2 + every), rel=1e-12)

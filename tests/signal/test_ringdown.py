@@ -5,6 +5,7 @@ import pytest
 from made_history import decaying, made
 
 import ropedyn as rd
+from ropedyn.signal.ringdown import _band
 
 TIME = np.linspace(0.0, 2.0, 4001)
 MODES = [(20.0, 0.01, 1.0), (40.3, 0.004, 0.5j), (61.0, 0.02, 0.3), (85.0, 0.005, 0.2 - 0.1j)]
@@ -55,6 +56,27 @@ def test_a_weak_mode_is_told_from_strong_ones_beside_it():
 def test_the_strongest_line_is_looked_at_where_nothing_is_said():
     found = made(TIME, decaying(TIME, MODES[2], (40.3, 0.004, 0.5j))).damping()
     assert_found(found, [MODES[1]])
+
+
+@pytest.mark.parametrize(
+    ("seconds", "shift", "width", "edge"),
+    [(12.0, 20.0, 5.0, 2.0), (100.0, 20.0, 2.5, 2.0), (6.0, 20.0, 5.0, 3.0), (4.0, 20.0, 5.0, 3.8),
+     (2.0, 20.0, 5.0, 3.8), (1.0, 0.0, 20.0, 3.0)],
+    ids=["a quarter of it", "a long record", "a shorter one", "a short one", "a third", "all"],
+)  # fmt: skip
+def test_what_is_near_passes_and_what_stands_still_does_not(seconds, shift, width, edge):
+    """Within 1e-5 of 1 in the pass band, 100 dB, and less than 1e-5 beyond the stop band's edge."""
+    step = 1e-3
+    band = _band(np.zeros(round(seconds / step)), step, 20.0)
+    assert band.shift == pytest.approx(2 * np.pi * shift, rel=1e-15)
+    assert band.step == pytest.approx(int(1 / (2 * edge * width * step)) * step, rel=1e-12)
+    off = np.linspace(0.0, 0.5 / step, 4001)
+    turn = np.exp(2j * np.pi * step * np.outer(off, np.arange(len(band.taps))))
+    gain = np.abs(turn @ band.taps)
+    assert np.abs(gain[off <= width] - 1).max() < 2e-5
+    assert gain[off >= edge * width].max() < 2e-5
+    between = (off > 1.2 * width) & (off < edge * width / 1.2)
+    assert (np.abs(gain[between] - 0.5) < 0.5).all()
 
 
 def test_growth_is_negative_damping():
@@ -129,3 +151,9 @@ def test_what_does_not_move_has_no_mode():
 def test_questions_without_meaning_are_refused(options, words):
     with pytest.raises(rd.SceneError, match=words):
         made(TIME, decaying(TIME, *MODES)).damping(**options)
+
+
+def test_a_history_has_its_errors_over_responses_and_time():
+    found = made(TIME[:5], np.ones((2, 5))).to_xarray()
+    for name in ("value", "error", "mesh_error"):
+        assert found[name].dims == ("response", "time")

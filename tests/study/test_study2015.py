@@ -70,6 +70,14 @@ def test_peaks_imply_tension_and_stiffness_over_density():
     assert (np.abs(other.value - heavier * fit.value) < 1e-3 * heavier * fit.std).all()
 
 
+def test_densities_are_those_of_the_readings():
+    """0.13725 kg over 1.35 m, and over each of eight elements."""
+    whole, catalogue, each = study2015.DENSITIES.values()
+    assert whole == pytest.approx(0.13725 / 1.35, rel=1e-15)
+    assert catalogue == study2015.CATALOGUE_DENSITY
+    assert each == pytest.approx(8 * whole, rel=1e-15)
+
+
 def test_solid_rod_is_within_what_the_peaks_imply_and_the_study_is_not():
     found = study2015.implied()
     low, high = found.intervals["clamped"]["bending_stiffness"]
@@ -78,6 +86,10 @@ def test_solid_rod_is_within_what_the_peaks_imply_and_the_study_is_not():
     assert low == 0
     assert study2015.solid_rod_stiffness() < high < study2015.BENDING_STIFFNESS
     assert "wide intervals" in str(found)
+    scene = found.fits["clamped"].scene
+    more = scene.replace(tension=1.1 * scene.mean_tension)
+    third = [one.compile().modes(3).frequency[2] for one in (scene, more)]
+    assert f"raises the transverse mode by {100 * (third[1] / third[0] - 1):.1f} %" in found.verdict
     assert len(found.table().rows) == 6
     assert "<table>" in found._repr_html_()
 

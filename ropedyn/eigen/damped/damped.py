@@ -39,7 +39,7 @@ Between = tuple[tuple[str, ...], int, int]
 """A component between two nodes."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DampedRates:
     """Rates of all parts in order."""
 

@@ -43,7 +43,7 @@ class Undamped:
         return replace(known, eigenvalue=known.eigenvalue[inside], error=known.error[inside])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Damped:
     """Rates of one chain, in the order of their modulus."""
 

@@ -13,7 +13,7 @@ from ...chain.chain import Chain
 from ...scene.damping import INERTIA, SECTION, TENSION, Damping
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rates:
     """The factors of the five parts of the dynamic stiffness, polynomials in s."""
 

@@ -22,7 +22,7 @@ def is_even(time: Real) -> bool:
     return bool(np.abs(np.diff(time) / step - 1).max() <= EVEN)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """Rates s_k = a + 2 pi i k/P, of motion over a period P that begins with the record.
 

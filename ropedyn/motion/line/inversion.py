@@ -66,7 +66,7 @@ def invert(run: Run, tolerance: float, kinds: list[str] | None = None) -> Moved:
         line = line.further()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Line:
     """Transfer functions at the rates of a grid."""
 

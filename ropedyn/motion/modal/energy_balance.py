@@ -76,7 +76,7 @@ class AlikeModes(NamedTuple):
     decay: float  # Fastest rate of what only decays [1/s], 0 of none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DrivenModes:
     """Modes of one component under all that drives it."""
 

@@ -192,7 +192,7 @@ KINDS: dict[str, Callable[[ActingLaw, Real, Real, Real], Sampled]] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StringTension:
     """What tension beside its mean does to the transverse motion of nodes.
 

@@ -86,7 +86,7 @@ def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[Poin
 # --- runs that agree ----------------------------------------------------------------------------
 
 
-@dataclass
+@dataclass(eq=False)
 class Agreed:
     """Motion of a component, and how far it is off."""
 
