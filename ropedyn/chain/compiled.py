@@ -106,7 +106,7 @@ class Compiled(Frozen):
         order = dict.fromkeys(self.coordinates, 2.0)
         if "beta" in order:
             order["z"] = order["beta"] = self._bending_order()
-        moved = self.chain.mass.diagonal(axis1=1, axis2=2).any(axis=0)
+        moved = np.diagonal(self.chain.mass, axis1=1, axis2=2).any(axis=0).tolist()
         slow = {c for c, moves in zip(self.coordinates, moved) if moves}
         least = {
             c: min((order[d] for d in part if d in slow), default=order[c])

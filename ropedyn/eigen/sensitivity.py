@@ -22,7 +22,7 @@ _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 SECTIONS = 9
 """An element has so many slopes (section, tension, length, sag) before those of its inertia."""
 TENSION, SAG = 6, 8  # Numbers of the slopes by tension and sag among those of an element.
-ROUNDINGS, MIXED = 32, 8
+ROUNDINGS, MIXED = 32, 32
 """Shapes and forces are rounded so many times, and mixed with others by so many errors."""
 NOTHING = 1e-12
 """Less than this part of the largest change that a shape of its size could make is rounding."""
@@ -43,7 +43,8 @@ class Shapes:
     # (parts + 1,) the nodes between the parts of the rope that were asked for
     edges: Index
     error: Real  # (k,) of the eigenvalues [rad^2/s^2]
-    mixed: Real  # (k,) how much of other modes rounding may have brought into each
+    which: Index  # (k,) the component of each
+    beyond: float  # no other eigenvalue is less [rad^2/s^2]
 
 
 def clusters_of(eigenvalue: Real, error: Real) -> tuple[Index, ...]:
@@ -52,20 +53,6 @@ def clusters_of(eigenvalue: Real, error: Real) -> tuple[Index, ...]:
         return ()
     apart = np.diff(eigenvalue) > error[:-1] + error[1:]
     return tuple(np.split(np.arange(len(eigenvalue)), np.flatnonzero(apart) + 1))
-
-
-def mixed_in(value: Real, error: Real, which: Index, clusters: tuple[Index, ...]) -> Real:
-    """Return errors of eigenvalues over their distance to the next of the component, (k,)."""
-    group = np.repeat(np.arange(len(clusters)), [len(cluster) for cluster in clusters])
-    # none that was not solved for is nearer than the last
-    gap = np.where(group < len(clusters) - 1, value[-1:].max(initial=0.0) - value, np.inf)
-    for component in np.unique(which):
-        own = np.flatnonzero(which == component)
-        beside = np.concatenate([[-np.inf], value[own], [np.inf]])
-        below = value[own] - beside[np.searchsorted(group[own], group[own])]
-        above = beside[np.searchsorted(group[own], group[own], side="right") + 1] - value[own]
-        gap[own] = np.minimum(gap[own], np.minimum(below, above))
-    return error / gap
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +217,7 @@ class Sensitivity:
         size = self.slopes.size(weights)[: len(value)] / mass
         noise = self.largest.size(weights) / mass
         wrong = eps * (size + 2 * np.sqrt(size * noise) + eps * noise)
-        wrong += 2 * MIXED * size * self.shapes.mixed
+        wrong += 2 * MIXED * self._mixed(size)
         for cluster in self.shapes.clusters:
             wrong[cluster] = wrong[cluster].max()
         if of == "eigenvalue":
@@ -239,6 +226,21 @@ class Sensitivity:
         root = 2 * unit * np.sqrt(np.maximum(value if of == "frequency" else -value, 0.0))
         wrong += np.abs(self.eigenvalue(path)) * (eps + self.shapes.error / np.abs(2 * value))
         return np.divide(wrong, root, out=np.zeros_like(wrong), where=root > 0)
+
+    def _mixed(self, size: Real) -> Real:
+        """Return what other modes bring into forms of such sizes: by their distances."""
+        shapes, most = self.shapes, size.max(initial=0.0)
+        value, brought = shapes.eigenvalue, np.zeros_like(size)
+        least = ROUNDINGS * np.finfo(float).eps
+        for cluster in shapes.clusters:
+            for j in cluster:
+                others = np.delete(np.arange(len(value)), cluster)
+                others = others[shapes.which[others] == shapes.which[j]]
+                apart = np.append(np.abs(value[others] - value[j]), shapes.beyond - value[j])
+                share = np.maximum(shapes.error[j], least * np.abs(value[j])) / apart
+                cross = np.sqrt(size[j] * np.append(size[others], most))
+                brought[j] = share @ (cross + share * np.append(size[others], most))
+        return brought
 
     def frequency(self, path: str) -> Real:
         """Return df/dp [Hz per unit], 0 where motion grows."""

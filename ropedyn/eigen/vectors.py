@@ -21,7 +21,7 @@ from ..chain.port import Point, locate, ports
 from ..scene import damping
 from .damped.attached_energy import AttachedEnergy
 from .modes import Modes, UndampedVectors
-from .sensitivity import Shapes, clusters_of, mixed_in
+from .sensitivity import Shapes, clusters_of
 from .spectrum import SOLVERS, ComponentModes, merged, pieces_of
 
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
@@ -139,11 +139,12 @@ def shapes_of(model: Compiled, solver: str, number: int, edges: Index) -> Shapes
             break
         more *= 2
     which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
-    mixed = mixed_in(value, error, which, clusters)[: last + 1]
+    beyond = float(value[last + 1]) if last + 1 < len(value) else math.inf
     order = order[: last + 1]
     shape, motion = _spread(model, found)[order], _motion(model, found)[order]
     value, error = value[: last + 1], error[: last + 1]
-    return Shapes(model, value, shape, motion, tuple(kept), edges, error, mixed)
+    which = which[: last + 1]
+    return Shapes(model, value, shape, motion, tuple(kept), edges, error, which, beyond)
 
 
 def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:

@@ -130,10 +130,15 @@ class Fields:
             held = np.concatenate([held, np.zeros_like(held)], axis=1)
         return held.ravel()
 
-    def slopes(self, part: slice, pair: NDArray[np.int32]) -> PairSlopes:
-        """Return those of pairs of loads at some of the lines."""
+    def slopes(self, part: slice, pair: NDArray[np.int32], *, noisy: bool) -> PairSlopes:
+        """Return those of pairs of loads at some of the lines, of noise as large as the fields."""
         factor = np.ascontiguousarray(self.question.factor[:, part])
         field, error = self.at(part)
+        if noisy:
+            at_nodes = np.abs(field).reshape(len(field), len(self.x), -1, factor.shape[1])
+            turning = 1.0 - 2.0 * (np.arange(len(self.x)) % 2)[:, None, None]
+            field = (at_nodes.max(axis=1, keepdims=True) * turning).reshape(field.shape) + 0j
+            field[:, self._held] = 0.0
         asked = (self.chain, factor, field, pair, self.slip)
         return PairSlopes(*_core.pair_slopes(*asked), *_core.carried_pair_slopes(*asked), error)
 
@@ -199,7 +204,7 @@ class Fields:
         """Ask the sweep; the error is that of each load's own coordinate, where it moves most."""
         component = self.question.component
         pushed = ports(chain, self.x, component, given)
-        value, relative, solved = _core.sweep(chain, factor, pushed, self._nodes)
+        value, wrong, solved = _core.sweep(chain, factor, pushed, self._nodes)
         if solved < factor.shape[1]:
             raise SolveError(self.question.resonance((part.start or 0) + solved))
         each = len(self._held) // len(self.x)
@@ -207,7 +212,6 @@ class Fields:
         for k, point in enumerate(given):
             at = component.index(moving(point))
             size = np.abs(value[k, at::each])
-            wrong = np.where(size > 0, relative[k, at::each], 0.0) * size
             most = size.max(axis=0)
-            np.divide(wrong.max(axis=0), most, out=error[k], where=most > 0)
+            np.divide(wrong[k, at::each].max(axis=0), most, out=error[k], where=most > 0)
         return value, error

@@ -59,18 +59,12 @@ class ComponentRates:
         """Of all pairs of fields at all lines."""
         return self._slopes(self.fields.pair)
 
-    @computed
-    def _own_slopes(self) -> PairSlopes:
-        """Of each field with itself."""
-        loads = np.arange(len(self.slopes.error), dtype=np.int32)
-        return self._slopes(np.stack([loads, loads], axis=1))
-
-    def _slopes(self, pair: NDArray[np.int32]) -> PairSlopes:
+    def _slopes(self, pair: NDArray[np.int32], *, noisy: bool = False) -> PairSlopes:
         fields = self.fields
         loads = len(fields.question.drives) + len(fields.question.responses)
         size = max(2 * fields.chain.nodes * len(fields.question.component) * loads, 1)
         question = fields.question
-        ask = partial(fields.slopes, pair=pair)
+        ask = partial(fields.slopes, pair=pair, noisy=noisy)
         parts = in_slices(ask, len(question.frequency), size, SLICE, question.workers)
         return PairSlopes(*parts)
 
@@ -110,12 +104,20 @@ class ComponentRates:
 
     def error(self, weights: Weights, by_p: Complex) -> Real:
         """Return a bound of the error of that: of sums of products of fields with their errors."""
-        drives = len(self.fields.question.drives)
-        size = self._size(self.slopes, weights, by_p)
-        own = np.sqrt(self._size(self._own_slopes, weights, by_p))
-        size = np.maximum(self._by_pair(size), own[:drives, None] * own[None, drives:])
-        wrong = self.slopes.error[:drives, None] + self.slopes.error[None, drives:]
-        return np.asarray(size * (ROUNDINGS * np.finfo(float).eps + wrong))
+        drives, wrong = len(self.fields.question.drives), self.slopes.error
+        own, noise = self._size_of(False, weights, by_p), self._size_of(True, weights, by_p)
+        noise = np.maximum(own, noise)
+        size = self._by_pair(self._size(self.slopes, weights, by_p))
+        size = np.maximum(size, own[:drives, None] * own[None, drives:])
+        wrong = wrong[:drives, None] + wrong[None, drives:]
+        by_fields = wrong * noise[:drives, None] * noise[None, drives:]
+        return np.asarray(ROUNDINGS * np.finfo(float).eps * size + by_fields)
+
+    def _size_of(self, noisy: bool, weights: Weights, by_p: Complex) -> Real:
+        """Return roots of the sizes of the fields with themselves, or of noise, (loads, f)."""
+        loads = np.arange(len(self.slopes.error), dtype=np.int32)
+        slopes = self._slopes(np.stack([loads, loads], axis=1), noisy=noisy)
+        return np.sqrt(self._size(slopes, weights, by_p))
 
     def _by_pair(self, of: Any) -> Any:
         question = self.fields.question
