@@ -61,10 +61,9 @@ class Lazy(Reader[Value]):
             assert compute is not None
             start = time.perf_counter()
             kept.setdefault(self.name, compute())
-            if "cost" in kept and kept.pop(self.unread, None) is not None:
+            if kept.pop(self.unread, None) is not None and "cost" in kept:
                 seconds = kept["cost"].seconds + time.perf_counter() - start
                 kept["cost"] = replace(kept["cost"], seconds=seconds)
-            kept.pop(self.unread, None)
         return kept[self.name]
 
 

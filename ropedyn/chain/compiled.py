@@ -108,12 +108,10 @@ class Compiled(Frozen):
             order["z"] = order["beta"] = self._bending_order()
         moved = np.diagonal(self.chain.mass, axis1=1, axis2=2).any(axis=0).tolist()
         slow = {c for c, moves in zip(self.coordinates, moved) if moves}
-        least = {
-            c: min((order[d] for d in part if d in slow), default=order[c])
-            for part in self.components
-            for c in part
-        }
-        return {c: least[c] for c in self.coordinates}
+        for part in self.components:
+            least = min((order[c] for c in part if c in slow), default=2.0)
+            order |= dict.fromkeys(part, least)
+        return order
 
     def _bending_order(self) -> float:
         if self.element != "tensed":

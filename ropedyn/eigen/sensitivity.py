@@ -207,11 +207,7 @@ class Sensitivity:
         return change
 
     def error(self, path: str, of: str) -> Real:
-        """Return a bound of the error of a derivative.
-
-        Of products of shapes each of which is rounded, as if by a shape of its size that turns
-        from node to node, and mixed with its neighbours.
-        """
+        """Return a bound of the error of a derivative: of shapes that are rounded and mixed."""
         value, eps = self.shapes.eigenvalue, ROUNDINGS * np.finfo(float).eps
         weights, mass = self.rate(path).weights(self.places), np.diag(self.mass)
         size = self.slopes.size(weights)[: len(value)] / mass

@@ -103,7 +103,7 @@ class ComponentRates:
         return -self._by_pair(sum(_dot(slope, weight) * by for slope, weight, by in terms))
 
     def error(self, weights: Weights, by_p: Complex) -> Real:
-        """Return a bound of the error of that: of sums of products of fields with their errors."""
+        """Return a bound of the error of that: of products of fields, and noise beside them."""
         drives, wrong = len(self.fields.question.drives), self.slopes.error
         own, noise = self._size_of(False, weights, by_p), self._size_of(True, weights, by_p)
         noise = np.maximum(own, noise)
