@@ -55,7 +55,8 @@ class Model(Compiled):
     chain : Chain
         What the core reads.
     unknowns : tuple of int
-        Of each component, coordinates that can move.
+        Of each component, coordinates of nodes that can move, of continuous spans those of
+        stations: 0 for one span between ends that cannot, in which all motion is inside.
     choice : Choice or None
         Why there are so many elements, where `Scene.compile` chose them for a tolerance.
     """

@@ -284,33 +284,53 @@ size_t rd_attached_node(const struct rd_chain *chain, size_t k)
     return s < chain->stretches ? (size_t)chain->first[s] : chain->nodes;
 }
 
+/* moved (2) <- motion of the foot with the motion u (width) of the node, pull (2) <- how it resists;
+   *y, or what the motion makes of it, is returned */
+static double _Complex pull_foot(const struct rd_chain *chain, size_t k, const struct rd_foot *foot,
+                                 const double _Complex *u, const double _Complex *y,
+                                 double _Complex *moved, double _Complex *pull)
+{
+    const size_t w = chain->width;
+    const double *of = chain->attached_row + k * 2 * w;
+    moved[0] = moved[1] = 0;
+    for (size_t i = 0; i < 2 * w; i++)
+        moved[i / w] += of[i] * u[i % w];
+    const double _Complex along = foot->lever[0] * moved[0] + foot->lever[1] * moved[1];
+    const double _Complex own = y ? *y : along / foot->gap;
+    for (size_t line = 0; line < 2; line++)
+        pull[line] = foot->rest[line] * moved[line] - foot->weight * own * foot->lever[line];
+    return own;
+}
+
+void rd_attached_pull(const struct rd_chain *chain, size_t k, double _Complex inertia,
+                      double _Complex dashpot, const double _Complex *u, const double _Complex *y,
+                      double _Complex *force)
+{
+    struct rd_foot foot;
+    double _Complex moved[2], pull[2], row[RD_WIDTH_MAX];
+    rd_attached_fill(chain, k, inertia, dashpot, &foot);
+    pull_foot(chain, k, &foot, u, y, moved, pull);
+    rd_attached_row(chain, k, pull, row);
+    for (size_t i = 0; i < chain->width; i++)
+        force[i] += row[i];
+}
+
 void rd_attached_slopes(const struct rd_chain *chain, size_t k, double _Complex inertia,
                         double _Complex dashpot, const double _Complex *a, const double _Complex *b,
                         const double _Complex *y, double _Complex *number, double _Complex *row)
 {
     const double *value = chain->attached_value + k * RD_ATTACHED_VALUES;
-    const double *of = chain->attached_row + k * 2 * chain->width;
     const double _Complex *const u[2] = {a, b};
     const size_t w = chain->width;
-    struct rd_foot_pair pair = {0};
+    double _Complex pull[2][2];
+    struct rd_foot_pair pair;
     struct rd_foot foot;
     rd_attached_fill(chain, k, inertia, dashpot, &foot);
-    for (size_t n = 0; n < 2; n++) {
-        for (size_t i = 0; i < 2 * w; i++)
-            pair.moved[n][i / w] += of[i] * u[n][i % w];
-        const double _Complex along =
-            foot.lever[0] * pair.moved[n][0] + foot.lever[1] * pair.moved[n][1];
-        pair.y[n] = y ? y[n] : along / foot.gap;
-    }
+    for (size_t n = 0; n < 2; n++)
+        pair.y[n] = pull_foot(chain, k, &foot, u[n], y ? y + n : NULL, pair.moved[n], pull[n]);
     rd_attached_of[chain->attached_kind[k]].slopes(value, inertia, dashpot, &pair, number);
-    for (size_t i = 0; i < 2 * w; i++) {
-        const size_t line = i / w;
-        row[i] = 0;
-        for (size_t n = 0; n < 2; n++)
-            row[i] += (foot.rest[line] * pair.moved[n][line] -
-                       foot.weight * pair.y[n] * foot.lever[line]) *
-                      u[1 - n][i % w];
-    }
+    for (size_t i = 0; i < 2 * w; i++)
+        row[i] = pull[0][i / w] * b[i % w] + pull[1][i / w] * a[i % w];
 }
 
 /* t = (c_0, l c_1) of q and e = (1 + c_0)/2 of -4 q: q changes with 1/k' and m alike */

@@ -90,6 +90,11 @@ void rd_attached_slopes(const struct rd_chain *chain, size_t k, double _Complex 
                         double _Complex dashpot, const double _Complex *a, const double _Complex *b,
                         const double _Complex *y, double _Complex *number, double _Complex *row);
 
+/* adds to force (width) how structure k resists the motion u (width) of its node; y as above */
+void rd_attached_pull(const struct rd_chain *chain, size_t k, double _Complex inertia,
+                      double _Complex dashpot, const double _Complex *u, const double _Complex *y,
+                      double _Complex *force);
+
 /* the node that carries structure k, or the number of nodes where none does */
 size_t rd_attached_node(const struct rd_chain *chain, size_t k);
 

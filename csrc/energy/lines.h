@@ -16,14 +16,19 @@ struct rd_lines {
    Where `forces` are told too it is (loads, nodes, 2, width), with the force on the right end of the
    element on the left of each node, and continuous elements may be of any length.
    A load may slip: element slip[0] of it ends at slip[1] (0: left, 1: right) apart from the node
-   there, which moves by 1 more in coordinate slip[2] at the right end and by 1 less at the left. */
+   there, which moves by 1 more in coordinate slip[2] at the right end and by 1 less at the left. Or,
+   slip[1] = RD_PUSHED, it is a unit force on node slip[0] along coordinate slip[2]. */
+enum { RD_PUSHED = 2 };
+
 struct rd_fields {
     const double *value;
     size_t loads;
     size_t line, load, entry; /* strides */
     size_t parts;             /* of a number: 1 real, 2 complex */
     _Bool forces;
-    const int32_t *slip; /* (loads, 3), element -1: none; or NULL */
+    const int32_t *slip;  /* (loads, 3), element -1: none; or NULL */
+    const double *motion; /* (lines, attached) y of the structures (chain/attached.h), of modes; or
+                             NULL: what their feet make of it */
 };
 
 /* which load with which */

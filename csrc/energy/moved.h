@@ -11,6 +11,8 @@ struct rd_moved {
     cv opens[RD_WIDTH_MAX]; /* (width) hinges on its left */
     cv left[RD_WIDTH_MAX];  /* force on its ends, of a stepped one */
     cv right[RD_WIDTH_MAX];
+    lanes from_left[RD_WIDTH_MAX]; /* sizes of what these forces are differences of */
+    lanes from_right[RD_WIDTH_MAX];
     cv state[2 * RD_WIDTH_MAX]; /* of a stepped one: what the forms are of */
     cv e[2], g[2];              /* of its rods, of a massless one: stretch, force */
     cv moment;                  /* integral of the moment that goes with the turn of its ends */

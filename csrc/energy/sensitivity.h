@@ -5,6 +5,7 @@
 #include "base/workspace.h"
 #include "energy/lines.h"
 #include "energy/massless.h"
+#include "energy/place.h"
 #include "energy/span.h"
 
 #include <stdbool.h>
@@ -23,8 +24,10 @@ struct rd_sensitivity {
     const struct rd_chain *chain;
     const struct rd_lines *lines;
     const struct rd_fields *fields;
-    struct rd_moved *moved; /* (loads) */
-    bool waves;             /* elements are stepped along: continuous ones, and those that hang */
+    struct rd_moved *moved;  /* (loads) */
+    struct rd_kink *kink;    /* (loads) at the node where the stretch begins */
+    struct rate_matrix left; /* of the stretch before it */
+    bool waves;              /* elements are stepped along: continuous ones, and those that hang */
     union {
         struct rd_massless massless;
         struct rd_wave_slopes span;
@@ -40,12 +43,19 @@ void rd_sensitivity_begin(struct rd_sensitivity *sensitivity, const struct rd_li
 
 /* For each pair of loads slope (pairs, RD_PROPERTIES) <- dPi/dp summed over the elements of a
    stretch, jump (pairs, width) <- the sum of the products by which its hinges open:
-   dPi/d(spring stiffness of the hinge).
+   dPi/d(spring stiffness of the hinge). place (pairs), or NULL: of continuous elements, whose
+   stretches come in order, dPi/dx of the node where the stretch begins; 0 of the first.
    RD_NOT_POSITIVE_DEFINITE, RD_CRITICAL_ELEMENT: as rd_element_matrix; the first also where a
    continuous element without forces is longer than its first resonance as a cantilever and nothing
    is damped. */
 enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t stretch,
-                                      const struct rd_pairs *pairs, cv *slope, cv *jump);
+                                      const struct rd_pairs *pairs, cv *slope, cv *jump,
+                                      struct rd_place *place);
+
+/* place (pairs) <- dPi/dx of the last node, after the last stretch, by its slope (pairs,
+   RD_PROPERTIES); 0 of massless elements */
+void rd_sensitivity_last(const struct rd_sensitivity *sensitivity, const struct rd_pairs *pairs,
+                         const cv *slope, struct rd_place *place);
 
 /* dyad (pairs, width, width) <- the sum of u u^T over the nodes of a stretch: dPi/dK and
    dPi/d(inertia M) of its node term; 0 inside continuous spans, where nothing stands */

@@ -574,6 +574,8 @@ static RD_CLONES void scatter(const struct rd_wave_slopes *slopes, const double 
             out = c_add(out, c_mul(s->S11[i * w + j], in[j]));
         const cv u = c_scale_lanes(c_add(in[i], out), s->z[i]);
         moved->left[i] = c_times_i(c_scale_lanes(c_sub(out, in[i]), 1 / s->z[i]));
+        moved->from_left[i] = (c_size(out) + c_size(in[i])) / s->z[i];
+        moved->from_right[i] = c_size(moved->right[i]);
         moved->opens[i] = hinge && hinge[i] != 0 ? c_sub(u, moved->u[i]) : c_zero();
         moved->u[i] = u;
     }
@@ -626,14 +628,22 @@ static RD_CLONES void move(const struct rd_wave_slopes *slopes, struct rd_moved 
     }
     for (size_t i = 0; i < w; i++) {
         moved->right[i] = c_zero();
-        for (size_t j = 0; j < w; j++)
+        moved->from_right[i] = (lanes){0};
+        for (size_t j = 0; j < w; j++) {
+            const lanes both = c_size(u[w + j]) + c_size(u[j]);
             moved->right[i] = c_add(moved->right[i], c_mul(slopes->stiff[i * w + j], lag[j]));
+            moved->from_right[i] += c_size(slopes->stiff[i * w + j]) * both;
+        }
     }
     for (size_t i = 0; i < w; i++) {
         moved->left[i] = moved->right[i];
+        moved->from_left[i] = moved->from_right[i];
         for (size_t j = 0; j < w; j++) {
             const cv force = c_mul(slopes->D[j * w + i], moved->right[j]);
-            moved->left[i] = c_add(moved->left[i], c_sub(force, c_mul(slopes->Q[i * w + j], u[j])));
+            const cv push = c_mul(slopes->Q[i * w + j], u[j]);
+            moved->left[i] = c_add(moved->left[i], c_sub(force, push));
+            moved->from_left[i] += c_size(slopes->D[j * w + i]) * moved->from_right[j];
+            moved->from_left[i] += c_size(push);
         }
     }
     const size_t z = rd_coordinate_find(w, slopes->chain->coordinate, RD_Z);
@@ -670,31 +680,6 @@ void rd_wave_slopes_open(const struct rd_wave_slopes *slopes, const double *hing
     }
 }
 
-/* y_a^T H y_a, the same everywhere along the element */
-RD_INLINE cv by_length(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
-                       const struct rd_moved *b)
-{
-    const struct rate_matrix *rate = &slopes->rate;
-    const size_t w = slopes->chain->width;
-    cv sum = c_zero();
-    if (rate->z >= 0) {
-        const cv both =
-            c_add(c_mul(a->left[rate->z], b->u[w - 1]), c_mul(b->left[rate->z], a->u[w - 1]));
-        sum = c_add(sum, c_scale_lanes(both, rate->lever));
-    }
-    if (rate->hangs) {
-        const cv both = c_add(c_mul(a->left[0], b->u[1]), c_mul(b->left[0], a->u[1]));
-        sum = c_add(sum, c_mul(both, rate->sag));
-    }
-    for (size_t i = 0; i < w; i++) {
-        sum = c_sub(sum, c_mul(rate->q[i], c_mul(a->u[i], b->u[i])));
-        for (size_t j = 0; j < w; j++)
-            if (rate->elastic[i][j])
-                sum = c_add(sum, c_mul(rate->S[i][j], c_mul(a->left[i], b->left[j])));
-    }
-    return sum;
-}
-
 static RD_CLONES void add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,
                           const struct rd_moved *b, cv *slope)
 {
@@ -713,7 +698,12 @@ static RD_CLONES void add(const struct rd_wave_slopes *slopes, const struct rd_m
         cv *of = slope + number->property;
         *of = c_add(*of, c_mul(number->factor, sum[number->form]));
     }
-    slope[RD_OF_LENGTH] = c_sub(slope[RD_OF_LENGTH], by_length(slopes, a, b));
+    cv at_a[N], at_b[N];
+    memcpy(at_a, a->u, w * sizeof(cv));
+    memcpy(at_a + w, a->left, w * sizeof(cv));
+    memcpy(at_b, b->u, w * sizeof(cv));
+    memcpy(at_b + w, b->left, w * sizeof(cv));
+    slope[RD_OF_LENGTH] = c_sub(slope[RD_OF_LENGTH], rd_rate_form(&slopes->rate, w, at_a, at_b));
 }
 
 void rd_wave_slopes_add(const struct rd_wave_slopes *slopes, const struct rd_moved *a,

@@ -6,6 +6,8 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
+enum { RESULTS = 4 };
+
 /* Motions as they are handed in, and what their slopes are asked with. */
 struct asked {
     struct py_chain parsed;
@@ -14,14 +16,14 @@ struct asked {
     struct rd_fields fields;
     struct rd_pairs pairs;
     npy_intp count, carried, width;
-    PyObject *result[3];
+    PyObject *result[RESULTS];
 };
 
 static const int32_t OWN[2] = {0, 0};
 
 static void release(struct asked *asked)
 {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < RESULTS; k++)
         Py_XDECREF(asked->result[k]);
     Py_XDECREF(asked->slip);
     Py_XDECREF(asked->pair);
@@ -62,6 +64,7 @@ static int parse_modes(PyObject *arguments, bool carrying, struct asked *modes)
         .entry = 1,
         .parts = 1,
     };
+    modes->fields.motion = carrying ? PyArray_DATA(modes->motion) : NULL;
     modes->pairs = (struct rd_pairs){.count = 1, .of = OWN};
     return modes->line == NULL ? -1 : 0;
 }
@@ -157,12 +160,14 @@ static enum rd_status fill_energies(struct asked *modes, struct rd_sensitivity *
     return status;
 }
 
-/* the three arrays, new references; NULL and an exception unless the status is fine */
+/* the arrays, new references; NULL and an exception unless the status is fine */
 static PyObject *answer(PyObject *module, struct asked *asked, enum rd_status status)
 {
     if (status != RD_OK)
         return py_raise(module, status);
-    return PyTuple_Pack(3, asked->result[0], asked->result[1], asked->result[2]);
+    if (asked->result[3] == NULL)
+        return PyTuple_Pack(3, asked->result[0], asked->result[1], asked->result[2]);
+    return PyTuple_Pack(4, asked->result[0], asked->result[1], asked->result[2], asked->result[3]);
 }
 
 PyObject *py_energy(PyObject *module, PyObject *arguments)
@@ -226,10 +231,22 @@ static void put(const struct store *store, const struct rd_lines *lines, npy_int
         }
 }
 
-enum { SLOPES = RD_PROPERTIES + RD_WIDTH_MAX + RD_WIDTH_MAX * RD_WIDTH_MAX };
+/* of a pair: slopes, jumps, dyads, and a place as it is and as it is handed out */
+enum { SLOPES = RD_PROPERTIES + RD_WIDTH_MAX + RD_WIDTH_MAX * RD_WIDTH_MAX + 4 };
+
+/* slope and size of the places of all pairs, stretch k's */
+static void put_places(const struct store *store, const struct rd_lines *lines, npy_intp pairs,
+                       npy_intp k, const struct rd_place *place, cv *room)
+{
+    for (npy_intp p = 0; p < pairs; p++) {
+        room[2 * p] = place[p].slope;
+        room[2 * p + 1] = (cv){place[p].size, (lanes){0}};
+    }
+    put(store, lines, pairs, 2 * k, 2, 2, room);
+}
 
 /* slopes (stretches - 1, RD_PROPERTIES), jumps (stretches - 1, width), dyads (stretches, width,
-   width) of all pairs at these lines; `room` (pairs, SLOPES) */
+   width), places (stretches, 2) of all pairs at these lines; `room` (pairs, SLOPES) */
 static enum rd_status fill(const struct asked *asked, struct rd_sensitivity *sensitivity,
                            const struct rd_lines *lines, cv *room)
 {
@@ -238,7 +255,10 @@ static enum rd_status fill(const struct asked *asked, struct rd_sensitivity *sen
     const struct store slope = store_of(asked, 0, (stretches - 1) * RD_PROPERTIES);
     const struct store jump = store_of(asked, 1, (stretches - 1) * w);
     const struct store node = store_of(asked, 2, stretches * w * w);
+    const struct store where = store_of(asked, 3, stretches * 2);
     cv *slopes = room, *jumps = slopes + count * RD_PROPERTIES, *dyads = jumps + count * w;
+    cv *both = dyads + count * w * w;
+    struct rd_place *places = (struct rd_place *)(both + 2 * count);
     rd_sensitivity_begin(sensitivity, lines);
     for (npy_intp k = 0; k < stretches; k++) {
         rd_sensitivity_nodes(sensitivity, (size_t)k, &asked->pairs, dyads);
@@ -246,12 +266,15 @@ static enum rd_status fill(const struct asked *asked, struct rd_sensitivity *sen
         if (k + 1 == stretches)
             break;
         const enum rd_status status =
-            rd_sensitivity_stretch(sensitivity, (size_t)k, &asked->pairs, slopes, jumps);
+            rd_sensitivity_stretch(sensitivity, (size_t)k, &asked->pairs, slopes, jumps, places);
         if (status != RD_OK)
             return status;
+        put_places(&where, lines, count, k, places, both);
         put(&slope, lines, count, k * RD_PROPERTIES, RD_PROPERTIES, RD_PROPERTIES, slopes);
         put(&jump, lines, count, k * w, w, w, jumps);
     }
+    rd_sensitivity_last(sensitivity, &asked->pairs, slopes, places);
+    put_places(&where, lines, count, stretches - 1, places, both);
     return RD_OK;
 }
 
@@ -279,14 +302,16 @@ PyObject *py_sensitivity(PyObject *module, PyObject *arguments)
 {
     struct asked modes;
     PyObject *result = NULL;
-    if (parse_modes(arguments, false, &modes) < 0)
+    if (parse_modes(arguments, true, &modes) < 0)
         goto done;
     const npy_intp count = modes.count, w = modes.width;
     const npy_intp stretches = (npy_intp)modes.parsed.chain.stretches;
     modes.result[0] = py_new(NPY_DOUBLE, 3, (npy_intp[]){count, stretches - 1, RD_PROPERTIES});
     modes.result[1] = py_new(NPY_DOUBLE, 3, (npy_intp[]){count, stretches - 1, w});
     modes.result[2] = py_new(NPY_DOUBLE, 4, (npy_intp[]){count, stretches, w, w});
-    if (modes.result[0] != NULL && modes.result[1] != NULL && modes.result[2] != NULL)
+    modes.result[3] = py_new(NPY_DOUBLE, 3, (npy_intp[]){count, stretches, 2});
+    if (modes.result[0] != NULL && modes.result[1] != NULL && modes.result[2] != NULL &&
+        modes.result[3] != NULL)
         result = fill_all(module, &modes, lines_of_modes);
 done:
     release(&modes);
@@ -380,7 +405,8 @@ static bool slips_are_places(const struct asked *asked)
     const struct rd_chain *chain = &asked->parsed.chain;
     for (size_t k = 0; k < asked->fields.loads; k++) {
         const int32_t *slip = asked->fields.slip + 3 * k;
-        if (slip[0] >= (int32_t)chain->nodes - 1 || slip[1] < 0 || slip[1] > 1 || slip[2] < 0 ||
+        const int32_t last = (int32_t)chain->nodes - (slip[1] == RD_PUSHED ? 1 : 2);
+        if (slip[0] > last || slip[1] < 0 || slip[1] > RD_PUSHED || slip[2] < 0 ||
             slip[2] >= (int32_t)chain->width)
             return false;
     }
@@ -447,7 +473,9 @@ PyObject *py_pair_slopes(PyObject *module, PyObject *arguments)
         py_new(NPY_COMPLEX128, 4, (npy_intp[]){pairs, stretches - 1, RD_PROPERTIES, count});
     asked.result[1] = py_new(NPY_COMPLEX128, 4, (npy_intp[]){pairs, stretches - 1, w, count});
     asked.result[2] = py_new(NPY_COMPLEX128, 5, (npy_intp[]){pairs, stretches, w, w, count});
-    if (asked.result[0] != NULL && asked.result[1] != NULL && asked.result[2] != NULL)
+    asked.result[3] = py_new(NPY_COMPLEX128, 4, (npy_intp[]){pairs, stretches, 2, count});
+    if (asked.result[0] != NULL && asked.result[1] != NULL && asked.result[2] != NULL &&
+        asked.result[3] != NULL)
         result = fill_all(module, &asked, lines_of_factors);
 done:
     release(&asked);

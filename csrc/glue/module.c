@@ -48,11 +48,11 @@ static PyMethodDef methods[] = {
      "recurrence(change, seen, length, force, state) -> value, state"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},
     {"pair_slopes", py_pair_slopes, METH_VARARGS,
-     "pair_slopes(chain, factor, field, pair, slip) -> slopes, jumps, dyads of stretches"},
+     "pair_slopes(chain, factor, field, pair, slip) -> slopes, jumps, dyads, places of stretches"},
     {"carried_pair_slopes", py_carried_pair_slopes, METH_VARARGS,
      "carried_pair_slopes(chain, factor, field, pair, slip) -> numbers, rows of structures"},
     {"sensitivity", py_sensitivity, METH_VARARGS,
-     "sensitivity(chain, shape, eigenvalue) -> slopes, squared jumps, dyads of stretches"},
+     "sensitivity(chain, shape, motion, eigenvalue) -> slopes, squared jumps, dyads, places"},
     {"collocate", py_collocate, METH_VARARGS,
      "collocate(step, laws, begin, known, force, state, size) -> force, state, motion, size, steps "
      "made, iterations, residual, failure"},

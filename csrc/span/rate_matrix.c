@@ -36,3 +36,42 @@ void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension
     if (bends)
         rate->q[w - 1] = c_add(rate->q[w - 1], c_scale(tension, chain->tension[e]));
 }
+
+cv rd_rate_form(const struct rate_matrix *rate, size_t w, const cv *a, const cv *b)
+{
+    cv sum = c_zero();
+    if (rate->z >= 0) {
+        const size_t z = w + (size_t)rate->z;
+        const cv both = c_add(c_mul(a[z], b[w - 1]), c_mul(b[z], a[w - 1]));
+        sum = c_add(sum, c_scale_lanes(both, rate->lever));
+    }
+    if (rate->hangs) {
+        const cv both = c_add(c_mul(a[w], b[1]), c_mul(b[w], a[1]));
+        sum = c_add(sum, c_mul(both, rate->sag));
+    }
+    for (size_t i = 0; i < w; i++) {
+        sum = c_sub(sum, c_mul(rate->q[i], c_mul(a[i], b[i])));
+        for (size_t j = 0; j < w; j++)
+            if (rate->elastic[i][j])
+                sum = c_add(sum, c_mul(rate->S[i][j], c_mul(a[w + i], b[w + j])));
+    }
+    return sum;
+}
+
+lanes rd_rate_size(const struct rate_matrix *rate, size_t w, const lanes *a, const lanes *b)
+{
+    lanes sum = {0};
+    if (rate->z >= 0) {
+        const size_t z = w + (size_t)rate->z;
+        sum += l_abs(rate->lever) * (a[z] * b[w - 1] + b[z] * a[w - 1]);
+    }
+    if (rate->hangs)
+        sum += c_size(rate->sag) * (a[w] * b[1] + b[w] * a[1]);
+    for (size_t i = 0; i < w; i++) {
+        sum += c_size(rate->q[i]) * a[i] * b[i];
+        for (size_t j = 0; j < w; j++)
+            if (rate->elastic[i][j])
+                sum += c_size(rate->S[i][j]) * a[w + i] * b[w + j];
+    }
+    return sum;
+}

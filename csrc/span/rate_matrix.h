@@ -28,4 +28,11 @@ struct rate_matrix {
 void rd_rate_fill(const struct rd_chain *chain, size_t e, cv section, cv tension, cv inertia,
                   cv dashpot, struct rate_matrix *rate);
 
+/* a^T H b of two states (2 width), y' = J H y: H = [-q Phi^T; Phi S'], the same everywhere along the
+   span where both obey it */
+cv rd_rate_form(const struct rate_matrix *rate, size_t w, const cv *a, const cv *b);
+
+/* the same with the sizes of all its terms, of states by theirs */
+lanes rd_rate_size(const struct rate_matrix *rate, size_t w, const lanes *a, const lanes *b);
+
 #endif

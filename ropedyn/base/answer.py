@@ -35,11 +35,14 @@ class Cost:
     Attributes
     ----------
     seconds : float
-        Wall time of the solution.
+        Wall time of the solution, and of what has been computed since because it was read, as
+        `mesh_error`. What follows counts the solution alone.
     method : str
         The solver.
     elements, unknowns : int
-        Of the chain, and of what was solved of it.
+        Of the chain, and of what was solved of it: the coordinates of its nodes that can move, of
+        continuous spans those of stations. One span between ends that cannot move has 0: what
+        moves is inside it, and exact.
     sweeps : int
         Walks from one end of the rope to the other, at one frequency each; of steps through time,
         their stages.
@@ -328,9 +331,10 @@ def load(path: str | os.PathLike[str]) -> Answer:
 
 def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
     """Yield the fields of an answer with their values, those of its nested parts among them."""
-    for item in fields(thing):
-        if "transient" in item.metadata:
-            continue
+    kept = [item for item in fields(thing) if "transient" not in item.metadata]
+    for item in kept:
+        getattr(thing, item.name)  # what that costs is part of the cost
+    for item in kept:
         if "nested" in item.metadata:
             yield from leaves(getattr(thing, item.name))
         else:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
-from dataclasses import field, fields
+from dataclasses import field, fields, replace
 from functools import cached_property
 from typing import Any, Generic, Self, TypeVar, cast, overload
 
@@ -35,7 +36,10 @@ class computed(Reader[Value], cached_property[Value]):
 
 
 class Lazy(Reader[Value]):
-    """A field of a dataclass that is given as it is, or as what computes it when it is read."""
+    """A field of a dataclass that is given as it is, or as what computes it when it is read.
+
+    What the dataclass has cost, `Cost.seconds`, counts that from then on.
+    """
 
     def __init__(self, kind: type[Any]) -> None:
         self.kind = kind
@@ -55,8 +59,11 @@ class Lazy(Reader[Value]):
         compute = kept.get(self.unread)
         if self.name not in kept:
             assert compute is not None
+            start = time.perf_counter()
             kept.setdefault(self.name, compute())
-            kept.pop(self.unread, None)
+            if kept.pop(self.unread, None) is not None and "cost" in kept:
+                seconds = kept["cost"].seconds + time.perf_counter() - start
+                kept["cost"] = replace(kept["cost"], seconds=seconds)
         return kept[self.name]
 
 

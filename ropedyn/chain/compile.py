@@ -88,7 +88,8 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
     chain = _chain(scene, kind, stations, division, elements)
     groups = components(chain, scene.coordinates)
     # nothing is held but at stations, each of which is a node
-    free = dict(zip(scene.coordinates, (len(division.x) - chain.held.sum(axis=0)).tolist()))
+    count = len(stations if kind == CONTINUOUS else division.x)
+    free = dict(zip(scene.coordinates, (count - chain.held.sum(axis=0)).tolist()))
     return Compiled(
         scene=scene,
         element=element,
@@ -316,7 +317,8 @@ def lumped(
 
     Half of it each, and of tensed elements +-mu l^2/12 at z and beta: lumping is the trapezoidal
     rule, this is its first error term by Euler and Maclaurin, zero inside a uniform span. With it
-    the frequencies of tensed chains converge with the fourth power of the element's length.
+    bending of tensed chains converges with the fourth power of the element's length; no lumps make
+    twist, stretch, strings or rotary inertia do so (docs/theory/elements.md).
     """
     given = halves(kind, inertia, length)
     if kind != TENSED or "beta" not in coordinates:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -83,6 +84,43 @@ class Compiled(Frozen):
     def size(self) -> int:
         """Number of unknowns: coordinates of nodes that can move."""
         return sum(self.unknowns)
+
+    @property
+    def mesh_order(self) -> dict[str, float]:
+        """The power of the elements' length that frequencies converge with at least, by coordinate.
+
+        Of coordinates that move together and have inertia it is the least. Infinite without a mesh
+        error, 0 where refinement leads elsewhere. A coordinate that turns out better than the least
+        is coupled to it by little. `Scene.compile` begins with it where a tolerance
+        chooses the elements.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=2.0, axial_stiffness=1e5)
+        >>> rd.Scene(rope, tension=100.0).compile(elements=8).mesh_order
+        {'x': 2.0, 'z': 4.0, 'beta': 4.0}
+        """
+        if self.element == "continuous":
+            return dict.fromkeys(self.coordinates, math.inf)
+        order = dict.fromkeys(self.coordinates, 2.0)
+        if "beta" in order:
+            order["z"] = order["beta"] = self._bending_order()
+        moved = np.diagonal(self.chain.mass, axis1=1, axis2=2).any(axis=0).tolist()
+        slow = {c for c, moves in zip(self.coordinates, moved) if moves}
+        for part in self.components:
+            least = min((order[c] for c in part if c in slow), default=2.0)
+            order |= dict.fromkeys(part, least)
+        return order
+
+    def _bending_order(self) -> float:
+        if self.element != "tensed":
+            return 2.0 if self.element == "rigid" else 0.0
+        turns, hinge = bool(self.scene.rope.rotary_inertia), self.chain.hinge
+        held = self.chain.held[:, self.coordinates.index("z")] != 0
+        if hinge is not None and (hinge.any(axis=1) & ~held).any():
+            return 1.0 if turns else 2.0
+        return 2.0 if turns else 4.0
 
     @property
     def separable(self) -> bool:

@@ -30,6 +30,7 @@ from ..scene.parts.stretch import (
 from ..scene.rope import Rope
 from ..scene.scene import Scene
 from ..scene.stations import nearest
+from .chain import CONTINUOUS
 from .compile import (
     INERTIA,
     carried_by,
@@ -99,7 +100,8 @@ class Weights:
     times that of slopes times `moving`, `mass` and `heavier`.
     """
 
-    element: Real  # (stretches - 1, 9) Section, tension, length, sag
+    element: Real  # (stretches - 1, 9) Section, tension, length of massless elements, sag
+    place: Real  # (stretches, 2) of the first node of each, of continuous elements, and 0
     moving: Real  # (stretches - 1, width) inertia per length of continuous elements
     jump: Real  # (stretches - 1, width) stiffness of hinges
     node: Real  # (stretches, width, width) springs and inertia
@@ -231,12 +233,17 @@ class Rate:
         """Return the weights that belong to it."""
         span, station, inside = places.span, places.station, places.inside
         section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
-        element = np.column_stack([section, self.tension, self.length, self._sag(places)])
+        longer, place = self.length, np.zeros(len(station))
+        if places.model.chain.kind == CONTINUOUS:
+            moved = np.append(0.0, np.cumsum(longer * places.counts))
+            longer, place = np.zeros_like(longer), np.where(inside, 0.0, moved[station])
+        element = np.column_stack([section, self.tension, longer, self._sag(places)])
         inertia = self.inertia(places)
         rows = places.model.chain.attached_row
         larger = self.moves if rows is None else self.size[:, None, None] / 2 * rows
         return Weights(
             element=element[span],
+            place=np.column_stack([place, np.zeros_like(place)]),
             moving=inertia[span],
             jump=np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]]),
             node=places.at_nodes(self.stiffness),

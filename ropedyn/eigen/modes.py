@@ -90,7 +90,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         "resonator" and "broken wire" in the first, "resonator mass" and "broken wire mass" in the
         second.
     cost : Cost
-        What the frequencies cost.
+        What the frequencies cost, and what of the rest has been read.
 
     Examples
     --------
@@ -166,10 +166,9 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         ndarray, shape (k,)
             In units of the quantity per unit of the number. Modes whose eigenvalues rounding cannot
             tell apart have no shapes of their own: theirs are the derivatives, in increasing order,
-            of the eigenvalues that part when the number grows. Modes close to each other lose as
-            many digits as their distance has less than their eigenvalue. Lengths and places need
-            shear forces, differences of the motion of neighbours: in chains of n elements some
-            1e-16 n^2.5 of such a derivative is rounding, and more where motion is nearly rigid.
+            of the eigenvalues that part when the number grows. `derivative_error` says how many
+            digits rounding leaves: fewer where modes are close to each other, and of lengths and
+            places in chains of many elements, whose forces are differences of neighbours.
 
         Raises
         ------
@@ -194,6 +193,38 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         """
         check.one_of(of, "of", ("frequency", "eigenvalue", "growth"))
         return getattr(self.sensitivity, of)(path)[: len(self.frequency)]
+
+    def derivative_error(self, path: str, *, of: str = "frequency") -> Real:
+        """Bound the rounding error of a derivative.
+
+        Parameters
+        ----------
+        path, of
+            As in `derivative`.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            Absolute, in units of the derivative.
+
+        Raises
+        ------
+        TypeError
+            If an argument is not a string.
+        SceneError
+            As in `derivative`.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0, parts=[rd.PointMass(0.5, 1e-9)])
+        >>> modes = scene.compile().modes(1)
+        >>> error = modes.derivative_error("parts[0].x")
+        >>> bool((error < 1e-10 * abs(modes.derivative("parts[0].x"))).all())
+        True
+        """
+        check.one_of(of, "of", ("frequency", "eigenvalue", "growth"))
+        return self.sensitivity.error(path, of)[: len(self.frequency)]
 
     def damage(self, *, points: int | None = None) -> Damage:
         """Find which mode feels a loss of stiffness or mass where.

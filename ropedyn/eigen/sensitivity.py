@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
 
@@ -22,6 +22,8 @@ _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 SECTIONS = 9
 """An element has so many slopes (section, tension, length, sag) before those of its inertia."""
 TENSION, SAG = 6, 8  # Numbers of the slopes by tension and sag among those of an element.
+ROUNDINGS, MIXED = 32, 32
+"""Shapes and forces are rounded so many times, and mixed with others by so many errors."""
 NOTHING = 1e-12
 """Less than this part of the largest change that a shape of its size could make is rounding."""
 
@@ -40,6 +42,9 @@ class Shapes:
     clusters: tuple[Index, ...]
     # (parts + 1,) the nodes between the parts of the rope that were asked for
     edges: Index
+    error: Real  # (k,) of the eigenvalues [rad^2/s^2]
+    which: Index  # (k,) the component of each
+    beyond: float  # no other eigenvalue is less [rad^2/s^2]
 
 
 def clusters_of(eigenvalue: Real, error: Real) -> tuple[Index, ...]:
@@ -59,6 +64,8 @@ class Slopes:
     element: Real  # (m, stretches - 1, 9 + width)
     jump: Real  # (m, stretches - 1, width)
     node: Real  # (m, stretches, width, width)
+    # (m, stretches, 2) by the place of the first node of each, and of what size its terms are
+    place: Real
     # see csrc/chain/attached.h
     stiffer: Real  # (m, attached)
     heavier: Real  # (m, attached)
@@ -67,10 +74,10 @@ class Slopes:
     @classmethod
     def of(cls, chain: Chain, eigenvalue: Real, shape: Real, motion: Real) -> Slopes:
         """Ask the core."""
-        element, jump, node = _core.sensitivity(chain, shape, eigenvalue)
+        element, jump, node, place = _core.sensitivity(chain, shape, motion, eigenvalue)
         number, foot = _core.carried_slopes(chain, shape, motion, eigenvalue)
         element = element[..., : SECTIONS + shape.shape[2]]
-        return cls(eigenvalue, element, jump, node, number[..., 1], number[..., 0], foot)
+        return cls(eigenvalue, element, jump, node, place, number[..., 1], number[..., 0], foot)
 
     def weigh(self, weights: Weights) -> Real:
         """Return dPi/dp, shape (m,)."""
@@ -78,10 +85,17 @@ class Slopes:
         moving += _sum(self.heavier, weights.heavier)
         return self.weigh_stiffness(weights) - self.eigenvalue * moving
 
+    def size(self, weights: Weights) -> Real:
+        """Return the sum of the sizes of what dPi/dp is the sum of, shape (m,)."""
+        of, by = sizes(self), sizes(weights)
+        by = replace(by, place=by.place[:, ::-1])
+        return replace(of, eigenvalue=-of.eigenvalue).weigh(by)
+
     def weigh_stiffness(self, weights: Weights) -> Real:
         """Return the part of dPi/dp that is not inertia, shape (m,)."""
         elastic = _sum(self.element[..., :SECTIONS], weights.element)
         elastic += _sum(self.jump, weights.jump) + _sum(self.node, weights.node)
+        elastic += _sum(self.place, weights.place)
         return elastic + _sum(self.stiffer, weights.stiffer) + _sum(self.foot, weights.foot)
 
     def mass(self, chain: Chain) -> Real:
@@ -192,6 +206,38 @@ class Sensitivity:
             change[rigid & (np.abs(change) <= NOTHING * bound.max(where=rigid, initial=0.0))] = 0.0
         return change
 
+    def error(self, path: str, of: str) -> Real:
+        """Return a bound of the error of a derivative: of shapes that are rounded and mixed."""
+        value, eps = self.shapes.eigenvalue, ROUNDINGS * np.finfo(float).eps
+        weights, mass = self.rate(path).weights(self.places), np.diag(self.mass)
+        size = self.slopes.size(weights)[: len(value)] / mass
+        noise = self.largest.size(weights) / mass
+        wrong = eps * (size + 2 * np.sqrt(size * noise) + eps * noise)
+        wrong += 2 * MIXED * self._mixed(size)
+        for cluster in self.shapes.clusters:
+            wrong[cluster] = wrong[cluster].max()
+        if of == "eigenvalue":
+            return wrong
+        unit = 2 * np.pi if of == "frequency" else 1.0
+        root = 2 * unit * np.sqrt(np.maximum(value if of == "frequency" else -value, 0.0))
+        wrong += np.abs(self.eigenvalue(path)) * (eps + self.shapes.error / np.abs(2 * value))
+        return np.divide(wrong, root, out=np.zeros_like(wrong), where=root > 0)
+
+    def _mixed(self, size: Real) -> Real:
+        """Return what other modes bring into forms of such sizes: by their distances."""
+        shapes, most = self.shapes, size.max(initial=0.0)
+        value, brought = shapes.eigenvalue, np.zeros_like(size)
+        least = ROUNDINGS * np.finfo(float).eps
+        for cluster in shapes.clusters:
+            for j in cluster:
+                others = np.delete(np.arange(len(value)), cluster)
+                others = others[shapes.which[others] == shapes.which[j]]
+                apart = np.append(np.abs(value[others] - value[j]), shapes.beyond - value[j])
+                share = np.maximum(shapes.error[j], least * np.abs(value[j])) / apart
+                cross = np.sqrt(size[j] * np.append(size[others], most))
+                brought[j] = share @ (cross + share * np.append(size[others], most))
+        return brought
+
     def frequency(self, path: str) -> Real:
         """Return df/dp [Hz per unit], 0 where motion grows."""
         return self._root(path, 1.0) / (2 * np.pi)
@@ -225,7 +271,9 @@ def by_tension(chain: Chain, shape: Real) -> Real:
     """
 
     def slope(of: Real) -> Real:
-        element, _, _ = _core.sensitivity(chain, of, np.zeros(len(of)))
+        carried = 0 if chain.attached_kind is None else len(chain.attached_kind)
+        motion = np.zeros((len(of), carried))
+        element, *_ = _core.sensitivity(chain, of, motion, np.zeros(len(of)))
         return np.asarray(element[:, :, TENSION].sum(axis=1))
 
     size = np.sqrt(np.abs(slope(shape)))

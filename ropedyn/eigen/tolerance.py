@@ -53,13 +53,13 @@ def compile_within(
         raise SceneError(f"tolerance must be below 1, the whole frequency, got {tolerance!r}")
     highest = check.number(below, "below", "Hz", sign="positive")
     least = len(stations_of(scene)) - 1
-    compile_scene(scene, elements=least, element=element)  # refuses what no chain can be
+    coarsest = compile_scene(scene, elements=least, element=element)  # refuses what no chain can be
     chains = ChainErrors(scene, element, eigenvalue_of(highest))
     tried = Search(
         chains.error,
         start=chains.start(least),
         least=least,
-        order=chains.order,
+        order=chains.order(coarsest),
         tolerance=within,
     ).run()
     chosen = min((n for n, error in tried.items() if error <= within), default=0)
@@ -95,11 +95,10 @@ class ChainErrors:
         self.existing = {c: len(eigenvalue) for c, (eigenvalue, _) in self.true.items()}
         self.frequencies = sum(int(np.count_nonzero(true)) for true, _ in self.true.values())
 
-    @property
-    def order(self) -> float:
-        """The order of convergence that the element has where nothing disturbs it."""
-        bends = all("beta" in c for c, number in self.existing.items() if number > 0)
-        return 4.0 if self.element == "tensed" and bends else 2.0
+    def order(self, chain: Compiled) -> float:
+        """Return the order of what there is below; what leads elsewhere is sought all the same."""
+        moving = {c for part, number in self.existing.items() if number > 0 for c in part}
+        return max(min((chain.mesh_order[c] for c in moving), default=2.0), 1.0)
 
     def start(self, least: int) -> int:
         """Return a small chain that has the frequencies: three elements to a half wave."""

@@ -138,9 +138,13 @@ def shapes_of(model: Compiled, solver: str, number: int, edges: Index) -> Shapes
         if last < more - 1 or len(value) < more:
             break
         more *= 2
+    which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
+    beyond = float(value[last + 1]) if last + 1 < len(value) else math.inf
     order = order[: last + 1]
     shape, motion = _spread(model, found)[order], _motion(model, found)[order]
-    return Shapes(model, value[: last + 1], shape, motion, tuple(kept), edges)
+    value, error = value[: last + 1], error[: last + 1]
+    which = which[: last + 1]
+    return Shapes(model, value, shape, motion, tuple(kept), edges, error, which, beyond)
 
 
 def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:

@@ -9,7 +9,7 @@ right. At the left end of the rope, where no element ends, that is what follows 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -27,7 +27,7 @@ from ..chain.reaction import at_start, first_left_end, tellers
 from .moved_end import is_end, released
 from .question import Question
 
-NOWHERE = (-1, 0, 0)  # Where a load does not slip, see csrc/energy/lines.h.
+NOWHERE, PUSHED = (-1, 0, 0), 2  # What a load does not part or pushes, see csrc/energy/lines.h.
 
 
 class PairSlopes(NamedTuple):
@@ -36,8 +36,10 @@ class PairSlopes(NamedTuple):
     element: Complex  # (pairs, stretches - 1, 13, f)
     jump: Complex  # (pairs, stretches - 1, width, f)
     node: Complex  # (pairs, stretches, width, width, f)
+    place: Complex  # (pairs, stretches, 2, f), and of what size its terms are
     number: Complex  # (pairs, attached, 4, f)
     row: Complex  # (pairs, attached, 2, width, f)
+    error: Real  # (loads, f) of the fields, relative to their largest motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +84,15 @@ class Fields:
 
     @computed
     def slip(self) -> NDArray[np.int32]:
-        """Element, end and coordinate where each load parts an element from a node, (loads, 3)."""
+        """What each load parts or pushes, see csrc/energy/lines.h, (loads, 3)."""
         return np.array([self._slip(p) for p in self._given], dtype=np.int32).reshape(-1, 3)
 
     def _slip(self, point: Point) -> tuple[int, int, int]:
-        if is_end(point) or not is_force(point):
+        if is_end(point):
             return NOWHERE
         node, at = locate(self.x, point[1])[0], self.question.component.index(moving(point))
+        if not is_force(point):
+            return (node, PUSHED, at)
         return (0, 0, at) if at_start(self.x, point) else (node - 1, 1, at)
 
     @property
@@ -126,42 +130,51 @@ class Fields:
             held = np.concatenate([held, np.zeros_like(held)], axis=1)
         return held.ravel()
 
-    def slopes(self, part: slice) -> PairSlopes:
-        """Return those of some of the lines."""
+    def slopes(self, part: slice, pair: NDArray[np.int32], *, noisy: bool) -> PairSlopes:
+        """Return those of pairs of loads at some of the lines, of noise as large as the fields."""
         factor = np.ascontiguousarray(self.question.factor[:, part])
-        field = self.at(part)
-        asked = (self.chain, factor, field, self.pair, self.slip)
-        element, jump, node = _core.pair_slopes(*asked)
-        return PairSlopes(element, jump, node, *_core.carried_pair_slopes(*asked))
+        field, error = self.at(part)
+        if noisy:
+            at_nodes = np.abs(field).reshape(len(field), len(self.x), -1, factor.shape[1])
+            turning = 1.0 - 2.0 * (np.arange(len(self.x)) % 2)[:, None, None]
+            field = (at_nodes.max(axis=1, keepdims=True) * turning).reshape(field.shape) + 0j
+            field[:, self._held] = 0.0
+        asked = (self.chain, factor, field, pair, self.slip)
+        return PairSlopes(*_core.pair_slopes(*asked), *_core.carried_pair_slopes(*asked), error)
 
-    def at(self, part: slice) -> Complex:
-        """Return the fields at some of the lines, (loads, told, f)."""
+    def at(self, part: slice) -> tuple[Complex, Real]:
+        """Return the fields at some of the lines, (loads, told, f), and errors, (loads, f)."""
         forces = [k for k, point in enumerate(self._given) if not is_end(point)]
         factor = np.ascontiguousarray(self.question.factor[:, part])
         value = np.zeros((len(self._given), len(self._held), factor.shape[1]), dtype=np.complex128)
-        value[forces] = self._loaded([self._given[k] for k in forces], factor, part)
+        error = np.zeros((len(value), factor.shape[1]))
+        value[forces], error[forces] = self._loaded([self._given[k] for k in forces], factor, part)
         for k in (k for k in range(len(value)) if k not in forces):
-            value[k] = self._moved(self._given[k], factor, part)
+            value[k], error[k] = self._moved(self._given[k], factor, part)
         value.imag[..., ~self.question.is_damped[part]] = 0.0  # only rounding is there
-        return value
+        return value, error
 
-    def _loaded(self, given: Sequence[Point], factor: Complex, part: slice) -> Complex:
+    def _loaded(self, given: Sequence[Point], factor: Complex, part: slice) -> tuple[Complex, Real]:
         """Return the fields of forces and dislocations; what is held does not move."""
         whole = [point for point in given if not at_start(self.x, point)]
         start = tellers(self.question.component, self.x) if len(whole) < len(given) else []
         basis = list(dict.fromkeys([*whole, *start]))
-        found = self._solve(self.chain, basis, factor, part)
+        if not basis:
+            return np.zeros((0, len(self._held), factor.shape[1]), dtype=np.complex128), np.zeros(0)
+        found, wrong = self._solve(self.chain, basis, factor, part)
         found[:, self._held] = 0.0
         reaction = (
             self._reactions(found[[basis.index(p) for p in start]], factor) if start else None
         )
-        fields = []
+        fields, errors = [], []
         for point in given:
             if reaction is not None and at_start(self.x, point):
                 fields.append(reaction[self.question.component.index(moving(point))])
+                errors.append(wrong.max(axis=0))
             else:
                 fields.append(found[basis.index(point)])
-        return np.stack(fields) if fields else found[:0]
+                errors.append(wrong[basis.index(point)])
+        return np.stack(fields), np.stack(errors)
 
     def _reactions(self, told: Complex, factor: Complex) -> Complex:
         """Combine what tells the forces at the left end, (width, told, f)."""
@@ -170,24 +183,35 @@ class Fields:
         value = np.einsum("kij,jnk->ink", of.E, force) - np.einsum("kij,jnk->ink", of.Q, left)
         return value + np.einsum("kij,jnk->ink", of.P, right)
 
-    def _moved(self, end: Point, factor: Complex, part: slice) -> Complex:
+    def _moved(self, end: Point, factor: Complex, part: slice) -> tuple[Complex, Real]:
         """Return the field of an end that moves by 1."""
         model, own = released(self.question.model, end)
         loose = dataclasses.replace(self.question, model=model)
         chain = dataclasses.replace(self, question=loose).chain
-        value = self._solve(chain, [own], factor, part)[0]
+        found, wrong = self._solve(chain, [own], factor, part)
+        value = found[0]
         told = len(self._held) // self.chain.nodes
         at = locate(self.x, own[1])[0] * told + self.question.component.index(own[0])
         held = self._held.copy()
         held[at] = False
         value[held] = 0.0
         moved: Complex = value / value[at]
-        return moved
+        return moved, 2 * wrong[0]
 
-    def _solve(self, chain: Chain, given: Iterable[Point], factor: Complex, part: slice) -> Complex:
-        """Ask the sweep."""
-        pushed = ports(chain, self.x, self.question.component, given)
-        value, _, solved = _core.sweep(chain, factor, pushed, self._nodes)
+    def _solve(
+        self, chain: Chain, given: Sequence[Point], factor: Complex, part: slice
+    ) -> tuple[Complex, Real]:
+        """Ask the sweep; the error is that of each load's own coordinate, where it moves most."""
+        component = self.question.component
+        pushed = ports(chain, self.x, component, given)
+        value, wrong, solved = _core.sweep(chain, factor, pushed, self._nodes)
         if solved < factor.shape[1]:
             raise SolveError(self.question.resonance((part.start or 0) + solved))
-        return value
+        each = len(self._held) // len(self.x)
+        error = np.zeros((len(value), len(factor[0])))
+        for k, point in enumerate(given):
+            at = component.index(moving(point))
+            size = np.abs(value[k, at::each])
+            most = size.max(axis=0)
+            np.divide(wrong[k, at::each].max(axis=0), most, out=error[k], where=most > 0)
+        return value, error

@@ -24,6 +24,9 @@ class ResponseRates(Protocol):
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
 
+    def error(self, path: str, quantity: str) -> Real:
+        """Return a bound of the error of that, shape (drives, responses, f)."""
+
 
 @dataclass(frozen=True, eq=False)
 class MeshOfResponse(Frozen):
@@ -114,8 +117,7 @@ class FRF(Curves):
         Returns
         -------
         ndarray of complex, as value
-            In units of the value per unit of the number. To rounding, which the damping ratio
-            enlarges near resonances as it does that of the value.
+            In units of the value per unit of the number. To rounding, see `derivative_error`.
 
         Raises
         ------
@@ -139,3 +141,35 @@ class FRF(Curves):
         """
         value = self.rates.of(path, self.quantity)
         return value if self.value.ndim == 3 else value[0]
+
+    def derivative_error(self, path: str) -> Real:
+        """Bound the rounding error of a derivative.
+
+        Parameters
+        ----------
+        path : str
+            As in `derivative`.
+
+        Returns
+        -------
+        ndarray, as value
+            Absolute, in units of the derivative. Infinite where there is no bound: with
+            `ModalDamping`, and of tips of wires.
+
+        Raises
+        ------
+        TypeError
+            If the path is not a string.
+        SceneError
+            As in `derivative`.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> frf = model.frf([0.0], drive=("z", 0.5))
+        >>> bool(frf.derivative_error("tension")[0, 0] < 1e-12 * 2.5e-05)
+        True
+        """
+        error = self.rates.error(path, self.quantity)
+        return error if self.value.ndim == 3 else error[0]

@@ -13,12 +13,13 @@ that motion as u_d, and u_r is that with the end held.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base.array import Complex, Index, Real
 from ..base.check import NEAR
@@ -40,6 +41,8 @@ from .solvers import in_slices
 
 TENSION, LENGTH, SAG, INERTIA = 6, 7, 8, 9
 """Numbers of these slopes of an element, behind those of its section."""
+ROUNDINGS = 64  # Products of fields are rounded so many times.
+Term = tuple[Complex, Real, Any]  # slopes (pairs, .., f), how fast what they are by changes, factor
 SLICE = 1 << 19  # Numbers of the fields of one call of the core: a look for Ctrl-C between them.
 
 
@@ -54,11 +57,15 @@ class ComponentRates:
     @computed
     def slopes(self) -> PairSlopes:
         """Of all pairs of fields at all lines."""
+        return self._slopes(self.fields.pair)
+
+    def _slopes(self, pair: NDArray[np.int32], *, noisy: bool = False) -> PairSlopes:
         fields = self.fields
         loads = len(fields.question.drives) + len(fields.question.responses)
         size = max(2 * fields.chain.nodes * len(fields.question.component) * loads, 1)
         question = fields.question
-        parts = in_slices(fields.slopes, len(question.frequency), size, SLICE, question.workers)
+        ask = partial(fields.slopes, pair=pair, noisy=noisy)
+        parts = in_slices(ask, len(question.frequency), size, SLICE, question.workers)
         return PairSlopes(*parts)
 
     @computed
@@ -92,34 +99,63 @@ class ComponentRates:
 
     def receptance(self, weights: Weights, by_p: Complex) -> Complex:
         """Return dh/dp where the chain and the factors, (5, f), change, (drives, responses, f)."""
-        question = self.fields.question
-        total = self._along(weights, by_p) + self._at_nodes(weights, by_p)
-        if len(self._carried):
-            total = total + self._on_structures(weights, by_p)
-        return -total.reshape(len(question.drives), len(question.responses), -1)
+        terms = self._terms(self.slopes, weights, by_p, 0)
+        return -self._by_pair(sum(_dot(slope, weight) * by for slope, weight, by in terms))
 
-    def _along(self, weights: Weights, by_p: Complex) -> Complex:
-        """Sum over the elements."""
-        factor, chain, slopes = self.fields.question.factor, self.fields.chain, self.slopes
+    def error(self, weights: Weights, by_p: Complex) -> Real:
+        """Return a bound of the error of that: of products of fields, and noise beside them."""
+        drives, wrong = len(self.fields.question.drives), self.slopes.error
+        own, noise = self._size_of(False, weights, by_p), self._size_of(True, weights, by_p)
+        noise = np.maximum(own, noise)
+        size = self._by_pair(self._size(self.slopes, weights, by_p))
+        size = np.maximum(size, own[:drives, None] * own[None, drives:])
+        wrong = wrong[:drives, None] + wrong[None, drives:]
+        by_fields = wrong * noise[:drives, None] * noise[None, drives:]
+        return np.asarray(ROUNDINGS * np.finfo(float).eps * size + by_fields)
+
+    def _size_of(self, noisy: bool, weights: Weights, by_p: Complex) -> Real:
+        """Return roots of the sizes of the fields with themselves, or of noise, (loads, f)."""
+        loads = np.arange(len(self.slopes.error), dtype=np.int32)
+        slopes = self._slopes(np.stack([loads, loads], axis=1), noisy=noisy)
+        return np.sqrt(self._size(slopes, weights, by_p))
+
+    def _by_pair(self, of: Any) -> Any:
+        question = self.fields.question
+        return of.reshape(len(question.drives), len(question.responses), -1)
+
+    def _size(self, slopes: PairSlopes, weights: Weights, by_p: Complex) -> Real:
+        """Return the sum of the sizes of all terms, (pairs, f)."""
+        terms = self._terms(slopes, weights, by_p, 1)
+        parts = [_dot(np.abs(s), np.abs(weight)) * np.abs(by) for s, weight, by in terms]
+        return np.sum(parts, axis=0)
+
+    def _terms(self, slopes: PairSlopes, weights: Weights, by_p: Complex, side: int) -> list[Term]:
+        """Return what -dh/dp is the sum of; side 1 of places is their size."""
+        found = [*self._along(slopes, weights, by_p), *self._at_nodes(slopes, weights, by_p, side)]
+        return [*found, *self._on_structures(slopes, weights, by_p)]
+
+    def _along(self, slopes: PairSlopes, weights: Weights, by_p: Complex) -> Iterator[Term]:
+        """Yield what the elements give."""
+        factor, chain = self.fields.question.factor, self.fields.chain
         source = self._source
         element = weights.element[source]
         element[:, LENGTH] = self._longer(weights)
-        total = _dot(slopes.element[:, :, :INERTIA], element)
+        yield slopes.element[:, :, :INERTIA], element, 1.0
         width = len(self._kept)
         inertia = slopes.element[:, :, INERTIA : INERTIA + width]
         moving = weights.moving[source][:, self._kept]
-        total += _dot(inertia, moving) * factor[damping.INERTIA]
+        yield inertia, moving, factor[damping.INERTIA]
         if chain.inertia is not None:
             drag = weights.dragging[source][:, self._kept]
-            total += _dot(inertia, drag) * factor[damping.DASHPOT]
-            total += _dot(inertia, chain.inertia[chain.element]) * by_p[damping.INERTIA]
+            yield inertia, drag, factor[damping.DASHPOT]
+            yield inertia, chain.inertia[chain.element], by_p[damping.INERTIA]
         # S/section, T tension
         section = chain.flexibility[chain.element][:, ENTRIES[0], ENTRIES[1]]
         share = by_p[damping.SECTION] / factor[damping.SECTION]
-        total -= _dot(slopes.element[:, :, :TENSION], section) * share
+        yield slopes.element[:, :, :TENSION], section, -share
         share = by_p[damping.TENSION] / factor[damping.TENSION]
         pull = chain.tension[chain.element][:, None]
-        return total + _dot(slopes.element[:, :, TENSION : TENSION + 1], pull) * share
+        yield slopes.element[:, :, TENSION : TENSION + 1], pull, share
 
     def _longer(self, weights: Weights) -> Real:
         """Return how fast the elements of each stretch grow."""
@@ -148,37 +184,42 @@ class ComponentRates:
                     "moves there would be left of it or right of it"
                 )
 
-    def _at_nodes(self, weights: Weights, by_p: Complex) -> Complex:
-        """Sum over what stands at nodes, and hinges."""
-        factor, chain, slopes = self.fields.question.factor, self.fields.chain, self.slopes
+    def _at_nodes(
+        self, slopes: PairSlopes, weights: Weights, by_p: Complex, side: int
+    ) -> Iterator[Term]:
+        """Yield what stands at nodes and moves there, and hinges."""
+        factor, chain, model = self.fields.question.factor, self.fields.chain, self.places.model
         own, of = self._own
         square = np.ix_(of, self._kept, self._kept)
-        node = slopes.node[:, own]
-        total = _dot(node, weights.node[square]) * factor[damping.SPRING]
-        total += _dot(node, weights.mass[square]) * factor[damping.INERTIA]
-        total += _dot(node, weights.dashpot[square]) * factor[damping.DASHPOT]
-        total += _dot(node, chain.stiffness[chain.term[own]]) * by_p[damping.SPRING]
-        total += _dot(node, chain.mass[chain.term[own]]) * by_p[damping.INERTIA]
+        node, place = slopes.node[:, own], weights.place[:, 0]
+        self._refuse_loads_at(model.x[model.chain.first[place != 0]])
+        yield slopes.place[:, own, side], place[of], 1.0
+        yield node, weights.node[square], factor[damping.SPRING]
+        yield node, weights.mass[square], factor[damping.INERTIA]
+        yield node, weights.dashpot[square], factor[damping.DASHPOT]
+        yield node, chain.stiffness[chain.term[own]], by_p[damping.SPRING]
+        yield node, chain.mass[chain.term[own]], by_p[damping.INERTIA]
         if chain.hinge is not None:
             own, of = own[own < len(chain.element)], of[own < len(chain.element)]
             jump = slopes.jump[:, own]
-            total += _dot(jump, weights.jump[of][:, self._kept])
+            yield jump, weights.jump[of][:, self._kept], 1.0
             soft = chain.hinge[chain.term[own]]
             stiff = np.divide(1, soft, out=np.zeros_like(soft), where=soft != 0)
-            share = by_p[damping.SPRING] / factor[damping.SPRING]
-            total += _dot(jump, stiff) * share
-        return total
+            yield jump, stiff, by_p[damping.SPRING] / factor[damping.SPRING]
 
-    def _on_structures(self, weights: Weights, by_p: Complex) -> Complex:
-        """Sum over the structures that nodes carry."""
-        inertia = self.fields.question.factor[damping.INERTIA]
-        number, these = self.slopes.number, self._carried
-        mass, stiffness, loss, mass_loss = np.moveaxis(number, 2, 0)
+    def _on_structures(self, slopes: PairSlopes, weights: Weights, by_p: Complex) -> Iterator[Term]:
+        """Yield what the structures give that nodes carry."""
+        these, inertia = self._carried, self.fields.question.factor[damping.INERTIA]
+        if not len(these):
+            return
+        mass, stiffness, loss, mass_loss = np.moveaxis(slopes.number, 2, 0)
         heavier = weights.heavier[these]
-        total = _dot(mass, heavier) * inertia + _dot(mass_loss, heavier)
-        total += _dot(stiffness, weights.stiffer[these]) + _dot(loss, weights.damped[these])
-        total += mass.sum(axis=1) * by_p[damping.INERTIA]
-        return total + _dot(self.slopes.row, weights.foot[these][..., self._kept])
+        yield mass, heavier, inertia
+        yield mass_loss, heavier, 1.0
+        yield stiffness, weights.stiffer[these], 1.0
+        yield loss, weights.damped[these], 1.0
+        yield mass, np.ones(len(these)), by_p[damping.INERTIA]
+        yield slopes.row, weights.foot[these][..., self._kept], 1.0
 
 
 def _dot(slopes: Complex, weights: Real) -> Complex:
@@ -257,11 +298,11 @@ class FrequencyRates:
         alone = {k: float(k == name) for k in floats if isinstance(getattr(one, k), float)}
         return dataclasses.replace(one, **alone)  # type: ignore[type-var]
 
-    def receptance(self, path: str) -> Complex:
-        """Return d(receptance)/dp, shape (drives, responses, f)."""
+    def receptance(self, path: str, *, bounded: bool) -> tuple[Complex, Real]:
+        """Return d(receptance)/dp and, if asked for, a bound of its error."""
         weights = asked(self.paths, path)().weights(self.places)
         own = [self._unit(*self._dampings[path])] if path in self._dampings else []
-        value = np.zeros_like(self.value)
+        value, error = np.zeros_like(self.value), np.zeros(self.value.shape)
         spread = tip.spread(self.model, self.responses)
         for (question, parts), component in zip(self.answered, self.components):
             lines = component.fields.question
@@ -269,15 +310,18 @@ class FrequencyRates:
             found = component.receptance(weights, by_p)
             if parts is not None:
                 found = sum_slope(parts, found, float(damping.ratios(own, 1)[0]))
+            bound = component.error(weights, by_p) if bounded and parts is None else np.inf
             d = [k for k, point in enumerate(self.drives) if moving(point) in question.component]
             r = [k for k, point in enumerate(spread) if moving(point) in question.component]
-            value[np.ix_(d, r)] = found
-        return self._at_tips(weights, own, value)
+            value[np.ix_(d, r)], error[np.ix_(d, r)] = found, bound
+        return self._at_tips(weights, own, value, error)
 
-    def _at_tips(self, weights: Weights, own: Sequence[Damping], value: Complex) -> Complex:
+    def _at_tips(
+        self, weights: Weights, own: Sequence[Damping], value: Complex, error: Real
+    ) -> tuple[Complex, Real]:
         """Take roots together to tips, t^T u/e of which both change."""
         if not any(map(tip.is_tip, self.responses)):
-            return value
+            return value, error
         omega = self.omega
         factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, omega).T)
         more = (damping.factors(own, omega) - damping.factors([], omega))[:, damping.INERTIA]
@@ -285,17 +329,25 @@ class FrequencyRates:
         lighter = np.divide(-more, inertia, out=np.zeros_like(more), where=inertia != 0)
         none = np.zeros(value.shape)
         changed, _ = tip.gather(self.model, self.responses, factor, value, none)
+        wrong = np.full(changed.shape, np.inf)
         at = 0
         for r, point in enumerate(self.responses):
             count = len(tip.tip_of(self.model, point).root) if tip.is_tip(point) else 1
-            if tip.is_tip(point):
+            if not tip.is_tip(point):
+                wrong[:, r] = error[:, at]
+            else:
                 root = self.value[:, at : at + count]
                 slope = tip.row_slope(self.model, point, factor, weights, lighter)
                 changed[:, r] += np.einsum("cf,dcf->df", slope, root)
             at += count
-        return changed
+        return changed, wrong
 
     def of(self, path: str, quantity: str) -> Complex:
         """Return the derivative of a quantity, shape (drives, responses, f)."""
         times = QUANTITIES[quantity]
-        return self.receptance(path) * (1j * self.omega) ** times
+        return self.receptance(path, bounded=False)[0] * (1j * self.omega) ** times
+
+    def error(self, path: str, quantity: str) -> Real:
+        """Return a bound of the error of that, shape (drives, responses, f)."""
+        times = QUANTITIES[quantity]
+        return self.receptance(path, bounded=True)[1] * np.abs(self.omega) ** times

@@ -424,9 +424,10 @@ NodeForce, Stop, AddedMass, LocalChange
             ``"continuous"``, the default without `elements`: exact spans at each frequency, no
             discretisation error; with `elements` there are more nodes to look at. ``"tensed"``,
             the default with `elements`: the exact static tensed beam, with end-corrected lumping;
-            fourth order where there is bending (second with a hinge that moves). ``"rigid"``: beam
-            elements between rigid node frames, tension as a string in parallel; second order in
-            the length of elements. ``"difference"``: the kinematics of the 2015 study.
+            of fourth order in bending, of second in twist, stretch and strings, and in bending with
+            rotary inertia or a hinge that moves: `Model.mesh_order`. ``"rigid"``: beam elements
+            between rigid node frames, tension as a string in parallel; second order in the length
+            of elements. ``"difference"``: the kinematics of the 2015 study.
         tolerance, below : float, optional
             Instead of `elements`: the smallest chain, ``"tensed"`` where left out, whose relative
             mesh error of every frequency (and rate of growth) below `below` [Hz] is within

@@ -172,7 +172,7 @@ static enum rd_status stretch_of(struct mode *asked, size_t k, double *slope, do
 {
     cv slopes[RD_PROPERTIES], jumps[W];
     const enum rd_status status =
-        rd_sensitivity_stretch(&asked->sensitivity, k, &MODE_PAIR, slopes, jumps);
+        rd_sensitivity_stretch(&asked->sensitivity, k, &MODE_PAIR, slopes, jumps, NULL);
     for (size_t p = 0; p < RD_PROPERTIES; p++)
         slope[p] = slopes[p].re[0];
     for (size_t i = 0; i < asked->sensitivity.chain->width; i++)

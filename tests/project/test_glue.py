@@ -225,7 +225,7 @@ ENTRIES = {
         chain, SHAPES, MOTIONS, np.array([1e4, 1e6])
     ),
     "tip": lambda chain: _core.tip(chain, 1, FACTOR.T.copy()),
-    "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, np.array([1e4, 1e6])),
+    "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES, MOTIONS, np.array([1e4, 1e6])),
     "pair_slopes": lambda chain: _core.pair_slopes(chain, *PAIRED),
     "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *PAIRED),
     "march_factor": lambda chain: _core.march_factor(without_wire(chain), BESIDE, LAW, 1e-3, 1.0),
@@ -248,7 +248,9 @@ SPANS = {
     ),
     # below the first resonance of each element as a cantilever
     "energy": lambda chain: _core.energy(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
-    "sensitivity": lambda chain: _core.sensitivity(chain, SHAPES[:, :4], np.array([10.0, 100.0])),
+    "sensitivity": lambda chain: _core.sensitivity(
+        chain, SHAPES[:, :4], MOTIONS, np.array([10.0, 100.0])
+    ),
     "pair_slopes": lambda chain: _core.pair_slopes(chain, *SPANNED),
     "carried_pair_slopes": lambda chain: _core.carried_pair_slopes(chain, *SPANNED),
 }

@@ -71,7 +71,7 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     energy : dict of ndarray, shape (k,)
         Fractions, as in `Modes`, averaged over a period.
     cost : Cost
-        What the rates cost.
+        What the rates cost, and what of the rest has been read.
 
     Examples
     --------

@@ -121,8 +121,8 @@ class LocalChange(_Between):
     """Factors on the rope over a stretch: damage, wear, a splice.
 
     Factors that overlap multiply. Axial stiffness and lay are those of the rope. Where a stretch
-    with other stiffness or density begins, tensed elements keep their fourth order, or second
-    order if the rope has rotary inertia; continuous spans are exact.
+    with other stiffness or density begins, tensed elements keep their order (`Model.mesh_order`);
+    continuous spans are exact.
 
     Parameters
     ----------
