@@ -247,9 +247,9 @@ class _Responses:
         hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
         asked = tip.spread(model, self.outputs)
         question = Question(model, self.component, hertz, factor, self.inputs, asked, 1)
-        value, error = moves_ends(SOLVERS["sweep"])(question)
+        value, _ = moves_ends(SOLVERS["sweep"])(question)
         if any(map(tip.is_tip, self.outputs)):
-            value, error = tip.gather(model, self.outputs, factor, value, error)
+            value = tip.gather(model, self.outputs, factor, value)
         return value
 
 

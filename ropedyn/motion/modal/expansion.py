@@ -140,9 +140,9 @@ class _Asked:
         hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
         factor = np.ascontiguousarray(factor)
         question = Question(model, self.component, hertz, factor, self.drives, asked, 1)
-        value, error = moves_ends(SOLVERS["sweep"])(question)
+        value, _ = moves_ends(SOLVERS["sweep"])(question)
         if len(asked) > len(self.responses) or any(map(tip.is_tip, self.responses)):
-            value, error = tip.gather(model, self.responses, factor, value, error)
+            value = tip.gather(model, self.responses, factor, value)
         return value
 
     def undamped(self, z: Complex) -> Complex:
