@@ -10,11 +10,11 @@ import pytest
 from conftest import EPS
 from exact_chain import DIGITS, Exact, condition, omega_of, response
 from random_scene import random_line
-from resonant_line import resonant_line
+from resonant_line import error_and_limit, exact_line, kept_lines
 
 import ropedyn as rd
 
-FEW, MANY, RESONANT_FEW, RESONANT_MANY = 100, 10_000, 40, 5_000
+FEW, MANY, RESONANT_MANY = 100, 10_000, 5_000
 RESONANT = 1e11
 """Condition of an answer that may be refused: times the n eps of a long chain it has no digit."""
 EXACT = "mpmath, 60 digits, from the numbers of the scene: tests/support/exact_chain.py"
@@ -123,30 +123,9 @@ def test_rounding_error_of_very_many_lines_is_no_useless_bound(many, claim):
 # resonances and antiresonances -------------------------------------------------------------------
 
 
-def resonant_sample(kind, first, count):
-    """Errors and bounds, absolute, and values of so many seeds; refused lines have none."""
-    found = []
-    for seed in range(first, first + count):
-        line = resonant_line(seed, kind)
-        if line is None:
-            continue
-        try:
-            frf = line.model.frf(
-                line.frequency, drive=line.drive, response=line.response, threads=1
-            )
-        except rd.SolveError:
-            continue
-        value = frf.value[0, 0]
-        with mpmath.workdps(DIGITS):
-            error = float(abs(mpmath.mpmathify(complex(value)) - line.exact))
-        assert frf.rounding_error[0, 0] >= frf.rounding_limit[0, 0] / abs(value)
-        found.append((error, frf.rounding_limit[0, 0], abs(value)))
-    return np.array(found).T
-
-
 @pytest.fixture(scope="module", params=["chain", "span"])
 def resonant(request):
-    return resonant_sample(request.param, 1000, RESONANT_FEW)
+    return np.array([error_and_limit(*line) for line in kept_lines(request.param)]).T
 
 
 @pytest.mark.claim(
@@ -157,7 +136,7 @@ def resonant(request):
 )
 def test_rounding_limit_bounds_the_true_error_where_a_response_changes_its_sign(resonant, claim):
     error, limit, _ = resonant
-    assert len(error) >= RESONANT_FEW / 5
+    assert len(error) >= 5
     claim(np.mean(error > limit))
 
 
@@ -181,7 +160,8 @@ def test_rounding_limit_is_no_useless_bound_where_a_response_changes_its_sign(re
 )
 @pytest.mark.parametrize("kind", ["chain", "span"])
 def test_rounding_limit_bounds_very_many_lines_where_a_response_changes_its_sign(kind, claim):
-    error, limit, _ = resonant_sample(kind, 10_000, RESONANT_MANY)
+    lines = (exact_line(seed, kind) for seed in range(10_000, 10_000 + RESONANT_MANY))
+    error, limit, _ = np.array([error_and_limit(*line) for line in lines if line]).T
     claim(np.mean(error > limit))
 
 
@@ -214,7 +194,7 @@ def _loaded_string(f, at, mass):
 
 
 def test_response_that_is_0_has_an_infinite_relative_and_a_finite_absolute_bound():
-    frf = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile().frf(50.0, drive=("z", 0.5))
+    frf = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile().frf(30.0, drive=DRIVE)
     nothing = type(frf.rounding).of(np.zeros((1, 1), dtype=complex), frf.rounding_limit)
     assert np.isinf(nothing.rounding_error).all()
     assert np.isfinite(nothing.rounding_limit).all()

@@ -1,104 +1,134 @@
-"""Random undamped lines at, and next to, frequencies where a response vanishes or has no bound."""
+"""Random undamped lines at, and next to, frequencies where a response passes 0 or infinity.
 
+`python tests/support/resonant_line.py` writes those of a few seeds to
+tests/reference/resonant_lines.json.
+"""
+
+import json
 import typing
+from pathlib import Path
 
 import mpmath
 import numpy as np
 from exact_chain import Exact, omega_of
 from exact_span import Continuum, Law, coupled
-from mpmath import mpf
 from random_scene import random_line, random_spans
-from stored import stored
 
 import ropedyn as rd
 
-GRID, STEPS = 12, 56
-MOST_ELEMENTS = 32
-MOST_RADIANS = 200.0
-"""Of the waves on a rope of 1 m."""
+FILE = Path(__file__).parent.parent / "reference" / "resonant_lines.json"
+SEEDS = range(150, 300)
+GRID, MOST_ELEMENTS, MOST_RADIANS = 60, 60, 2000.0
+DIGITS = 60
 
 
 class Resonant(typing.NamedTuple):
-    """A line, and what answers it exactly."""
+    """A model, and two points between which it responds, also as the exact one names them."""
 
     model: rd.Model
+    points: list[tuple[str, float]]
+    exact: Exact | Continuum
+    places: list[tuple[str, float]]
     frequency: float
-    drive: tuple[str, float]
-    response: tuple[str, float]
-    exact: mpf
 
 
-@stored
-def crossing(exact, drive, response, low, high, which):
-    """The double next to a frequency where a real response changes its sign, None without any.
-
-    It passes 0 at an antiresonance and infinity at a resonance.
-    """
-
-    def sign(f):
-        try:
-            return mpmath.sign(exact.receptance(omega_of(f), drive, [response])[0])
-        except ZeroDivisionError:
-            return 0
-
-    grid = np.geomspace(low, high, GRID).tolist()
-    signs = [sign(f) for f in grid]
-    changes = [k for k in range(GRID - 1) if signs[k] * signs[k + 1] < 0]
-    if not changes:
+def resonant(seed, kind):
+    """A random undamped chain or continuous spans; None where elements are many."""
+    if kind == "span":
+        scene, f, *points = random_spans(seed)
+        scene = scene.replace(damping=None)
+        exact = Continuum(scene, coupled(scene, points[0][0]))
+        while Law(scene, exact.coordinates, 1, 1, -(omega_of(f) ** 2)).wavenumber > MOST_RADIANS:
+            f /= 10
+        return Resonant(scene.compile(), points, exact, points, f / 3)
+    line = random_line(seed)
+    count = len(line.model.x) - 1
+    if count > MOST_ELEMENTS:
         return None
-    k = changes[int(which * len(changes))]
-    a, b = mpf(grid[k]), mpf(grid[k + 1])
-    for _ in range(STEPS):
+    scene = line.model.scene.replace(damping=None)
+    model = scene.compile(elements=count, element=line.model.element)
+    x, places = model.x.tolist(), [line.drive, line.response]
+    points = [(c, x[k]) for c, k in places]
+    return Resonant(
+        model, points, Exact(model, model.component_of(points[0][0])), places, line.frequency or 1.0
+    )
+
+
+def crossing(line, random):
+    """A frequency where the response changes its sign, and one next to it; None without any."""
+
+    def responses(f):
+        return (
+            line.model.frf(f, drive=line.points[0], response=line.points[1], threads=1)
+            .value[0]
+            .real
+        )
+
+    grid = np.geomspace(line.frequency / 3, 3 * line.frequency, GRID)
+    signs = np.sign(responses(grid))
+    changes = np.flatnonzero(signs[1:] != signs[:-1])
+    if not len(changes):
+        return None
+    k = random.choice(changes)
+    a, b = grid[k], grid[k + 1]
+    while a < (a + b) / 2 < b:
         middle = (a + b) / 2
-        if sign(middle) == signs[k]:
+        if np.sign(responses([middle])[0]) == signs[k]:
             a = middle
         else:
             b = middle
-    return float(a)
+    return float(a * (1 + random.choice([-1, 1]) * 10 ** -random.uniform(2, 17)))
 
 
-@stored
-def exact_value(exact, f, drive, response):
-    """The response, None on a resonance."""
+def exact_line(seed, kind):
+    """The model, points, frequency and exact response of a seed, None where there is none."""
+    line = resonant(seed, kind)
+    if line is None:
+        return None
     try:
-        return exact.receptance(omega_of(f), drive, [response])[0]
-    except ZeroDivisionError:
+        f = crossing(line, np.random.default_rng([seed, 20]))
+        if f is None:
+            return None
+        with mpmath.workdps(DIGITS):
+            return line, f, line.exact.receptance(omega_of(f), line.places[0], line.places[1:])[0]
+    except (rd.SolveError, ZeroDivisionError):
         return None
 
 
-def slowed(scene, coordinates, f):
-    """A frequency, less by decades where the waves on the rope are more than some."""
-    while Law(scene, coordinates, 1, 1, -(omega_of(f) ** 2)).wavenumber > MOST_RADIANS:
-        f /= 10
-    return f
+def error_and_limit(line, f, exact):
+    """Absolute error, `rounding_limit` and size of the value; a refusal has no limit."""
+    try:
+        frf = line.model.frf(f, drive=line.points[0], response=line.points[1], threads=1)
+    except rd.SolveError:
+        return 0.0, np.inf, 0.0
+    value = frf.value[0, 0]
+    with mpmath.workdps(DIGITS):
+        error = float(abs(mpmath.mpmathify(complex(value)) - exact))
+    return error, frf.rounding_limit[0, 0], abs(value)
 
 
-def resonant_line(seed, kind):
-    """A line of a random chain or of random continuous spans, None where none is found."""
-    random = np.random.default_rng([seed, 20])
-    share, side, power = random.uniform(), random.choice([-1, 1]), random.uniform(2, 17)
-    if kind == "chain":
-        line = random_line(seed)
-        count = min(len(line.model.x) - 1, MOST_ELEMENTS)
-        if count < len(line.model.x) - 1:
-            return None
-        model = line.model.scene.replace(damping=None).compile(
-            elements=count, element=line.model.element
-        )
-        x = model.x.tolist()
-        nodes = line.drive, line.response
-        points = [(c, x[k]) for c, k in nodes]
-        exact, f = Exact(model, model.component_of(line.drive[0])), line.frequency
-    else:
-        scene, f, *points = random_spans(seed)
-        scene = scene.replace(damping=None)
-        model, nodes = scene.compile(), points
-        exact = Continuum(scene, coupled(scene, points[0][0]))
-    f = slowed(model.scene, exact.coordinates, f or 1.0)
-    with mpmath.workdps(60):
-        at = crossing(exact, *nodes, f / 3, f, share)
-        if at is None:
-            return None
-        f = at * (1 + float(side) * 10**-power)
-        h = exact_value(exact, f, *nodes)
-    return None if h is None else Resonant(model, f, *points, h)
+def kept_lines(kind):
+    """The lines of the file."""
+    with mpmath.workdps(DIGITS):
+        for seed, f, exact in json.loads(FILE.read_text(encoding="utf-8"))[kind]:
+            yield resonant(seed, kind), f, mpmath.mpf(exact)
+
+
+def main():
+    """Write the file."""
+    found = {}
+    for kind in ("chain", "span"):
+        lines = ((seed, exact_line(seed, kind)) for seed in SEEDS)
+        found[kind] = [[seed, one[1], mpmath.nstr(one[2], 50)] for seed, one in lines if one]
+    text = ",\n".join(
+        f' "{kind}": [\n' + ",\n".join(f"  {json.dumps(one)}" for one in lines) + "\n ]"
+        for kind, lines in found.items()
+    )
+    FILE.write_text("{\n" + text + "\n}\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    from stored import SESSION
+
+    SESSION.large = True
+    main()
