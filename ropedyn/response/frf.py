@@ -73,12 +73,10 @@ class FRF(Curves):
         [m/N, rad/N, m/(N m), rad/(N m), of internal forces N/N and so on, per motion of an end
         m/m, rad/m and so on; and these per s or s^2].
     rounding_error : ndarray, as value
-        Bound of the relative error that rounding causes, to first order: eps times the sizes of the
-        energies of which the response is the signed sum, computed when it is first asked for.
-        Infinite where the value is 0 and `rounding_limit` is not.
+        Bound of the relative error that rounding causes, to first order, computed when it is first
+        asked for; infinite where only the value is 0.
     rounding_limit : ndarray, as value
-        The same bound of the absolute error, in the unit of the value: what is known of a response
-        at an antiresonance.
+        The same of the absolute error, in the unit of the value.
     mesh_error : ndarray, as value
         Relative error that the elements cause, computed when it is first asked for. Not an
         estimate: the distance to the response of the continuous spans of the same scene, and the

@@ -1,16 +1,7 @@
-"""How far rounding moves a response, to first order.
+"""How far rounding moves a response, to first order: see docs/theory/errors.md.
 
-A response is stationary in the fields u_d, f_d of its drive and u_r, f_r of a unit load on itself:
-where the numbers of an element, of a node or of what a sweep knows of the rope on one side change
-by so many eps, it changes by as many times the energy that the two fields have there together.
-Energies have signs and their roundings have not, so that a response which nearly vanishes is known
-to eps times their sizes. In the scales of the sweep, u^ = u/z and f^ = f z, these are
-
-    at a station, what lies on one side    |u^_d u^_r| + |u^_d f^_r| + |f^_d u^_r|
-    on the rope beside it, waves of k l    k l (the same + |f^_d f^_r|)
-    of a node with the numbers N           |u_d| |N| |u_r|
-
-and a load that a heavy node takes up leaves the rope what is left of z or 1/z.
+A response is a signed sum of energies of the fields of its drive and of a unit load on itself, and
+its rounding eps times their sizes, in the scales u^ = u/z, f^ = f z of the sweep.
 """
 
 from __future__ import annotations
@@ -152,11 +143,8 @@ def _of_structures(chain: Chain, node: Index, factor: Complex, u: Complex, drive
 
 
 def _radians(chain: Chain, stations: Stations, factor: Complex) -> Real:
-    """Bound how far waves turn or fade between stations, (stations - 1, width, f).
-
-    Of B d^4 z - T d^2 z = q z they have |k|^2 <= sqrt((T/2B)^2 + q/B) + |T/2B|; a single element
-    of a chain carries none, and no element more than half a turn.
-    """
+    """Bound how far waves turn or fade between stations, (stations - 1, width, f)."""
+    # of B d^4 z - T d^2 z = q z: |k|^2 <= sqrt((T/2B)^2 + q/B) + |T/2B|
     first, size = stations.node[:-1], np.abs(factor)
     element, apart = chain.element_of[first], np.diff(stations.node)
     load = _loads(chain, first, apart, factor)

@@ -159,10 +159,7 @@ def _hold(question: Question, value: NDArray[Any]) -> None:
 
 
 def _reacting(question: Question, told: NDArray[Any], *, sign: float) -> NDArray[Any]:
-    """Put f_a = E f_b - Q u_a + P u_b of the first element where it was asked for.
-
-    With sign = 1 that of sizes, which add up.
-    """
+    """Put f_a = E f_b - Q u_a + P u_b of the first element, or its size, where it was asked for."""
     component, responses = question.component, question.responses
     chain, x = question.cut
     w = len(component)
