@@ -92,8 +92,7 @@ def gather_error(
     model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
 ) -> Real:
     """Return the absolute errors of what `gather` returns."""
-    # of the row itself a few roundings
-    wrong = error + 8 * np.finfo(float).eps * np.abs(value)
+    wrong = error + 8 * np.finfo(float).eps * np.abs(value)  # of the row itself
     return _gathered(model, responses, wrong, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
 
 

@@ -128,11 +128,8 @@ class FRF(Curves):
         """Return the same response as another quantity; see `Curves.to`."""
         found = super().to(quantity)
         times = np.abs(self.s) ** (QUANTITIES[quantity] - QUANTITIES[self.quantity])
-
-        def rounding() -> RoundingOfResponse:
-            return RoundingOfResponse.of(found.value, self.rounding_limit * times)
-
-        return changed(found, rounding=rounding)
+        of = RoundingOfResponse.of
+        return changed(found, rounding=lambda: of(found.value, self.rounding_limit * times))
 
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.

@@ -70,8 +70,8 @@ def solve_harmonic(
     value = (value * power if QUANTITIES[quantity] else value)[drive]
 
     def rounding() -> RoundingOfResponse:
-        _, error = told(model, responses, factor, got)
-        return RoundingOfResponse.of(value, error[drive] * np.abs(power))
+        error = told(model, responses, factor, got)[1][drive]
+        return RoundingOfResponse.of(value, error * np.abs(power))
 
     mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)

@@ -18,9 +18,7 @@ from ..chain.port import Ports
 from ..scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION
 
 EPS, TINY = np.finfo(float).eps, np.finfo(float).tiny  # TINY: the smallest normal number.
-OF_STATIONS, OF_WAVES, OF_NODES, OF_LOADS = 5.0, 1.5, 2.0, 1.0
-"""Roundings of each kind of energy: a few, chosen by random and by
-resonant lines of tests/response/test_rounding_error.py."""
+OF_STATIONS, OF_WAVES, OF_NODES, OF_LOADS = 5.0, 1.5, 2.0, 1.0  # Roundings, by random lines.
 
 
 class Stations(NamedTuple):

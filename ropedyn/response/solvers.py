@@ -64,9 +64,8 @@ def _bound(question: Question, value: Complex) -> Real:
         factor = np.ascontiguousarray(question.factor[:, part])
         return (bound_of(chain, factor, pushed, watched),)
 
-    size = loads * len(chain.first) * len(question.component)
-    count = len(question.frequency)
-    (error,) = in_slices(solve, count, size * loads, BOUND_SLICE, question.workers)
+    size, count = loads**2 * chain.first.size * len(question.component), len(question.frequency)
+    (error,) = in_slices(solve, count, size, BOUND_SLICE, question.workers)
     if reactions:
         error = _reacting(question, error, sign=1.0)
     _hold(question, error)
