@@ -25,7 +25,7 @@ enum rd_status rd_frf_prepare(const struct rd_chain *chain, const struct rd_port
 
 /* At one frequency, with factor (RD_PARTS) on the parts of the dynamic stiffness:
        value (drives, responses)     displacement per force [m/N, rad/N, ...]
-       rounding (drives, responses)  its estimated relative error
+       rounding (drives, responses)  what entries off by eps change in it, all signs alike
        motion (drives)               the estimated relative error of the whole motion: 1 or more
                                      where no digit is left, as on an undamped resonance
    RD_SINGULAR where the factorisation meets an exact zero, RD_CRITICAL_ELEMENT where an element has

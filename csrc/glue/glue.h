@@ -87,6 +87,7 @@ PyObject *py_count(PyObject *module, PyObject *arguments);
 PyObject *py_certify(PyObject *module, PyObject *arguments);
 PyObject *py_steps(PyObject *module, PyObject *arguments);
 PyObject *py_damped(PyObject *module, PyObject *arguments);
+PyObject *py_scales(PyObject *module, PyObject *arguments);
 PyObject *py_sweep(PyObject *module, PyObject *arguments);
 PyObject *py_triple(PyObject *module, PyObject *arguments);
 PyObject *py_mixed(PyObject *module, PyObject *arguments);

@@ -26,6 +26,7 @@ static PyMethodDef methods[] = {
      "certify(chain, wanted, upper, shaped) -> lambda, error, certified, shape, motion, found, "
      "sweeps, redone"},
     {"steps", py_steps, METH_VARARGS, "steps(chain, factor): of the longest walk"},
+    {"scales", py_scales, METH_VARARGS, "scales(chain, factor) -> (width, f) of motion"},
     {"sweep", py_sweep, METH_VARARGS,
      "sweep(chain, factor, drives, responses) -> value, error, frequencies solved"},
     {"damped", py_damped, METH_VARARGS,

@@ -45,6 +45,51 @@ done:
     return result;
 }
 
+/* z (width, count) of all frequencies; 0, or -1 and an exception */
+static int scales_fill(const struct rd_chain *chain, const struct rd_factors *factors, double *z)
+{
+    struct rd_runs runs;
+    struct rd_run *run = PyMem_RawMalloc((rd_runs_capacity(chain) + 1) * sizeof *run);
+    if (run == NULL) {
+        PyErr_NoMemory();
+        return -1;
+    }
+    rd_runs_find(chain, run, &runs);
+    for (size_t i = 0; i < factors->count; i++) {
+        const struct sweep_extent extent = rd_sweep_extent(factors, i);
+        double own[RD_WIDTH_MAX];
+        rd_sweep_receptance(chain, &runs, &extent, own);
+        for (size_t c = 0; c < chain->width; c++)
+            z[c * factors->count + i] = own[c];
+    }
+    PyMem_RawFree(run);
+    return 0;
+}
+
+PyObject *py_scales(PyObject *module, PyObject *arguments)
+{
+    (void)module;
+    struct py_chain parsed = {0};
+    PyArrayObject *factor = NULL;
+    PyObject *object[2], *z = NULL, *result = NULL;
+    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1))
+        return NULL;
+    if (py_chain_view(object[0], &parsed) < 0)
+        goto done;
+    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
+    if (factor == NULL)
+        goto done;
+    const struct rd_factors factors = factors_of(factor);
+    z = py_new(NPY_DOUBLE, 2, (npy_intp[]){(npy_intp)parsed.chain.width, (npy_intp)factors.count});
+    if (z != NULL && scales_fill(&parsed.chain, &factors, PyArray_DATA((PyArrayObject *)z)) == 0)
+        result = Py_NewRef(z);
+done:
+    Py_XDECREF(z);
+    Py_XDECREF(factor);
+    py_chain_release(&parsed);
+    return result;
+}
+
 /* the index of the frequency that has no answer, or the count of all; -1 and an exception */
 static npy_intp solve(PyObject *module, const struct py_response *response)
 {

@@ -15,7 +15,7 @@
 enum { W = RD_WIDTH_MAX };
 
 /* roundings of one entry of the band, a product of a few numbers, and of the refined solution */
-static const double ROUNDINGS = 4;
+static const double ROUNDINGS = 2;
 
 /* static receptances of a rope of the mean section and tension; z of a beam that is under tension
    too from both in parallel */

@@ -37,8 +37,8 @@ static double size_of(const double *factor)
    and so for x: receptances of the endless rope; a rigid element has no less than l/4B for beta.
    Below its first resonance a rope that can move as a rigid body does: where that receptance is the
    larger, I - U = -i f of the parts would be the small difference of large numbers without it. */
-static void characteristic(const struct rd_chain *chain, const struct rd_runs *runs,
-                           const struct sweep_extent *x, double *z)
+void rd_sweep_receptance(const struct rd_chain *chain, const struct rd_runs *runs,
+                         const struct sweep_extent *x, double *z)
 {
     const double section = 1.0 / x->section, T = runs->tension * x->tension;
     const double spring = x->spring, lambda = x->inertia;
@@ -160,7 +160,7 @@ void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,
         const size_t i = index[lane];
         double z[RD_WIDTH_MAX];
         load(chain, factors, lane, i, &all);
-        characteristic(chain, runs, extent + lane, z);
+        rd_sweep_receptance(chain, runs, extent + lane, z);
         for (size_t c = 0; c < w; c++)
             block->z[c][lane] = z[c];
     }

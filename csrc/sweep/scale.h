@@ -26,6 +26,11 @@ struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i);
 /* the largest of each of `count` extents, whose waves are no longer than any of theirs */
 struct sweep_extent rd_sweep_most(const struct sweep_extent *extent, size_t count);
 
+/* z (width): roots of the receptances that scale all coordinates of a sweep, u = z u^, f = f^/z
+   [sqrt(m/N), sqrt(1/(N m))] */
+void rd_sweep_receptance(const struct rd_chain *chain, const struct rd_runs *runs,
+                         const struct sweep_extent *x, double *z);
+
 /* Fills the block and both ways (forward, backward) for the frequencies index[0 .. RD_LANES - 1]
    of the factors, of sizes extent (RD_LANES). A lane depends on its own frequency alone. */
 void rd_sweep_scale(const struct rd_chain *chain, const struct rd_runs *runs,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Real
@@ -82,29 +83,34 @@ def spread(model: Compiled, responses: Sequence[Point]) -> list[Point]:
     return asked
 
 
-def gather(
-    model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
-) -> tuple[Complex, Real]:
+def gather(model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex) -> Complex:
     """Return what was asked for from the answers to `spread`."""
-    shape = (value.shape[0], len(responses), value.shape[2])
-    values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+    return _gathered(model, responses, value, lambda tip: root_rows(model, tip, factor)[0])
+
+
+def gather_error(
+    model: Compiled, responses: Sequence[Point], factor: Complex, value: Complex, error: Real
+) -> Real:
+    """Return the absolute errors of what `gather` returns."""
+    wrong = error + 8 * np.finfo(float).eps * np.abs(value)  # of the row itself
+    return _gathered(model, responses, wrong, lambda tip: np.abs(root_rows(model, tip, factor)[0]))
+
+
+def _gathered(
+    model: Compiled,
+    responses: Sequence[Point],
+    told: NDArray[Any],
+    row_of: Callable[[Tip], NDArray[Any]],
+) -> NDArray[Any]:
+    values = np.zeros((len(told), len(responses), told.shape[2]), dtype=told.dtype)
     at = 0
     for r, point in enumerate(responses):
         if not is_tip(point):
-            values[:, r], errors[:, r] = value[:, at], error[:, at]
+            values[:, r] = told[:, at]
             at += 1
             continue
         tip = tip_of(model, point)
         part = slice(at, at + len(tip.root))
         at = part.stop
-        row = root_rows(model, tip, factor)[0]
-        share = row * value[:, part]
-        # of the row itself a few roundings; what is 0 does not move the root
-        known = np.where(share == 0, 0.0, error[:, part])
-        wrong = np.abs(share) * (known + 8 * np.finfo(float).eps)
-        values[:, r] = share.sum(axis=1)
-        size = np.abs(values[:, r])
-        ratio = np.where(share.any(axis=1), np.inf, 0.0)
-        np.divide(wrong.sum(axis=1), size, out=ratio, where=size > 0)
-        errors[:, r] = ratio
-    return values, errors
+        values[:, r] = (row_of(tip) * told[:, part]).sum(axis=1)
+    return values

@@ -17,7 +17,8 @@ from ..chain.compiled import Compiled
 from ..chain.port import Point, Ports
 from ..response.closed import closed_response
 from ..response.question import damped_lines
-from ..response.solvers import SWEEP_SLICE, relative
+from ..response.rounding import EPS, bound_of, relative
+from ..response.solvers import SWEEP_SLICE
 from ..scene import damping
 from .closed import Component
 from .rows import Filled
@@ -148,10 +149,11 @@ def _response(
     steps = _core.steps(chain, np.ascontiguousarray(factor[:, [highest]]))
     if steps * count > SWEEP_SLICE:
         return None
-    value, error, solved = _core.sweep(chain, factor, pushed, watched)
+    value, _, solved = _core.sweep(chain, factor, pushed, watched)
     if solved < count:
         return None
     value.imag[..., ~damped_lines(chain, factor)] = 0.0  # only rounding is there
+    error = bound_of(chain, factor, pushed, watched) + 2 * EPS * np.abs(value)
     return value, relative(value, error)
 
 

@@ -53,9 +53,9 @@ class UndampedResponses:
         hertz = np.sqrt(np.abs(factor[INERTIA])) / (2 * np.pi)
         asked = tip.spread(model, self.responses)
         question = Question(model, self.component, hertz, factor, self.drives, asked, 1)
-        value, error = moves_ends(SOLVERS["sweep"])(question)
+        value, _ = moves_ends(SOLVERS["sweep"])(question)
         if any(map(tip.is_tip, self.responses)):
-            value, error = tip.gather(model, self.responses, factor, value, error)
+            value = tip.gather(model, self.responses, factor, value)
         return value
 
     def own(self, point: Point) -> Self:

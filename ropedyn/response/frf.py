@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
+
+import numpy as np
 
 from ..base.answer import TRANSIENT, Cost, Frozen, axes
 from ..base.array import Complex, Flags, Real
-from ..base.computed import Lazy, Read, computed, lazy
+from ..base.computed import Lazy, Read, changed, computed, lazy
 from ..base.errors import SceneError
+from ..base.unit import QUANTITIES
 from ..chain.port import Point
 from ..curves.curves import Curves
+from .rounding import TINY, relative
 
 
 class ResponseRates(Protocol):
@@ -36,6 +40,24 @@ class MeshOfResponse(Frozen):
 
 
 @dataclass(frozen=True, eq=False)
+class RoundingOfResponse(Frozen):
+    """How far rounding may have moved a response; see `FRF`."""
+
+    rounding_error: Real = field(metadata=axes("drive", "response", "frequency"))
+    rounding_limit: Real = field(metadata=axes("drive", "response", "frequency"))
+
+    @classmethod
+    def of(cls, value: Complex, limit: Real) -> RoundingOfResponse:
+        """Return what an absolute bound says."""
+        return cls(relative(value, limit), limit)
+
+    @classmethod
+    def of_relative(cls, value: Complex, error: Real) -> RoundingOfResponse:
+        """Return what a relative bound says."""
+        return cls(error, error * np.maximum(np.abs(value), TINY))
+
+
+@dataclass(frozen=True, eq=False)
 class FRF(Curves):
     """Frequency response: motion is Re(value exp(+i omega t)) per unit force.
 
@@ -54,7 +76,10 @@ class FRF(Curves):
         [m/N, rad/N, m/(N m), rad/(N m), of internal forces N/N and so on, per motion of an end
         m/m, rad/m and so on; and these per s or s^2].
     rounding_error : ndarray, as value
-        Estimated relative error that rounding causes.
+        Bound of the relative error that rounding causes, to first order, computed when it is first
+        asked for; infinite where only the value is 0.
+    rounding_limit : ndarray, as value
+        The same of the absolute error, in the unit of the value.
     mesh_error : ndarray, as value
         Relative error that the elements cause, computed when it is first asked for. Not an
         estimate: the distance to the response of the continuous spans of the same scene, and the
@@ -79,8 +104,8 @@ class FRF(Curves):
     quantity: str
     frequency: Real = field(metadata=axes("frequency", unit="Hz"))
     value: Complex = field(metadata=axes("drive", "response", "frequency"))
-    rounding_error: Real = field(metadata=axes("drive", "response", "frequency"))
     cost: Cost
+    rounding: Lazy[RoundingOfResponse] = lazy(RoundingOfResponse)
     mesh: Lazy[MeshOfResponse] = lazy(MeshOfResponse)
     solve_rates: Callable[[], ResponseRates] | None = field(
         default=None, repr=False, metadata=TRANSIENT
@@ -88,6 +113,8 @@ class FRF(Curves):
     decay: float = 0.0
     stable: Flags | None = field(default=None, metadata=axes("frequency"))
 
+    rounding_error = Read[Real]("rounding", "Bound of the relative error of rounding, as value.")
+    rounding_limit = Read[Real]("rounding", "Bound of the error of rounding, as value.")
     mesh_error = Read[Real]("mesh", "Relative error that the elements cause, as value.")
 
     @computed
@@ -99,6 +126,13 @@ class FRF(Curves):
                 "derivatives: compile the scene again and ask it for its frf"
             )
         return self.solve_rates()
+
+    def to(self, quantity: str) -> Self:
+        """Return the same response as another quantity; see `Curves.to`."""
+        found = super().to(quantity)
+        times = np.abs(self.s) ** (QUANTITIES[quantity] - QUANTITIES[self.quantity])
+        of = RoundingOfResponse.of
+        return changed(found, rounding=lambda: of(found.value, self.rounding_limit * times))
 
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.

@@ -327,8 +327,7 @@ class FrequencyRates:
         more = (damping.factors(own, omega) - damping.factors([], omega))[:, damping.INERTIA]
         inertia = factor[damping.INERTIA]
         lighter = np.divide(-more, inertia, out=np.zeros_like(more), where=inertia != 0)
-        none = np.zeros(value.shape)
-        changed, _ = tip.gather(self.model, self.responses, factor, value, none)
+        changed = tip.gather(self.model, self.responses, factor, value)
         wrong = np.full(changed.shape, np.inf)
         at = 0
         for r, point in enumerate(self.responses):

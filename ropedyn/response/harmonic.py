@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -23,11 +23,12 @@ from ..chain.place import observed, points
 from ..chain.port import Point, moving
 from ..scene import damping
 from ..scene.scene import Scene
-from .frf import FRF, MeshOfResponse
+from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .frf_rate import Answered, FrequencyRates
 from .modal_sum import Summed, modal_sum, refuse_other_damping
-from .moved_end import moves_ends
-from .question import Question, Solver, angular, workers_of
+from .moved_end import gathered, moves_ends
+from .question import Bound, Question, Solver, angular, workers_of
+from .rounding import relative
 from .solvers import SOLVERS
 
 
@@ -61,28 +62,29 @@ def solve_harmonic(
     start = time.perf_counter()
     whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers, decay)
     got = by_components(whole, partial(modal_sum if is_modal else line_by_line, solver=solve))
-    value, error, truncation = got.value.copy(), got.error, got.truncation
-    if any(map(tip.is_tip, responses)):
-        _, truncation = tip.gather(model, responses, factor, value, truncation)
-        value, error = tip.gather(model, responses, factor, value, error)
-    _refuse_overflow(f, value, error)
+    value = tip.gather(model, responses, factor, got.value)
+    _refuse_overflow(f, value)
     seconds = time.perf_counter() - start
-    if QUANTITIES[quantity] > 0:
-        value *= (1j * omega) ** QUANTITIES[quantity]
-    if not several:
-        value, error, truncation = value[0], error[0], truncation[0]
+    power = (1j * omega) ** QUANTITIES[quantity]
+    drive = slice(None) if several else 0
+    value = (value * power if QUANTITIES[quantity] else value)[drive]
+
+    def rounding() -> RoundingOfResponse:
+        error = told(model, responses, factor, got)[1][drive]
+        return RoundingOfResponse.of(value, error * np.abs(power))
+
     mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
     mesh = partial(mesh, decay=decay)
     if model.element == "continuous":
-        mesh = MeshOfResponse(truncation)
+        truncation = tip.gather_error(model, responses, factor, 0 * got.value, got.truncation)
+        mesh = MeshOfResponse(relative(value, truncation[drive] * np.abs(power)))
     return FRF(
         drive=drives,
         response=responses,
         quantity=quantity,
         frequency=f,
         value=value,
-        rounding_error=error,
         cost=Cost(
             seconds,
             solver,
@@ -92,6 +94,7 @@ def solve_harmonic(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh=mesh,
+        rounding=rounding,
         solve_rates=partial(
             FrequencyRates, model, omega, drives, responses, got.answered, got.value
         ),
@@ -103,20 +106,24 @@ class Receptance(NamedTuple):
     """Motion and internal forces per unit force, of all components."""
 
     value: Complex  # (drives, responses, f)
-    error: Real  # estimated relative error of rounding, as value
-    truncation: Real  # bound of the relative error that modes cause which are left out, as value
+    bounds: list[tuple[Any, Bound]]  # of rounding, of blocks of the value
+    truncation: Real  # bound of the error that modes cause which are left out, as value
     unknowns: int  # of the components that take part
     lines: int  # that were solved
     answered: list[Answered]
+
+    def error(self) -> Real:
+        """Bound what rounding does, as value."""
+        return gathered(self.value.shape, self.bounds)
 
 
 def by_components(whole: Question, answer: Callable[[Question], Summed]) -> Receptance:
     """Ask each component for what it has of the drives and responses; nothing else moves."""
     model, drives, responses = whole.model, whole.drives, whole.responses
     value = np.zeros((len(drives), len(responses), len(whole.frequency)), dtype=np.complex128)
-    error, truncation = np.zeros(value.shape), np.zeros(value.shape)
-    unknowns, lines = 0, 0
+    truncation, unknowns, lines = np.zeros(value.shape), 0, 0
     answered: list[Answered] = []
+    bounds: list[tuple[Any, Bound]] = []
     for component, free in zip(model.components, model.unknowns):
         d = [k for k, point in enumerate(drives) if moving(point) in component]
         r = [k for k, point in enumerate(responses) if moving(point) in component]
@@ -127,20 +134,29 @@ def by_components(whole: Question, answer: Callable[[Question], Summed]) -> Rece
         question = replace(whole, component=component, drives=pushed, responses=watched)
         got = answer(question)
         answered.append(Answered(question, got.parts))
-        value[block], error[block], truncation[block] = got.value, got.rounding, got.truncation
+        value[block], truncation[block] = got.value, got.truncation
+        bounds.append((block, got.rounding))
         unknowns += free
         lines += got.lines
-    return Receptance(value, error, truncation, unknowns, lines, answered)
+    return Receptance(value, bounds, truncation, unknowns, lines, answered)
 
 
 def line_by_line(question: Question, solver: Solver) -> Summed:
     """Solve at each frequency, with the damping that acts at it."""
-    value, error = solver(question)
-    return Summed(value, error, np.zeros(error.shape), len(question.frequency))
+    value, bound = solver(question)
+    return Summed(value, bound, np.zeros(value.shape), len(question.frequency))
 
 
-def _refuse_overflow(frequency: Real, value: Complex, error: Real) -> None:
-    wrong = ~np.isfinite(value) | np.isnan(error)
+def told(
+    model: Compiled, responses: Sequence[Point], factor: Complex, got: Receptance
+) -> tuple[Complex, Real]:
+    """Return what was asked for, tips of wires too, and what bounds its rounding."""
+    error = tip.gather_error(model, responses, factor, got.value, got.error())
+    return tip.gather(model, responses, factor, got.value), error
+
+
+def _refuse_overflow(frequency: Real, value: Complex) -> None:
+    wrong = ~np.isfinite(value)
     if wrong.any():
         bad = wrong.any(axis=(0, 1))
         first = float(frequency[bad][0])
@@ -166,8 +182,7 @@ def mesh_of_frf(
         return MeshOfResponse(np.full(value.shape, np.inf))
     true, uncertain = true.reshape(value.shape), uncertain.reshape(value.shape)
     size, known = np.abs(value), np.isfinite(true)
-    rounding = np.zeros(value.shape)
-    np.multiply(uncertain, np.abs(true), out=rounding, where=known & (true != 0))
+    rounding = np.where(known, uncertain, 0.0)
     relative = np.full(value.shape, np.inf)
     with np.errstate(over="ignore"):  # a value of denormal size
         np.divide(np.abs(value - true) + rounding, size, out=relative, where=known & (size > 0))
@@ -177,12 +192,13 @@ def mesh_of_frf(
 def _response(
     ask: Callable[[Real], FRF], frequency: Real, pairs: tuple[int, int]
 ) -> tuple[Complex, Real]:
-    """Return value and relative error, (drives, responses, f); NaN where there is no answer."""
+    """Return value and its error, (drives, responses, f); NaN where there is no answer."""
     # one frequency without an answer refuses all: halves are asked until it is alone
     try:
         answer = ask(frequency)
         # a sum over modes has an error beside rounding, continuous spans or not
-        return answer.value, answer.rounding_error + answer.mesh_error
+        beside = np.where(answer.value == 0, 0.0, answer.mesh_error) * np.abs(answer.value)
+        return answer.value, answer.rounding_limit + beside
     except SolveError:
         shape = (*pairs, len(frequency))
         if len(frequency) == 1:

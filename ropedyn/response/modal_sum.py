@@ -28,7 +28,7 @@ from ..chain.tip import is_tip
 from ..eigen.spectrum import HIGHEST, count_component, spectrum
 from ..scene import damping
 from .moved_end import refuse_moved_ends
-from .question import Question, Solver
+from .question import Bound, Question, Solver
 
 REACH, LEAST, MOST = 8.0, 64, 5_000
 """Modes below so many times the highest frequency are summed up, at least and at most so many."""
@@ -79,9 +79,8 @@ class Summed(NamedTuple):
     """Response of one component."""
 
     value: Complex  # (drives, responses, f)
-    rounding: Real  # Estimated relative error of rounding, as value
-    # Bound of the relative error that the modes cause which are left out, as value
-    truncation: Real
+    rounding: Bound  # What bounds the error of rounding
+    truncation: Real  # Bound of the error that the modes cause which are left out, as value
     lines: int  # Lines of the solver that it took
     parts: ModalParts | None = None  # Of a sum over modes
 
@@ -122,7 +121,7 @@ def modal_sum(question: Question, solver: Solver) -> Summed:
     neglected = np.maximum(size[..., None] * _most(poles, omega), missing * share)
     lines = (2 + ROUND // 2 * len(poles.eigenvalue)) * (1 + -(-len(own) // TOGETHER))
     parts = ModalParts(question, undamped_lines(question, poles), poles, residue.value)
-    return Summed(value, _over(error, value), _over(neglected, value), lines, parts)
+    return Summed(value, lambda: error, neglected, lines, parts)
 
 
 def sum_slope(parts: ModalParts, by_p: Complex, ratio: float) -> Complex:
@@ -280,8 +279,8 @@ def _taken_apart(
 ) -> tuple[Estimated, Estimated, Estimated]:
     """Return H(-s), the residues, (drives, responses, k), and H at the probe."""
     step = _steps(poles)
-    value, relative = solver(undamped_lines(question, poles))
-    error = np.where(value == 0, 0.0, relative) * np.abs(value)
+    value, bound = solver(undamped_lines(question, poles))
+    error = bound()
     around = (*value.shape[:2], *step.shape)
     residue = (-step * value[..., :-2].reshape(around)).real.mean(axis=-1)
     spread = (poles.radius[:, None] * error[..., :-2].reshape(around)).mean(axis=-1)
@@ -349,11 +348,3 @@ def _most(poles: UndampedPoles, omega: Real | Complex) -> Real:
     lost = 2 * poles.largest * np.sqrt(poles.beyond)
     above = np.hypot(np.abs(w**2 - d**2 + poles.shift) + lost * d, (lost + 2 * d) * w)
     return np.asarray(above / (poles.beyond - w**2))
-
-
-def _over(error: Real, value: Complex) -> Real:
-    """Return a relative error: 0 where both are 0, infinite where only the value is."""
-    size = np.abs(value)
-    ratio = np.full(size.shape, np.inf)
-    np.divide(error, size, out=ratio, where=size > 0)
-    return np.where((size == 0) & (error == 0), 0.0, ratio)

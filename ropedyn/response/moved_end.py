@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,8 @@ from ..base.unit import END
 from ..chain.chain import Chain
 from ..chain.compiled import Compiled
 from ..chain.port import Point
-from .question import Question, Solver
+from .question import Bound, Question, Solver
+from .rounding import EPS
 
 
 def is_end(drive: tuple[Any, ...]) -> bool:
@@ -43,39 +45,54 @@ def refuse_moved_ends(drives: Iterable[tuple[Any, ...]]) -> None:
 def moves_ends(solver: Solver) -> Solver:
     """Return a solver that takes the motion of ends as drives beside forces."""
 
-    def solve(question: Question) -> tuple[Complex, Real]:
+    def solve(question: Question) -> tuple[Complex, Bound]:
         drives, count = question.drives, len(question.frequency)
         ends = [k for k, drive in enumerate(drives) if is_end(drive)]
         if not ends:
             return solver(question)
         shape = (len(drives), len(question.responses), count)
-        value, error = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+        value = np.zeros(shape, dtype=np.complex128)
+        bounds: list[tuple[Any, Bound]] = []
         forces = [k for k in range(len(drives)) if k not in ends]
         if forces:
             pushed = [drives[k] for k in forces]
-            value[forces], error[forces] = solver(dataclasses.replace(question, drives=pushed))
+            value[forces], bound = solver(dataclasses.replace(question, drives=pushed))
+            bounds.append((forces, bound))
         for k in ends:
-            value[k], error[k] = _transmitted(question, drives[k], solver)
-        return value, error
+            value[k], bound = _transmitted(question, drives[k], solver)
+            bounds.append((k, bound))
+        return value, partial(gathered, shape, bounds)
 
     return solve
 
 
-def _transmitted(question: Question, end: Point, solver: Solver) -> tuple[Complex, Real]:
-    """Return the response per motion of one end and its relative error, (responses, f)."""
+def gathered(shape: tuple[int, ...], bounds: Iterable[tuple[Any, Bound]]) -> Real:
+    """Put bounds of some drives beside each other."""
+    error = np.zeros(shape)
+    for which, bound in bounds:
+        error[which] = bound()
+    return error
+
+
+def _transmitted(question: Question, end: Point, solver: Solver) -> tuple[Complex, Bound]:
+    """Return the response per motion of one end, (responses, f), and what bounds its rounding."""
     model, own = released(question.model, end)
     responses = question.responses
     asked = [own, *responses]
-    value, error = solver(dataclasses.replace(question, model=model, drives=[own], responses=asked))
+    value, bound = solver(dataclasses.replace(question, model=model, drives=[own], responses=asked))
     ratio = value[0, 1:] / value[0, :1]
-    # what is 0 stays so
-    relative = np.where(value[0, 1:] == 0, 0.0, error[0, 1:] + error[0, :1])
-    relative += np.where(ratio == 0, 0.0, 2 * np.finfo(float).eps)
     same = [k for k, point in enumerate(responses) if point == own]
-    ratio[same], relative[same] = 1.0, 0.0
+    ratio[same] = 1.0
     still = dataclasses.replace(question, drives=[], responses=responses)
     ratio.imag[:, ~still.is_damped] = 0.0  # only rounding is there
-    return ratio, relative
+
+    def bound_of_ratio() -> Real:
+        error, size = bound()[0], np.abs(ratio)
+        wrong = (error[1:] + size * error[:1]) / np.abs(value[0, :1]) + 2 * EPS * size
+        wrong[same] = 0.0
+        return np.asarray(wrong)
+
+    return ratio, bound_of_ratio
 
 
 def released(model: Compiled, end: tuple[Any, ...]) -> tuple[Compiled, Point]:

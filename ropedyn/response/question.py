@@ -85,8 +85,11 @@ class Question:
         )
 
 
-Solver = Callable[[Question], tuple[Complex, Real]]
-"""What answers it: motion per force, (drives, responses, f), with estimated errors."""
+Bound = Callable[[], Real]
+"""What computes, when it is asked, how far rounding may have moved a response."""
+
+Solver = Callable[[Question], tuple[Complex, Bound]]
+"""What answers it: motion per force, (drives, responses, f), and what bounds its rounding."""
 
 
 def angular(frequency: Real, decay: float) -> Real | Complex:

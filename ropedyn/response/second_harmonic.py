@@ -34,9 +34,10 @@ from ..chain.port import Point, cut, moving, ports
 from ..curves.resonance import Resonances
 from ..scene import damping
 from .fields import Fields
-from .frf import FRF, MeshOfResponse
+from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .harmonic import solve_harmonic
 from .question import Question
+from .rounding import EPS, bound_of, relative
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(10)
 TURN = 4.0  # All waves together turn by so much on a piece [rad]: the rule is right to rounding.
@@ -169,7 +170,7 @@ def solve_second(
         quantity=quantity,
         frequency=f,
         value=value,
-        rounding_error=error,
+        rounding=RoundingOfResponse.of_relative(value, error),
         cost=Cost(seconds, solver, len(model.x) - 1, model.size, sweeps=4 * len(f)),
         mesh=MeshOfResponse(np.zeros(value.shape)),
     )
@@ -351,9 +352,9 @@ def _rounding(fields: Fields, factor: Complex, at: Index) -> Real:
     component, x = fields.question.component, fields.x
     inside = float(x[at[len(at) * 3 // 8]])
     pushed = ports(fields.chain, x, component, [(moving(fields.question.drives[0]), inside)])
-    value, error, _ = _core.sweep(fields.chain, factor, pushed, pushed)
-    own = np.abs(value[0, 0])
-    return np.divide(error[0, 0], own, out=np.ones(len(own)), where=own > 0)
+    value = _core.sweep(fields.chain, factor, pushed, pushed)[0]
+    error = bound_of(fields.chain, factor, pushed, pushed) + EPS * np.abs(value)
+    return np.minimum(relative(value, error)[0, 0], 1.0)
 
 
 def _apart(once: Complex, again: Complex) -> Real:

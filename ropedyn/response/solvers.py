@@ -19,38 +19,31 @@ from ..chain.port import Point, Ports, is_force, local, locate, moving, ports
 from ..chain.reaction import at_start, first_left_end, tellers
 from ..scene import damping
 from .closed import closed_lines
-from .question import Question
+from .question import Bound, Question
+from .rounding import EPS, bound_of
 
 LANES = 16  # Frequencies that the sweep solves side by side.
-TINY = np.finfo(float).tiny  # The smallest normal number.
 SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
 """Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
+BOUND_SLICE = 1 << 18  # Pairs of loads times stations times frequencies, likewise.
 
 
-def relative(value: Complex, error: Real) -> Real:
-    """Return the relative error: 0 where both are 0, infinite where only the value is."""
-    # below the smallest normal number digits vanish however small the error is
-    size = np.abs(value)
-    ratio = np.where(error == 0, 0.0, np.inf)
-    np.divide(error + TINY, size, out=ratio, where=size > 0)
-    return ratio
-
-
-def _sweep(question: Question) -> tuple[Complex, Real]:
+def _sweep(question: Question) -> tuple[Complex, Bound]:
     """Take what is certain in closed form, and walk along the chain for the other lines."""
     model, drives, responses = question.model, question.drives, question.responses
     found = closed_lines(model.chain.only(question.component), question.factor, drives, responses)
     if found is None:
-        return _walk(question)
-    value, error, left = found.value[0], found.error[0], ~found.certain[0]
-    if left.any():
-        factor = np.ascontiguousarray(question.factor[:, left])
-        rest = replace(question, frequency=question.frequency[left], factor=factor)
-        value[..., left], error[..., left] = _walk(rest)
-    return value, error
+        value = _walk(question)
+    else:
+        value, left = found.value[0], ~found.certain[0]
+        if left.any():
+            factor = np.ascontiguousarray(question.factor[:, left])
+            rest = replace(question, frequency=question.frequency[left], factor=factor)
+            value[..., left] = _walk(rest)
+    return value, partial(_bound, question, value)
 
 
-def _walk(question: Question) -> tuple[Complex, Real]:
+def _walk(question: Question) -> Complex:
     chain, _ = question.cut
     steps = _core.steps(chain, question.fastest)
     if steps > max(MOST_STEPS, chain.nodes):
@@ -58,12 +51,43 @@ def _walk(question: Question) -> tuple[Complex, Real]:
             f"frequency {float(question.frequency.max())!r} Hz is too high: the rope has {steps} "
             f"pieces shorter than its waves, at most {MOST_STEPS} are walked"
         )
-    return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)
+    return _unassembled(question, partial(_core.sweep, chain), steps, SWEEP_SLICE)[0]
 
 
-def _band(question: Question) -> tuple[Complex, Real]:
+def _bound(question: Question, value: Complex) -> Real:
+    """Bound what rounding does to what was swept."""
     chain, _ = question.cut
-    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE)
+    pushed, watched, reactions = _ports(question)
+    loads = len(pushed.node) + len(watched.node)
+
+    def solve(part: slice) -> tuple[Real]:
+        factor = np.ascontiguousarray(question.factor[:, part])
+        return (bound_of(chain, factor, pushed, watched),)
+
+    size, count = loads**2 * chain.first.size * len(question.component), len(question.frequency)
+    (error,) = in_slices(solve, count, size, BOUND_SLICE, question.workers)
+    if reactions:
+        error = _reacting(question, error, sign=1.0)
+    _hold(question, error)
+    return error + 2 * EPS * (np.abs(value) + np.abs(_local(question)))
+
+
+def _band(question: Question) -> tuple[Complex, Bound]:
+    chain, _ = question.cut
+    value, error = _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE)
+    return value, lambda: error
+
+
+def _ports(question: Question) -> tuple[Ports, Ports, bool]:
+    """Return those of drives and of responses, and whether forces at the left end are told."""
+    chain, x = question.cut
+    component = question.component
+    direct = [p for p in question.responses if not at_start(x, p)]
+    reactions = len(direct) < len(question.responses)
+    asked = direct + (tellers(component, x) if reactions else [])
+    pushed = ports(chain, x, component, question.drives)
+    watched = pushed if asked == question.drives else ports(chain, x, component, asked)
+    return pushed, watched, reactions
 
 
 Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
@@ -71,13 +95,8 @@ Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
 
 def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple[Complex, Real]:
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
-    component, factor = question.component, question.factor
-    chain, x = question.cut
-    direct = [p for p in question.responses if not at_start(x, p)]
-    reactions = len(direct) < len(question.responses)
-    pushed = ports(chain, x, component, question.drives)
-    asked = direct + (tellers(component, x) if reactions else [])
-    watched = pushed if asked == question.drives else ports(chain, x, component, asked)
+    factor = question.factor
+    pushed, watched, reactions = _ports(question)
 
     def solve(part: slice) -> tuple[Complex, Real]:
         value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)
@@ -88,11 +107,13 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
     count = len(question.frequency)
     value, error = in_slices(solve, count, steps, size, question.workers)
     if reactions:
-        value, error = _with_reactions(question, value, error)
+        value = _reacting(question, value, sign=-1.0)
+        error = _reacting(question, error, sign=1.0)
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
-    _hold(question, value, error)
-    _add_local(question, value)
-    return value, relative(value, error)
+    _hold(question, value)
+    _hold(question, error)
+    value += _local(question)
+    return value, error
 
 
 def in_slices(
@@ -118,7 +139,7 @@ def in_slices(
     return tuple(np.concatenate(arrays, axis=-1) for arrays in zip(*found))
 
 
-def _hold(question: Question, value: Complex, error: Real) -> None:
+def _hold(question: Question, value: NDArray[Any]) -> None:
     """Set to 0 what is held, which rounding moves by its last digits."""
     chain, x = question.cut
 
@@ -130,39 +151,34 @@ def _hold(question: Question, value: Complex, error: Real) -> None:
 
     for k, point in enumerate(question.drives):
         if is_held(point):
-            value[k] = error[k] = 0.0
+            value[k] = 0.0
     for k, point in enumerate(question.responses):
         if is_held(point):
-            value[:, k] = error[:, k] = 0.0
+            value[:, k] = 0.0
 
 
-def _with_reactions(question: Question, value: Complex, error: Real) -> tuple[Complex, Real]:
-    """Put f_a = E f_b - Q u_a + P u_b of the first element where it was asked for."""
+def _reacting(question: Question, told: NDArray[Any], *, sign: float) -> NDArray[Any]:
+    """Put f_a = E f_b - Q u_a + P u_b of the first element, or its size, where it was asked for."""
     component, responses = question.component, question.responses
     chain, x = question.cut
     w = len(component)
     of = first_left_end(chain, question.factor)
-    given, left, right, force = np.split(np.arange(value.shape[1]), [-3 * w, -2 * w, -w])
-    reaction = np.einsum("kij,djk->dik", of.E, value[:, force])
-    reaction -= np.einsum("kij,djk->dik", of.Q, value[:, left])
-    reaction += np.einsum("kij,djk->dik", of.P, value[:, right])
-    spread = np.einsum("kij,djk->dik", np.abs(of.E), error[:, force])
-    spread += np.einsum("kij,djk->dik", np.abs(of.Q), error[:, left])
-    spread += np.einsum("kij,djk->dik", np.abs(of.P), error[:, right])
-    shape = (value.shape[0], len(responses), value.shape[2])
-    values, errors = np.zeros(shape, dtype=np.complex128), np.zeros(shape)
+    E, Q, P = (of.E, of.Q, of.P) if sign < 0 else map(np.abs, (of.E, of.Q, of.P))
+    given, left, right, force = np.split(np.arange(told.shape[1]), [-3 * w, -2 * w, -w])
+    reaction = np.einsum("kij,djk->dik", E, told[:, force])
+    reaction += sign * np.einsum("kij,djk->dik", Q, told[:, left])
+    reaction += np.einsum("kij,djk->dik", P, told[:, right])
+    found = np.zeros((len(told), len(responses), told.shape[2]), dtype=told.dtype)
     direct = iter(given)
     for k, point in enumerate(responses):
         if at_start(x, point):
-            at = component.index(moving(point))
-            values[:, k], errors[:, k] = reaction[:, at], spread[:, at]
+            found[:, k] = reaction[:, component.index(moving(point))]
         else:
-            at = next(direct)
-            values[:, k], errors[:, k] = value[:, at], error[:, at]
-    return values, errors
+            found[:, k] = told[:, next(direct)]
+    return found
 
 
-def _lapack(question: Question) -> tuple[Complex, Real]:
+def _lapack(question: Question) -> tuple[Complex, Bound]:
     if any(map(is_force, question.responses)):
         raise SceneError('solver must be "sweep" or "band" where an internal force is asked for')
     chain, x = question.cut
@@ -179,14 +195,17 @@ def _lapack(question: Question) -> tuple[Complex, Real]:
             "assembled stiffness"
         )
     value = np.ascontiguousarray(value.transpose(1, 2, 0))
-    _add_local(question, value)
-    return value, np.ascontiguousarray(rounding.transpose(1, 2, 0))
+    error = np.ascontiguousarray(rounding.transpose(1, 2, 0))
+    value += _local(question)
+    return value, lambda: error
 
 
-def _add_local(question: Question, value: Complex) -> None:
-    """Add the flexibility inside a driven element that is not cut."""
+def _local(question: Question) -> Complex:
+    """Return the flexibility inside driven elements that are not cut, as the response."""
+    shape = len(question.drives), len(question.responses), len(question.frequency)
+    value = np.zeros(shape, dtype=np.complex128)
     if question.model.element in EXACT:
-        return
+        return value
     chain, x = question.cut
     bends = "beta" in question.component
     for d, pushed in enumerate(question.drives):
@@ -194,8 +213,9 @@ def _add_local(question: Question, value: Complex) -> None:
         for r, watched in enumerate(question.responses):
             flexibility = local(chain, x, question.component, pushed, watched)
             if flexibility != 0:
-                value[d, r] += flexibility / question.factor[which]
+                value[d, r] = flexibility / question.factor[which]
+    return value
 
 
 SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
-"""What computes the response of one component: value and relative error, (drives, responses, f)."""
+"""What computes the response of one component, and what bounds its rounding when it is asked."""

@@ -90,9 +90,9 @@ static void one_mass_is_the_textbook_oscillator(void)
         CHECK_INT(solve(&ready, factor, &value, &rounding), RD_OK);
         const double tolerance = 16 * EPS * sizes / cabs(D);
         CHECK_ABS(cabs(value * D - 1), 0, tolerance, "a dozen roundings, terms of D cancel");
-        CHECK_REL(rounding, EPS * sizes / cabs(D), 64 * EPS * sizes / cabs(D),
+        CHECK_REL(rounding * cabs(D), EPS * sizes / cabs(D), 64 * EPS * sizes / cabs(D),
                   "eps |D| |h|: its formula, by hand");
-        CHECK_REL(ready.motion[0], rounding, 64 * EPS * sizes / cabs(D),
+        CHECK_REL(ready.motion[0], rounding * cabs(D), 64 * EPS * sizes / cabs(D),
                   "one coordinate is the whole motion");
     }
     ready_free(&ready);

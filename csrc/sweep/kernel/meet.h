@@ -36,7 +36,7 @@ static RD_CLONES void K_(listen)(const struct sweep_walk *s, const double *motio
 
 /* the solution where both parts meet, and the sizes its rounding grows with */
 struct K_(meeting) {
-    cv UR[SYM], inverse[FULL];   /* U_R seen forward, H^-1 */
+    cv UR[SYM], H[FULL];           /* U_R seen forward */
     lanes size[FULL], isize[FULL]; /* |H| term by term, |H^-1| */
     cv bL[W], bR[W];
     lanes cL[W], cR[W];          /* error of b_L, b_R per eps */
@@ -46,7 +46,7 @@ struct K_(meeting) {
 RD_INLINE void K_(couple)(const struct sweep_walk *s, const cv *UL, const cv *AL, const cv *right,
                           const lanes *AR, struct K_(meeting) *m)
 {
-    cv prod[FULL], H[FULL];
+    cv prod[FULL], adj[FULL], *H = m->H;
     KEEP for (int i = 0; i < W; i++)
         KEEP for (int j = i; j < W; j++)
             m->UR[at(i, j)] = c_scale(right[at(i, j)], s->way->sign[i] * s->way->sign[j]);
@@ -62,10 +62,48 @@ RD_INLINE void K_(couple)(const struct sweep_walk *s, const cv *UL, const cv *AL
                 size += 2.0 * c_size(UR[at(i, k)]) * c_size(UL[at(k, j)]);
             m->size[i * W + j] = size;
         }
-    const cv d = c_inverse(K_(adjugate)(H, m->inverse));
-    KEEP for (int i = 0; i < FULL; i++) {
-        m->inverse[i] = c_mul(m->inverse[i], d);
-        m->isize[i] = c_size(m->inverse[i]);
+    const cv d = c_inverse(K_(adjugate)(H, adj));
+    KEEP for (int i = 0; i < FULL; i++)
+        m->isize[i] = c_size(c_mul(adj[i], d));
+}
+
+/* row i of M (W, W + 1) <-> row k where its entry of column k is the larger one */
+RD_INLINE void K_(pivot)(cv *M, int i, int k)
+{
+    cv *a = M + i * (W + 1), *b = M + k * (W + 1);
+    const lane_mask larger = c_size(a[k]) > c_size(b[k]);
+    KEEP for (int j = k; j <= W; j++) {
+        const cv up = a[j], down = b[j];
+        a[j] = (cv){l_select(larger, down.re, up.re), l_select(larger, down.im, up.im)};
+        b[j] = (cv){l_select(larger, up.re, down.re), l_select(larger, up.im, down.im)};
+    }
+}
+
+/* H x = r, of H^T where turned. By elimination: next to a resonance Cramer's rule loses digits in
+   all directions, and this only along the mode, which a load at its node does not hear. */
+RD_INLINE void K_(solve)(const cv *H, int turned, const cv *r, cv *x)
+{
+    cv M[W * (W + 1)];
+    KEEP for (int i = 0; i < W; i++) {
+        KEEP for (int j = 0; j < W; j++)
+            M[i * (W + 1) + j] = turned ? H[j * W + i] : H[i * W + j];
+        M[i * (W + 1) + W] = r[i];
+    }
+    KEEP for (int k = 0; k < W; k++) {
+        KEEP for (int i = k + 1; i < W; i++)
+            K_(pivot)(M, i, k);
+        const cv *row = M + k * (W + 1), per = c_inverse(row[k]);
+        KEEP for (int i = k + 1; i < W; i++) {
+            const cv share = c_mul(M[i * (W + 1) + k], per);
+            KEEP for (int j = k + 1; j <= W; j++)
+                M[i * (W + 1) + j] = c_sub(M[i * (W + 1) + j], c_mul(share, row[j]));
+        }
+    }
+    KEEP for (int i = W - 1; i >= 0; i--) {
+        cv rest = M[i * (W + 1) + W];
+        KEEP for (int j = i + 1; j < W; j++)
+            rest = c_sub(rest, c_mul(M[i * (W + 1) + j], x[j]));
+        x[i] = c_mul(rest, c_inverse(M[i * (W + 1) + i]));
     }
 }
 
@@ -102,13 +140,8 @@ RD_INLINE void K_(load)(const struct sweep_walk *s, const double *motion, const 
             sR[i] += c_size(UL[at(i, k)]) * (l_abs(g) + l_abs(p));
         }
     }
-    KEEP for (int i = 0; i < W; i++) {
-        m->bL[i] = m->bR[i] = c_zero();
-        KEEP for (int k = 0; k < W; k++) {
-            m->bL[i] = c_add(m->bL[i], c_mul(m->inverse[i * W + k], rL[k]));
-            m->bR[i] = c_add(m->bR[i], c_mul(m->inverse[k * W + i], rR[k]));
-        }
-    }
+    K_(solve)(m->H, 0, rL, m->bL);
+    K_(solve)(m->H, 1, rR, m->bR);
     KEEP for (int i = 0; i < W; i++)
         KEEP for (int k = 0; k < W; k++) {
             sL[i] += m->size[i * W + k] * c_size(m->bL[k]);

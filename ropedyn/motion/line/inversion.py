@@ -75,7 +75,7 @@ class Line:
     forces: tuple[Force, ...]
     grid: Grid
     value: Complex  # (drives, responses, lines + 1)
-    error: Real  # of rounding, relative, as value
+    error: Real  # of rounding, as value
     decay: float  # e^(-a P)
 
     @classmethod
@@ -111,8 +111,7 @@ class Line:
         value += self._resting()
         for d, one in enumerate(self.forces):
             value += convolve(fast, d, one, run.time, order)
-        size = np.abs(self.value)
-        wrong = np.where(size > 0, size * self.error, 0.0) + EPS * np.abs(quick)
+        wrong = self.error + EPS * np.abs(quick)
         wrong = np.einsum("drk,dk->rk", wrong, np.abs(force))
         wrong = ROUNDING / grid.period * np.sqrt((wrong**2).sum(axis=1))
         rounding = np.multiply.outer(wrong, np.exp(grid.a * (run.time - grid.begin)))

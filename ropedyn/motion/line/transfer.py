@@ -12,7 +12,7 @@ from ...base.array import Complex, Real
 from ...chain import tip
 from ...chain.compiled import Compiled
 from ...chain.port import Point
-from ...response.harmonic import by_components, line_by_line
+from ...response.harmonic import by_components, line_by_line, told
 from ...response.moved_end import moves_ends
 from ...response.question import Question
 from ...response.solvers import SOLVERS
@@ -29,7 +29,7 @@ class Transfer:
     workers: int = 1  # threads
 
     def at(self, s: Complex) -> tuple[Complex, Real]:
-        """Return it and the error of rounding, relative, shape (drives, responses, n) each."""
+        """Return it and what bounds its rounding, shape (drives, responses, n) each."""
         factor = np.ascontiguousarray(damping.factors(self.model.scene.dampings, -1j * s).T)
         asked = tip.spread(self.model, self.responses)
         hertz = np.abs(s) / (2 * np.pi)
@@ -37,7 +37,4 @@ class Transfer:
         whole = Question(self.model, every, hertz, factor, list(self.drives), asked, self.workers)
         solve = partial(line_by_line, solver=moves_ends(SOLVERS["sweep"]))
         got = by_components(whole, solve)
-        value, error = got.value, got.error
-        if any(map(tip.is_tip, self.responses)):
-            value, error = tip.gather(self.model, self.responses, factor, value, error)
-        return value, error
+        return told(self.model, self.responses, factor, got)

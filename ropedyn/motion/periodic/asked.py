@@ -18,7 +18,7 @@ from ...base.unit import QUANTITIES, push_unit
 from ...chain.compiled import Compiled
 from ...chain.place import observed, points
 from ...chain.port import Point
-from ...response.frf import FRF, MeshOfResponse
+from ...response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ...response.harmonic import mesh_of_frf
 from ...scene.damping import having
 from ..request import why_direct
@@ -93,7 +93,7 @@ class SteppedSine:
             quantity=self.quantity,
             frequency=frequency,
             value=value,
-            rounding_error=error,
+            rounding=RoundingOfResponse.of_relative(value, error),
             cost=cost,
             mesh=mesh,
             stable=stable,

@@ -15,7 +15,7 @@ from ...base.array import Complex, Flags, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...base.table import Table
 from ...chain.port import Point
-from ...response.frf import FRF, MeshOfResponse
+from ...response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from .asked import SteppedSine
 from .balance import HarmonicBalance
 from .continuation import Place
@@ -98,13 +98,14 @@ class Branches(Answer):
         k = check.count(number, "number of a branch", least=least, most=most) % len(self)
         ends = np.append(self.first, len(self.frequency))
         part = slice(ends[k], ends[k + 1])
+        value = self.value[:, part]
         return FRF(
             self.drive,
             self.response,
             quantity=self.quantity,
             frequency=self.frequency[part],
-            value=self.value[:, part],
-            rounding_error=self.rounding_error[:, part],
+            value=value,
+            rounding=RoundingOfResponse.of_relative(value, self.rounding_error[:, part]),
             cost=self.cost,
             mesh=MeshOfResponse(self.mesh_error[:, part]),
             stable=self.stable[part],

@@ -183,17 +183,17 @@ class Driven:
             grip = np.einsum("fhp,pf->hf", H, push)
             push = np.concatenate([push[:m], grip, push[m:]])
         share = found.value * push[:, None]
-        known = found.rounding_error
+        known = found.rounding_limit
         if self.asked.model.element == "continuous":
-            known = known + found.mesh_error
-        known = np.where(share == 0, 0.0, known)
-        return share.sum(axis=0), (np.abs(share) * known).sum(axis=0)
+            beside = np.where(found.value == 0, 0.0, found.mesh_error)
+            known = known + beside * np.abs(found.value)
+        return share.sum(axis=0), (np.abs(push[:, None]) * known).sum(axis=0)
 
 
 def known_to(found: FRF) -> Real:
     """Return the relative error of responses, of the largest ones at each frequency, (f,)."""
     size = np.abs(found.value).reshape(-1, len(found.frequency))
-    wrong = size * np.where(size > 0, found.rounding_error.reshape(size.shape), 0.0)
+    wrong = found.rounding_limit.reshape(size.shape)
     return wrong.max(axis=0) / np.maximum(size.max(axis=0), np.finfo(float).tiny)
 
 
