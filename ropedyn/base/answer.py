@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import Field, dataclass, fields
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from . import check, extra
-from .atomic import replacing
+from .atomic import write_bytes
 from .drawing import draw
-from .errors import SceneError
+from .errors import SceneError, SolveError
 from .table import Table
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 KIND = "ropedyn"  # Attribute of a file that says which answer it holds.
 PREFIX = "ropedyn_"
 """Attributes that hold fields begin so: netCDF gives some names, as "coordinates", a meaning."""
+ABSENT = "ropedyn absent"  # Attribute that says which parts could not be computed, and why.
 
 
 @dataclass(frozen=True)
@@ -211,7 +214,8 @@ class Answer(Frozen):
         """
         variables: dict[str, Any] = {}
         attributes: dict[str, Any] = {KIND: type(self).__name__}
-        for item, value in leaves(self):
+        absent: dict[str, Any] = {}
+        for item, value in leaves(self, absent):
             if "axes" not in item.metadata:
                 attributes[PREFIX + item.name] = json.dumps(_plain(value))
                 continue
@@ -224,10 +228,16 @@ class Answer(Frozen):
             else:
                 # a leading axis that was not asked for is not there
                 variables[item.name] = (names[len(names) - np.ndim(value) :], value, unit)
+        if absent:
+            attributes[ABSENT] = json.dumps(absent)
         return extra.xarray().Dataset(variables, attrs=attributes)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the answer as a netCDF file, whole or not at all.
+
+        What cannot be computed, such as the energy of motion that has none, is absent in the file;
+        who reads it there gets the same error. Links are followed, permissions and owner kept; of
+        a file with several names (hard links) only this one gets the answer.
 
         Parameters
         ----------
@@ -239,7 +249,8 @@ class Answer(Frozen):
         ImportError
             If xarray or h5netcdf is missing.
         OSError
-            If the file cannot be written.
+            If the file cannot be written: the old one stays. What is no file, such as a folder or
+            a device, is refused.
 
         Examples
         --------
@@ -260,8 +271,17 @@ class Answer(Frozen):
             value = dataset[name]
             parts = np.stack([value.values.real, value.values.imag], axis=-1)
             dataset[name] = ((*value.dims, "re_im"), parts, value.attrs)
-        with replacing(path) as draft:
-            dataset.to_netcdf(draft, engine="h5netcdf")
+        write_bytes(path, _netcdf(dataset))
+
+
+def _netcdf(dataset: xr.Dataset) -> bytes:
+    """Return the file in memory: h5py ends the process where a disk is full."""
+    from xarray.backends import H5NetCDFStore
+
+    content = io.BytesIO()
+    with extra.h5netcdf().File(content, "w") as file:
+        dataset.dump_to_store(H5NetCDFStore(file))
+    return content.getvalue()
 
 
 def named(name: str) -> object:
@@ -326,23 +346,39 @@ def load(path: str | os.PathLike[str]) -> Answer:
         ) from error
 
 
-def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
-    """Yield the fields of an answer with their values, those of its nested parts among them."""
+def _refused(kind: str, words: str) -> Any:
+    """Say of a part that is absent in a file why it could not be computed."""
+    raise {"SceneError": SceneError, "SolveError": SolveError}[kind](words)
+
+
+def leaves(thing: Any, absent: dict[str, Any]) -> Iterator[tuple[Field[Any], Any]]:
+    """Yield the fields of an answer with their values, those of its nested parts among them.
+
+    Parts that cannot be computed are left out and named in `absent`, with their errors.
+    """
     for item in fields(thing):
         if "transient" in item.metadata:
             continue
+        try:
+            value = getattr(thing, item.name)
+        except (SceneError, SolveError) as error:
+            absent[item.name] = [type(error).__name__, str(error)]
+            continue
         if "nested" in item.metadata:
-            yield from leaves(getattr(thing, item.name))
+            yield from leaves(value, absent)
         else:
-            yield item, getattr(thing, item.name)
+            yield item, value
 
 
 def _rebuilt(kind: type[Any], dataset: Any) -> Any:
     arguments: dict[str, Any] = {}
+    absent = json.loads(dataset.attrs.get(ABSENT, "{}"))
     for item in fields(kind):
         if "transient" in item.metadata:
             continue
-        if "nested" in item.metadata:
+        if item.name in absent:
+            arguments[item.name] = partial(_refused, *absent[item.name])
+        elif "nested" in item.metadata:
             arguments[item.name] = _rebuilt(item.metadata["nested"], dataset)
         elif "axes" not in item.metadata:
             value = json.loads(dataset.attrs[PREFIX + item.name])

@@ -25,9 +25,14 @@ def xarray() -> ModuleType:
     return _need("xarray")
 
 
+def h5netcdf() -> ModuleType:
+    """Import what reads and writes netCDF."""
+    return _need("h5netcdf")
+
+
 def netcdf() -> ModuleType:
     """Import xarray and make sure of what it reads and writes netCDF with."""
-    _need("h5netcdf")
+    h5netcdf()
     _need("h5py")
     return xarray()
 
