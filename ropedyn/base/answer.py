@@ -17,6 +17,7 @@ from . import check, extra
 from .atomic import write_bytes
 from .drawing import draw
 from .errors import SceneError, SolveError
+from .reading import reading
 from .table import Table
 
 if TYPE_CHECKING:
@@ -326,24 +327,20 @@ def load(path: str | os.PathLike[str]) -> Answer:
     xarray = extra.netcdf()
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
-    try:
-        with xarray.open_dataset(file, engine="h5netcdf") as opened:
+    content = file.read_bytes()
+    with reading(file, "a netCDF file"):
+        with extra.h5py().File(io.BytesIO(content)) as opened:
+            dict(opened.attrs)  # what h5netcdf stumbles over when it opens and when it closes
+        with xarray.open_dataset(io.BytesIO(content), engine="h5netcdf") as opened:
             dataset = opened.load()
-    except (OSError, ValueError) as error:
-        raise SceneError(f"path must be a netCDF file, got {str(file)!r}: {error}") from error
     name = str(dataset.attrs.get(KIND, ""))
     with suppress(AttributeError):
         named(name)
     kind = Answer.kinds.get(name)
     if kind is None:
         raise SceneError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
-    try:
+    with reading(file, "a file that Answer.save wrote and nobody changed"):
         return _rebuilt(kind, dataset)
-    except (KeyError, TypeError, ValueError) as error:
-        raise SceneError(
-            f"path must be a file that Answer.save wrote and nobody changed, got {str(file)!r}: "
-            f"{error!r}"
-        ) from error
 
 
 def _refused(kind: str, words: str) -> Any:

@@ -30,10 +30,15 @@ def h5netcdf() -> ModuleType:
     return _need("h5netcdf")
 
 
+def h5py() -> ModuleType:
+    """Import what reads and writes HDF5."""
+    return _need("h5py")
+
+
 def netcdf() -> ModuleType:
     """Import xarray and make sure of what it reads and writes netCDF with."""
     h5netcdf()
-    _need("h5py")
+    h5py()
     return xarray()
 
 
