@@ -23,8 +23,8 @@ from .question import Question
 
 LANES = 16  # Frequencies that the sweep solves side by side.
 TINY = np.finfo(float).tiny  # The smallest normal number.
-SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
-"""Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
+SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 17
+"""Steps times frequencies of one call of the core: a look for Ctrl-C some times a second."""
 
 
 def relative(value: Complex, error: Real) -> Real:
@@ -63,13 +63,15 @@ def _walk(question: Question) -> tuple[Complex, Real]:
 
 def _band(question: Question) -> tuple[Complex, Real]:
     chain, _ = question.cut
-    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE)
+    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, 1)
 
 
 Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
 
 
-def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple[Complex, Real]:
+def _unassembled(
+    question: Question, core: Core, steps: int, size: int, lanes: int = LANES
+) -> tuple[Complex, Real]:
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     component, factor = question.component, question.factor
     chain, x = question.cut
@@ -86,7 +88,7 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
         return value, error
 
     count = len(question.frequency)
-    value, error = in_slices(solve, count, steps, size, question.workers)
+    value, error = in_slices(solve, count, steps, size, question.workers, lanes)
     if reactions:
         value, error = _with_reactions(question, value, error)
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
@@ -101,11 +103,12 @@ def in_slices(
     steps: int,
     most: int,
     workers: int,
+    lanes: int = LANES,
 ) -> tuple[NDArray[Any], ...]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
-    size = max(LANES, most // max(steps, 1) // LANES * LANES)
+    size = max(lanes, most // max(steps, 1) // lanes * lanes)
     if count * steps > most // 16:
-        size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
+        size = min(size, max(lanes, -(-count // workers // lanes) * lanes))
     parts = [slice(start, min(start + size, count)) for start in range(0, max(count, 1), size)]
     if workers == 1 or len(parts) == 1:
         found = [solve(part) for part in parts]
