@@ -15,7 +15,6 @@ from ..chain.port import Point
 from ..chain.spans import spans_of
 from ..eigen.closed import ClosedSpans, closed_form
 
-
 SLICE = 1 << 17  # So many lines of a row are solved in one call of the core: a look for Ctrl-C.
 
 

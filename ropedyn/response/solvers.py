@@ -63,14 +63,14 @@ def _walk(question: Question) -> tuple[Complex, Real]:
 
 def _band(question: Question) -> tuple[Complex, Real]:
     chain, _ = question.cut
-    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, 1)
+    return _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, lanes=1)
 
 
 Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
 
 
 def _unassembled(
-    question: Question, core: Core, steps: int, size: int, lanes: int = LANES
+    question: Question, core: Core, steps: int, size: int, *, lanes: int = LANES
 ) -> tuple[Complex, Real]:
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     component, factor = question.component, question.factor
@@ -88,7 +88,7 @@ def _unassembled(
         return value, error
 
     count = len(question.frequency)
-    value, error = in_slices(solve, count, steps, size, question.workers, lanes)
+    value, error = in_slices(solve, count, steps, size, question.workers, lanes=lanes)
     if reactions:
         value, error = _with_reactions(question, value, error)
     value.imag[..., ~question.is_damped] = 0.0  # only rounding is there
@@ -103,6 +103,7 @@ def in_slices(
     steps: int,
     most: int,
     workers: int,
+    *,
     lanes: int = LANES,
 ) -> tuple[NDArray[Any], ...]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
