@@ -1,5 +1,5 @@
 /* Certified modes and counts by sweeps along the chain. */
-#include "glue/watch.h"
+#include "glue/glue.h"
 
 #include "modes/certify/certify.h"
 #include "modes/count/count.h"

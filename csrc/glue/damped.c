@@ -1,5 +1,5 @@
 /* All rates of damped motion within a circle. */
-#include "glue/watch.h"
+#include "glue/glue.h"
 
 #include "damped/search.h"
 

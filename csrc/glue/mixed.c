@@ -1,6 +1,5 @@
 /* Frequency response and static deflection by the mixed form. */
 #include "glue/response.h"
-#include "glue/watch.h"
 
 #include "mixed/deflection.h"
 #include "mixed/frf.h"

@@ -1,5 +1,5 @@
 /* A thread that works without the GIL and looks for Ctrl-C now and then. */
-#include "glue/watch.h"
+#include "glue/glue.h"
 
 #include <math.h>
 #include <time.h>

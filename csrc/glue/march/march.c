@@ -1,7 +1,6 @@
 /* Implicit time steps. */
 #include "glue/march/march.h"
 
-#include "glue/watch.h"
 #include "march/run.h"
 #include "march/stage.h"
 
