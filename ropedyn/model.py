@@ -107,7 +107,7 @@ class Model(Compiled):
             csrc/assembled). The assembled stiffness loses digits as n^4: of the first frequency of
             a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
             grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
-            of a minute for so many, does not stop for Ctrl-C; all else does within a second.
+            of a minute for so many, does not stop for Ctrl-C.
         points : int, optional
             Of continuous spans: shapes are given at the ends of so many equal parts of each span
             or element, exactly; 16 to a half wave of the highest mode where left out.

@@ -97,7 +97,8 @@ def _functions(
             units = _units(file, number, _dataset(file, opened, number))
         if kind == FUNCTION and wanted(_dataset(file, opened, number, header_only=True)):
             fields = _dataset(file, opened, number)
-            _check(file, number, fields)
+            with reading(file, f"a universal file whose dataset {number} (from 0) is whole"):
+                _check(file, number, fields)
             found.append(FileFunction(number, fields, units))
     return found
 
