@@ -31,7 +31,11 @@ def load(scene: type[_Scene], path: str | os.PathLike[str]) -> _Scene:
     with reading(file, "a TOML file"):
         document = tomllib.loads(content.decode("utf-8-sig"))
     with reading(file, "a TOML file of a scene"):
-        return scene(**_arguments(document, {field.name for field in dataclasses.fields(scene)}))
+        try:
+            known = {field.name for field in dataclasses.fields(scene)}
+            return scene(**_arguments(document, known))
+        except TypeError as error:  # of a number that is text
+            raise SceneError(str(error)) from error
 
 
 def save(scene: Any, path: str | os.PathLike[str]) -> None:
