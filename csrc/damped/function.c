@@ -111,7 +111,7 @@ enum rd_status rd_function_at(struct rd_function *f, size_t count, const double 
     enum rd_status status = RD_OK;
     for (size_t first = 0; first < count && status == RD_OK; first += RD_LANES) {
         const size_t some = count - first < RD_LANES ? count - first : RD_LANES;
-        if (f->stop.asked && f->stop.asked(f->stop.context))
+        if (rd_stop_is_asked(&f->stop))
             return RD_INTERRUPTED;
         status = ask(f, some, s + first, value + first, magnitude + first);
     }

@@ -3,6 +3,7 @@
 #define RD_FUNCTION_H
 
 #include "base/status.h"
+#include "base/stop.h"
 #include "base/workspace.h"
 #include "chain/chain.h"
 
@@ -19,20 +20,14 @@ struct rd_damping {
    conjugate; -s where they depend on s^2 alone, as with a complex modulus and nothing else. */
 enum rd_mirror { RD_NO_MIRROR, RD_CONJUGATE, RD_OPPOSITE };
 
-/* asked between walks whether to go on no longer */
-struct rd_stop {
-    bool (*asked)(void *context); /* NULL: never */
-    void *context;
-};
-
 struct rd_function {
     const struct rd_chain *chain;
     struct rd_damping damping;
-    struct rd_stop stop;
-    double reach;    /* it may be asked for |s| below [rad/s] */
-    double rounding; /* of values */
-    size_t steps;    /* pieces shorter than the waves at its reach */
-    size_t sweeps;   /* how often it was asked */
+    struct rd_stop stop; /* asked between walks */
+    double reach;        /* it may be asked for |s| below [rad/s] */
+    double rounding;     /* of values */
+    size_t steps;        /* pieces shorter than the waves at its reach */
+    size_t sweeps;       /* how often it was asked */
     enum rd_mirror mirror;
     struct rd_characteristic *of;
 };

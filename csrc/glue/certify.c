@@ -40,10 +40,12 @@ PyObject *py_count(PyObject *module, PyObject *arguments)
     counts = py_new(NPY_DOUBLE, 1, PyArray_DIMS(lambda));
     if (counts == NULL || prepare(module, &parsed.chain, &workspace, &walk) < 0)
         goto done;
-    Py_BEGIN_ALLOW_THREADS
+    struct py_watch watch;
+    walk.stop = py_watch_begin(&watch);
     rd_count(&walk, (size_t)PyArray_SIZE(lambda), PyArray_DATA(lambda),
              PyArray_DATA((PyArrayObject *)counts));
-    Py_END_ALLOW_THREADS
+    if (py_watch_end(&watch) < 0)
+        goto done;
     const double *count = PyArray_DATA((PyArrayObject *)counts);
     for (npy_intp i = 0; i < PyArray_SIZE(lambda); i++)
         if (isnan(count[i])) {
@@ -62,7 +64,7 @@ done:
 enum { LAMBDA, ERROR, CERTIFIED, BRACKET, SHAPE, MOTION, ARRAYS };
 
 /* once with so much room; RD_NO_MEMORY where it is too little or, with an exception, there is none */
-static enum rd_status solve_in(const struct rd_walk *walk, size_t steps, size_t pieces,
+static enum rd_status solve_in(struct rd_walk *walk, size_t steps, size_t pieces,
                                struct rd_certified *modes)
 {
     struct rd_workspace workspace = {0};
@@ -70,17 +72,19 @@ static enum rd_status solve_in(const struct rd_walk *walk, size_t steps, size_t 
     enum rd_status status = RD_NO_MEMORY;
     rd_refine_take(walk, steps, pieces, &workspace, &refine);
     if (py_workspace_allocate(&workspace) == 0) {
-        Py_BEGIN_ALLOW_THREADS
+        struct py_watch watch;
+        walk->stop = py_watch_begin(&watch);
         rd_refine_take(walk, steps, pieces, &workspace, &refine);
         status = rd_certify(&refine, modes);
-        Py_END_ALLOW_THREADS
+        if (py_watch_end(&watch) < 0)
+            status = RD_INTERRUPTED;
     }
     PyMem_RawFree(workspace.base);
     return status;
 }
 
 /* solves for the modes; 0, or -1 and an exception */
-static int solve(PyObject *module, const struct rd_walk *walk, struct rd_certified *modes)
+static int solve(PyObject *module, struct rd_walk *walk, struct rd_certified *modes)
 {
     enum rd_status status = RD_NO_MEMORY;
     size_t steps, pieces, wanted = modes->wanted;

@@ -3,44 +3,11 @@
 
 #include "damped/search.h"
 
-#include <math.h>
-#include <time.h>
-
-/* a thread that works without the GIL and looks for Ctrl-C now and then */
-struct watch {
-    PyThreadState *thread;
-    double looked; /* [s] */
-};
-
-static const double PATIENCE = 0.05; /* [s] */
-
-static double now(void)
-{
-    struct timespec time;
-    timespec_get(&time, TIME_UTC);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-/* whether Python has a reason to stop, which then is its exception */
-static bool asked_to_stop(void *context)
-{
-    struct watch *watch = context;
-    const double time = now();
-    if (fabs(time - watch->looked) < PATIENCE)
-        return false;
-    watch->looked = time;
-    PyEval_RestoreThread(watch->thread);
-    const int stop = PyErr_CheckSignals();
-    watch->thread = PyEval_SaveThread();
-    return stop < 0;
-}
-
 /* with as much room as it takes; 0, or -1 and an exception */
 static int solve(PyObject *module, struct rd_search *search, PyObject **value, PyObject **error)
 {
-    struct watch watch = {.looked = now()};
+    struct py_watch watch;
     enum rd_status status = RD_NO_MEMORY;
-    search->stop = (struct rd_stop){asked_to_stop, &watch};
     while (status == RD_NO_MEMORY) {
         struct rd_workspace workspace = {0};
         const npy_intp room = (npy_intp)search->room;
@@ -55,15 +22,16 @@ static int solve(PyObject *module, struct rd_search *search, PyObject **value, P
             break;
         if (py_workspace_allocate(&workspace) < 0)
             return -1;
-        watch.thread = PyEval_SaveThread();
+        search->stop = py_watch_begin(&watch);
         status = rd_search(search, &workspace);
-        PyEval_RestoreThread(watch.thread);
         PyMem_RawFree(workspace.base);
+        if (py_watch_end(&watch) < 0)
+            return -1;
         if (status == RD_NO_MEMORY && search->count <= search->room)
             break;
         search->room = search->count;
     }
-    if (status != RD_OK && status != RD_INTERRUPTED)
+    if (status != RD_OK)
         py_raise(module, status);
     return status == RD_OK ? 0 : -1;
 }

@@ -13,6 +13,7 @@
 
 #include "assembled/system.h"
 #include "base/status.h"
+#include "base/stop.h"
 #include "base/workspace.h"
 #include "chain/chain.h"
 
@@ -66,6 +67,19 @@ void py_ports_release(struct py_ports *parsed);
 /* After a measuring pass: gives the workspace a block of what was counted.
    0, or -1 and MemoryError; the block is freed with PyMem_RawFree(workspace->base). */
 int py_workspace_allocate(struct rd_workspace *workspace);
+
+/* a thread that works without the GIL and looks for Ctrl-C now and then: glue/watch.c */
+struct py_watch {
+    PyThreadState *thread;
+    double looked; /* [s] */
+    bool stopped;
+};
+
+/* Releases the GIL; what the core asks from then on. */
+struct rd_stop py_watch_begin(struct py_watch *watch);
+
+/* Takes it again: 0, or -1 and the exception that Python had a reason to stop with. */
+int py_watch_end(struct py_watch *watch);
 
 /* a new uninitialised float64 array */
 PyObject *py_new(int type, int dimensions, const npy_intp *shape);

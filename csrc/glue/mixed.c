@@ -6,7 +6,7 @@
 
 /* solves frequency after frequency; how many before one that has no answer */
 static npy_intp solve_each(struct rd_mixed_frf *frf, const struct py_response *response,
-                           enum rd_status *status)
+                           const struct rd_stop *stop, enum rd_status *status)
 {
     const npy_intp count = response->count;
     const double _Complex *parts = PyArray_DATA(response->factor);
@@ -16,7 +16,9 @@ static npy_intp solve_each(struct rd_mixed_frf *frf, const struct py_response *r
         double _Complex factor[RD_PARTS];
         for (int k = 0; k < RD_PARTS; k++)
             factor[k] = parts[k * count + i];
-        *status = rd_mixed_frf_solve(frf, factor, (size_t)count, value + i, error + i);
+        *status = rd_stop_is_asked(stop)
+                      ? RD_INTERRUPTED
+                      : rd_mixed_frf_solve(frf, factor, (size_t)count, value + i, error + i);
         if (*status != RD_OK)
             return i;
     }
@@ -35,13 +37,14 @@ static npy_intp solve_all(PyObject *module, const struct py_response *response)
     rd_mixed_frf_prepare(chain, drives, responses, &frf, &workspace);
     if (py_workspace_allocate(&workspace) < 0)
         return -1;
-    enum rd_status status;
-    Py_BEGIN_ALLOW_THREADS
-    status = rd_mixed_frf_prepare(chain, drives, responses, &frf, &workspace);
+    struct py_watch watch;
+    const struct rd_stop stop = py_watch_begin(&watch);
+    enum rd_status status = rd_mixed_frf_prepare(chain, drives, responses, &frf, &workspace);
     if (status == RD_OK)
-        solved = solve_each(&frf, response, &status);
-    Py_END_ALLOW_THREADS
+        solved = solve_each(&frf, response, &stop, &status);
     PyMem_RawFree(workspace.base);
+    if (py_watch_end(&watch) < 0)
+        return -1;
     if (status == RD_OK || status == RD_SINGULAR)
         return solved;
     py_raise(module, status);

@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+enum { LOOK = 1 << 12 }; /* nodes times steps between two questions whether to stop */
+
 /* stage values continued to the end of the step: second order */
 static double continued(double g, double first, double second)
 {
@@ -83,14 +85,17 @@ static enum rd_status take_step(struct rd_march *march, struct rd_push *push,
 
 size_t rd_march_run(struct rd_march *march, const struct rd_push *push,
                     const struct rd_ports *responses, struct rd_steps *steps,
-                    enum rd_status *status)
+                    const struct rd_stop *stop, enum rd_status *status)
 {
+    const size_t often = 1 + LOOK / march->chain->nodes;
     struct rd_push now = *push;
     march->refined = steps->refined;
     *status = RD_OK;
     for (size_t step = 0; step < steps->count; step++) {
         double tension[2];
-        *status = take_step(march, &now, steps, step, tension);
+        *status = step % often == 0 && rd_stop_is_asked(stop) ? RD_INTERRUPTED : RD_OK;
+        if (*status == RD_OK)
+            *status = take_step(march, &now, steps, step, tension);
         if (*status != RD_OK)
             return step;
         report(march, responses, steps->g, continued(steps->g, tension[0], tension[1]),

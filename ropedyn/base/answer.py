@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import Field, dataclass, fields
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from . import check, extra
-from .atomic import replacing
+from .atomic import write_bytes
 from .drawing import draw
-from .errors import SceneError
+from .errors import SceneError, SolveError
+from .reading import reading
 from .table import Table
 
 if TYPE_CHECKING:
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 KIND = "ropedyn"  # Attribute of a file that says which answer it holds.
 PREFIX = "ropedyn_"
 """Attributes that hold fields begin so: netCDF gives some names, as "coordinates", a meaning."""
+ABSENT = "ropedyn absent"  # Attribute that says which parts could not be computed, and why.
 
 
 @dataclass(frozen=True)
@@ -214,7 +218,8 @@ class Answer(Frozen):
         """
         variables: dict[str, Any] = {}
         attributes: dict[str, Any] = {KIND: type(self).__name__}
-        for item, value in leaves(self):
+        absent: dict[str, Any] = {}
+        for item, value in leaves(self, absent):
             if "axes" not in item.metadata:
                 attributes[PREFIX + item.name] = json.dumps(_plain(value))
                 continue
@@ -227,10 +232,16 @@ class Answer(Frozen):
             else:
                 # a leading axis that was not asked for is not there
                 variables[item.name] = (names[len(names) - np.ndim(value) :], value, unit)
+        if absent:
+            attributes[ABSENT] = json.dumps(absent)
         return extra.xarray().Dataset(variables, attrs=attributes)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the answer as a netCDF file, whole or not at all.
+
+        What cannot be computed, such as the energy of motion that has none, is absent in the file;
+        who reads it there gets the same error. Links are followed, permissions and owner kept; of
+        a file with several names (hard links) only this one gets the answer.
 
         Parameters
         ----------
@@ -242,7 +253,8 @@ class Answer(Frozen):
         ImportError
             If xarray or h5netcdf is missing.
         OSError
-            If the file cannot be written.
+            If the file cannot be written: the old one stays. What is no file, such as a folder or
+            a device, is refused.
 
         Examples
         --------
@@ -263,8 +275,17 @@ class Answer(Frozen):
             value = dataset[name]
             parts = np.stack([value.values.real, value.values.imag], axis=-1)
             dataset[name] = ((*value.dims, "re_im"), parts, value.attrs)
-        with replacing(path) as draft:
-            dataset.to_netcdf(draft, engine="h5netcdf")
+        write_bytes(path, _netcdf(dataset))
+
+
+def _netcdf(dataset: xr.Dataset) -> bytes:
+    """Return the file in memory: h5py ends the process where a disk is full."""
+    from xarray.backends import H5NetCDFStore
+
+    content = io.BytesIO()
+    with extra.h5netcdf().File(content, "w") as file:
+        dataset.dump_to_store(H5NetCDFStore(file))
+    return content.getvalue()
 
 
 def named(name: str) -> object:
@@ -309,44 +330,55 @@ def load(path: str | os.PathLike[str]) -> Answer:
     xarray = extra.netcdf()
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
-    try:
-        with xarray.open_dataset(file, engine="h5netcdf") as opened:
+    content = file.read_bytes()
+    with reading(file, "a netCDF file"):
+        with extra.h5py().File(io.BytesIO(content)) as opened:
+            dict(opened.attrs)  # what h5netcdf stumbles over when it opens and when it closes
+        with xarray.open_dataset(io.BytesIO(content), engine="h5netcdf") as opened:
             dataset = opened.load()
-    except (OSError, ValueError) as error:
-        raise SceneError(f"path must be a netCDF file, got {str(file)!r}: {error}") from error
     name = str(dataset.attrs.get(KIND, ""))
     with suppress(AttributeError):
         named(name)
     kind = Answer.kinds.get(name)
     if kind is None:
         raise SceneError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
-    try:
+    with reading(file, "a file that Answer.save wrote and nobody changed"):
         return _rebuilt(kind, dataset)
-    except (KeyError, TypeError, ValueError) as error:
-        raise SceneError(
-            f"path must be a file that Answer.save wrote and nobody changed, got {str(file)!r}: "
-            f"{error!r}"
-        ) from error
 
 
-def leaves(thing: Any) -> Iterator[tuple[Field[Any], Any]]:
-    """Yield the fields of an answer with their values, those of its nested parts among them."""
-    kept = [item for item in fields(thing) if "transient" not in item.metadata]
-    for item in kept:
-        getattr(thing, item.name)  # what that costs is part of the cost
-    for item in kept:
+def _refused(kind: str, words: str) -> Any:
+    """Say of a part that is absent in a file why it could not be computed."""
+    raise {"SceneError": SceneError, "SolveError": SolveError}[kind](words)
+
+
+def leaves(thing: Any, absent: dict[str, Any]) -> Iterator[tuple[Field[Any], Any]]:
+    """Yield the fields of an answer with their values, those of its nested parts among them.
+
+    Parts that cannot be computed are left out and named in `absent`, with their errors.
+    """
+    known = {}
+    for item in (item for item in fields(thing) if "transient" not in item.metadata):
+        try:
+            known[item] = getattr(thing, item.name)  # what that costs is part of the cost
+        except (SceneError, SolveError) as error:
+            absent[item.name] = [type(error).__name__, str(error)]
+    for item in known:
+        value = getattr(thing, item.name)
         if "nested" in item.metadata:
-            yield from leaves(getattr(thing, item.name))
+            yield from leaves(value, absent)
         else:
-            yield item, getattr(thing, item.name)
+            yield item, value
 
 
 def _rebuilt(kind: type[Any], dataset: Any) -> Any:
     arguments: dict[str, Any] = {}
+    absent = json.loads(dataset.attrs.get(ABSENT, "{}"))
     for item in fields(kind):
         if "transient" in item.metadata:
             continue
-        if "nested" in item.metadata:
+        if item.name in absent:
+            arguments[item.name] = partial(_refused, *absent[item.name])
+        elif "nested" in item.metadata:
             arguments[item.name] = _rebuilt(item.metadata["nested"], dataset)
         elif "axes" not in item.metadata:
             value = json.loads(dataset.attrs[PREFIX + item.name])

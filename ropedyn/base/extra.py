@@ -25,10 +25,20 @@ def xarray() -> ModuleType:
     return _need("xarray")
 
 
+def h5netcdf() -> ModuleType:
+    """Import what reads and writes netCDF."""
+    return _need("h5netcdf")
+
+
+def h5py() -> ModuleType:
+    """Import what reads and writes HDF5."""
+    return _need("h5py")
+
+
 def netcdf() -> ModuleType:
     """Import xarray and make sure of what it reads and writes netCDF with."""
-    _need("h5netcdf")
-    _need("h5py")
+    h5netcdf()
+    h5py()
     return xarray()
 
 

@@ -14,6 +14,7 @@ from ..base import check
 from ..base.answer import axes
 from ..base.array import Complex, Real
 from ..base.errors import SceneError
+from ..base.reading import reading
 from ..base.unit import QUANTITIES, curve_unit, is_quantity
 from ..chain.port import Point
 from .curves import Curves
@@ -230,10 +231,8 @@ class Measured(Curves):
                 "skip": skip,
             },
         )
-        try:
+        with reading(path, "a whole file of responses"):
             return cls(**_decayed(given, decay)._asdict())
-        except SceneError as error:
-            raise SceneError(f"{path}: {error}") from error
 
     def _noise_around(self, response: int) -> Real | None:
         return by_differences(self.value[response])

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -104,17 +103,6 @@ def pieces_of(chain: Chain, eigenvalue: float) -> int:
     return int(_core.steps(chain, factor))
 
 
-def _in_threads(call: Callable[..., Any], nodes: int, *arguments: Any) -> Any:
-    """Call the core; long calls in a thread of their own, so that Ctrl-C is heard."""
-    if nodes < 10_000:
-        return call(*arguments)
-    executor = ThreadPoolExecutor(1)
-    try:
-        return executor.submit(call, *arguments).result()
-    finally:
-        executor.shutdown(wait=False)
-
-
 def _sweep(
     model: Compiled, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> ComponentModes:
@@ -149,8 +137,8 @@ def lowest(chain: Chain, number: int | None, limit: float, *, shaped: bool) -> C
         return ComponentModes(*found, None, True, Work())
     wanted = _count(chain, limit) if number is None else number
     wanted = wanted if chain.finite is None else min(wanted, chain.finite)
-    eigenvalue, error, certified, shape, motion, most, sweeps, redone = _in_threads(
-        _core.certify, max(chain.nodes, 100 * wanted), chain, wanted, _upper(limit), shaped
+    eigenvalue, error, certified, shape, motion, most, sweeps, redone = _core.certify(
+        chain, wanted, _upper(limit), shaped
     )
     if not np.isfinite(eigenvalue[:most]).all() or not np.isfinite(error[:most]).all():
         raise SolveError("the numbers of the modes overflow: check the units")

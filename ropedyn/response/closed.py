@@ -15,6 +15,8 @@ from ..chain.port import Point
 from ..chain.spans import spans_of
 from ..eigen.closed import ClosedSpans, closed_form
 
+SLICE = 1 << 17  # So many lines of a row are solved in one call of the core: a look for Ctrl-C.
+
 
 class Lines(NamedTuple):
     """Responses of rows, where they are certain."""
@@ -46,7 +48,11 @@ def closed_response(
     drag = 0.0 if chain.drag is None else float(chain.drag[0, 0])
     own = number[:, form.taken]
     at = [np.array([p[1] for p in some]) for some in points]
-    found = Lines(*_core.closed_response(own, factor, drag, *at))
+    parts = [
+        _core.closed_response(own, np.ascontiguousarray(factor[:, k : k + SLICE]), drag, *at)
+        for k in range(0, max(factor.shape[1], 1), SLICE)
+    ]
+    found = Lines(*(np.concatenate(part, axis=-1) for part in zip(*parts)))
     # at an end that is held the answer is 0, and beside the rope none
     length = own[:, :1]
     x = np.concatenate(at)

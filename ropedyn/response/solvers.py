@@ -23,8 +23,8 @@ from .question import Bound, Question
 from .rounding import EPS, bound_of
 
 LANES = 16  # Frequencies that the sweep solves side by side.
-SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 13
-"""Steps times frequencies of one call of the core: a look for Ctrl-C every few milliseconds."""
+SWEEP_SLICE, BAND_SLICE = 1 << 20, 1 << 17
+"""Steps times frequencies of one call of the core: a look for Ctrl-C some times a second."""
 BOUND_SLICE = 1 << 18  # Pairs of loads times stations times frequencies, likewise.
 
 
@@ -74,7 +74,7 @@ def _bound(question: Question, value: Complex) -> Real:
 
 def _band(question: Question) -> tuple[Complex, Bound]:
     chain, _ = question.cut
-    value, error = _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE)
+    value, error = _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, lanes=1)
     return value, lambda: error
 
 
@@ -93,7 +93,9 @@ def _ports(question: Question) -> tuple[Ports, Ports, bool]:
 Core = Callable[[Complex, Ports, Ports], tuple[Complex, Real, int]]
 
 
-def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple[Complex, Real]:
+def _unassembled(
+    question: Question, core: Core, steps: int, size: int, *, lanes: int = LANES
+) -> tuple[Complex, Real]:
     """Ask the core for motion and internal forces, `size` steps times frequencies at a time."""
     factor = question.factor
     pushed, watched, reactions = _ports(question)
@@ -105,7 +107,7 @@ def _unassembled(question: Question, core: Core, steps: int, size: int) -> tuple
         return value, error
 
     count = len(question.frequency)
-    value, error = in_slices(solve, count, steps, size, question.workers)
+    value, error = in_slices(solve, count, steps, size, question.workers, lanes=lanes)
     if reactions:
         value = _reacting(question, value, sign=-1.0)
         error = _reacting(question, error, sign=1.0)
@@ -122,11 +124,13 @@ def in_slices(
     steps: int,
     most: int,
     workers: int,
+    *,
+    lanes: int = LANES,
 ) -> tuple[NDArray[Any], ...]:
     """Solve slices of the frequencies, several at a time; the bits do not depend on them."""
-    size = max(LANES, most // max(steps, 1) // LANES * LANES)
+    size = max(lanes, most // max(steps, 1) // lanes * lanes)
     if count * steps > most // 16:
-        size = min(size, max(LANES, -(-count // workers // LANES) * LANES))
+        size = min(size, max(lanes, -(-count // workers // lanes) * lanes))
     parts = [slice(start, min(start + size, count)) for start in range(0, max(count, 1), size)]
     if workers == 1 or len(parts) == 1:
         found = [solve(part) for part in parts]

@@ -12,6 +12,7 @@ from ..base import check
 from ..base.atomic import write_bytes
 from ..base.errors import SceneError
 from ..base.parameter import Description, required
+from ..base.reading import reading
 from . import damping
 from .end import End
 from .gravity import Gravity
@@ -26,15 +27,15 @@ _Scene = TypeVar("_Scene", bound=Description)
 def load(scene: type[_Scene], path: str | os.PathLike[str]) -> _Scene:
     """Read a scene; see `Scene.load`."""
     file = check.path(path)
-    try:
-        document = tomllib.loads(file.read_text(encoding="utf-8"))
-    # not TOML, not UTF-8, a number of thousands of digits, thousands of brackets
-    except (ValueError, RecursionError) as error:
-        raise SceneError(f"{file} is not a TOML file: {error}") from error
-    try:
-        return scene(**_arguments(document, {field.name for field in dataclasses.fields(scene)}))
-    except (SceneError, TypeError) as error:
-        raise SceneError(f"{file}: {error}") from error
+    content = file.read_bytes()
+    with reading(file, "a TOML file"):
+        document = tomllib.loads(content.decode("utf-8-sig"))
+    with reading(file, "a TOML file of a scene"):
+        try:
+            known = {field.name for field in dataclasses.fields(scene)}
+            return scene(**_arguments(document, known))
+        except TypeError as error:  # of a number that is text
+            raise SceneError(str(error)) from error
 
 
 def save(scene: Any, path: str | os.PathLike[str]) -> None:

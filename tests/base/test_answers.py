@@ -488,14 +488,32 @@ def test_a_failing_save_leaves_the_old_file_and_no_other(name, tmp_path, monkeyp
     path = tmp_path / "answer.nc"
     path.write_text("old")
 
-    def full(self, draft, **_):
-        draft.write_bytes(b"half")
+    def full(self, content):
+        with self.open("wb") as file:
+            file.write(content[: len(content) // 2])
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(OSError, match="No space left"):
         PAIR[name].save(path)
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("answer.nc", "old")]
+
+
+@pytest.mark.parametrize("method", ["modal", "line", "events"])
+def test_what_cannot_be_computed_is_absent_in_the_file_too(method, tmp_path):
+    """No method but steps tells the energy of motion that an end drives."""
+    asked = {"drive": ("end", 0, "z"), "force": rd.Sine(1e-3, 20.0), "response": ("z", 0.3)}
+    model = rd.Scene(rd.Rope(2.0, 0.1, bending_stiffness=1.0), tension=1000.0).compile(elements=16)
+    history = model.transient(np.linspace(0.0, 0.1, 101), **asked, method=method)
+    with pytest.raises(rd.SceneError, match="energy") as refused:
+        history.energy  # noqa: B018
+    for k in range(2):  # what was loaded can be saved too
+        history.save(tmp_path / f"{k}.nc")
+        history = rd.load(tmp_path / f"{k}.nc")
+        with pytest.raises(rd.SceneError, match=re.escape(str(refused.value))):
+            history.energy  # noqa: B018
+        assert history.mesh_error.shape == (1, 101)
+        assert pickle.loads(pickle.dumps(history)).value.tolist() == history.value.tolist()
 
 
 def test_saving_replaces_the_file_and_leaves_nothing_else(tmp_path):

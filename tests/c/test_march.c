@@ -71,7 +71,8 @@ static enum rd_status go(struct run *run, const struct rd_push *push,
     enum rd_status status;
     steps->h = run->march.number->theta / steps->g;
     rd_march_load(&run->march, &run->motion);
-    const size_t made = rd_march_run(&run->march, push, responses, steps, &status);
+    const size_t made =
+        rd_march_run(&run->march, push, responses, steps, &(struct rd_stop){0}, &status);
     rd_march_unload(&run->march, &run->motion);
     CHECK((made == steps->count) == (status == RD_OK));
     return status;

@@ -296,7 +296,11 @@ def test_columns_are_named_or_numbered(tmp_path):
     [
         (TEXT, {"time": "t", "response": {"a2": POINTS[0]}}, "response must be names out of"),
         (TEXT, {"response": {"a1": POINTS[0]}}, r"time must be the column .* or rate stated in Hz"),
-        (TEXT, {"time": "t", "response": {"a1": POINTS[0]}, "unit": "N"}, "unit of 'a1' must be"),
+        (
+            TEXT,
+            {"time": "t", "response": {"a1": POINTS[0]}, "unit": "N"},
+            "unit of 'a1' in .* must be",
+        ),
         (TEXT, {"time": "t", "response": {}}, "response must say which channels"),
         (
             TEXT.replace("\n1/", "\n"),

@@ -404,7 +404,7 @@ DAMAGED = {
     "one number short": (function(labels=SI).replace("  3.000000000000e+00", "").encode(), "value"),
     "word for a number": (
         function(labels=SI).replace("3.0000", "three.").encode(),
-        "cannot be read",
+        "dataset 0 .from 0. can be read",
     ),
     "infinite": (function([1e300, 2j]).replace("e+300", "e+999").encode(), "must hold"),
     "VAX": (None, "byte order 1 and format 1"),

@@ -1306,7 +1306,7 @@ def bits(answer):
     """Bytes of every array of an answer but its cost."""
     if not isinstance(answer, rd.Answer):
         return flat(answer)
-    values = [v for item, v in leaves(answer) if item.name != "cost"]
+    values = [v for item, v in leaves(answer, {}) if item.name != "cost"]
     return flat(tuple(x for v in values for x in (v.values() if isinstance(v, dict) else (v,))))
 
 

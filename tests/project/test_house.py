@@ -80,6 +80,12 @@ def test_modules_fit_a_reader():
     assert sum(length.values()) <= MOST_IN_ALL
 
 
+def test_what_is_computed_when_read_has_one_mechanism():
+    """That of the standard library takes a lock before Python 3.12, which a fork can freeze."""
+    found = [path for path in MODULES if "cached_property" in path.read_text(encoding="utf-8")]
+    assert found == [ROOT / "ropedyn" / "base" / "computed.py"]
+
+
 def test_a_class_name_stands_for_one_thing():
     places = {}
     for path in MODULES:

@@ -357,7 +357,7 @@ NOT_TOML = {
 def test_what_is_not_toml_is_refused_by_file(what, tmp_path):
     path = tmp_path / "rope.toml"
     path.write_bytes(NOT_TOML[what])
-    with pytest.raises(rd.SceneError, match="is not a TOML file") as caught:
+    with pytest.raises(rd.SceneError, match="path must be a TOML file, got") as caught:
         rd.Scene.load(path)
     assert str(path) in str(caught.value)
 

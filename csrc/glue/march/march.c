@@ -105,11 +105,13 @@ PyObject *py_march(PyObject *module, PyObject *arguments)
         goto done;
     enum rd_status status;
     size_t made;
-    Py_BEGIN_ALLOW_THREADS
+    struct py_watch watch;
+    const struct rd_stop stop = py_watch_begin(&watch);
     rd_march_load(&march.march, &march.motion);
-    made = rd_march_run(&march.march, &march.push, &march.responses.ports, &steps, &status);
+    made = rd_march_run(&march.march, &march.push, &march.responses.ports, &steps, &stop, &status);
     rd_march_unload(&march.march, &march.motion);
-    Py_END_ALLOW_THREADS
+    if (py_watch_end(&watch) < 0)
+        goto done;
     if (status == RD_OK || status == RD_NO_CONVERGENCE)
         result = Py_BuildValue("OOOnd", read, energy, taken, (Py_ssize_t)made, steps.residual);
     else

@@ -135,6 +135,8 @@ static enum rd_status refine_singles(struct rd_work *work, size_t first, size_t 
         rd_refine_quotient(refine, pool.lambda, &quotient);
         if (!end_lanes(work, &quotient, &pool) && pool.next >= end)
             return RD_OK;
+        if (rd_stop_is_asked(&refine->walk->stop))
+            return RD_INTERRUPTED;
         shift_lanes(work, &quotient, &pool);
     }
 }

@@ -236,6 +236,13 @@ RD_INLINE void start(struct wave *wave, const struct rd_walk *walk)
     wave->turns -= free >= 2 ? 1 : 0;
 }
 
+/* before every so many legs; a leg of equal elements is short work however long it is */
+static _Bool is_asked_to_stop(const struct rd_walk *walk, size_t leg)
+{
+    enum { LEGS = 1 << 12 };
+    return leg % LEGS == 0 && rd_stop_is_asked(&walk->stop);
+}
+
 static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lambdas, double *counts)
 {
     lanes lambda, z[W], inverse[W], N[W][W], own = l_fill(0);
@@ -251,8 +258,9 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
     struct wave wave;
     start(&wave, walk);
     for (size_t r = 0; r < walk->legs; r++)
-        if (!leg_walk_whole(&wave, walk, walk->leg + r, lambda, z, &own) &&
-            !leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse, &own)) {
+        if (is_asked_to_stop(walk, r) ||
+            (!leg_walk_whole(&wave, walk, walk->leg + r, lambda, z, &own) &&
+             !leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse, &own))) {
             for (int k = 0; k < RD_LANES; k++)
                 counts[k] = NAN;
             return;

@@ -31,6 +31,8 @@ enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda)
 {
     enum rd_status (*const of[])(struct rd_refine *, const double *) = {rd_plan_1, rd_plan_2,
                                                                         rd_plan_3, rd_plan_4};
+    if (rd_stop_is_asked(&refine->walk->stop))
+        return RD_INTERRUPTED;
     return of[refine->walk->chain->width - 1](refine, lambda);
 }
 

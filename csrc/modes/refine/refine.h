@@ -47,7 +47,7 @@ void rd_refine_take(const struct rd_walk *walk, size_t steps, size_t pieces,
                     struct rd_workspace *workspace, struct rd_refine *refine);
 
 /* Plans the steps for all lambda (RD_LANES). RD_NO_MEMORY: more than fit, RD_SHORT_WAVES: more than
-   are walked. */
+   are walked, RD_INTERRUPTED. */
 enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda);
 
 /* One inverse iteration at lambda from the present x, or from a fixed load in the lanes whose bit of

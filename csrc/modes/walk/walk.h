@@ -3,6 +3,7 @@
 #define RD_WALK_H
 
 #include "base/status.h"
+#include "base/stop.h"
 #include "base/workspace.h"
 #include "chain/body.h"
 #include "chain/chain.h"
@@ -29,10 +30,11 @@ struct rd_walk {
     double flexibility[RD_WIDTH_MAX]; /* of the whole chain, one end held */
     double mass[RD_WIDTH_MAX];        /* sum of |M_ii|, the rope's own included */
     struct rd_body body;
-    double length;  /* [m] */
-    double bend;    /* [rad/N m] sum of l S_bb, 0 without z and beta together */
-    double tension; /* [N] mean */
-    double sag;     /* [1/m] mean of w/T */
+    double length;       /* [m] */
+    double bend;         /* [rad/N m] sum of l S_bb, 0 without z and beta together */
+    double tension;      /* [N] mean */
+    double sag;          /* [1/m] mean of w/T */
+    struct rd_stop stop; /* nothing at first; asked between and on long walks */
     double
         carried[RD_WIDTH_MAX]; /* the rope's own mass, of continuous elements; else nodes times the
                                      geometric mean of |M_ii| that are not 0 */

@@ -16,6 +16,7 @@ from ...base import check
 from ...base.array import Complex, Real
 from ...base.atomic import write_bytes
 from ...base.errors import SceneError
+from ...base.reading import reading
 from ...base.unit import QUANTITIES, named
 from ..motion_unit import EXAMPLES, scale, stated
 from . import Content
@@ -89,16 +90,16 @@ def read(
         )
     found = _columns(file, sheet, columns)
     meaning, factor = _meaning(file, drive, response, unit, quantity)
-    found["value"] = found["value"] * np.reshape(factor, (-1, 1))
+    with np.errstate(all="ignore"):  # what is not finite is refused by name
+        found["value"] = found["value"] * np.reshape(factor, (-1, 1))
     return Content(**found, **meaning)
 
 
 def text_of(file: Path) -> str:
     """Return the text of a file."""
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise SceneError(f"path must be a text file, got {str(file)!r}: {error}") from error
+    content = file.read_bytes()
+    with reading(file, "a text file"):
+        text = content.decode("utf-8-sig")
     if "\0" in text:
         raise SceneError(f"path must be a text file, got {str(file)!r} with bytes 0")
     return text
@@ -272,12 +273,8 @@ def _meaning(
 def _own(file: Path, text: str, drive: Any) -> Content:
     """Read what `write` wrote."""
     first, _, rest = text.partition("\n")
-    try:
+    with reading(file, "a file whose first line nobody changed"):
         head = _head(first.removeprefix(OWN))
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise SceneError(
-            f"path must be a file whose first line nobody changed, got {str(file)!r}: {error!r}"
-        ) from error
     there = f"one of those of {str(file)!r}, {', '.join(map(repr, head.drives))}"
     if drive is None and len(head.drives) > 1:
         raise SceneError(f"drive must be {there}, got None")

@@ -16,6 +16,7 @@ from ...base import check
 from ...base.array import Real
 from ...base.atomic import write_bytes
 from ...base.errors import SceneError
+from ...base.reading import reading
 from ...base.unit import FORCE_UNIT, MOTIONS, UNIT, label, place
 from ..motion_unit import RATES, side
 from . import uff
@@ -100,7 +101,9 @@ def _chosen(file: Path, said: Said, taken: Any, there: str) -> dict[str, Any]:
     for key, point in response.items():
         row, name = taken(key, "response"), f"response[{key!r}]"
         at = check.point(point, name, check.COORDINATES, None)
-        value, order = _scaled(row, _unit(said, key), UNIT[at[0]], f"unit of {key!r}")
+        value, order = _scaled(
+            row, _unit(said, key), UNIT[at[0]], f"unit of {key!r} in {str(file)!r}"
+        )
         of_unit = next((word for word, k in MOTIONS.items() if k == order), None)
         if None not in (quantity, of_unit) and quantity != of_unit:
             raise SceneError(f"quantity must be that of channel {key!r}, {of_unit}, got {quantity}")
@@ -108,10 +111,10 @@ def _chosen(file: Path, said: Said, taken: Any, there: str) -> dict[str, Any]:
         rows.append(value)
         points.append(at)
     found = {"response": points, "quantity": quantity or "acceleration", "value": np.array(rows)}
-    return found | _force(said, taken)
+    return found | _force(file, said, taken)
 
 
-def _force(said: Said, taken: Any) -> dict[str, Any]:
+def _force(file: Path, said: Said, taken: Any) -> dict[str, Any]:
     if said.force is None:
         return {}
     what = 'one channel and what it acts on, such as {"hammer": ("z", 9.0)}'
@@ -121,7 +124,9 @@ def _force(said: Said, taken: Any) -> dict[str, Any]:
     ((key, point),) = said.force.items()
     at = check.point(point, f"force[{key!r}]", check.COORDINATES, None)
     unit = said.unit.get(key) if isinstance(said.unit, Mapping) else None
-    value, _ = _scaled(taken(key, "force"), unit, FORCE_UNIT[at[0]], f"unit of {key!r}")
+    value, _ = _scaled(
+        taken(key, "force"), unit, FORCE_UNIT[at[0]], f"unit of {key!r} in {str(file)!r}"
+    )
     return {"force": value, "drive": at}
 
 
@@ -203,13 +208,11 @@ def _refuse_said(file: Path, said: Said) -> None:
 def _own_text(file: Path, text: str) -> RecordContent:
     first, _, rest = text.partition("\n")
     changed = f"path must be a file that nobody changed, got {str(file)!r}"
-    try:
+    with reading(file, "a file that nobody changed"):
         head = json.loads(first.removeprefix(OWN))
         points = [tuple(point) for point in head["response"]]
         drive = head["drive"] and tuple(head["drive"])
         said = (points, head["quantity"], head["rate"], tuple(head["notes"]))
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise SceneError(f"{changed}: {error!r}") from error
     sheet = sheet_of(file, rest, delimiter=",", decimal=".", comments="", skip=0)
     if sheet.numbers.shape[1] != 1 + len(points) + (drive is not None):
         raise SceneError(f"{changed} with {sheet.numbers.shape[1]} columns")
@@ -333,13 +336,12 @@ def _own_universal(
 ) -> RecordContent:
     changed = f"path must be a file that nobody changed, got {str(file)!r}"
     match = OWN_TIME.match(found[0].fields["id3"])
-    try:
-        assert match is not None
+    with reading(file, "a file that nobody changed"):
+        if match is None:
+            raise ValueError(found[0].fields["id3"])
         start, rate = float(match["start"]), float(match["rate"])
         points = [(m["name"], float(m["x"])) for m in own if m is not None]
-    except (AssertionError, ValueError) as error:
-        raise SceneError(f"{changed}: {found[0].fields['id3']!r}") from error
-    rows = np.array([record.fields["data"] for record in found], dtype=np.float64)
+        rows = np.array([record.fields["data"] for record in found], dtype=np.float64)
     kinds = [m["what"] for m in own if m is not None]
     pushed = kinds[-1] == "force"
     order = uff.MOTION.get(found[0].fields["ordinate_spec_data_type"])

@@ -14,6 +14,7 @@ from ...base.array import Complex, Real
 from ...base.atomic import replacing
 from ...base.errors import SceneError
 from ...base.extra import pyuff
+from ...base.reading import reading
 from ...base.unit import QUANTITIES, label
 from ...chain.port import Point
 from ..motion_unit import dimensions
@@ -71,7 +72,7 @@ def read(file: Path, wanted: Callable[[Fields], bool]) -> list[FileFunction]:
             f"path must be a whole universal file, got {str(file)!r}, whose dataset "
             f"{marks // 2} (from 0) has no end"
         )
-    opened = _tried(file, "its datasets", lambda: pyuff().UFF(str(file)))
+    opened = _opened(file)
     kinds = [int(kind) for kind in opened.get_set_types()]
     if 0 in kinds:
         raise SceneError(
@@ -96,14 +97,15 @@ def _functions(
             units = _units(file, number, _dataset(file, opened, number))
         if kind == FUNCTION and wanted(_dataset(file, opened, number, header_only=True)):
             fields = _dataset(file, opened, number)
-            _check(file, number, fields)
+            with reading(file, f"a universal file whose dataset {number} (from 0) is whole"):
+                _check(file, number, fields)
             found.append(FileFunction(number, fields, units))
     return found
 
 
 def nodes(file: Path, axis: str) -> dict[int, float]:
     """Read where the nodes of a file are along one of its axes [m]."""
-    opened = pyuff().UFF(str(file))
+    opened = _opened(file)
     found: dict[int, float] = {}
     units = None
     for number, kind in enumerate(opened.get_set_types().tolist()):
@@ -126,24 +128,14 @@ def nodes(file: Path, axis: str) -> dict[int, float]:
     return found
 
 
+def _opened(file: Path) -> Any:
+    with reading(file, "a universal file without damage"):
+        return pyuff().UFF(str(file))
+
+
 def _dataset(file: Path, opened: Any, number: int, **options: bool) -> Fields:
-    what = f"dataset {number} (from 0)"
-    # what overflows is infinite, and found by the check of the numbers
-    with np.errstate(all="ignore"):
-        return _tried(file, what, lambda: opened.read_sets(number, **options))
-
-
-def _tried(file: Path, what: str, read: Callable[[], Any]) -> Any:
-    """Read something; pyuff raises `Exception` itself for whatever it stumbles over."""
-    try:
-        return read()
-    except ImportError:
-        raise
-    except Exception as error:
-        raise SceneError(
-            f"path must be a universal file without damage, got {str(file)!r}: {what} cannot be "
-            f"read ({error})"
-        ) from error
+    with reading(file, f"a universal file whose dataset {number} (from 0) can be read"):
+        return opened.read_sets(number, **options)
 
 
 def _units(file: Path, number: int, fields: Fields) -> tuple[float, float]:

@@ -12,6 +12,7 @@ import numpy as np
 from ...base import check
 from ...base.array import Real
 from ...base.errors import SceneError
+from ...base.reading import reading
 from ...base.unit import QUANTITIES
 from ...chain.port import Point
 from ..motion_unit import Unit, dimensions, ratio, side, stated
@@ -230,7 +231,8 @@ def located(
     """Say where on the rope each record is and which way it counts."""
     own = [(record, m) for record in records if (m := OWN.match(record.fields["id2"]))]
     if positions is None and coordinate is None and len(own) == len(records):
-        return [_own(record, match) for record, match in own]
+        with reading(file, "a file that nobody changed"):
+            return [_own(record, match) for record, match in own]
     where = _positions(positions, records, file)
     lines = []
     for record in records:

@@ -12,8 +12,8 @@ import numpy as np
 from ...base import check
 from ...base.answer import TRANSIENT, Answer, axes
 from ...base.drawing import draw
-from ...base.errors import SceneError
 from ...base.progress import Progress
+from ...base.reading import reading
 from ...base.table import Table
 from ...base.unit import MOTIONS, label
 from ...chain.port import Point
@@ -228,10 +228,8 @@ class Record(Answer):
             "skip": skip,
         }
         motion = records.read(file, said, layout)
-        try:
+        with reading(path, "a whole file of a record"):
             return cls(**motion._asdict())
-        except SceneError as error:
-            raise SceneError(f"{path}: {error}") from error
 
     def write(self, path: str | os.PathLike[str], *, binary: bool = False) -> None:
         """Write the record in SI for other programs, whole or not at all.

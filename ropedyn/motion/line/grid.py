@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ...base.array import Complex, Index, Real
+from ...base.computed import computed
 
 EVEN = 1e-6  # Times whose steps differ by this part of one are even.
 FINEST = 64  # Lines reach so many times as far as the times resolve at first, at most.
@@ -81,7 +81,7 @@ class Grid:
         """The highest angular frequency [rad/s]."""
         return 2 * math.pi * self.lines / self.period
 
-    @cached_property
+    @computed
     def s(self) -> Complex:
         """The rates, shape (lines + 1,)."""
         return np.asarray(self.a + 2j * math.pi / self.period * np.arange(self.lines + 1))

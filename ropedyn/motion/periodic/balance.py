@@ -9,12 +9,12 @@ q_k e^(i k omega t) over -K..K, q_-k = conj q_k. Unknown are the real numbers Re
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ...base.array import Complex, Index, Real
+from ...base.computed import computed
 from .laws import Felt, PointForces
 from .transfer import PanelledTransfer
 
@@ -38,17 +38,17 @@ class HarmonicBalance:
     amplitude: float  # of the drive
     turn: int = 1  # the harmonic that drives
 
-    @cached_property
+    @computed
     def samples(self) -> int:
         """Of a period."""
         return int(2 ** np.ceil(np.log2(self.force.samples * self.harmonics)))
 
-    @cached_property
+    @computed
     def order(self) -> Real:
         """The harmonics 0..K."""
         return np.arange(self.harmonics + 1.0)
 
-    @cached_property
+    @computed
     def pairs(self) -> Index:
         """Where k - l is among the samples' harmonics, (K + 1, 2K + 1) for l = -K..K."""
         across = np.arange(-self.harmonics, self.harmonics + 1)

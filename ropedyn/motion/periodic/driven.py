@@ -7,12 +7,12 @@ It is compared with what friction can hold when the motion is known.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from ... import _core
 from ...base.array import Complex, Real
+from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
 from ...chain.port import Point
 from ...response.frf import FRF
@@ -64,14 +64,14 @@ class Driven:
         """Whether nothing acts but what is in proportion to motion."""
         return not self.points and not self.held
 
-    @cached_property
+    @computed
     def force(self) -> PointForces:
         """What acts on the points."""
         at = [self.points.index(one.point) for one in self.laws]
         laws = PointLaws(self.laws, at, len(self.points))
         return laws if self.tension is None else Together([laws, self.tension])
 
-    @cached_property
+    @computed
     def transfer(self) -> PanelledTransfer:
         """What points and drive move, (points and held, points and drive); forces where held."""
         return PanelledTransfer(self._transfer)
@@ -100,7 +100,7 @@ class Driven:
         points, amplitude = len(self.points), self.asked.amplitude
         return HarmonicBalance(self.transfer, self.force, points, harmonics * turn, amplitude, turn)
 
-    @cached_property
+    @computed
     def growing(self) -> int:
         """How many motions grow without what is not linear."""
         model = self.asked.model
@@ -108,7 +108,7 @@ class Driven:
         counts = [_core.count(model.chain.only(c), zero)[0] for c in model.components]
         return int(sum(counts))
 
-    @cached_property
+    @computed
     def keeps_time(self) -> bool:
         """Whether nothing but the drive depends on time."""
         pulsates = self.tension is not None and _pulsates(self.asked)
