@@ -241,9 +241,9 @@ static void carrying_make(struct carrying *c)
 static struct rd_refine refine_make(const struct rd_walk *walk, struct rd_workspace *workspace)
 {
     struct rd_refine refine;
-    rd_refine_take(walk, 200, 50, workspace, &refine);
+    rd_refine_take(walk, 200, 50, 1, workspace, &refine);
     *workspace = exact_workspace(workspace->used);
-    rd_refine_take(walk, 200, 50, workspace, &refine);
+    rd_refine_take(walk, 200, 50, 1, workspace, &refine);
     return refine;
 }
 
