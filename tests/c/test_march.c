@@ -170,7 +170,7 @@ static void a_clamp_inside_divides_the_rope(void)
 static void a_stiff_resonator_is_a_mass(void)
 {
     const int32_t kind[] = {RD_RESONATOR}, term[] = {MORE};
-    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 1e9, 0, 0};
+    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 1e9, 2e10, 0};
     double last[2][18];
     for (int resonates = 0; resonates < 2; resonates++) {
         struct run run = {.rope = rope_make(&cantilever)};
@@ -203,7 +203,7 @@ static void a_stiff_resonator_is_a_mass(void)
 static void the_same_steps_twice(void)
 {
     const int32_t kind[] = {RD_RESONATOR}, term[] = {MORE};
-    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 100, 0, 0.1};
+    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 100, 2000, 0.1};
     const double rate[] = {1e-4}, string[] = {3}, drag[] = {0.01};
     const int32_t law_node[] = {2, 5, 7}, law_kind[] = {RD_POWER, RD_STOP, RD_POWER};
     const double law_row[] = {1, 0, 0, 0, 0.5, 0, 0.5, 0, 0, 0, 1, 0};

@@ -65,6 +65,13 @@ void rd_refine_choose(struct rd_refine *refine, size_t block);
    are walked. */
 enum rd_status rd_refine_plan(struct rd_refine *refine, const double *lambda);
 
+/* Whether its form is linear in lambda: all steps are single elements without inertia of their own. */
+static inline _Bool rd_refine_is_linear(const struct rd_refine *refine)
+{
+    const struct rd_chain *chain = refine->walk->chain;
+    return chain->inertia == NULL && chain->attached == 0 && refine->steps + 1 == chain->nodes;
+}
+
 /* One inverse iteration at lambda from the present x, or from a fixed load in the lanes whose bit of
    `begin` is set. */
 void rd_refine_iterate(struct rd_refine *refine, const double *lambda, unsigned begin);
