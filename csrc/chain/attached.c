@@ -20,7 +20,8 @@ static double _Complex form_of(const struct rd_foot *foot, const double *moved, 
 
 /* A mass m on a spring k and a dashpot c: k'/k y is its motion, k' = k + s c,
        D = -lambda m k'/(k' - lambda m),
-   which is -w/e with w = lambda m k'/k and e = (k' - lambda m)/k. value: m, k, unused, c */
+   which is -w/e with w = lambda m k'/k and e = (k' - lambda m)/k, exactly 0 at its own lambda_0 = k/m
+   where nothing damps it. value: m, k, lambda_0, c */
 static void fill_resonator(const double *value, double _Complex inertia, double _Complex dashpot,
                            struct rd_foot *foot)
 {
@@ -28,7 +29,7 @@ static void fill_resonator(const double *value, double _Complex inertia, double 
     const double _Complex stiff = 1 + drag / value[1];
     *foot = (struct rd_foot){
         .weight = -force * stiff,
-        .gap = 1 + (force + drag) / value[1],
+        .gap = (value[2] + inertia) / value[2] + drag / value[1],
         .lever = {1},
         .tip = {stiff},
     };
@@ -37,7 +38,7 @@ static void fill_resonator(const double *value, double _Complex inertia, double 
 
 static double highest_of_resonator(const double *value)
 {
-    return value[1] / value[0];
+    return value[2];
 }
 
 /* e y y' - y v^T u' - y' v^T u */

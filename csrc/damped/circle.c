@@ -9,7 +9,7 @@ static const double PI = 3.14159265358979323846;
 /* radius in distances to the next root: what lies outside shows as powers of it */
 static const double CIRCLE = 0.03;
 /* noise in units of the last quarter of a series, where nothing else is left */
-static const double NOISE = 8;
+static const double NOISE = 5;
 /* the mean of the roots and each of them lie within these parts of the radius from the middle */
 static const double CENTERED = 0.05, INNER = 0.7;
 /* the argument of a value is believed to turn by less from one point to the next */
@@ -160,7 +160,7 @@ enum rd_status rd_circle_settle(struct rd_circle *c, struct rd_function *f, size
         spread(count, c->offset, fmax(NOISE * tail(c, samples) / smallest, f->rounding / least),
                error);
         for (size_t k = 0; k < count; k++)
-            error[k] = radius * error[k] + 4 * DBL_EPSILON * cabs(member[k]);
+            error[k] = radius * error[k] + 2.5 * DBL_EPSILON * cabs(member[k]);
         *settled = true;
         return RD_OK;
     }

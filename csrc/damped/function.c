@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-static const double ROUNDING = 4; /* of a value, in units of eps sqrt(steps) */
+static const double ROUNDING = 2.5; /* of a value, in units of eps sqrt(steps) */
 
 /* whether any part of what nodes of the chain carry has damping of its own */
 static bool resists(const struct rd_chain *chain, enum rd_attached_kind kind)

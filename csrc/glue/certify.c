@@ -70,11 +70,11 @@ static enum rd_status solve_in(struct rd_walk *walk, size_t steps, size_t pieces
     struct rd_workspace workspace = {0};
     struct rd_refine refine;
     enum rd_status status = RD_NO_MEMORY;
-    rd_refine_take(walk, steps, pieces, &workspace, &refine);
+    rd_refine_take(walk, steps, pieces, modes->blocks, &workspace, &refine);
     if (py_workspace_allocate(&workspace) == 0) {
         struct py_watch watch;
         walk->stop = py_watch_begin(&watch);
-        rd_refine_take(walk, steps, pieces, &workspace, &refine);
+        rd_refine_take(walk, steps, pieces, modes->blocks, &workspace, &refine);
         status = rd_certify(&refine, modes);
         if (py_watch_end(&watch) < 0)
             status = RD_INTERRUPTED;
@@ -88,10 +88,14 @@ static int solve(PyObject *module, struct rd_walk *walk, struct rd_certified *mo
 {
     enum rd_status status = RD_NO_MEMORY;
     size_t steps, pieces, wanted = modes->wanted;
-    for (bool most = false; status == RD_NO_MEMORY && !most && !PyErr_Occurred();
-         wanted = 4 * wanted + 4) {
+    for (bool most = false; status == RD_NO_MEMORY && !most && !PyErr_Occurred();) {
+        const size_t blocks = modes->blocks;
         most = rd_certify_size(walk, wanted, &steps, &pieces);
         status = solve_in(walk, steps, pieces, modes);
+        if (modes->blocks > blocks)
+            most = false;
+        else
+            wanted = 4 * wanted + 4;
     }
     if (PyErr_Occurred())
         return -1;
@@ -147,6 +151,7 @@ PyObject *py_certify(PyObject *module, PyObject *arguments)
     struct rd_certified modes = {
         .wanted = (size_t)wanted,
         .upper = upper,
+        .blocks = 1,
         .lambda = data[LAMBDA],
         .error = data[ERROR],
         .certified = data[CERTIFIED],

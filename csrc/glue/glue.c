@@ -22,7 +22,7 @@ static const char *text_of(enum rd_status status)
     case RD_NO_CONVERGENCE:
         return "the eigensolver did not converge";
     case RD_CLUSTER:
-        return "8 modes or more lie within a relative 1e-8 of each other and are not told apart";
+        return "512 modes or more lie within a relative 1e-8 of each other and are not told apart";
     case RD_FAST_GROWTH:
         return "compression makes the motion grow by more than one step resolves: use shorter "
                "steps";

@@ -32,7 +32,7 @@ static struct rd_chain carry(const int32_t *kind, const double *value)
 
 /* mass, E I/l^3, length */
 static const double wire[] = {3e-5, 0.03, 0.05, 0};
-static const double resonator[] = {0.01, 150, 0, 0};
+static const double resonator[] = {0.01, 150, 15000, 0};
 
 /* c_j has p^n/(4n + j)!: c_0'''' = c_0 in P, so that c_0^2 - .. = 0 of cosh and cos */
 static void test_krylovs_functions_keep_cosh_and_cos(void)
@@ -241,9 +241,9 @@ static void carrying_make(struct carrying *c)
 static struct rd_refine refine_make(const struct rd_walk *walk, struct rd_workspace *workspace)
 {
     struct rd_refine refine;
-    rd_refine_take(walk, 200, 50, workspace, &refine);
+    rd_refine_take(walk, 200, 50, 1, workspace, &refine);
     *workspace = exact_workspace(workspace->used);
-    rd_refine_take(walk, 200, 50, workspace, &refine);
+    rd_refine_take(walk, 200, 50, 1, workspace, &refine);
     return refine;
 }
 

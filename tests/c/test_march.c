@@ -174,7 +174,7 @@ static void a_stiff_resonator_is_a_mass(size_t node, bool refined)
     recipe.left = node > 0 ? "zb" : "";
     recipe.right = node > 0 ? "" : "zb";
     const int32_t kind[] = {RD_RESONATOR}, term[] = {MORE};
-    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 1e9, 0, 0};
+    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 1e9, 2e10, 0};
     double last[2][18];
     for (int resonates = 0; resonates < 2; resonates++) {
         struct run run = {.rope = rope_make(&recipe)};
@@ -213,7 +213,7 @@ static void the_same_steps_twice(int32_t end, int32_t law, int32_t carrier)
     recipe.left = end == 0 ? "zb" : "";
     recipe.right = end == 0 ? "" : "zb";
     const int32_t kind[] = {RD_RESONATOR}, term[] = {carrier};
-    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 100, 0, 0.1};
+    const double foot[] = {1, 0, 0, 1}, value[] = {0.05, 100, 2000, 0.1};
     const double rate[] = {1e-4}, string[] = {3}, drag[] = {0.01};
     const int32_t law_node[] = {law, 5, 7}, law_kind[] = {RD_POWER, RD_STOP, RD_POWER};
     const double law_row[] = {0.7, 0.01, 0.3, 0, 0.5, 0, 0.5, 0, 0, 0, 1, 0};

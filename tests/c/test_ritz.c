@@ -67,6 +67,7 @@ static void all_values_of_a_whole_space_come_back(size_t n)
 {
     static const char reason[] = "EPS times n and the condition of the vectors, below 1e3";
     double X[N * N], one[N], value[N], A[N * N], M[N * N], A0[N * N], M0[N * N], theta[N], C[N * N];
+    double work[2 * N * N];
     for (size_t i = 0; i < n; i++) {
         one[i] = 1;
         value[i] = (double)(i + 1);
@@ -77,7 +78,7 @@ static void all_values_of_a_whole_space_come_back(size_t n)
     gram(n, n, X, one, M);
     memcpy(A0, A, n * n * sizeof *A);
     memcpy(M0, M, n * n * sizeof *M);
-    CHECK_INT(rd_ritz(n, A, M, theta, C), n);
+    CHECK_INT(rd_ritz(n, A, M, theta, C, work), n);
     for (size_t i = 0; i < n; i++) {
         CHECK_REL(theta[i], value[i], 1e4 * EPS, reason);
         for (size_t j = 0; j < n; j++) {
@@ -92,12 +93,13 @@ static void lengths_of_the_vectors_do_not_matter(void)
 {
     const double length[] = {1e-80, 1, 1e80};
     double A[9] = {2, 1, 0, 1, 2, 1, 0, 1, 2}, M[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, theta[3], C[9];
+    double work[18];
     for (size_t i = 0; i < 3; i++)
         for (size_t j = 0; j < 3; j++) {
             A[i * 3 + j] *= length[i] * length[j];
             M[i * 3 + j] *= length[i] * length[j];
         }
-    CHECK_INT(rd_ritz(3, A, M, theta, C), 3);
+    CHECK_INT(rd_ritz(3, A, M, theta, C, work), 3);
     for (int k = -1; k <= 1; k++)
         CHECK_ABS(theta[k + 1], 2 + k * sqrt(2), 32 * EPS, "sums of nine products of size 2");
 }
@@ -107,10 +109,10 @@ static void dependent_vectors_are_left_out(void)
 {
     static const char reason[] = "rounding of the sum over a basis of condition 2";
     const double X[] = {1, 0, 1, 0, 0, 1, 1, 0}, value[] = {3, 7}, one[] = {1, 1};
-    double A[16], M[16], theta[4], C[16];
+    double A[16], M[16], theta[4], C[16], work[32];
     gram(2, 4, X, value, A);
     gram(2, 4, X, one, M);
-    CHECK_INT(rd_ritz(4, A, M, theta, C), 2);
+    CHECK_INT(rd_ritz(4, A, M, theta, C, work), 2);
     CHECK_REL(theta[0], 3, 64 * EPS, reason);
     CHECK_REL(theta[1], 7, 64 * EPS, reason);
     for (size_t j = 0; j < 2; j++)
@@ -119,24 +121,27 @@ static void dependent_vectors_are_left_out(void)
 
 static void vectors_without_mass_have_no_values(void)
 {
-    double A[4] = {1, 0, 0, 1}, M[4] = {0}, theta[2], C[4];
-    CHECK_INT(rd_ritz(2, A, M, theta, C), 0);
+    double A[4] = {1, 0, 0, 1}, M[4] = {0}, theta[2], C[4], work[8];
+    CHECK_INT(rd_ritz(2, A, M, theta, C, work), 0);
 }
 
-/* lane j of two is lane j + 1 less lane 7 and the others stay */
-static void lanes_are_combined_and_the_others_stay(void)
+/* of three vectors in two blocks, one lane after another: j < 2 is vector j + 1 less vector N */
+static void vectors_of_all_blocks_are_combined_and_the_others_stay(void)
 {
-    double C[N * 2] = {0};
-    lanes x[3];
-    C[1 * 2 + 0] = C[2 * 2 + 1] = 1;
-    C[7 * 2 + 0] = C[7 * 2 + 1] = -1;
-    for (int m = 0; m < 3; m++)
+    enum { COUNT = 3, FROM = N + 1, ROW = 4 };
+    double C[FROM * ROW] = {0};
+    lanes x[2 * COUNT];
+    C[1 * ROW + 0] = C[2 * ROW + 1] = 1;
+    C[N * ROW + 0] = C[N * ROW + 1] = -1;
+    for (int m = 0; m < 2 * COUNT; m++)
         for (int k = 0; k < N; k++)
             x[m][k] = 10 * m + k * k;
-    rd_ritz_combine(2, C, 3, x);
-    for (int m = 0; m < 3; m++)
-        for (int k = 0; k < N; k++)
-            CHECK_EXACT(x[m][k], k < 2 ? (k + 1) * (k + 1) - 49 : 10 * m + k * k);
+    rd_ritz_combine(FROM, 2, C, ROW, COUNT, COUNT, x);
+    for (int m = 0; m < COUNT; m++)
+        for (int k = 0; k < N; k++) {
+            CHECK_EXACT(x[m][k], k < 2 ? (k + 1) * (k + 1) - 10 * COUNT : 10 * m + k * k);
+            CHECK_EXACT(x[COUNT + m][k], 10 * (COUNT + m) + k * k);
+        }
 }
 
 int main(void)
@@ -149,6 +154,6 @@ int main(void)
     lengths_of_the_vectors_do_not_matter();
     dependent_vectors_are_left_out();
     vectors_without_mass_have_no_values();
-    lanes_are_combined_and_the_others_stay();
+    vectors_of_all_blocks_are_combined_and_the_others_stay();
     return check_report("test_ritz");
 }

@@ -30,9 +30,9 @@ static void *certify(void *given)
         .bracket = search->bracket,
     };
     rd_certify_size(search->walk, 100, &steps, &pieces);
-    rd_refine_take(search->walk, steps, pieces, &workspace, &refine);
+    rd_refine_take(search->walk, steps, pieces, 1, &workspace, &refine);
     workspace = exact_workspace(workspace.used);
-    rd_refine_take(search->walk, steps, pieces, &workspace, &refine);
+    rd_refine_take(search->walk, steps, pieces, 1, &workspace, &refine);
     search->status = rd_certify(&refine, &modes);
     free(workspace.base);
     return NULL;

@@ -615,3 +615,15 @@ def test_no_frequency_makes_anything_but_numbers_of_structures(f):
     model = taut(*parts, rope=BEAM).compile(elements=20)
     value = model.frf(f, drive=("z", 0.4), response=[("z", 0.4), ("wire", 0)]).value
     assert np.isfinite(value).all()
+
+
+@pytest.mark.parametrize("frequency", [1e-3, 0.1, 16.0, 37.3])
+@pytest.mark.parametrize("elements", [None, 10])
+def test_foot_of_an_undamped_resonator_stands_still_at_its_own_frequency(elements, frequency):
+    # a light and slow one too: its spring is infinite there, whatever its force is besides
+    part = rd.Resonator(0.4, 1e-3, frequency)
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[part]).compile(elements=elements)
+    value = model.frf([frequency], drive=("z", 0.4)).value[0, 0]
+    still = model.static({("z", 0.4): 1.0}).displacement.max()
+    # e = 1e-20 stands for 0: an eps of the string's own motion in k/(m omega^2) of 1e10
+    assert abs(value) < 1e-9 * still

@@ -15,6 +15,7 @@ struct rd_certified {
     size_t counts;     /* lambda counted */
     size_t iterations; /* inverse iterations, of RD_LANES modes together */
     size_t redone;     /* modes that counts did not confirm at first */
+    size_t blocks;     /* of vectors, that the widest cluster needs where there are fewer */
     double *lambda;    /* (wanted) increasing */
     double *error;     /* (wanted) bound of its rounding error [rad^2/s^2] */
     double *certified; /* (wanted) 1: the mode is between the counts of its bracket */

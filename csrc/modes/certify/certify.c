@@ -97,16 +97,6 @@ static size_t doubtful(const struct rd_work *work, size_t *index)
     return n;
 }
 
-/* whether as many modes lie together as there are lanes: counts do not tell them apart for certain */
-static bool is_crowded(const struct rd_work *work)
-{
-    const double *lambda = work->modes->lambda;
-    size_t n = 1;
-    for (size_t i = 1; i < work->search.wanted && n < LANES; i++)
-        n = lambda[i] - lambda[i - 1] <= RD_TOGETHER * fabs(lambda[i]) ? n + 1 : 1;
-    return n >= LANES;
-}
-
 static size_t unconfirmed(const struct rd_work *work)
 {
     size_t n = 0;
@@ -225,8 +215,6 @@ enum rd_status rd_certify(struct rd_refine *refine, struct rd_certified *modes)
     enum rd_status status = bracket(&work);
     if (status == RD_OK)
         status = refine_all(&work);
-    if (status == RD_OK && is_crowded(&work))
-        status = RD_CLUSTER;
     modes->counts = work.search.counts;
     modes->found = status == RD_OK ? work.search.wanted : 0;
     return status;

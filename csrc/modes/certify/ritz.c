@@ -2,10 +2,9 @@
 #include "modes/certify/ritz.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
-enum { N = RD_LANES, SWEEPS = 12 };
+enum { SWEEPS = 12 };
 
 /* squared size, relative to the largest, below which a combination of vectors is rounding */
 static const double DEPENDENT = 1e-12;
@@ -44,20 +43,26 @@ void rd_ritz_rotate(size_t n, double *A, double *V)
                 rotate(n, A, V, p, q);
 }
 
-/* Y (n, m) with Y^T M Y = I: the eigenvectors of the scaled M that are not rounding */
-static size_t basis(size_t n, double *M, double *Y)
+static void unit(size_t n, double *V)
 {
-    double scale[N], V[N * N] = {0}, most = 0;
-    size_t m = 0;
-    for (size_t i = 0; i < n; i++) {
-        scale[i] = M[i * n + i] > 0 ? 1 / sqrt(M[i * n + i]) : 0;
+    memset(V, 0, n * n * sizeof *V);
+    for (size_t i = 0; i < n; i++)
         V[i * n + i] = 1;
-    }
+}
+
+/* Y (n, m) with Y^T M Y = I: the eigenvectors V (n, n) of the scaled M that are not rounding */
+static size_t basis(size_t n, double *M, double *scale, double *V, double *Y)
+{
+    double most = 0;
+    size_t m = 0;
+    for (size_t i = 0; i < n; i++)
+        scale[i] = M[i * n + i] > 0 ? 1 / sqrt(M[i * n + i]) : 0;
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < i; j++)
             M[i * n + j] = M[j * n + i] = (M[i * n + j] + M[j * n + i]) / 2 * scale[i] * scale[j];
     for (size_t i = 0; i < n; i++)
         M[i * n + i] = scale[i] > 0;
+    unit(n, V);
     rd_ritz_rotate(n, M, V);
     for (size_t i = 0; i < n; i++)
         most = fmax(most, M[i * n + i]);
@@ -71,35 +76,44 @@ static size_t basis(size_t n, double *M, double *Y)
     return m;
 }
 
-/* B (m, m) = Y^T A Y, Y (n, n) of which m columns are used */
-static void project(size_t n, size_t m, const double *A, const double *Y, double *B)
+/* B (m, m) = Y^T A Y, Y (n, n) of which m columns are used; product (n, m) <- A Y */
+static void project(size_t n, size_t m, const double *A, const double *Y, double *product, double *B)
 {
-    for (size_t a = 0; a < m; a++)
-        for (size_t b = 0; b < m; b++) {
-            double sum = 0;
-            for (size_t i = 0; i < n; i++)
-                for (size_t j = 0; j < n; j++)
-                    sum += Y[i * n + a] * (A[i * n + j] + A[j * n + i]) / 2 * Y[j * n + b];
-            B[a * m + b] = sum;
+    memset(product, 0, n * m * sizeof *product);
+    memset(B, 0, m * m * sizeof *B);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            const double a = (A[i * n + j] + A[j * n + i]) / 2;
+            for (size_t b = 0; b < m; b++)
+                product[i * m + b] += a * Y[j * n + b];
         }
+    for (size_t i = 0; i < n; i++)
+        for (size_t a = 0; a < m; a++)
+            for (size_t b = 0; b < m; b++)
+                B[a * m + b] += Y[i * n + a] * product[i * m + b];
 }
 
-size_t rd_ritz(size_t n, double *A, double *M, double *theta, double *C)
+/* which is the least of the diagonal */
+static size_t least_of(size_t m, const double *B)
 {
-    double Y[N * N] = {0}, B[N * N] = {0}, V[N * N] = {0};
-    const size_t m = basis(n, M, Y);
-    project(n, m, A, Y, B);
-    for (size_t i = 0; i < m; i++)
-        V[i * m + i] = 1;
+    size_t least = 0;
+    for (size_t k = 1; k < m; k++)
+        if (B[k * m + k] < B[least * m + least])
+            least = k;
+    return least;
+}
+
+size_t rd_ritz(size_t n, double *A, double *M, double *theta, double *C, double *work)
+{
+    double *const Y = work, *const B = work + n * n, *const V = M;
+    const size_t m = basis(n, M, theta, B, Y);
+    project(n, m, A, Y, C, B);
+    unit(m, V);
     rd_ritz_rotate(m, B, V);
-    bool taken[N] = {false};
     for (size_t j = 0; j < m; j++) {
-        size_t least = m;
-        for (size_t k = 0; k < m; k++)
-            if (!taken[k] && (least == m || B[k * m + k] < B[least * m + least]))
-                least = k;
-        taken[least] = true;
+        const size_t least = least_of(m, B);
         theta[j] = B[least * m + least];
+        B[least * m + least] = INFINITY;
         for (size_t i = 0; i < n; i++) {
             C[i * n + j] = 0;
             for (size_t k = 0; k < m; k++)
@@ -109,15 +123,18 @@ size_t rd_ritz(size_t n, double *A, double *M, double *theta, double *C)
     return m;
 }
 
-void rd_ritz_combine(size_t n, const double *C, size_t count, lanes *x)
+void rd_ritz_combine(size_t from, size_t to, const double *C, size_t row, size_t count,
+                     size_t apart, lanes *x)
 {
+    double old[RD_RITZ_MOST];
     for (size_t m = 0; m < count; m++) {
-        lanes y = x[m];
-        for (size_t j = 0; j < n; j++) {
-            y[j] = 0;
-            for (size_t i = 0; i < N; i++)
-                y[j] += C[i * n + j] * x[m][i];
+        for (size_t i = 0; i < from; i++)
+            old[i] = x[m + i / RD_LANES * apart][i % RD_LANES];
+        for (size_t j = 0; j < to; j++) {
+            double sum = 0;
+            for (size_t i = 0; i < from; i++)
+                sum += old[i] * C[i * row + j];
+            x[m + j / RD_LANES * apart][j % RD_LANES] = sum;
         }
-        x[m] = y;
     }
 }

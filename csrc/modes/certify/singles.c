@@ -7,7 +7,7 @@ enum { LANES = RD_LANES, ATTEMPTS = 12 };
 
 static const double CONVERGED = 1e-13; /* last step of the quotient by the gap, for the shape */
 static const double SETTLED = 1e-6;    /* for the value alone, which is right to its square */
-static const double CURVED = 1e-8;     /* where pieces have waves, whose forms are not linear */
+static const double CURVED = 1e-8;     /* where pieces move inside, whose forms are not linear */
 static const double SPREAD = 1e6;      /* of lambda in one iteration, which shares its scales */
 static const double NOISE = 8;         /* what of its bound a quotient is wrong by at most times */
 
@@ -17,7 +17,7 @@ static bool has_settled(const struct rd_work *work, size_t i, const struct rd_qu
                         const double *lambda, size_t k)
 {
     const double value = quotient->lambda[k];
-    const double alone = work->refine->walk->chain->inertia ? CURVED : SETTLED;
+    const double alone = rd_refine_is_linear(work->refine) ? SETTLED : CURVED;
     const double near = work->modes->shape ? CONVERGED : alone;
     const double gap = fmin(value - work->search.low[i], work->search.high[i] - value);
     return gap >= 0 && fabs(value - lambda[k]) <= fmax(near * gap, quotient->error[k] / NOISE);

@@ -30,7 +30,7 @@ RD_INLINE lanes foot_pull(const struct rd_refine *r, size_t k, const struct foot
     lanes load = l_fill(0);
     if (begin != RD_ALL_LANES)
         load = foot_dot(foot->dv, u) - foot->de * r->y[k];
-    return begin ? l_select(lanes_of(begin), fixed_load(FAR + k, 0), load) : load;
+    return begin ? l_select(lanes_of(begin), fixed_load(r->block, FAR + k, 0), load) : load;
 }
 
 /* x = U v and 1/(e - i w v^T x) */

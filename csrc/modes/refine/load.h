@@ -7,12 +7,14 @@
 #include <stdint.h>
 
 /* A load that no mode is free of, the same for every run: the hash of splitmix64 (Steele, Lea, Flood
-   2014), since what repeats from lane to lane could not tell a cluster's modes apart. */
-RD_INLINE lanes fixed_load(size_t m, int i)
+   2014), since what repeats from lane to lane or block to block could not tell a cluster's modes
+   apart. */
+RD_INLINE lanes fixed_load(size_t block, size_t m, int i)
 {
     lanes p = {0};
     for (int k = 0; k < RD_LANES; k++) {
         uint64_t x = ((uint64_t)m * W + (uint64_t)i) * RD_LANES + (uint64_t)k + 1;
+        x += (uint64_t)block << 48;
         x *= 0x9E3779B97F4A7C15u;
         x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
         x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
@@ -42,7 +44,7 @@ RD_INLINE void load(const struct rd_refine *r, size_t m, const struct rate *rate
             d[i] += rate->dD[i][j] * u[j] + rate->dG[i][j] * f[j];
         }
         if (begin) {
-            p[i] = l_select(lanes_of(begin), fixed_load(m, i), p[i]);
+            p[i] = l_select(lanes_of(begin), fixed_load(r->block, m, i), p[i]);
             d[i] = l_select(lanes_of(begin), l_fill(0), d[i]);
         }
     }

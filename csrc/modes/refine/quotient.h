@@ -103,42 +103,58 @@ void WIDTH(quotient)(struct rd_refine *r, const double *lambdas, struct rd_quoti
     quotient_lanes(r, lambdas, quotient);
 }
 
-/* A_kj += x_k y_j */
-RD_INLINE void gram_add(lanes x, lanes y, double *A)
+/* A_kj += x_k y_j, rows n apart */
+RD_INLINE void gram_add(lanes x, lanes y, size_t n, double *A)
 {
-    for (int k = 0; k < RD_LANES; k++)
-        for (int j = 0; j < RD_LANES; j++)
-            A[k * RD_LANES + j] += x[k] * y[j];
+    for (size_t k = 0; k < RD_LANES; k++)
+        for (size_t j = 0; j < RD_LANES; j++)
+            A[k * n + j] += x[k] * y[j];
 }
 
-void WIDTH(gram)(struct rd_refine *r, const double *lambdas, double *A, double *M)
+/* what step m, its residuals and M x those of the block at work, adds to the products with a block */
+RD_INLINE void gram_step(const struct rd_refine *r, size_t m, lanes lambda, const struct rate *rate,
+                         const lanes *u, size_t n, double *A, double *M)
+{
+    const lanes *f = u + (r->capacity + 1) * W, *y = f + r->capacity * W;
+    lanes node[W], piece[W], mn[W], mp[W];
+    residual(r, m, rate, node, piece, mn, mp);
+    const int32_t term = term_at(r, m);
+    for (size_t k = foot_first(r, term); rd_attached_is_of(r->walk->chain, k, term); k++) {
+        struct foot foot;
+        lanes mass;
+        foot_make(r, k, lambda, &foot);
+        const lanes rest = foot_residual(r, k, &foot, r->u + m * W, node, mn, &mass);
+        gram_add(y[k], rest, n, A);
+        gram_add(y[k], mass, n, M);
+    }
+    for (size_t i = 0; i < W; i++) {
+        gram_add(u[m * W + i], node[i], n, A);
+        gram_add(u[m * W + i], mn[i], n, M);
+        if (m == r->steps)
+            continue;
+        gram_add(f[m * W + i], piece[i], n, A);
+        gram_add(f[m * W + i], mp[i], n, M);
+    }
+}
+
+void WIDTH(gram)(struct rd_refine *r, const double *lambdas, size_t blocks, double *A, double *M)
 {
     const lanes lambda = lanes_load(lambdas);
+    const size_t n = blocks * RD_LANES, apart = rd_refine_apart(r);
     struct rate rate;
-    memset(A, 0, RD_LANES * RD_LANES * sizeof *A);
-    memset(M, 0, RD_LANES * RD_LANES * sizeof *M);
+    memset(A, 0, n * n * sizeof *A);
+    memset(M, 0, n * n * sizeof *M);
     for (size_t m = 0; m <= r->steps; m++) {
-        lanes node[W], piece[W], mn[W], mp[W];
         rate_at(r, m, lambda, &rate);
-        residual(r, m, &rate, node, piece, mn, mp);
-        const int32_t term = term_at(r, m);
-        for (size_t k = foot_first(r, term); rd_attached_is_of(r->walk->chain, k, term); k++) {
-            struct foot foot;
-            lanes mass;
-            foot_make(r, k, lambda, &foot);
-            const lanes rest = foot_residual(r, k, &foot, r->u + m * W, node, mn, &mass);
-            gram_add(r->y[k], rest, A);
-            gram_add(r->y[k], mass, M);
+        for (size_t b = 0; b < blocks; b++) {
+            rd_refine_choose(r, b);
+            for (size_t a = 0; a < blocks; a++) {
+                const size_t at = a * RD_LANES * n + b * RD_LANES;
+                gram_step(r, m, lambda, &rate, r->vectors + a * apart, n, A + at, M + at);
+            }
         }
-        for (int i = 0; i < W; i++)
-            for (int k = 0; k < RD_LANES; k++)
-                for (int j = 0; j < RD_LANES; j++) {
-                    const double u = r->u[m * W + (size_t)i][k];
-                    const double f = m < r->steps ? r->f[m * W + (size_t)i][k] : 0;
-                    A[k * RD_LANES + j] += u * node[i][j] + f * piece[i][j];
-                    M[k * RD_LANES + j] += u * mn[i][j] + f * mp[i][j];
-                }
     }
+    rd_refine_choose(r, 0);
 }
 
 #endif

@@ -130,7 +130,7 @@ RD_INLINE void turn_round(struct rd_refine *r, lanes lambda, unsigned begin,
         for (int j = 0; begin != RD_ALL_LANES && j < W; j++)
             p[i] -= rate.dV[i][j] * r->u[n * W + (size_t)j];
         if (begin)
-            p[i] = l_select(lanes_of(begin), fixed_load(n, i), p[i]);
+            p[i] = l_select(lanes_of(begin), fixed_load(r->block, n, i), p[i]);
     }
     struct left inner = *left;
     feet_take(r, last, SIZE_MAX, lambda, r->u + n * W, begin, &inner);

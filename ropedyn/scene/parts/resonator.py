@@ -59,8 +59,7 @@ class Resonator(Part):
     damping_ratio: float = number(sign="nonnegative", default=0.0)
 
     def _agree(self) -> None:
-        numbers = [*self._values, self._values[1] / self._values[0]]
-        if not np.isfinite(numbers).all() or 0.0 in (self._values[1], numbers[-1]):
+        if not np.isfinite(self._values).all() or 0.0 in self._values[1:3]:
             raise SceneError(
                 "frequency must leave the stiffness mass (2 pi frequency)^2 a number [N/m], got "
                 f"{self.mass!r} kg and {self.frequency!r} Hz"
@@ -68,12 +67,13 @@ class Resonator(Part):
 
     @property
     def _values(self) -> tuple[float, float, float, float]:
-        """Mass, stiffness and damping as the core takes them."""
+        """Mass, stiffness, eigenvalue with its foot held and damping, as the core takes them."""
         omega = np.float64(2 * math.pi * self.frequency)
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             stiffness = self.mass * omega * omega
             damping = 2 * self.damping_ratio * self.mass * omega
-        return self.mass, float(stiffness), 0.0, float(damping)
+            square = omega * omega
+        return self.mass, float(stiffness), float(square), float(damping)
 
     @property
     def stands_on(self) -> tuple[str, ...]:
