@@ -27,8 +27,8 @@ def xarray() -> ModuleType:
 
 def netcdf() -> ModuleType:
     """Import xarray and make sure of what it reads and writes netCDF with."""
+    _need("h5py")  # first: h5netcdf imports it
     _need("h5netcdf")
-    _need("h5py")
     return xarray()
 
 

@@ -228,7 +228,7 @@ def pinned_middle(n, tension, f):
 @pytest.mark.claim(
     "FRF of uniform chains of 8 to 10^6 elements, 0.01 to 1111 Hz: error / condition",
     reference="closed form of the pinned rigid chain (two waves), mpmath 90 digits",
-    accepted=BOUND,
+    accepted=4e-14,
 )
 def test_long_pinned_chain_responds_as_its_two_waves(n, tension, f, claim):
     long = rd.Scene(
