@@ -14,6 +14,18 @@ from setuptools.command.build_ext import build_ext
 from setuptools.modified import newer_group
 
 HERE = Path(__file__).parent
+NOT_LINUX = f"""ropedyn's C core is written and tested for Linux, with gcc or clang and the GNU C
+library, not for {sys.platform}. On Windows build it in WSL, on a Mac in a container of Linux."""
+NO_COMPILER = """ropedyn's C core is compiled when it is installed, and there is no {command!r}
+to do so. Install a C compiler and Python's headers:
+    Debian, Ubuntu   apt install gcc libc6-dev python3-dev
+    Fedora           dnf install gcc python3-devel
+    conda            conda install c-compiler
+or name the one there is: CC=clang pip install ."""
+NO_PKG_CONFIG = """ROPEDYN_SYSTEM_LAPACKE=1 asks pkg-config for the system's LAPACKE, and {problem}
+On Debian
+    apt install pkg-config liblapacke-dev libopenblas-dev
+or without ROPEDYN_SYSTEM_LAPACKE the wheel scipy-openblas32 is taken."""
 SYSTEM_LAPACKE = os.environ.get("ROPEDYN_SYSTEM_LAPACKE") == "1"
 
 # -O3 takes ten times as long over the kernels of width 3 and 4 and makes them no faster, common
@@ -31,7 +43,13 @@ def lapacke():
     """Where LAPACKE comes from: compiler and linker settings."""
     if SYSTEM_LAPACKE:
         command = ["pkg-config", "--cflags", "--libs", "lapacke", "openblas"]
-        flags = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+        try:
+            asked = subprocess.run(command, check=True, capture_output=True, text=True)
+        except FileNotFoundError:
+            sys.exit(NO_PKG_CONFIG.format(problem="there is none."))
+        except subprocess.CalledProcessError as error:
+            sys.exit(NO_PKG_CONFIG.format(problem=f"it says: {error.stderr.strip()}"))
+        flags = asked.stdout.split()
         return {
             "include_dirs": [f[2:] for f in flags if f.startswith("-I")],
             "library_dirs": [f[2:] for f in flags if f.startswith("-L")],
@@ -52,6 +70,9 @@ class BuildExt(build_ext):
 
     def build_extension(self, ext):
         """Compile side by side what has changed; setuptools takes all sources, one by one."""
+        command = self.compiler.compiler_so[0]
+        if shutil.which(command) is None:
+            sys.exit(NO_COMPILER.format(command=command))
         compile_one = self.compiler.compile
         flags = [numpy.__version__, *self.compiler.compiler_so, *COMPILE]
         if self.editable_mode:  # whose own folder is gone after each build
@@ -94,6 +115,8 @@ class BuildExt(build_ext):
         shutil.copy(licence, libraries / "LICENSE-OpenBLAS.txt")
 
 
+if not sys.platform.startswith("linux"):
+    sys.exit(NOT_LINUX)
 settings = lapacke()
 settings["include_dirs"] = ["csrc", numpy.get_include(), *settings["include_dirs"]]
 core = Extension(

@@ -2,10 +2,9 @@
 #ifndef RD_ASSEMBLE_H
 #define RD_ASSEMBLE_H
 
+#include "base/complex.h"
 #include "base/status.h"
 #include "chain/chain.h"
-
-#include <complex.h>
 
 /* symmetric block tridiagonal matrix: node i meets itself and node i + 1 */
 struct rd_blocks {

@@ -3,8 +3,7 @@
 #define RD_FRF_H
 
 #include "assembled/system.h"
-
-#include <complex.h>
+#include "base/complex.h"
 
 struct rd_frf {
     const struct rd_chain *chain;

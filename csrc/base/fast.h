@@ -27,6 +27,13 @@
 #define RD_UNROLL(n)
 #endif
 
+/* loops of a function take many numbers at once at -O2 too; clang's do */
+#if defined(__GNUC__) && !defined(__clang__)
+#define RD_VECTORS __attribute__((optimize("O3")))
+#else
+#define RD_VECTORS
+#endif
+
 /* one copy of a function per instruction set, chosen when the library is loaded; RD_ONE_SET, which the
    benchmark of families sets, keeps the one that is compiled for */
 #if RD_FAST && defined(__x86_64__) && defined(__GLIBC__) && !defined(RD_ONE_SET)

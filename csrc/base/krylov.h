@@ -2,7 +2,7 @@
 #ifndef RD_KRYLOV_H
 #define RD_KRYLOV_H
 
-#include <complex.h>
+#include "base/complex.h"
 
 /* c_j(p) = sum of p^n/(4n + j)!, n = 0, 1, ..: for p = P^4
 

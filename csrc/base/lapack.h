@@ -2,7 +2,7 @@
 #ifndef RD_LAPACK_H
 #define RD_LAPACK_H
 
-#include <complex.h>
+#include "base/complex.h"
 #undef I /* a name our formulas need */
 
 #define lapack_complex_double double _Complex

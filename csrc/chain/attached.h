@@ -2,9 +2,8 @@
 #ifndef RD_ATTACHED_H
 #define RD_ATTACHED_H
 
+#include "base/complex.h"
 #include "chain/chain.h"
-
-#include <complex.h>
 
 /* A structure as its foot feels it, u = (displacement, rotation) of the foot, at one lambda:
 

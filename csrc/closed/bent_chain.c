@@ -1,5 +1,7 @@
 /* Modes and counts of chains that bend: what stands left and right of a face meets there. */
+#ifndef __clang__
 #pragma GCC optimize("schedule-insns") /* what a lane waits for is done while others are: 30 % */
+#endif
 
 #include "closed/chain_lanes.h"
 

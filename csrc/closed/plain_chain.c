@@ -2,7 +2,9 @@
 
    k = omega sqrt(m/D), scale (D k)^-1/2: a span is G <- e^{2ikl} G, theta/2 += kl, and mode n is where
    theta/2 = (n - 1) pi of the two parts together. beta stays free and does nothing. */
+#ifndef __clang__
 #pragma GCC optimize("schedule-insns") /* as in closed/bent_chain.c */
+#endif
 
 #include "closed/chain_lanes.h"
 

@@ -2,7 +2,8 @@
 #ifndef RD_CLUSTERS_H
 #define RD_CLUSTERS_H
 
-#include <complex.h>
+#include "base/complex.h"
+
 #include <stddef.h>
 
 /* group (count) <- the same number for all of a cluster: roots nearer to each other than `apart` times

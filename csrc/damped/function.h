@@ -2,12 +2,12 @@
 #ifndef RD_FUNCTION_H
 #define RD_FUNCTION_H
 
+#include "base/complex.h"
 #include "base/status.h"
 #include "base/stop.h"
 #include "base/workspace.h"
 #include "chain/chain.h"
 
-#include <complex.h>
 #include <stdbool.h>
 
 /* factors of the five parts of the dynamic stiffness, constant + linear s, of inertia + s^2 */

@@ -2,9 +2,9 @@
 #ifndef RD_POWERS_H
 #define RD_POWERS_H
 
+#include "base/complex.h"
 #include "base/status.h"
 
-#include <complex.h>
 #include <stddef.h>
 
 enum { RD_POWERS_MOST = 64 };

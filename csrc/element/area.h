@@ -2,9 +2,8 @@
 #ifndef RD_AREA_H
 #define RD_AREA_H
 
+#include "base/complex.h"
 #include "element/coordinate.h"
-
-#include <complex.h>
 
 /* a = integral of z dx over an element held at its left end. With the shape functions of
    element/triple.h, c = (1/2 - P1)/theta and d = (1/3 - P2)/theta:

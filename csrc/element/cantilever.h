@@ -2,9 +2,8 @@
 #ifndef RD_CANTILEVER_H
 #define RD_CANTILEVER_H
 
+#include "base/complex.h"
 #include "element/coordinate.h"
-
-#include <complex.h>
 
 /* tau and P0, P1, P2 as in element/triple.h */
 struct rd_cantilever {

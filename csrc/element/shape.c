@@ -1,9 +1,8 @@
 /* Shape functions of a tensed cantilever in closed form. */
 #include "element/shape.h"
 
+#include "base/complex.h"
 #include "element/area.h"
-
-#include <complex.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 

@@ -2,10 +2,9 @@
 #ifndef RD_STIFFNESS_H
 #define RD_STIFFNESS_H
 
+#include "base/complex.h"
 #include "base/status.h"
 #include "element/element.h"
-
-#include <complex.h>
 
 /* K_e = [[Q + F^T G^-1 F, -F^T G^-1], [-G^-1 F, G^-1]] of the triple (see element/triple.h), over
    the motion (u_a, u_b) of the nodes: K (2 width, 2 width), with sections, tension and the spring

@@ -2,10 +2,9 @@
 #ifndef RD_TRIPLE_H
 #define RD_TRIPLE_H
 
+#include "base/complex.h"
 #include "base/status.h"
 #include "element/element.h"
-
-#include <complex.h>
 
 /* u_b = F u_a + G f_b,  f_a = F^T f_b - Q u_a;  F, G, Q (width, width), of the element with S/section
    and T tension; 1 and 1 where nothing is damped. With S_bb, theta = T S_bb l^2 and r_c = S_cb/S_bb

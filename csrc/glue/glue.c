@@ -1,6 +1,7 @@
 /* What every entry point of the extension shares. */
 #include "glue/glue.h"
 
+#include "base/fast.h"
 #include "chain/attached.h"
 
 #include <stdint.h>
@@ -66,8 +67,7 @@ PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_in
 
 /* every entry of an index array lies in 0 ... bound - 1; the loop never leaves early, so that the
    compiler takes many entries at once */
-__attribute__((optimize("O3"))) static int check_range(PyArrayObject *array, size_t bound,
-                                                       const char *name)
+RD_VECTORS static int check_range(PyArrayObject *array, size_t bound, const char *name)
 {
     const uint32_t *entry = PyArray_DATA(array);
     const npy_intp count = PyArray_SIZE(array);

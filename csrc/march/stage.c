@@ -1,28 +1,27 @@
 /* One implicit stage: where it begins, its linear answer, its share of the step. */
 #include "march/stage.h"
 
+#include "base/fast.h"
 #include "march/form/resonator.h"
 
 #include <string.h>
 
-#define VECTORS __attribute__((optimize("O3")))
-
 /* y = x + a d */
-VECTORS static void advance(size_t count, const double *x, double a, const double *d, double *y)
+RD_VECTORS static void advance(size_t count, const double *x, double a, const double *d, double *y)
 {
     for (size_t i = 0; i < count; i++)
         y[i] = x[i] + a * d[i];
 }
 
 /* y = x - d */
-VECTORS static void subtract(size_t count, const double *x, const double *d, double *y)
+RD_VECTORS static void subtract(size_t count, const double *x, const double *d, double *y)
 {
     for (size_t i = 0; i < count; i++)
         y[i] = x[i] - d[i];
 }
 
 /* y += a (x + d) */
-VECTORS static void gather(size_t count, double a, const double *x, const double *d, double *y)
+RD_VECTORS static void gather(size_t count, double a, const double *x, const double *d, double *y)
 {
     for (size_t i = 0; i < count; i++)
         y[i] += a * (x[i] + d[i]);

@@ -3,10 +3,10 @@
 #define RD_MIXED_H
 
 #include "assembled/assemble.h"
+#include "base/complex.h"
 #include "base/workspace.h"
 #include "chain/ports.h"
 
-#include <complex.h>
 #include <stdbool.h>
 
 /* Unknowns, block by block of one width: the displacement u of a node, the force f_b on the right

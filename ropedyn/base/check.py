@@ -118,7 +118,9 @@ def numbers(value: Any, name: str, unit: str = "", *, sign: str = "any") -> NDAr
     what = f"a one-dimensional array of finite numbers{words}"
     if is_quantity(value):
         value = _plain(value, name, what, unit)
-    elif isinstance(value, (list, tuple)) and value and is_quantity(value[0]):
+    elif isinstance(value, (list, tuple)) and any(map(is_quantity, value)):
+        if not is_quantity(value[0]):
+            raise SceneError(_expected(name, what, unit, value))
         value = [number(one, f"{name}[{k}]", unit) for k, one in enumerate(value)]
     if value is None or isinstance(value, (str, bytes)):
         raise TypeError(_expected(name, what, unit, value))

@@ -37,8 +37,8 @@ def h5py() -> ModuleType:
 
 def netcdf() -> ModuleType:
     """Import xarray and make sure of what it reads and writes netCDF with."""
+    h5py()  # first: h5netcdf imports it
     h5netcdf()
-    h5py()
     return xarray()
 
 

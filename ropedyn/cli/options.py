@@ -150,7 +150,7 @@ def show(options: argparse.Namespace, answer: Answer, report: str | None = None)
 def draw(options: argparse.Namespace, answer: Answer) -> None:
     """Draw an answer where that is asked."""
     if options.plot is not None:
-        figure = answer.plot().get_figure(root=True)
+        figure = answer.plot().figure.figure  # the whole, of axes in a part of it too
         assert figure is not None
         with replacing(options.plot) as draft:
             figure.savefig(draft, dpi=120)

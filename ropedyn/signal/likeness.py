@@ -38,7 +38,8 @@ def residues(
         one = w0 * w0 / (w0 * w0 + p * p + 2 * ratio * w0 * p)
         parts = np.stack([one, np.ones_like(one)], axis=1)
         size = np.abs(parts).max(axis=0)
-        found[k] = np.linalg.lstsq(parts / size, receptance[:, lines].T)[0][0] / size[0]
+        solved = np.linalg.lstsq(parts / size, receptance[:, lines].T, rcond=None)[0]
+        found[k] = solved[0] / size[0]
     return found
 
 

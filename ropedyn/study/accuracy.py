@@ -186,7 +186,7 @@ class AccuracyCost(Answer):
             "digits lost to rounding": numbers(self.digits_lost.round(1)),
             "cheapest for": tuple(", ".join(mark) or None for mark in marks),
         }
-        if self.refusal.any():
+        if any(self.refusal.tolist()):
             columns["refused"] = tuple(text or None for text in self.refusal.tolist())
         return Table.of(f"{self.question}: relative error against {self.reference}", columns)
 

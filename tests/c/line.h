@@ -2,10 +2,9 @@
 #ifndef LINE_H
 #define LINE_H
 
+#include "base/complex.h"
 #include "chain/runs.h"
 #include "sweep/sweep.h"
-
-#include <complex.h>
 
 enum { LINE_NODES = 512, LINE_POINTS = 40 };
 

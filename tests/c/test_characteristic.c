@@ -1,9 +1,9 @@
 /* The characteristic function against closed forms. */
+#include "base/complex.h"
 #include "chains.h"
 #include "check.h"
 #include "sweep/characteristic.h"
 
-#include <complex.h>
 #include <string.h>
 
 enum { POINTS = 11 }; /* more than one block of lanes */

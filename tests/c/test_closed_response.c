@@ -1,7 +1,7 @@
 /* Responses of one span in closed form: textbook values, reciprocity, and what is not certain. */
+#include "base/complex.h"
 #include "closed/response.h"
 
-#include <complex.h>
 #include <string.h>
 
 #include "check.h"

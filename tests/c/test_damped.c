@@ -1,4 +1,5 @@
 /* Rates of damped motion against closed forms. */
+#include "base/complex.h"
 #include "chains.h"
 #include "check.h"
 #include "damped/circle.h"
@@ -7,7 +8,6 @@
 #include "damped/search.h"
 #include "damped/winding.h"
 
-#include <complex.h>
 #include <string.h>
 
 enum { ROOM = 300 };

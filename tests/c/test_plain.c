@@ -1,9 +1,8 @@
 /* Plain spans in closed form against their waves. */
+#include "base/complex.h"
 #include "span/whole.h"
 
 #include "check.h"
-
-#include <complex.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 

@@ -1,8 +1,7 @@
 /* Shape functions against closed forms in long double, both sides of where the series ends. */
+#include "base/complex.h"
 #include "check.h"
 #include "element/shape.h"
-
-#include <complex.h>
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 

@@ -61,7 +61,7 @@ def two_part_root(near, parts, a, b):
 @pytest.mark.claim(
     "f1..f12 of a string of two parts, densities 1:1e-4 to 1:1e4, continuous spans: relative error",
     reference="closed form k1 cot(k1 a) + k2 cot(k2 b) = 0, mpmath",
-    accepted=RELATIVE,
+    accepted=4e-14,
 )
 def test_string_of_two_parts_has_the_frequencies_of_its_equation(density, start, claim):
     scene = rd.Scene(STRING, tension=T, parts=[rd.LocalChange(start, L, density=density)])
@@ -91,7 +91,7 @@ def test_string_of_two_parts_of_one_travel_time_has_equal_steps():
 @pytest.mark.claim(
     "f1..f6 of a shaft of two torsional stiffnesses, continuous spans: relative error",
     reference="closed form Z1 cot(k1 a) + Z2 cot(k2 b) = 0, mpmath",
-    accepted=RELATIVE,
+    accepted=1e-14,
 )
 @pytest.mark.parametrize("torsion", [0.01, 0.5, 30.0])
 def test_shaft_of_two_stiffnesses_has_the_frequencies_of_its_equation(torsion, claim):
@@ -138,7 +138,7 @@ def stepped(name, tension):
 @pytest.mark.claim(
     "Eigenvalues of stepped beams, pulled and pushed, continuous spans: error / sensitivity",
     reference="zeros of the determinant in 60 digits: tests/support/exact_roots.py",
-    accepted=RELATIVE,
+    accepted=9e-15,
 )
 def test_stepped_beams_have_the_frequencies_of_the_continuum(name, tension, claim):
     scene = stepped(name, tension)
@@ -228,7 +228,7 @@ LAID_PARTS = (rd.LocalChange(0.1, 0.55, **EVERY), rd.AddedMass(0.3, 0.8, 0.2, po
     "FRF and internal forces of a laid rope that changes over stretches, continuous spans: error / "
     "condition",
     reference="mpmath, 60 digits: tests/support/exact_span.py",
-    accepted=BOUND,
+    accepted=7e-14,
 )
 def test_laid_rope_with_stretches_responds_as_the_continuum(claim):
     damping = rd.RayleighDamping(2.0, 1e-5)
@@ -242,7 +242,7 @@ def test_laid_rope_with_stretches_responds_as_the_continuum(claim):
     "FRF of chains of a laid rope that changes over stretches: error / condition",
     reference="mpmath, 60 digits: tests/support/exact_chain.py",
     # the bound of uniform chains: tests/response/test_sweep_frf.py
-    accepted=1e-13,
+    accepted=1e-14,
 )
 def test_chain_with_stretches_responds_as_the_exact_discrete_one(element, claim):
     scene = rd.Scene(LAID, tension=50.0, parts=LAID_PARTS)
@@ -414,7 +414,7 @@ def test_random_ropes_with_stretches_answer_alike_in_other_cuts(seed):
 @pytest.mark.claim(
     "FRF of random ropes that change over stretches, continuous spans: error / condition",
     reference="mpmath, 60 digits: tests/support/exact_span.py",
-    accepted=BOUND,
+    accepted=1e-14,
 )
 def test_random_ropes_with_stretches_respond_as_the_continuum(seed, claim):
     scene = stretched_scene(np.random.default_rng(seed), 1 + seed % 4)

@@ -29,7 +29,7 @@ BEAM = rd.Rope(LENGTH, DENSITY, bending_stiffness=BENDING)
     "f1..f20 of clamped and pinned beams of continuous spans, T L^2/B from 0 to 9e4: relative "
     "error",
     reference="stored, mpmath 90 digits: beam_tension_frequencies.json",
-    accepted=RELATIVE,
+    accepted=5e-14,
 )
 def test_beam_has_its_stored_frequencies(case, claim):
     ends = (case["ends"],) * 2
@@ -58,7 +58,7 @@ def rigid_motions(ends, tension):
     "Eigenvalues of beams of continuous spans, every pair of clamped, pinned, free, sprung ends, "
     "T L^2/B from 0 to 1e8: error / sensitivity",
     reference=EXACT,
-    accepted=RELATIVE,
+    accepted=2e-14,
 )
 def test_beam_between_any_ends_has_the_frequencies_of_the_continuum(ends, xi2, claim):
     scene = rd.Scene(BEAM, tension=xi2 * UNIT, ends=tuple(ENDS[end] for end in ends))
@@ -93,7 +93,7 @@ def pushed(ends, load, **more):
     "First eigenvalue of a continuous beam within 1e-2 to 1e-12 of its critical load, before and "
     "beyond it: error / sensitivity",
     reference=EXACT,
-    accepted=RELATIVE,
+    accepted=1e-14,
 )
 def test_first_frequency_keeps_what_the_critical_load_leaves(ends, side, away, claim):
     # d ln f/d ln T = T/(2 (T + Tc)) = 1/(2 away): f has RELATIVE/away of digits left, and that is
@@ -121,7 +121,7 @@ def test_first_frequency_keeps_what_the_critical_load_leaves(ends, side, away, c
     "Eigenvalues of continuous beams at 1.5 to 30 times their critical load, growing and not: "
     "error / sensitivity",
     reference=EXACT,
-    accepted=RELATIVE,
+    accepted=2e-14,
 )
 def test_growth_rates_far_beyond_the_critical_load(ends, rotary, load, claim):
     scene = pushed(ends, load * critical_load(ends), rotary_inertia=rotary)
@@ -165,7 +165,7 @@ def test_strings_and_rods_have_the_frequencies_of_their_waves(kind, ends):
     "Eigenvalues of continuous ropes with lay coupling, lay slope, masses, springs, supports, "
     "hinges: error / sensitivity",
     reference=EXACT,
-    accepted=RELATIVE,
+    accepted=1e-14,
 )
 def test_rope_with_what_stands_on_it_has_the_frequencies_of_the_continuum(name, claim):
     scene = SCENES[name]
@@ -242,7 +242,7 @@ def test_two_spans_about_a_heavy_mass_have_pairs_of_frequencies(heavy, claim):
 @pytest.mark.claim(
     "Double eigenvalue of a clamped continuous beam, T = -10 pi^2 B/L^2: error / sensitivity",
     reference="both zeros within a circle, in 60 digits: tests/support/exact_roots.py",
-    accepted=RELATIVE,
+    accepted=1e-14,
 )
 def test_double_growth_rate_of_a_compressed_beam(claim):
     # an even and an odd shape: the rounding of T parts them by 1e-16, each is well conditioned

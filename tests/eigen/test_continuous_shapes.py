@@ -133,7 +133,7 @@ def second(name):
     "Shapes of modes of continuous ropes with lay coupling, lay slope, masses, springs, supports, "
     "hinges: error over the largest of each coordinate",
     reference="responses next to exact roots, 80 digits: tests/support/exact_shapes.py",
-    accepted=SHAPE,
+    accepted=3e-13,
 )
 def test_shapes_are_those_of_the_continuum(name, claim):
     scene, mode = SCENES[name], second(name)
@@ -147,7 +147,7 @@ def test_shapes_are_those_of_the_continuum(name, claim):
 @pytest.mark.claim(
     "Fractions of strain and kinetic energy of modes of continuous ropes: absolute error",
     reference="Romberg's rule over 256 intervals a span of exact shapes: exact_shapes.py",
-    accepted=ENERGY,
+    accepted=2e-12,
 )
 def test_energies_are_integrals_over_the_shapes_of_the_continuum(name, claim):
     modes, fractions = SCENES[name].compile().modes(2), second(name).energy()

@@ -98,7 +98,7 @@ def mass_on_string(omega, T, mu, L, m, a):
 @pytest.mark.claim(
     "df/dp of a point mass on a string, p its mass, place, tension, density and length",
     reference="characteristic equation differentiated in 50 digits",
-    accepted=EXACT,
+    accepted=4e-14,
 )
 @pytest.mark.parametrize("mass", [0.05, 0.0])
 def test_mass_on_a_string_changes_as_its_characteristic_equation(mass, claim):

@@ -49,7 +49,7 @@ PATHS = {
     "df/dp of the symmetric modes of a hanging string, p its tension, density, length, axial "
     "stiffness, gravity and inclination",
     reference="Irvine and Caughey 1974, differentiated in 50 digits",
-    accepted=EXACT,
+    accepted=5e-13,
 )
 @pytest.mark.parametrize("axial", [1e4, 1e6])
 def test_hanging_string_changes_as_its_characteristic_equation(axial, claim):

@@ -55,7 +55,7 @@ def test_beam_responds_as_stored(line, claim):
     "FRF of continuous beams, every pair of ends, T L^2/B from 0 to 1e8, 0.001 (free-free and "
     "pinned too) to 1111 Hz: error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=5e-14,
 )
 def test_beam_responds_as_the_continuum(ends, xi2, claim):
     scene = rd.Scene(BEAM, tension=xi2 * UNIT, ends=ends)
@@ -71,7 +71,7 @@ def test_beam_responds_as_the_continuum(ends, xi2, claim):
 @pytest.mark.claim(
     "FRF of damped continuous beams, compressed and tensed: error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=5e-14,
 )
 def test_damped_beam_responds_as_the_continuum(damping, xi2, claim):
     scene = rd.Scene(
@@ -89,7 +89,7 @@ def test_damped_beam_responds_as_the_continuum(damping, xi2, claim):
     "FRF of continuous ropes with lay coupling, lay slope, masses, springs, supports, hinges, "
     "0.01 Hz undamped and 700 Hz damped: error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=9e-14,
 )
 def test_rope_with_what_stands_on_it_responds_as_the_continuum(name, claim):
     scene = SCENES[name]
@@ -106,7 +106,7 @@ def test_rope_with_what_stands_on_it_responds_as_the_continuum(name, claim):
     "Internal forces of continuous ropes between and at masses, springs and ends, per unit force: "
     "error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=1e-13,
 )
 def test_internal_forces_are_those_of_the_continuum(f, claim):
     scene = SCENES["mass and springs"].replace(damping=DAMPINGS["stiffness"])
@@ -120,6 +120,7 @@ def test_internal_forces_are_those_of_the_continuum(f, claim):
     "it: error over that force. Its own digits are lost, the sweep carries forces of all the rope",
     reference=EXACT,
     accepted=4 * EPS,
+    wide="the rounding of the large forces, which the small one need not reach",
     limit=True,
 )
 def test_small_force_near_a_free_end_is_right_to_the_rounding_of_large_ones(claim):
@@ -138,7 +139,7 @@ def test_small_force_near_a_free_end_is_right_to_the_rounding_of_large_ones(clai
     "All four internal forces of a continuous laid rope, lay slope -1 and lay coupling: "
     "error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=1e-13,
 )
 def test_internal_forces_of_a_laid_rope_are_those_of_the_continuum(drive, claim):
     points = [(force, x) for force in ("F_x", "F_z", "M_alpha", "M_beta") for x in (0.0, 0.7, 1.2)]
@@ -173,7 +174,7 @@ SHARES = [(1, 1), *((j, 2**k) for k in range(1, 7) for j in {1, 3, 2**k - 1} if 
     "Undamped FRF of continuous spans within an ulp of clamped-free resonances of j/2^k of the "
     "rope: error / condition",
     reference=f"frequencies: tests/support/exact_roots.py; {EXACT}",
-    accepted=BOUND,
+    accepted=7e-14,
 )
 def test_response_is_exact_where_a_part_of_a_span_resonates(j, n, tension, claim):
     part = rd.Scene(BEAM.replace(length=LENGTH * j / n), tension=tension, ends=("clamped", "free"))
@@ -193,7 +194,7 @@ def test_response_is_exact_where_a_part_of_a_span_resonates(j, n, tension, claim
 @pytest.mark.claim(
     "Response of continuous beams at 0 Hz, T L^2/B from -5 to 1e8: error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=7e-14,
 )
 def test_response_at_rest_is_the_static_deflection(xi2, claim):
     scene = rd.Scene(BEAM, tension=xi2 * UNIT, ends=("clamped", "pinned"))
@@ -281,7 +282,7 @@ def test_rounding_error_bounds_the_true_error_of_random_spans(sample, claim):
 @pytest.mark.claim(
     f"FRF at the drive point of {LINES} random ropes of continuous spans: error / condition",
     reference=EXACT,
-    accepted=BOUND,
+    accepted=1e-13,
 )
 def test_random_spans_respond_at_the_drive_as_the_continuum(sample, claim):
     claim(max(error / hard for _, error, _, hard, at_drive in sample if at_drive))

@@ -66,7 +66,7 @@ WHERE = {"drive": ("z", DRIVE), "response": ("z", RESPONSE)}
 @pytest.mark.claim(
     "d(receptance)/dp of a damped string, p its tension, density, length and drag",
     reference="closed form differentiated in 40 digits",
-    accepted=EXACT,
+    accepted=1e-12,
 )
 def test_string_response_changes_as_its_formula(claim):
     given = {"T": TENSION, "mu": DENSITY, "L": LENGTH, "c": 0.7}

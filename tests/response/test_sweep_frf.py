@@ -50,7 +50,7 @@ def driven(n, ends):
     "FRF of chains of 1 to 64 elements, every pair of ends, T L^2/B from 0 to 1e8, 0.01 (free-free "
     "and pinned too) to 1111 Hz: error / condition",
     reference="mpmath, 60 digits: tests/support/exact_chain.py",
-    accepted=BOUND,
+    accepted=5e-14,
 )
 def test_chain_responds_as_the_exact_discrete_one(element, n, ends, xi2, claim):
     drive = driven(n, ends)
@@ -228,7 +228,7 @@ def pinned_middle(n, tension, f):
 @pytest.mark.claim(
     "FRF of uniform chains of 8 to 10^6 elements, 0.01 to 1111 Hz: error / condition",
     reference="closed form of the pinned rigid chain (two waves), mpmath 90 digits",
-    accepted=BOUND,
+    accepted=4e-14,
 )
 def test_long_pinned_chain_responds_as_its_two_waves(n, tension, f, claim):
     long = rd.Scene(

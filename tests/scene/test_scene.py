@@ -259,7 +259,8 @@ def test_descriptions_travel_by_pickle_and_copy_and_stay_equal(name):
 @pytest.mark.parametrize("name", THINGS)
 def test_descriptions_can_be_read_back_from_their_repr(name):
     text = repr(THINGS[name])
-    assert eval(text, vars(rd)) == THINGS[name]
+    names = {each: getattr(rd, each) for each in rd.__all__}
+    assert eval(text, names) == THINGS[name]
 
 
 def test_springs_of_an_end_cannot_be_changed():

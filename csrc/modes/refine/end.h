@@ -2,9 +2,9 @@
 #ifndef RD_REFINE_END_H
 #define RD_REFINE_END_H
 
+#include "base/complex.h"
 #include "modes/refine/left.h"
 
-#include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -2,10 +2,10 @@
 #ifndef RD_REFINE_SHAPE_H
 #define RD_REFINE_SHAPE_H
 
+#include "base/complex.h"
 #include "modes/refine/refine.h"
 #include "modes/walk/piece.h"
 
-#include <complex.h>
 #include <string.h>
 
 /* What a joint of two equal halves needs to be taken apart again, for one lane. */

@@ -2,10 +2,9 @@
 #ifndef RD_TRANSFER_H
 #define RD_TRANSFER_H
 
+#include "base/complex.h"
 #include "chain/chain.h"
 #include "span/rate_matrix.h"
-
-#include <complex.h>
 
 /* An element's u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a, each (RD_LANES, width, width). */
 struct rd_transfer {

@@ -190,7 +190,7 @@ class StraightLine(NamedTuple):
         if offset is None:
             A = np.stack([A[:, 0], np.ones_like(x)], axis=1)
         known = 0.0 if offset is None else offset
-        found = np.linalg.lstsq(A, y - known)[0]
+        found = np.linalg.lstsq(A, y - known, rcond=None)[0]
         residual = y - known - A @ found
         freedom = len(x) - A.shape[1]
         if std is not None:
