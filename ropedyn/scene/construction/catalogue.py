@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Circles(NamedTuple):
+class WireRow(NamedTuple):
     """Wires of one radius in a strand, in any unit."""
 
     n: int
@@ -18,7 +18,7 @@ class Circles(NamedTuple):
     radius: float
 
 
-Layout = tuple[Circles, ...]
+Layout = tuple[WireRow, ...]
 
 
 def _apart(r: float, s: float, angle: float) -> float:
@@ -36,15 +36,15 @@ def _touching(equations: Callable[..., tuple[float, ...]], start: tuple[float, .
     return numbers
 
 
-def _inner(n: int) -> tuple[Circles, Circles]:
+def _inner(n: int) -> tuple[WireRow, WireRow]:
     """Return the core and n wires of diameter 1 around it: d0 = 1/sin(pi/n) - 1."""
     d0 = 1 / math.sin(math.pi / n) - 1
-    return Circles(1, d0, 0.0), Circles(n, 1.0, (d0 + 1) / 2)
+    return WireRow(1, d0, 0.0), WireRow(n, 1.0, (d0 + 1) / 2)
 
 
 def _equal(*counts: int) -> Layout:
     """Return equal wires in layers that touch along a radius."""
-    return (Circles(1, 1.0, 0.0), *(Circles(n, 1.0, k + 1.0) for k, n in enumerate(counts)))
+    return (WireRow(1, 1.0, 0.0), *(WireRow(n, 1.0, k + 1.0) for k, n in enumerate(counts)))
 
 
 def _seale(n: int) -> Layout:
@@ -56,7 +56,7 @@ def _seale(n: int) -> Layout:
     s, c = math.sin(math.pi / n), math.cos(math.pi / n)
     u = c + s * s
     d2 = (u + math.sqrt(u * u - c**4)) / c**2
-    return (*_inner(n), Circles(n, d2, d2 / (2 * s)))
+    return (*_inner(n), WireRow(n, d2, d2 / (2 * s)))
 
 
 def _warrington(n: int) -> Layout:
@@ -73,7 +73,7 @@ def _warrington(n: int) -> Layout:
         )
 
     big, r_big, small = _touching(equations, (1.0, 1.7, 0.75))
-    return core, first, Circles(n, big, r_big), Circles(n, small, r1 + (1 + small) / 2)
+    return core, first, WireRow(n, big, r_big), WireRow(n, small, r1 + (1 + small) / 2)
 
 
 def _filler(n: int) -> Layout:
@@ -90,7 +90,7 @@ def _filler(n: int) -> Layout:
         )
 
     d2, fill, r_fill = _touching(equations, (1.0, 0.4, 1.35))
-    return core, first, Circles(n, fill, r_fill), Circles(2 * n, d2, d2 / 2 / math.sin(quarter))
+    return core, first, WireRow(n, fill, r_fill), WireRow(2 * n, d2, d2 / 2 / math.sin(quarter))
 
 
 def _warrington_seale(n: int) -> Layout:
@@ -109,7 +109,7 @@ def _warrington_seale(n: int) -> Layout:
 
     big, r_big, small, d3 = _touching(equations, (1.0, 1.9, 0.77, 1.3))
     r_small, r3 = r1 + (1 + small) / 2, d3 / 2 / math.sin(quarter)
-    return core, first, Circles(n, big, r_big), Circles(n, small, r_small), Circles(2 * n, d3, r3)
+    return core, first, WireRow(n, big, r_big), WireRow(n, small, r_small), WireRow(2 * n, d3, r3)
 
 
 STRANDS: dict[str, Callable[[], Layout]] = {
@@ -147,7 +147,7 @@ def rows(name: str) -> Layout:
     """Return the wires of a strand whose outer radius is 1."""
     found = STRANDS[name]()
     size = max(row.radius + row.diameter / 2 for row in found)
-    return tuple(Circles(n, d / size, r / size) for n, d, r in found)
+    return tuple(WireRow(n, d / size, r / size) for n, d, r in found)
 
 
 def placed(n: int, diameter: float, lay: float, gap: float) -> tuple[float, float]:
