@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.array import Real
-from ..base.errors import SceneError
 from ..scene.construction.construction import Construction
 from ..scene.construction.section import Section
 from ..scene.construction.strand import Bar, Ring, Strand
@@ -35,9 +34,7 @@ def plot_construction(construction: Construction, ax: Axes, *, lay: bool = False
 @plots(Section, height=lambda _: 7.0)
 def plot_section(section: Section, ax: Axes) -> None:
     """Draw the wires of the section."""
-    if section.construction is None:
-        raise SceneError("a section must have its construction to be drawn, got one from a file")
-    plot_construction(section.construction, ax)
+    plot_construction(section._made, ax)
 
 
 def _across(strand: Strand, ax: Axes) -> None:

@@ -6,17 +6,22 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import TRANSIENT, Answer
+from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
 from . import stiffness
+from .friction import Grip, grip
 from .strand import Strand
 
 if TYPE_CHECKING:
     from .construction import Construction
 
+
+LATERAL = 1.5  # Of the pressure of outer layers, how much counts.
 
 ROWS = {
     "diameter": "m",
@@ -107,6 +112,142 @@ class Section(Answer):
         found = {name: float(value) for name, value in numbers.items()}
         return cls(torsion, radial, construction=construction, **found)
 
+    def moment(
+        self, curvature: ArrayLike, *, tension: float, friction: float, lateral: float = LATERAL
+    ) -> Real:
+        """Return the bending moment while the rope is first bent, wires slipping layer by layer.
+
+        Parameters
+        ----------
+        curvature : array_like
+            Of the rope [1/m].
+        tension : float
+            Of the rope, >= 0 [N]; its ends do not turn.
+        friction : float
+            Coefficient of friction between wires, >= 0.
+        lateral : float, optional
+            How much of the pressure of outer layers presses a layer on what lies below; 1.5 counts
+            that crossing wires press at points and on both sides.
+
+        Returns
+        -------
+        ndarray, shape of `curvature`
+            [N m].
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If a number is not finite or negative, or the section has no construction.
+
+        Notes
+        -----
+        After Papailiou and Foti and Martinelli: wires around the rope slip from the neutral axis
+        outwards as soon as the bonded change of their tension exceeds what friction carries. In
+        ropes of strands these count as wires, and the layers inside them slip under their tension;
+        of this second level no measurement is known here.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> section = rd.Construction.standard("1x19", diameter=20e-3, lay="Z").section()
+        >>> section.moment([0.001, 0.1, 1.0], tension=30e3, friction=0.3).round(2)
+        array([ 1.02, 17.39, 58.63])
+        """
+        kappa = _curvatures(curvature, "curvature", sign="any")
+        layers = self._grip(tension, friction, lateral)
+        return np.asarray(self.bending_slip * kappa + np.sign(kappa) * layers.moment(np.abs(kappa)))
+
+    def bending(
+        self, amplitude: ArrayLike, *, tension: float, friction: float, lateral: float = LATERAL
+    ) -> Real:
+        """Return the bending stiffness of motion between curvatures of both signs: M/amplitude.
+
+        Parameters
+        ----------
+        amplitude : array_like
+            Of the curvature, > 0 [1/m].
+        tension, friction, lateral : float
+            As of `moment`.
+
+        Returns
+        -------
+        ndarray, shape of `amplitude`
+            From `bending_stick` of the smallest to `bending_slip` of the largest [N m^2].
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `moment` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> section = rd.Construction.standard("1x19", diameter=20e-3, lay="Z").section()
+        >>> section.bending([0.001, 0.1, 10.0], tension=30e3, friction=0.3).round(1)
+        array([1019.6,  173.9,   47.1])
+        """
+        kappa = _curvatures(amplitude, "amplitude", sign="positive")
+        layers = self._grip(tension, friction, lateral)
+        return np.asarray(self.bending_slip + layers.moment(kappa) / kappa)
+
+    def loss(
+        self, amplitude: ArrayLike, *, tension: float, friction: float, lateral: float = LATERAL
+    ) -> Real:
+        """Return the loss factor of bending with friction, as `LossFactor` takes it.
+
+        Parameters
+        ----------
+        amplitude : array_like
+            Of the curvature, > 0 [1/m].
+        tension, friction, lateral : float
+            As of `moment`.
+
+        Returns
+        -------
+        ndarray, shape of `amplitude`
+            Work that a cycle loses, by pi M amplitude. 0 where nothing slips.
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `moment` does.
+
+        Notes
+        -----
+        Loops are those of the first curve doubled in both directions (Masing): a cycle loses
+        8 (int_0^a M dkappa - M(a) a/2).
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> section = rd.Construction.standard("1x19", diameter=20e-3, lay="Z").section()
+        >>> section.loss([0.001, 0.1, 10.0], tension=30e3, friction=0.3).round(3)
+        array([0.   , 0.71 , 0.035])
+        """
+        kappa = _curvatures(amplitude, "amplitude", sign="positive")
+        layers = self._grip(tension, friction, lateral)
+        moment = self.bending_slip * kappa + layers.moment(kappa)
+        return np.asarray(layers.loss(kappa) / (np.pi * moment * kappa))
+
+    def _grip(self, tension: float, friction: float, lateral: float) -> Grip:
+        return grip(
+            self._made.strand,
+            check.number(tension, "tension", "N", sign="nonnegative"),
+            check.number(friction, "friction", sign="nonnegative"),
+            check.number(lateral, "lateral", sign="nonnegative"),
+        )
+
+    @property
+    def _made(self) -> Construction:
+        """The construction, which no file keeps."""
+        if self.construction is None:
+            raise SceneError(
+                "the section must have its construction, got one from a file: compute it again"
+            )
+        return self.construction
+
     def properties(self, bending: str) -> dict[str, float]:
         """Return what a `Rope` has of it, with wires that "stick" or "slip" when it bends.
 
@@ -139,6 +280,12 @@ class Section(Answer):
         names = [f"{name.replace('_', ' ')} [{unit}]" for name, unit in ROWS.items()]
         columns = {"quantity": tuple(names), "value": tuple(getattr(self, name) for name in ROWS)}
         return Table.of(f"section, {WORDS[self.torsion]}", columns)
+
+
+def _curvatures(value: ArrayLike, name: str, *, sign: str) -> Real:
+    """Return curvatures in their shape."""
+    shape = np.shape(value)
+    return check.numbers(np.ravel(value), name, "1/m", sign=sign).reshape(shape)
 
 
 def _inertias(strand: Strand) -> dict[str, float]:

@@ -153,10 +153,11 @@ def bending_tension(strand: Strand) -> list[Number]:
     n/2 EA r^2 S^3 of wires in single helices; in double ones n/S sum EA <y^2 z'^4/l0^3> with
     y^2 = [(r - rho cos)^2 + (rho S sin)^2]/2 and z' = S (1 - k0 rho cos) + rho q c cos.
     """
-    return [_ring_bending(ring) for ring in strand.rings]
+    return [ring_bending(ring) for ring in strand.rings]
 
 
-def _ring_bending(ring: Ring) -> Number:
+def ring_bending(ring: Ring) -> Number:
+    """Return what the tension of wires adds to B where they stick, of one ring."""
     on = ring.on
     if isinstance(ring.element, Bar):
         return single(ring, ring.element.EA)
