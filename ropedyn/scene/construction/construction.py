@@ -12,13 +12,12 @@ from ...base.drawing import draw
 from ...base.errors import SceneError
 from ...base.parameter import Description, depending, given, number, one_of
 from .section import Section
-from .strand import Ring, Strand, helix
+from .strand import SENSES, Ring, Strand, helix
 from .wire import Fibre, Wire, mere_mass
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SENSES = {"Z": 1, "S": -1}  # Right-hand and left-hand lay.
 MOST_WIRES = 10_000  # In one layer.
 ROOM = 0.9  # Neighbours whose centres are nearer than this part of their diameter overlap.
 

@@ -14,6 +14,7 @@ from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
 from . import stiffness
+from .broken import helix_of, path_of, without
 from .friction import Grip, grip
 from .strand import Strand
 
@@ -230,6 +231,72 @@ class Section(Answer):
         layers = self._grip(tension, friction, lateral)
         moment = self.bending_slip * kappa + layers.moment(kappa)
         return np.asarray(layers.loss(kappa) / (np.pi * moment * kappa))
+
+    def without(self, n: int = 1, *, layer: int | tuple[int, int] | None = None) -> Section:
+        """Return the section where wires are broken and carry nothing.
+
+        Parameters
+        ----------
+        n : int, optional
+            How many wires.
+        layer : int or (int, int), optional
+            Of which layer, from inside, 0 the first: a layer of wires, or a layer of strands and
+            the layer in one of its strands; the outermost wires where left out.
+
+        Returns
+        -------
+        Section
+            In the same state; what is lost is taken as spread around the axis.
+
+        Raises
+        ------
+        TypeError
+            If a number is not whole.
+        SceneError
+            If there are not so many wires, no such layer, or the section has no construction.
+
+        Examples
+        --------
+        One of the 36 outer wires of a 7x7:
+
+        >>> import ropedyn as rd
+        >>> section = rd.Construction.standard("7x7", diameter=4e-3).section()
+        >>> broken = section.without(1, layer=(0, 0))
+        >>> round(1 - broken.axial_stiffness / section.axial_stiffness, 4)
+        0.0197
+        """
+        left = without(self._made, n, path_of(self._made, layer))
+        return Section.of(left, self.torsion, self.radial_stiffness)
+
+    def recovery(self, *, friction: float, layer: int | tuple[int, int] | None = None) -> float:
+        """Return how far from a break a wire carries its share again: r/(friction c^2) [m].
+
+        Parameters
+        ----------
+        friction : float
+            Coefficient of friction between wires, > 0.
+        layer : int or (int, int), optional
+            Of the wire, as `without` takes it.
+
+        Returns
+        -------
+        float
+            On each side of the break, r and c of the wire around its own strand.
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `without` does, or if the friction is not positive.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> section = rd.Construction.standard("7x7", diameter=4e-3).section()
+        >>> round(section.recovery(friction=0.2), 4)
+        0.0433
+        """
+        friction = check.number(friction, "friction", sign="positive")
+        return float(1 / (friction * helix_of(self._made, path_of(self._made, layer)).curvature))
 
     def _grip(self, tension: float, friction: float, lateral: float) -> Grip:
         return grip(

@@ -11,6 +11,8 @@ import numpy as np
 
 from ...base.array import Real
 
+SENSES = {"Z": 1, "S": -1}  # Right-hand and left-hand lay.
+
 Number = Any
 """A float, or an array over draws."""
 
