@@ -37,6 +37,7 @@ from .scene.bench.bending_test import BendingTest
 from .scene.bench.torsion_test import TorsionTest
 from .scene.construction.construction import Construction, Layer
 from .scene.construction.section import Section
+from .scene.construction.spread import SectionSpread
 from .scene.construction.wire import Fibre, Wire
 from .scene.damping import (
     LossFactor,
@@ -123,6 +124,7 @@ __all__ = [
     "SceneError",
     "SecondHarmonic",
     "Section",
+    "SectionSpread",
     "Sine",
     "SolveError",
     "Spectrum",

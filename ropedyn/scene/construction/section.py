@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from ...base.table import Table
 from . import stiffness
 from .broken import helix_of, path_of, without
 from .friction import Grip, grip
+from .spread import DIAMETER, LAY, MODULUS, SectionSpread, spread_of
 from .strand import Strand
 
 if TYPE_CHECKING:
@@ -297,6 +298,95 @@ class Section(Answer):
         """
         friction = check.number(friction, "friction", sign="positive")
         return float(1 / (friction * helix_of(self._made, path_of(self._made, layer)).curvature))
+
+    def spread(
+        self,
+        n: int = 10_000,
+        *,
+        seed: int = 0,
+        modulus: tuple[float, float] = MODULUS,
+        lay: float = LAY,
+        diameter: tuple[float, float] = DIAMETER,
+        core: tuple[float, float] | None = None,
+    ) -> SectionSpread:
+        """Draw sections that the construction may have, as far as nobody knows it better.
+
+        Parameters
+        ----------
+        n : int, optional
+            How many, from 100 to 10^6.
+        seed : int, optional
+            Of the same seed the same sections.
+        modulus, diameter : (float, float), optional
+            Factors on the modulus of all wires and on all diameters and radii, uniform between
+            them; where left out 190 to 205 GPa of 200, and up to 5 % thicker.
+        lay : float, optional
+            Lay lengths differ by factors from 1 - lay to 1 + lay, uniform, those of layers of the
+            rope by one and those of layers in strands by another.
+        core : (float, float), optional
+            `radial_stiffness` of the core per EA at fixed radii, its logarithm uniform: where left
+            out 0.01 to 0.1 of fibre (moduli of 60 to 150 GPa), 0.03 to 1 of strands or wires under
+            strands, 1 to 100 in strands of wires.
+
+        Returns
+        -------
+        SectionSpread
+            Wires between slipping and sticking: EA, D and C uniform between both, ln B uniform by
+            itself.
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If a range has no meaning, or the section has no construction.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import ropedyn as rd
+        >>> section = rd.Construction.standard("6x19S", diameter=16e-3, core="FC").section()
+        >>> E = section.spread().axial_stiffness / section.area
+        >>> (np.quantile(E, [0.025, 0.5, 0.975]) / 1e9).round()
+        array([ 59., 112., 150.])
+        """
+        return spread_of(
+            self._made.strand,
+            n=n,
+            seed=seed,
+            modulus=modulus,
+            lay=lay,
+            diameter=diameter,
+            core=core,
+        )
+
+    def priors(self, **spread: Any) -> Any:
+        """Return what the construction says of a rope before anything is measured.
+
+        Parameters
+        ----------
+        **spread
+            As `spread` takes them.
+
+        Returns
+        -------
+        Prior
+            `SectionSpread.prior` of the draws; ``.marginal(paths)`` is that of some of its paths,
+            as `identify` takes it.
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `spread` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> prior = rd.Construction.standard("7x7", diameter=4e-3).section().priors(n=1000)
+        >>> print(prior.marginal(["bending_stiffness"]).distribution["bending_stiffness"])
+        log-normal
+        """
+        return self.spread(**spread).prior()
 
     def _grip(self, tension: float, friction: float, lateral: float) -> Grip:
         return grip(
