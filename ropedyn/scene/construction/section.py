@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from .construction import Construction
 
 
+MOST_FREQUENCIES = 1_000_000
+
 LATERAL = 1.5  # Of the pressure of outer layers, how much counts.
 
 ROWS = {
@@ -387,6 +389,49 @@ class Section(Answer):
         log-normal
         """
         return self.spread(**spread).prior()
+
+    def torsional_frequency(self, length: float, n: int = 1, *, lay: bool = True) -> Real:
+        """Return natural frequencies of twist of a rope held at both ends, without tension.
+
+        Those of the slower family of the coupled waves of twist and stretch.
+
+        Parameters
+        ----------
+        length : float
+            Of the rope [m].
+        n : int, optional
+            How many.
+        lay : bool, optional
+            Whether the lay couples twist and stretch.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            k c/(2 L), 2 c^2 = x + y - sqrt((x - y)^2 + 4 D^2/(mu p)), x = EA/mu, y = C/p [Hz].
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If the length is not positive, or `n` not.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> made = rd.Construction.standard("7x7", diameter=4e-3)
+        >>> [made.section(state).torsional_frequency(1.35).round(2) for state in ("slip", "stick")]
+        [array([246.59]), array([321.45])]
+        """
+        length = check.number(length, "length", "m", sign="positive")
+        n = check.count(n, "n", most=MOST_FREQUENCIES)
+        check.instance(lay, "lay", bool, "True or False")
+        x, y = self.axial_stiffness / self.mass, self.torsional_stiffness / self.polar_inertia
+        D2 = self.lay_coupling**2 / (self.mass * self.polar_inertia) if lay else 0.0
+        # the product of both squares over the larger: nothing cancels
+        fast = (x + y + np.hypot(x - y, 2 * np.sqrt(D2))) / 2
+        speed = np.sqrt((x * y - D2) / fast) if lay else np.sqrt(y)
+        return np.asarray(np.arange(1, n + 1) * speed / (2 * length))
 
     def _grip(self, tension: float, friction: float, lateral: float) -> Grip:
         return grip(
