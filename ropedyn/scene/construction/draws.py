@@ -26,8 +26,14 @@ class Scatter(NamedTuple):
     def block(self, at: slice) -> Scatter:
         """Return some of the draws."""
         one, two = self.lays
-        cut = [self.modulus[at], self.size[at], (one[at], two[at])]
-        return Scatter(*cut, self.core[at], self.stick[at], self.grip[at])
+        return Scatter(
+            self.modulus[at],
+            self.size[at],
+            (one[at], two[at]),
+            self.core[at],
+            self.stick[at],
+            self.grip[at],
+        )
 
 
 def sections(strand: Strand, scatter: Scatter) -> Real:
