@@ -35,6 +35,10 @@ from .response.frf import FRF
 from .response.second_harmonic import SecondHarmonic
 from .scene.bench.bending_test import BendingTest
 from .scene.bench.torsion_test import TorsionTest
+from .scene.construction.construction import Construction, Layer
+from .scene.construction.section import Section
+from .scene.construction.spread import SectionSpread
+from .scene.construction.wire import Fibre, Wire
 from .scene.damping import (
     LossFactor,
     ModalDamping,
@@ -75,6 +79,7 @@ __all__ = [
     "Chirp",
     "Choice",
     "Comparison",
+    "Construction",
     "Cost",
     "Damage",
     "DampedModes",
@@ -85,6 +90,7 @@ __all__ = [
     "Family",
     "FamilyFRF",
     "FamilyModes",
+    "Fibre",
     "Fit",
     "Fits",
     "Floquet",
@@ -93,6 +99,7 @@ __all__ = [
     "History",
     "IdentifyWarning",
     "Impulse",
+    "Layer",
     "LocalChange",
     "LossFactor",
     "Measured",
@@ -116,6 +123,8 @@ __all__ = [
     "Scene",
     "SceneError",
     "SecondHarmonic",
+    "Section",
+    "SectionSpread",
     "Sine",
     "SolveError",
     "Spectrum",
@@ -131,6 +140,7 @@ __all__ = [
     "TorsionTest",
     "Track",
     "ViscousDamping",
+    "Wire",
     "accuracy_cost",
     "ask",
     "compare",

@@ -21,6 +21,7 @@ from .base.table import Table
 from .curves.peaks import Peaks
 from .experiment.identify.identify import identify
 from .model import Model
+from .scene.construction.construction import Construction
 from .scene.damping import StiffnessDamping
 from .scene.rope import Rope
 from .scene.scene import Scene
@@ -389,6 +390,80 @@ def report() -> Report:
     """
     found = tuple(readings())
     return Report(found, _verdict(found))
+
+
+def constructions() -> dict[str, Construction]:
+    """Return ropes and strands of the study's diameter: wires that touch, lays of nine diameters.
+
+    Returns
+    -------
+    dict of str to Construction
+        Ropes in regular lay; strands around fibre without a gap, all strands with the lay of nine
+        of their diameters.
+
+    Examples
+    --------
+    >>> from ropedyn import study2015
+    >>> print(list(study2015.constructions())[:2])
+    ['1x19, layers crossed', '1x19, layers alike']
+    """
+    made = {
+        f"1x19, layers {how}": Construction.standard(
+            "1x19", diameter=DIAMETER, crossed=how == "crossed"
+        )
+        for how in ("crossed", "alike")
+    }
+    for name in ("7x7", "7x19"):
+        made[name] = Construction.standard(name, diameter=DIAMETER)
+    for name in ("6x7", "6x19"):
+        line: dict[str, Any] = {"diameter": DIAMETER, "core": "FC", "gap": 0.0, "scaled": False}
+        thick = Construction.standard(name, **line)
+        strand = thick.diameter - 2 * thick.radii[0]
+        made[f"{name} FC"] = Construction.standard(name, strand_lay=9 * strand, **line)
+    return made
+
+
+def torsion() -> Table:
+    """Return what the construction says of mass, C and the first torsional frequency.
+
+    Of the bare rope, held at both ends, without tension: as if stretch and twist were not coupled,
+    and with the lay coupling where wires slip in their strands and where they stick.
+
+    Returns
+    -------
+    Table
+
+    Examples
+    --------
+    >>> from ropedyn import study2015
+    >>> table = study2015.torsion()
+    >>> for row in table.rows:
+    ...     print(row[0], [round(f) for f in row[-2:]])
+    1x19, layers crossed [443, 443]
+    1x19, layers alike [299, 299]
+    7x7 [247, 321]
+    7x19 [223, 315]
+    6x7 FC [132, 243]
+    6x19 FC [94, 238]
+    """
+    rows = []
+    for name, made in constructions().items():
+        slip, stick = made.section("slip"), made.section("stick")
+        alone = slip.torsional_frequency(LENGTH, lay=False)
+        coupled = (one.torsional_frequency(LENGTH)[0].item() for one in (slip, stick))
+        stiffness = slip.torsional_stiffness, stick.torsional_stiffness
+        rows.append((name, slip.mass, *stiffness, alone[0].item(), *coupled))
+    columns = (
+        "construction",
+        "mass [kg/m]",
+        "C, slip [N m^2]",
+        "C, stick [N m^2]",
+        "no lay coupling [Hz]",
+        "slip [Hz]",
+        "stick [Hz]",
+    )
+    title = f"first torsional frequency of {1e3 * DIAMETER:g} mm ropes over {LENGTH:g} m"
+    return Table(title, columns, tuple(rows))
 
 
 def _verdict(found: tuple[Reading, ...]) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.answer import Frozen
-from ..base.array import Real
+from ..base.array import Flags, Real
 from ..base.errors import SceneError
 from ..scene.damping import having, separable
 from ..scene.parts.stretch import KINDS as STRETCHES
@@ -106,8 +106,8 @@ class Compiled(Frozen):
         order = dict.fromkeys(self.coordinates, 2.0)
         if "beta" in order:
             order["z"] = order["beta"] = self._bending_order()
-        moved = np.diagonal(self.chain.mass, axis1=1, axis2=2).any(axis=0).tolist()
-        slow = {c for c, moves in zip(self.coordinates, moved) if moves}
+        moved: Flags = np.diagonal(self.chain.mass, axis1=1, axis2=2).any(axis=0)
+        slow = {self.coordinates[k] for k in np.flatnonzero(moved)}
         for part in self.components:
             least = min((order[c] for c in part if c in slow), default=2.0)
             order |= dict.fromkeys(part, least)

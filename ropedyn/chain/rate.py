@@ -129,7 +129,7 @@ class Places:
     station: Index = field(init=False)
     # (stretches,) whether its nodes lie between stations
     inside: Flags = field(init=False)
-    change: Real = field(init=False)  # (spans, 5) of the rope, see `stretch.RopeChange`
+    change: Real = field(init=False)  # (spans, 7) of the rope, see `stretch.RopeChange`
     ropes: tuple[Rope, ...] = field(init=False)  # of each span
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
+from .section import SECTION
 from .tension import TENSION
 
 COMMANDS = (
@@ -24,6 +25,7 @@ COMMANDS = (
     TRANSIENT,
     FLOQUET,
     STABILITY,
+    SECTION,
 )
 FOLDER = Path("ropedyn-study")
 

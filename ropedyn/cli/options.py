@@ -49,9 +49,10 @@ class OptionGroup(NamedTuple):
 
 
 class Command(NamedTuple):
-    """A command about a scene: beside its own options it takes elements and the form of an answer.
+    """A command: beside its own options it takes what it is about and the form of an answer.
 
-    Its description is its text as a sentence where left out.
+    It is about a scene, whose elements are options, unless another subject is said. Its description
+    is its text as a sentence where left out.
     """
 
     name: str
@@ -60,13 +61,15 @@ class Command(NamedTuple):
     own: tuple[Option | OptionGroup, ...]
     description: str = ""
     elements: tuple[Option, ...] | None = None
+    subject: tuple[Option, ...] | None = None
 
     def add(self, commands: Any) -> None:
         """Add it to the commands of a parser."""
         about = self.description or f"{self.text[0].upper()}{self.text[1:]}."
         parser = commands.add_parser(self.name, help=self.text, description=about)
         elements = ELEMENTS if self.elements is None else self.elements
-        for one in (SCENE, *elements, *self.own, *OUTPUT):
+        subject = (SCENE,) if self.subject is None else self.subject
+        for one in (*subject, *elements, *self.own, *OUTPUT):
             one.add(parser)
         parser.set_defaults(run=self.run)
 

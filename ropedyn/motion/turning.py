@@ -26,6 +26,7 @@ from ..chain.port import moving
 from ..scene.end import end_of
 from ..scene.force import Sine
 from ..scene.parts.part import standing
+from ..scene.parts.stretch import refuse_uneven
 from ..scene.scene import Scene
 from ..scene.tension import Tension
 from .history import History
@@ -88,6 +89,7 @@ def _refuse(model: Compiled, asked: list[str]) -> None:
         raise SceneError(
             f"lay_slope must be None {WHY} that pulsates: it couples twist and bending"
         )
+    refuse_uneven(scene.parts, f"{WHY} that pulsates")
     if "x" in asked:
         raise SceneError(
             f"response must not be x {WHY} that pulsates: which end gives way to it is not said"

@@ -33,6 +33,7 @@ from ..chain.place import points
 from ..chain.port import Point, cut, moving, ports
 from ..curves.resonance import Resonances
 from ..scene import damping
+from ..scene.parts.stretch import refuse_uneven
 from .fields import Fields
 from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .harmonic import solve_harmonic
@@ -193,6 +194,7 @@ def _refuse(model: Compiled, solver: str, decay: float) -> None:
             "axial_stiffness of the rope must be given where harmonic is 2 [N], got None: nothing "
             "is stretched"
         )
+    refuse_uneven(scene.parts, "where harmonic is 2")
     if scene.gravity is not None:
         raise SceneError(
             "gravity must be None where harmonic is 2, got one: along a sag the slopes alone do "

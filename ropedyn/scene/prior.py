@@ -16,11 +16,11 @@ from ..base.errors import SceneError
 from ..base.parameter import Description, depending, given
 from ..base.table import Table
 from .bench.bending_test import BendingTest
+from .bench.given import given_tests
 from .bench.static_test import StaticTest
 from .bench.torsion_test import TorsionTest
 from .joint_normal import EPS, JointNormal
 from .path import signs_of, unit_of
-from .rope import given_tests
 
 NORMAL, LOG_NORMAL = DISTRIBUTIONS = ("normal", "log-normal")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import KW_ONLY
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -12,8 +12,10 @@ from ..base import check
 from ..base.errors import SceneError
 from ..base.parameter import Description, number
 from .bench.bending_test import BendingTest
-from .bench.static_test import StaticTest
+from .bench.given import given_tests
 from .bench.torsion_test import TorsionTest
+from .construction.construction import Construction
+from .construction.section import Section
 
 
 class Rope(Description):
@@ -71,6 +73,9 @@ class Rope(Description):
     [ 0.0125 -1.25  ] [1000.    0.]
     [0.01 0.  ] [1000.    2.]
     """
+
+    section: ClassVar[Section | None] = None
+    """What a rope from a construction was taken from; one with changed properties has none."""
 
     length: float = number("m", sign="positive")
     linear_density: float = number("kg/m", sign="positive")
@@ -156,6 +161,65 @@ class Rope(Description):
             others[name] = test.stiffness
         return Rope(length, linear_density, **others)
 
+    @staticmethod
+    def from_construction(
+        length: float,
+        construction: Construction | Section,
+        *,
+        bending: str = "stick",
+        torsion: str | None = None,
+        **others: Any,
+    ) -> Rope:
+        """Return a rope with the properties that its construction implies.
+
+        Its `section` is kept for reading; a rope that is changed has none.
+
+        Parameters
+        ----------
+        length : float
+            Of the rope [m].
+        construction : Construction or Section
+            Whose stiffnesses, mass and inertias it has.
+        bending : {"stick", "slip"}, optional
+            Whether wires stick when it bends, as they do where motion is small, or slide freely.
+        torsion : {"slip", "stick", "straight"}, optional
+            Of a construction, as `Construction.section` takes it; "slip" where left out.
+        **others
+            Any further argument of `Rope`, in the place of what the construction implies; None
+            drops an effect.
+
+        Returns
+        -------
+        Rope
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type, or there is no such argument.
+        SceneError
+            If there is no such state, or as `Rope` does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> strand = rd.Construction.standard("1x19", diameter=4e-3, lay="Z")
+        >>> rope = rd.Rope.from_construction(1.35, strand)
+        >>> round(rope.bending_stiffness, 4), round(rope.section.bending_slip, 4)
+        (1.6313, 0.0733)
+        """
+        what = "a Construction or a Section"
+        check.instance(construction, "construction", (Construction, Section), what)
+        check.one_of(bending, "bending", ("stick", "slip"))
+        if isinstance(construction, Construction):
+            section = construction.section("slip" if torsion is None else torsion)
+        elif torsion is None:
+            section = construction
+        else:
+            raise SceneError(f"torsion must not be given of a Section, got {check.shown(torsion)}")
+        rope = Rope(length, **{**section.properties(bending), **others})
+        vars(rope)["section"] = section
+        return rope
+
     def replace(self, **changes: Any) -> Rope:
         """Return a rope with these properties changed.
 
@@ -172,17 +236,3 @@ class Rope(Description):
             As `Rope` does.
         """
         return dataclasses.replace(self, **changes)
-
-
-def given_tests(bending: BendingTest | None, torsion: TorsionTest | None) -> tuple[StaticTest, ...]:
-    """Return the tests that there are, at least one."""
-    tests: list[StaticTest] = []
-    for test, name, kind in (
-        (bending, "bending", BendingTest),
-        (torsion, "torsion", TorsionTest),
-    ):
-        if test is not None:
-            tests.append(check.instance(test, name, kind, f"a {kind.__name__}"))
-    if not tests:
-        raise SceneError("bending or torsion must be a test, got None")
-    return tuple(tests)

@@ -21,7 +21,7 @@ from .end import End
 from .gravity import Gravity
 from .parts import part as _part
 from .parts.node import Part
-from .parts.stretch import Stretch, ropes
+from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
 from .rope import Rope
 from .stations import stations_at
 from .tension import Tension
@@ -209,11 +209,11 @@ NodeForce, Stop, AddedMass, LocalChange
                 f"parts[{i}].stop must lie more than {least:g} m beyond start, {part.start!r} m, "
                 f"got {part.stop!r}"
             )
-        for name, coordinate in part.acts_on.items():
+        for name, what in part.acts_on.items():
             factor = getattr(part, name)
-            if factor != 1 and coordinate not in self.coordinates:
+            if factor != 1 and what not in changeable(self.rope, self.coordinates):
                 raise SceneError(
-                    f"parts[{i}].{name} must be 1 where the scene has no {coordinate} "
+                    f"parts[{i}].{name} must be 1 where the scene has no {what} "
                     f"({', '.join(self.coordinates)}), got {factor!r}"
                 )
 
@@ -250,6 +250,7 @@ NodeForce, Stop, AddedMass, LocalChange
     def _check_stretching(self) -> None:
         if not isinstance(self.tension, Tension) or not self.tension.stretching:
             return
+        refuse_uneven(self.parts, "where the tension is stretching")
         if self.rope.axial_stiffness is None:
             raise SceneError(
                 "tension must not be stretching without axial_stiffness of the rope [N], got None"
@@ -400,8 +401,7 @@ NodeForce, Stop, AddedMass, LocalChange
             parts=tuple(
                 left
                 for part in self.parts
-                if part.kind not in effects
-                and (left := _left_of(part, bare.coordinates)) is not None
+                if part.kind not in effects and (left := _left_of(part, bare)) is not None
             ),
         )
 
@@ -577,11 +577,11 @@ def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> floa
     return _checked_tension(tension)
 
 
-def _left_of(part: Part | Stretch, present: tuple[str, ...]) -> Part | Stretch | None:
-    """Return what is left of a part on these coordinates, None where nothing is."""
+def _left_of(part: Part | Stretch, bare: Scene) -> Part | Stretch | None:
+    """Return what is left of a part in a scene with less, None where nothing is."""
     if isinstance(part, Stretch):
-        return part.on(present)
-    return part if set(part.stands_on) <= set(present) else None
+        return part.on(changeable(bare.rope, bare.coordinates))
+    return part if set(part.stands_on) <= set(bare.coordinates) else None
 
 
 def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:

@@ -60,6 +60,8 @@ DESCRIBED = {
         "stop": (0.3, "m", "cm"),
         "bending": (0.9, "", "percent"),
         "torsion": (0.8, "", "percent"),
+        "axial": (0.7, "", "percent"),
+        "lay": (0.6, "", "percent"),
         "density": (0.7, "", "percent"),
     },
     rd.BrokenWire: {

@@ -1,6 +1,7 @@
 """Ropes that change over stretches: added mass and local factors, against exact references."""
 
 import math
+import re
 
 import exact_roots
 import mpmath
@@ -20,6 +21,7 @@ L, MU, T, B = 1.2, 0.09, 60.0, 2.0
 STRING = rd.Rope(L, MU)
 BEAM = rd.Rope(L, MU, bending_stiffness=B)
 EVERY = {"bending": 0.4, "torsion": 0.6, "density": 1.7}
+ALONG = {"axial": 0.8, "lay": 0.5}
 OVERLAPPING = (
     rd.LocalChange(0.2, 0.6, bending=0.3, density=0.8),
     rd.AddedMass(0.5, 0.9, 0.05),
@@ -86,6 +88,32 @@ def test_string_of_two_parts_of_one_travel_time_has_equal_steps():
     modes = rd.Scene(STRING, tension=T, parts=parts).compile().modes(8)
     step = math.sqrt(T / MU) / (4 * 0.8)
     np.testing.assert_allclose(modes.frequency, step * np.arange(1, 9), rtol=RELATIVE)
+
+
+@pytest.mark.parametrize("axial", [0.01, 0.5, 30.0])
+def test_rod_of_two_stiffnesses_has_the_frequencies_of_its_equation(axial):
+    rod = rd.Rope(L, MU, axial_stiffness=3e5)
+    modes = solved(rd.Scene(rod, parts=[rd.LocalChange(0.0, 0.5, axial=axial)]), 6)
+    with mpmath.workdps(DIGITS):
+        mu, EA = mpf(MU), mpf(3e5)
+        # impedance EA k/omega = sqrt(EA mu)
+        parts = [(mpmath.sqrt(mu / c), mpmath.sqrt(mu * c)) for c in (mpf(axial) * EA, EA)]
+        a, b = mpf(0.5), mpf(L) - mpf(0.5)
+    for f in modes.frequency.tolist():
+        assert abs(f / two_part_root(f, parts, a, b) - 1) < RELATIVE
+
+
+def test_a_laid_rope_of_two_parts_turns_by_the_flexibility_of_each():
+    # a force at the end that is free: twist -D F/(EA C - D^2) per length, of each part
+    rope = rd.Rope(2.0, 0.5, axial_stiffness=1e6, torsional_stiffness=20.0, lay_coupling=2000.0)
+    part = rd.LocalChange(0.5, 1.25, axial=0.9, lay=0.7, torsion=0.8)
+    free = rd.End(x="free", alpha="free", z="free", beta="free")
+    static = rd.Scene(rope, ends=("clamped", free), parts=[part]).compile()
+    found = static.static({("x", 2.0): 1000.0}).displacement[-1]
+    expected = np.zeros(2)
+    for length, EA, C, D in (1.25, 1e6, 20.0, 2e3), (0.75, 0.9e6, 16.0, 1.4e3):
+        expected += length * np.linalg.solve([[EA, D], [D, C]], [1000.0, 0.0])
+    assert np.abs(found / expected - 1).max() < 32 * EPS
 
 
 @pytest.mark.claim(
@@ -315,14 +343,26 @@ CHANGED = LAID.replace(
     linear_density=LAID.linear_density * 1.7,
     bending_stiffness=LAID.bending_stiffness * 0.4,
     torsional_stiffness=LAID.torsional_stiffness * 0.6,
+    axial_stiffness=LAID.axial_stiffness * 0.8,
+    lay_coupling=LAID.lay_coupling * 0.5,
     rotary_inertia=LAID.rotary_inertia * 1.7,
     polar_inertia=LAID.polar_inertia * 1.7,
 )
 
 
 def test_a_change_of_the_whole_rope_is_another_rope():
-    change = rd.LocalChange(0.0, 1.0, **EVERY)
+    change = rd.LocalChange(0.0, 1.0, **EVERY, **ALONG)
     same(rd.Scene(LAID, tension=50.0, parts=[change]), rd.Scene(CHANGED, tension=50.0))
+
+
+def test_what_needs_one_axial_stiffness_refuses_another_by_name():
+    uneven = [rd.LocalChange(0.1, 0.5, lay=0.5)]
+    stretching = rd.Tension(50.0, stretching=True)
+    held = rd.Scene(LAID, tension=50.0, parts=uneven)
+    with pytest.raises(rd.SceneError, match=re.escape("parts[0].lay must be 1 where the tension")):
+        held.replace(tension=stretching)
+    with pytest.raises(rd.SceneError, match=re.escape("parts[0].lay must be 1 where harmonic")):
+        held.compile().frf([20.0], drive=("z", 0.4), harmonic=2)
 
 
 def test_mass_added_to_the_whole_rope_is_another_rope():
@@ -481,14 +521,18 @@ def test_scene_without_stretches_is_the_one_that_never_had_them():
 
 
 def test_a_change_keeps_what_it_does_to_coordinates_that_are_left():
-    part = rd.LocalChange(0.1, 0.5, **EVERY)
+    every = EVERY | ALONG
+    part = rd.LocalChange(0.1, 0.5, **every)
     only_bending = rd.LocalChange(0.1, 0.5, bending=0.4)
     scene = rd.Scene(LAID, tension=50.0, parts=[part, only_bending])
     assert scene.without("twist").parts == (
-        rd.LocalChange(0.1, 0.5, bending=0.4, density=1.7),
+        rd.LocalChange(0.1, 0.5, bending=0.4, axial=0.8, density=1.7),
         only_bending,
     )
-    assert scene.without("bending").parts == (rd.LocalChange(0.1, 0.5, torsion=0.6, density=1.7),)
+    without_bending = {name: factor for name, factor in every.items() if name != "bending"}
+    assert scene.without("bending").parts == (rd.LocalChange(0.1, 0.5, **without_bending),)
+    without_lay = {name: factor for name, factor in every.items() if name != "lay"}
+    assert scene.without("lay").parts[0] == rd.LocalChange(0.1, 0.5, **without_lay)
 
 
 def test_stretches_closer_than_stations_can_be_are_merged():
@@ -513,6 +557,16 @@ def test_stretches_closer_than_stations_can_be_are_merged():
             BEAM,
             [rd.AddedMass(0.0, 0.5, 1.0), rd.LocalChange(0.0, 0.5, torsion=2.0)],
             "parts[1].torsion must be 1 where the scene has no alpha (z, beta), got 2.0",
+        ),
+        (
+            BEAM,
+            [rd.LocalChange(0.0, 0.5, axial=0.5)],
+            "parts[0].axial must be 1 where the scene has no x (z, beta), got 0.5",
+        ),
+        (
+            LAID.replace(lay_coupling=None),
+            [rd.LocalChange(0.0, 0.5, lay=0.5)],
+            "parts[0].lay must be 1 where the scene has no lay coupling (x, z, alpha, beta), got ",
         ),
         (
             BEAM,

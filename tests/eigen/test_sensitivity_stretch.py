@@ -26,7 +26,7 @@ WORN = rd.Scene(
     tension=TENSION,
     ends=("clamped", rd.End(z="free", spring={"z": 2e3}, mass={"z": 0.03}, dashpot={"z": 3.0})),
     parts=[
-        rd.LocalChange(0.2, 0.6, bending=0.4, torsion=1.5, density=0.8),
+        rd.LocalChange(0.2, 0.6, bending=0.4, torsion=1.5, axial=1.2, lay=0.7, density=0.8),
         rd.AddedMass(0.5, 0.9, 0.04, polar_inertia=2e-6),
         rd.Dashpot(0.3, 5.0),
         rd.LocalChange(0.45, 0.8, bending=1.7, torsion=0.6, density=1.3),
@@ -47,6 +47,8 @@ SMOOTH = (
     "tension",
     "parts[0].bending",
     "parts[0].torsion",
+    "parts[0].axial",
+    "parts[0].lay",
     "parts[0].density",
     "parts[1].linear_density",
     "parts[1].polar_inertia",

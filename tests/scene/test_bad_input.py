@@ -386,7 +386,7 @@ def test_what_has_no_meaning_is_refused_by_name(argument, call, wrong_types, wro
         (lambda: rd.AddedMass(0.1, 0.2, 1.0, 1e-6), "positional"),
         (lambda: rd.LocalChange(0.1), "stop"),
         (lambda: rd.LocalChange(0.1, 0.2, 0.5), "positional"),
-        (lambda: rd.LocalChange(0.1, 0.2, axial=0.5), "axial"),
+        (lambda: rd.LocalChange(0.1, 0.2, shear=0.5), "shear"),
         (rd.StiffnessDamping, "gamma"),
         (lambda: rd.RayleighDamping(1.0), "stiffness"),
         (rd.Scene, "rope"),

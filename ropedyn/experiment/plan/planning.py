@@ -273,7 +273,8 @@ def _damage(scene: Scene, given: Any, loss: float) -> DamageKind | None:
         start, stop = max(x - SHARE / 2 * length, 0.0), min(x + SHARE / 2 * length, length)
     if not loss < 1:
         raise SceneError(f"loss must be a number between 0 and 1, got {loss!r}")
-    lost = {name: 1 - loss for name, c in LocalChange.acts_on.items() if c in scene.coordinates}
+    worn = {name: LocalChange.acts_on[name] for name in ("bending", "torsion")}
+    lost = {name: 1 - loss for name, c in worn.items() if c in scene.coordinates}
     if not lost:
         raise SceneError(
             "damage must be a LocalChange with a density where the scene has no bending or "

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Collection, Sequence
 from dataclasses import KW_ONLY
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ...base import check
 from ...base.array import Index, Real
 from ...base.errors import SceneError
 from ...base.parameter import Description, number, position
@@ -21,16 +22,22 @@ class RopeChange(NamedTuple):
 
     bending: float = 1.0
     torsion: float = 1.0
+    axial: float = 1.0
+    lay: float = 1.0
     density: float = 1.0
     linear_density: float = 0.0  # [kg/m]
     polar_inertia: float = 0.0  # [kg m]
 
 
-FACTORS = slice(0, 3)  # A change begins with its factors; the rest of it is added.
+FACTORS = slice(0, 5)  # A change begins with its factors; the rest of it is added.
+
+LAY = "lay coupling"  # What a factor on the lay has no meaning without.
 
 FACTOR = {
     "bending_stiffness": "bending",
     "torsional_stiffness": "torsion",
+    "axial_stiffness": "axial",
+    "lay_coupling": "lay",
     "linear_density": "density",
     "rotary_inertia": "density",
     "polar_inertia": "density",
@@ -38,11 +45,21 @@ FACTOR = {
 """The factor on each property of a rope that changes; what is added to one has its name."""
 
 
+BROKEN = (
+    "bending_stiffness",
+    "torsional_stiffness",
+    "axial_stiffness",
+    "lay_coupling",
+    "linear_density",
+)
+"""What broken wires take from a rope, mass only where they fall out."""
+
+
 class _Between(Description):
     """Base of what changes the rope between two places."""
 
     acts_on: ClassVar[dict[str, str]] = {}
-    """Arguments that have no meaning without a coordinate, unless they are 1."""
+    """Arguments that have no meaning without a coordinate, or a lay coupling, unless they are 1."""
 
     start: float = position()
     stop: float = position()
@@ -120,16 +137,16 @@ class AddedMass(_Between):
 class LocalChange(_Between):
     """Factors on the rope over a stretch: damage, wear, a splice.
 
-    Factors that overlap multiply. Axial stiffness and lay are those of the rope. Where a stretch
-    with other stiffness or density begins, tensed elements keep their order (`Model.mesh_order`);
-    continuous spans are exact.
+    Factors that overlap multiply. Where a stretch with other stiffness or density begins,
+    tensed elements keep their order (`Model.mesh_order`); continuous spans are exact.
 
     Parameters
     ----------
     start, stop : float
         Where it begins and ends [m].
-    bending, torsion : float
-        On the rope's bending and torsional stiffness; 1 leaves it as it is.
+    bending, torsion, axial, lay : float
+        On the rope's bending, torsional and axial stiffness and on its lay coupling; 1 leaves it as
+        it is.
     density : float
         On its linear density, and on its rotary and polar inertia: there is so much more or less
         of the same material. What an `AddedMass` adds stays as it is.
@@ -142,7 +159,8 @@ class LocalChange(_Between):
         If something is not finite, the stretch does not end beyond its start, or a factor is not
         positive; in a scene, if the stretch is off the rope or shorter than 1e-9 of it, if a
         factor other than 1 stands on a stiffness that the rope does not have, or if the changed
-        section is not positive definite (the lay coupling stays).
+        section is not positive definite; if axial stiffness or lay changes where the tension is
+        that of the whole rope's stretch.
 
     Examples
     --------
@@ -158,12 +176,83 @@ class LocalChange(_Between):
     """
 
     kind: ClassVar[str] = "local change"
-    acts_on: ClassVar[dict[str, str]] = {"bending": "beta", "torsion": "alpha"}
+    acts_on: ClassVar[dict[str, str]] = {
+        "bending": "beta",
+        "torsion": "alpha",
+        "axial": "x",
+        "lay": LAY,
+    }
 
     _: KW_ONLY
     bending: float = number(sign="positive", default=1.0)
     torsion: float = number(sign="positive", default=1.0)
+    axial: float = number(sign="positive", default=1.0)
+    lay: float = number(sign="positive", default=1.0)
     density: float = number(sign="positive", default=1.0)
+
+    @staticmethod
+    def of_broken_wires(
+        rope: Rope,
+        x: float,
+        n: int = 1,
+        *,
+        friction: float,
+        layer: int | tuple[int, int] | None = None,
+        bending: str = "stick",
+        fallen: bool = False,
+    ) -> LocalChange:
+        """Return what broken wires take from a rope as far as they do not carry.
+
+        Parameters
+        ----------
+        rope : Rope
+            From `Rope.from_construction`; what it has is changed.
+        x : float
+            Where the wires are broken [m].
+        n : int, optional
+            How many wires.
+        friction : float
+            Coefficient of friction between wires, > 0: it gives back their tension.
+        layer : int or (int, int), optional
+            Of the wires, as `Section.without` takes it; the outermost where left out.
+        bending : {"stick", "slip"}, optional
+            Whether wires stick when the rope bends.
+        fallen : bool, optional
+            Whether the wires are gone and their mass too.
+
+        Returns
+        -------
+        LocalChange
+            From one `Section.recovery` before x to one after it, as far as the rope goes.
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type.
+        SceneError
+            If the rope has no section, or as `Section.without` and `Section.recovery` do.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> made = rd.Construction.standard("7x7", diameter=4e-3)
+        >>> rope = rd.Rope.from_construction(1.35, made)
+        >>> change = rd.LocalChange.of_broken_wires(rope, 0.5, friction=0.2)
+        >>> round(change.start, 4), round(change.axial, 4), round(change.torsion, 4)
+        (0.4567, 0.9803, 0.9789)
+        """
+        section = check.instance(rope, "rope", Rope, "a Rope").section
+        if section is None:
+            raise SceneError("rope must be from a construction, got one without a section")
+        x = check.position(x, "x", rope.length)
+        check.instance(fallen, "fallen", bool, "True or False")
+        length = section.recovery(friction=friction, layer=layer)
+        left = section.without(n, layer=layer).properties(bending)
+        whole, factors = section.properties(bending), {}
+        for name in BROKEN if fallen else BROKEN[:-1]:
+            if getattr(rope, name) and whole[name]:
+                factors[FACTOR[name]] = left[name] / whole[name]
+        return LocalChange(max(x - length, 0.0), min(x + length, rope.length), **factors)
 
     def change(self) -> RopeChange:
         """Return the factors.
@@ -174,24 +263,24 @@ class LocalChange(_Between):
         >>> rd.LocalChange(0.0, 0.5, bending=0.9).change().bending
         0.9
         """
-        return RopeChange(bending=self.bending, torsion=self.torsion, density=self.density)
+        return RopeChange(self.bending, self.torsion, self.axial, self.lay, self.density)
 
     def on(self, coordinates: Collection[str]) -> LocalChange | None:
         """Return what is left of it on these coordinates, None where that changes nothing.
+
+        What changes the lay is left where "lay coupling" is among them.
 
         Examples
         --------
         >>> import ropedyn as rd
         >>> rd.LocalChange(0.0, 0.5, bending=0.9, torsion=0.8).on(["z", "alpha"])
-        LocalChange(start=0.0, stop=0.5, bending=1.0, torsion=0.8, density=1.0)
+        LocalChange(start=0.0, stop=0.5, bending=1.0, torsion=0.8, axial=1.0, lay=1.0, density=1.0)
         >>> rd.LocalChange(0.0, 0.5, bending=0.9).on(["z"]) is None
         True
         """
-        left = dataclasses.replace(
-            self,
-            bending=self.bending if "beta" in coordinates else 1.0,
-            torsion=self.torsion if "alpha" in coordinates else 1.0,
-        )
+        gone = [name for name, what in self.acts_on.items() if what not in coordinates]
+        kept: dict[str, Any] = dict.fromkeys(gone, 1.0)
+        left = dataclasses.replace(self, **kept)
         return None if left != self and left.change() == RopeChange() else left
 
 
@@ -231,6 +320,20 @@ def ropes(rope: Rope, stretches: Sequence[Stretch], stations: Real) -> tuple[lis
             ) from error
     number = {row: k for k, row in enumerate(distinct)}
     return found, np.array([number[row] for row in change])
+
+
+def changeable(rope: Rope, coordinates: Sequence[str]) -> tuple[str, ...]:
+    """Return the coordinates that a stretch can change, and the lay coupling where there is one."""
+    return (*coordinates, LAY) if rope.lay_coupling else tuple(coordinates)
+
+
+def refuse_uneven(parts: Sequence[object], why: str) -> None:
+    """Refuse axial stiffness and lay that are not the same all along."""
+    for i, part in enumerate(parts):
+        for name in ("axial", "lay"):
+            if isinstance(part, LocalChange) and getattr(part, name) != 1:
+                got = getattr(part, name)
+                raise SceneError(f"parts[{i}].{name} must be 1 {why}, got {got!r}")
 
 
 def _changed(rope: Rope, change: RopeChange) -> Rope:

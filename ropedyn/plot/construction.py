@@ -1,0 +1,83 @@
+"""Figures of constructions: the section, and how wires lie along the rope."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.array import Real
+from ..scene.construction.construction import Construction
+from ..scene.construction.section import Section
+from ..scene.construction.strand import Bar, Ring, Strand
+from .figure import plots
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MM = 1e3
+FIBRE = "0.85"
+POINTS = 400  # Along the piece of rope that is seen from the side.
+
+
+@plots(Construction, height=lambda _: 7.0)
+def plot_construction(construction: Construction, ax: Axes, *, lay: bool = False) -> None:
+    """Draw the section, a colour for each layer of the rope, or its layers from the side."""
+    strand = construction.strand
+    (_from_the_side if lay else _across)(strand, ax)
+    ax.set_aspect("equal")
+    size = MM * construction.diameter
+    ax.set(title=f"{size:.4g} mm, {'seen from the side' if lay else 'section'}")
+
+
+@plots(Section, height=lambda _: 7.0)
+def plot_section(section: Section, ax: Axes) -> None:
+    """Draw the wires of the section."""
+    plot_construction(section._made, ax)
+
+
+def _across(strand: Strand, ax: Axes) -> None:
+    from matplotlib.patches import Circle
+
+    for bar, y, z, colour in _wires(strand):
+        face = FIBRE if bar.EA == 0 else colour
+        circle = Circle((MM * y, MM * z), MM * bar.diameter / 2, facecolor=face, edgecolor="white")
+        circle.set_linewidth(0.4)
+        ax.add_patch(circle)
+    half = 0.53 * MM * strand.diameter
+    ax.set(xlim=(-half, half), ylim=(-half, half), xlabel="y [mm]", ylabel="z [mm]")
+
+
+def _wires(strand: Strand) -> Iterator[tuple[Bar, float, float, str]]:
+    """Yield wires with their places in the section and the colours of their layers."""
+    for bar in sorted(strand.bars, key=lambda one: -one.diameter):
+        yield bar, 0.0, 0.0, "C0"
+    for k, ring in enumerate(strand.rings):
+        for angle in _angles(ring, k):
+            y, z = ring.on.radius * np.cos(angle), ring.on.radius * np.sin(angle)
+            if isinstance(ring.element, Bar):
+                yield ring.element, y, z, f"C{k + 1}"
+                continue
+            for bar, dy, dz, _ in _wires(ring.element):
+                # each strand is turned as it lies on its helix
+                turned = complex(dy, dz) * np.exp(1j * angle)
+                yield bar, y + turned.real, z + turned.imag, f"C{k + 1}"
+
+
+def _angles(ring: Ring, k: int) -> Real:
+    """Return the angles of elements of a ring, the layers in turn on gaps and on tops."""
+    return np.asarray(2 * np.pi * (np.arange(ring.n) + 0.5 * (k % 2)) / ring.n)
+
+
+def _from_the_side(strand: Strand, ax: Axes) -> None:
+    """Draw the front half of the centre lines, as wide as what lies on them."""
+    longest = max((2 * np.pi / abs(ring.on.turn) for ring in strand.rings), default=0.1)
+    x = np.linspace(0.0, longest, POINTS)
+    for k, ring in enumerate(strand.rings):
+        for angle in _angles(ring, k):
+            phase = angle + ring.on.turn * x
+            y = np.where(np.sin(phase) >= 0, ring.on.radius * np.cos(phase), np.nan)
+            shades: Any = {"color": f"C{k + 1}", "linewidth": 1.2, "zorder": k + 2}
+            ax.plot(MM * x, MM * y, **shades)
+    ax.set(xlabel="position along the rope [mm]", ylabel="y [mm]")

@@ -1,0 +1,1 @@
+"""How a rope is made of wires, and what its section follows from that."""
