@@ -20,7 +20,7 @@ enum {
 };
 
 static const double LARGEST =
-    0.8;                         /* a change of the logarithm along half an arc is believed below */
+    0.8; /* a change of the logarithm along half an arc is believed below */
 static const double CLEAR = 1.6e3; /* a value so many times its rounding has a known argument */
 static const double RADIANS = 1.2; /* that an arc turns it by at first, or less */
 static const double MOST_FIRST = 1e9;

@@ -66,7 +66,8 @@ enum rd_status rd_energy_fill(struct rd_sensitivity *sensitivity, struct rd_ener
         add_nodes(chain, k, dyad, energy);
         if (k + 1 == chain->stretches)
             break;
-        const enum rd_status status = rd_sensitivity_stretch(sensitivity, k, &pair, slope, jump, NULL);
+        const enum rd_status status =
+            rd_sensitivity_stretch(sensitivity, k, &pair, slope, jump, NULL);
         if (status != RD_OK)
             return status;
         add_elements(chain, k, slope, energy);

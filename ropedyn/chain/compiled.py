@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.answer import Frozen
-from ..base.array import Flags, Real
+from ..base.array import Real
 from ..base.errors import SceneError
 from ..scene.damping import having, separable
 from ..scene.parts.stretch import KINDS as STRETCHES
@@ -106,7 +106,7 @@ class Compiled(Frozen):
         order = dict.fromkeys(self.coordinates, 2.0)
         if "beta" in order:
             order["z"] = order["beta"] = self._bending_order()
-        moved: Flags = np.diagonal(self.chain.mass, axis1=1, axis2=2).any(axis=0)
+        moved = np.abs(np.diagonal(self.chain.mass, axis1=1, axis2=2)).max(axis=0)
         slow = {self.coordinates[k] for k in np.flatnonzero(moved)}
         for part in self.components:
             least = min((order[c] for c in part if c in slow), default=2.0)

@@ -74,7 +74,9 @@ def _bound(question: Question, value: Complex) -> Real:
 
 def _band(question: Question) -> tuple[Complex, Bound]:
     chain, _ = question.cut
-    value, error = _unassembled(question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, lanes=1)
+    value, error = _unassembled(
+        question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, lanes=1
+    )
     return value, lambda: error
 
 

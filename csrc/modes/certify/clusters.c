@@ -193,7 +193,8 @@ static struct window window_of(struct rd_work *work, size_t first, size_t n, dou
     work->search.counts += LANES;
     size_t own = 0, end;
     for (end = 1; end < RADII; end++) {
-        const bool same = count[2 * own] == count[2 * end] && count[2 * own + 1] == count[2 * end + 1];
+        const bool same =
+            count[2 * own] == count[2 * end] && count[2 * own + 1] == count[2 * end + 1];
         if (!same && end > own + 1)
             break;
         own = same ? own : end;

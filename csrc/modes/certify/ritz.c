@@ -77,7 +77,8 @@ static size_t basis(size_t n, double *M, double *scale, double *V, double *Y)
 }
 
 /* B (m, m) = Y^T A Y, Y (n, n) of which m columns are used; product (n, m) <- A Y */
-static void project(size_t n, size_t m, const double *A, const double *Y, double *product, double *B)
+static void project(size_t n, size_t m, const double *A, const double *Y, double *product,
+                    double *B)
 {
     memset(product, 0, n * m * sizeof *product);
     memset(B, 0, m * m * sizeof *B);
