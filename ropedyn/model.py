@@ -353,7 +353,7 @@ class Model(Compiled):
             ``"line"``: exact transfer functions inverted, for any damping. ``"events"``: stops and
             friction, in closed form between events. ``"direct"``: chains, linear or not, an
             implicit scheme of second order (csrc/march/form/march.h). ``"auto"``: modal, else the
-            line; of what is not linear events, collocation of smooth laws, or direct.
+            line; of what is not linear events, collocation or Volterra's equation, or direct.
         modes : int, optional
             Of each component, that the modal method sums; where left out all of a chain of at most
             1000 unknowns, else those below eight times what force and times resolve, from 64 to

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import os
@@ -30,6 +31,7 @@ KIND = "ropedyn"  # Attribute of a file that says which answer it holds.
 PREFIX = "ropedyn_"
 """Attributes that hold fields begin so: netCDF gives some names, as "coordinates", a meaning."""
 ABSENT = "ropedyn absent"  # Attribute that says which parts could not be computed, and why.
+SEAL = b"ropedyn sha256 "  # This and a checksum end a file.
 
 
 @dataclass(frozen=True)
@@ -275,7 +277,13 @@ class Answer(Frozen):
             value = dataset[name]
             parts = np.stack([value.values.real, value.values.imag], axis=-1)
             dataset[name] = ((*value.dims, "re_im"), parts, value.attrs)
-        write_bytes(path, _netcdf(dataset))
+        content = _netcdf(dataset)
+        write_bytes(path, content + _seal(content))
+
+
+def _seal(content: bytes) -> bytes:
+    """Return what ends a file: HDF5, which damage may keep busy for ever, does not read so far."""
+    return SEAL + hashlib.sha256(content).digest()
 
 
 def _netcdf(dataset: xr.Dataset) -> bytes:
@@ -330,12 +338,18 @@ def load(path: str | os.PathLike[str]) -> Answer:
     xarray = extra.netcdf()
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
-    content = file.read_bytes()
-    with reading(file, "a netCDF file"):
-        with extra.h5py().File(io.BytesIO(content)) as opened:
-            dict(opened.attrs)  # what h5netcdf stumbles over when it opens and when it closes
-        with xarray.open_dataset(io.BytesIO(content), engine="h5netcdf") as opened:
-            dataset = opened.load()
+    whole = file.read_bytes()
+    content = whole[: -len(_seal(b""))]
+    if whole != content + _seal(content):
+        raise SceneError(
+            "path must be a file that Answer.save wrote and nobody changed, got "
+            f"{str(file)!r}, whose checksum is missing or wrong"
+        )
+    with (
+        reading(file, "a netCDF file"),
+        xarray.open_dataset(io.BytesIO(content), engine="h5netcdf") as opened,
+    ):
+        dataset = opened.load()
     name = str(dataset.attrs.get(KIND, ""))
     with suppress(AttributeError):
         named(name)

@@ -30,14 +30,9 @@ def h5netcdf() -> ModuleType:
     return _need("h5netcdf")
 
 
-def h5py() -> ModuleType:
-    """Import what reads and writes HDF5."""
-    return _need("h5py")
-
-
 def netcdf() -> ModuleType:
     """Import xarray and make sure of what it reads and writes netCDF with."""
-    h5py()  # first: h5netcdf imports it
+    _need("h5py")  # first: h5netcdf imports it
     h5netcdf()
     return xarray()
 

@@ -135,7 +135,7 @@ def _loads(model: Compiled, shapes: Mapping[str, Shape], parts: int) -> dict[Poi
         points += [(coordinate, float(at)) for at in x]
         value += _values(shape, x, "start").tolist()
     asked = tuple(points)
-    still, _ = Transfer(model, asked, asked).at(np.zeros(1, dtype=np.complex128))
+    still = Transfer(model, asked, asked).at(np.zeros(1, dtype=np.complex128))
     compliance = still[..., 0].real
     force = np.linalg.solve(compliance, np.array(value))
     return dict(zip(points, force.tolist()))

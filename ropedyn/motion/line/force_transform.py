@@ -84,12 +84,14 @@ def _taper(count: int) -> Real:
 def _half_hat(z: Complex) -> Complex:
     """Return the integral of (1 - u) e^(-z u) from 0 to 1, (e^-z - 1 + z)/z^2."""
     small = np.abs(z) < SMALL
-    result, term = np.zeros_like(z), np.full(z.shape, 0.5, dtype=np.complex128)
+    result = np.empty_like(z)
+    near, far = z[small], z[~small]
+    total, term = np.zeros_like(near), np.full(near.shape, 0.5, dtype=np.complex128)
     for n in range(TERMS):
-        result += term
-        term = term * -z / (n + 3)
-    large = ~small
-    result[large] = (np.expm1(-z[large]) + z[large]) / z[large] ** 2
+        total += term
+        term *= -near / (n + 3)
+    result[small] = total
+    result[~small] = (np.expm1(-far) + far) / far**2
     return result
 
 

@@ -41,7 +41,8 @@ DEAD = 0.3  # Modes beyond the rates whose stiffness lags by more [rad] do not r
 AROUND = 4  # where they differ most within so many steps.
 SHARP = 20  # p.
 ALIAS = 4.0  # A period later motion may be so much larger.
-ROUNDING = 0.05  # Of the error that the sweep bounds, this part, by which rates do not depend.
+ROUNDING = 0.5  # Of the error that the sweep bounds, this part, by which rates do not depend,
+ROUNDED = 33  # at so many of the rates that are looked at.
 MOST_NUMBERS = 1 << 22  # Lines times pairs of drives and responses, at most, likewise.
 MOST_LINES = 1 << 19  # At most so many rates are looked at, where times resolve fewer.
 EPS = 16 * np.finfo(float).eps
@@ -88,20 +89,22 @@ class Line:
         omega = 2 * math.pi * REACH * max((f.bandwidth for f in forces), default=0.0)
         grid = Grid.over(run.time, longer, decay, growth_of(run), omega)
         transfer = Transfer(run.model, tuple(run.places), run.responses)
-        return cls(run, transfer, forces, grid, *transfer.at(grid.s), decay)
+        value = transfer.at(grid.s)
+        return cls(run, transfer, forces, grid, value, _rounding(transfer, grid.s, value), decay)
 
     def further(self) -> Line:
         """Look twice as far."""
         grid = replace(self.grid, finer=2 * self.grid.finer)
-        more = self.transfer.at(grid.s[len(self.grid.s) :])
-        known = zip((self.value, self.error), more)
+        beyond = grid.s[len(self.grid.s) :]
+        more = self.transfer.at(beyond)
+        known = zip((self.value, self.error), (more, _rounding(self.transfer, beyond, more)))
         value, error = (np.concatenate(both, axis=2) for both in known)
         return replace(self, grid=grid, value=value, error=error)
 
     def motion(self) -> Moved:
         """Return the motion."""
         grid, run, order = self.grid, self.run, self.run.order
-        looked, _ = self.transfer.at(grid.omega * LOOKS)
+        looked = self.transfer.at(grid.omega * LOOKS)
         fast = at_once(looked, grid.omega, self.value[..., 0])
         quick = response(fast, grid.s)
         force = np.stack([transform(one, grid) for one in self.forces]) * grid.s**order
@@ -144,7 +147,7 @@ class Line:
         if is_end(point) or is_force(point) or is_tip(point):
             return 0.0
         s = self.grid.omega * LOOKS[0] * np.array([1.0, 2.0, FAR, 2 * FAR])
-        value, _ = Transfer(self.run.model, (point,), (point,)).at(s)
+        value = Transfer(self.run.model, (point,), (point,)).at(s)
         near, next_, far, farther = value[0, 0] * s * s
         has_mass = abs(farther) < GROWS * abs(far)
         return float(abs(4 * next_ - near - 3 * far)) / 2 if has_mass else 0.0
@@ -155,7 +158,7 @@ class Line:
         if run.model.element != "continuous":
             omega *= FAR
         s = omega * LOOKS[-2:]
-        far, _ = self.transfer.at(s)
+        far = self.transfer.at(s)
         for d, (place, force) in enumerate(zip(run.places, self.forces)):
             for more, size in enumerate(_jumps(force, run.time)):
                 reach = np.abs(far[d] * s ** (run.order + more))
@@ -174,7 +177,7 @@ class Line:
         if not count or self.run.order:
             return np.zeros((len(self.run.responses), 1))
         try:
-            still, _ = self.transfer.at(np.zeros(1, dtype=np.complex128))
+            still = self.transfer.at(np.zeros(1, dtype=np.complex128))
         except SolveError as refusal:
             raise SceneError(
                 "start must be None where the rope has no rest under a load"
@@ -201,6 +204,17 @@ class Line:
         at = np.rint(since * (2 * grid.lines / grid.period)).astype(np.intp)
         ended = smooth * np.exp(-36 * share**SHARP)
         return grid.summed(ended, since), differ[:, at]
+
+
+def _rounding(transfer: Transfer, s: Complex, value: Complex) -> Real:
+    """Bound what rounding does to values at many rates by what it does at some of them."""
+    at = np.unique(np.linspace(0, len(s) - 1, ROUNDED).astype(np.intp))
+    size = np.abs(value)
+    bound = transfer.rounding(s[at])
+    share = np.divide(bound, size[..., at], out=np.zeros_like(bound), where=size[..., at] > 0)
+    between = np.maximum(share[..., 1:], share[..., :-1])
+    panel = np.searchsorted(at, np.arange(len(s)), side="right") - 1
+    return np.asarray(between[..., panel.clip(0, len(at) - 2)] * size)
 
 
 def _jumps(force: Force, time: Real) -> tuple[float, float]:
