@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Generic, Self, TypeVar, cast, overload
 
@@ -65,6 +65,25 @@ class Lazy(Reader[Value]):
                 seconds = kept["cost"].seconds + time.perf_counter() - start
                 kept["cost"] = replace(kept["cost"], seconds=seconds)
         return kept[self.name]
+
+
+@dataclass(frozen=True, eq=False)
+class Late:
+    """What computes a lazy field; it is pickled as its answer, which any function can give."""
+
+    compute: Callable[[], Any]
+
+    def __call__(self) -> Any:
+        """Return it."""
+        return self.compute()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return how the answer is made again."""
+        return _same, (self.compute(),)
+
+
+def _same(answer: Any) -> Any:
+    return answer
 
 
 def lazy(kind: type[Any], axes: dict[str, Any] | None = None) -> Any:

@@ -203,6 +203,12 @@ def _has_ratios(run: Run) -> bool:
     return bool(damping.having(run.model.scene.dampings, "ratio"))
 
 
+def resists_beside_ratios(run: Run) -> bool:
+    """Whether dashpots of points couple modes that have damping ratios of their own."""
+    is_open = run.method == "auto" and run.modes is None
+    return is_open and _has_ratios(run) and "dashpot" in run.model.scene.effects
+
+
 def is_proportional(run: Run) -> bool:
     """Whether modes without damping are not coupled in any component that takes part."""
     model, rates = run.model, Rates.of(run.model.scene.dampings)

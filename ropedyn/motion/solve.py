@@ -7,7 +7,7 @@ import math
 from ..base.errors import SolveError
 from .direct.direct import march, why_not_march
 from .history import History
-from .linear import solve_linear
+from .linear import resists_beside_ratios, solve_linear
 from .phases.components import why_not_events
 from .phases.events import solve_events
 from .request import EVENTS, Run
@@ -31,12 +31,11 @@ def _by_events(run: Run) -> History:
 
 def follow_motion(run: Run) -> History:
     """Return the motion by the method that was asked for; see `Model.transient`."""
-    if not run.direct:
-        return solve_linear(run)
-    is_open = run.method == "auto"
     if run.method == EVENTS:
         return solve_events(run)
-    if is_open and not why_not_events(run):
+    if not run.direct and not resists_beside_ratios(run):
+        return solve_linear(run)
+    if run.method == "auto" and not why_not_events(run):
         return _by_events(run)
     if takes(run):
         return collocate(run)

@@ -160,7 +160,9 @@ class Fields:
         start = tellers(self.question.component, self.x) if len(whole) < len(given) else []
         basis = list(dict.fromkeys([*whole, *start]))
         if not basis:
-            return np.zeros((0, len(self._held), factor.shape[1]), dtype=np.complex128), np.zeros(0)
+            return np.zeros((0, len(self._held), factor.shape[1]), dtype=np.complex128), np.zeros(
+                (0, factor.shape[1])
+            )
         found, wrong = self._solve(self.chain, basis, factor, part)
         found[:, self._held] = 0.0
         reaction = (

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.answer import TRANSIENT, Cost, Frozen, axes
 from ..base.array import Complex, Flags, Real
-from ..base.computed import Lazy, Read, changed, computed, lazy
+from ..base.computed import Late, Lazy, Read, changed, computed, lazy
 from ..base.errors import SceneError
 from ..base.unit import QUANTITIES
 from ..chain.port import Point
@@ -132,7 +132,7 @@ class FRF(Curves):
         found = super().to(quantity)
         times = np.abs(self.s) ** (QUANTITIES[quantity] - QUANTITIES[self.quantity])
         of = RoundingOfResponse.of
-        return changed(found, rounding=lambda: of(found.value, self.rounding_limit * times))
+        return changed(found, rounding=Late(lambda: of(found.value, self.rounding_limit * times)))
 
     def derivative(self, path: str) -> Complex:
         """Find the derivative of the response with respect to a number of the scene.

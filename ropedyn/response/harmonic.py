@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Complex, Real
+from ..base.computed import Late
 from ..base.errors import SceneError, SolveError
 from ..base.unit import QUANTITIES
 from ..chain import tip
@@ -94,7 +95,7 @@ def solve_harmonic(
             factorisations=0 if solver == "sweep" else got.lines,
         ),
         mesh=mesh,
-        rounding=rounding,
+        rounding=Late(rounding),
         solve_rates=partial(
             FrequencyRates, model, omega, drives, responses, got.answered, got.value
         ),

@@ -4,6 +4,7 @@ import copy
 import csv
 import dataclasses
 import functools
+import hashlib
 import io
 import json
 import pickle
@@ -21,6 +22,7 @@ import xarray as xr
 from made_history import decaying, made
 
 import ropedyn as rd
+from ropedyn.base.answer import SEAL
 
 ROPE = rd.Rope(
     1.2,
@@ -462,15 +464,28 @@ FOREIGN = {
 }
 
 
-def test_the_file_that_is_made_foreign_is_an_answer(tmp_path):
+def put(dataset, path):
+    """Write a file as answers are, with its checksum."""
+    dataset.to_netcdf(path, engine="h5netcdf")
+    content = path.read_bytes()
+    path.write_bytes(content + SEAL + hashlib.sha256(content).digest())
+
+
+def test_a_file_without_its_checksum_is_refused_by_path(tmp_path):
     foreign().to_netcdf(tmp_path / "peaks.nc", engine="h5netcdf")
+    with pytest.raises(rd.SceneError, match=r"peaks\.nc.* checksum is missing or wrong"):
+        rd.load(tmp_path / "peaks.nc")
+
+
+def test_the_file_that_is_made_foreign_is_an_answer(tmp_path):
+    put(foreign(), tmp_path / "peaks.nc")
     assert_same(rd.load(tmp_path / "peaks.nc"), rd.Peaks([1.0]))
 
 
 @pytest.mark.parametrize("name", FOREIGN)
 def test_a_foreign_file_is_refused_by_path(name, tmp_path):
     path = tmp_path / "foreign.nc"
-    FOREIGN[name].to_netcdf(path, engine="h5netcdf")
+    put(FOREIGN[name], path)
     with pytest.raises(rd.SceneError, match=r"foreign\.nc"):
         rd.load(path)
 
@@ -478,7 +493,7 @@ def test_a_foreign_file_is_refused_by_path(name, tmp_path):
 def test_a_damaged_cost_is_refused_by_path(tmp_path):
     dataset = ANSWERS["deflection"].to_xarray()
     dataset.attrs["ropedyn_cost"] = '{"minutes": 3}'
-    dataset.to_netcdf(tmp_path / "damaged.nc", engine="h5netcdf")
+    put(dataset, tmp_path / "damaged.nc")
     with pytest.raises(rd.SceneError, match=r"damaged\.nc"):
         rd.load(tmp_path / "damaged.nc")
 
@@ -536,6 +551,7 @@ WITHOUT = """
 import sys
 sys.modules[{missing!r}] = None  # as if it were not installed
 import ropedyn as rd
+from ropedyn.base.answer import SEAL
 peaks = rd.Peaks([20.0])
 print(peaks.table())
 for call in {calls!r}:

@@ -20,10 +20,11 @@ enum { HEAVY = MORE, LEANING, SPUN, TIED, OPEN, CARRYING, TERMS };
 /* numbers that chains of recipes lack; one test at a time */
 static double damping[TERMS * MOST], hinge[TERMS * 4], sag[2], structure_row[3 * 8];
 
-/* a wire, a resonator, and a damped one on the same node: mass, stiffness, length, damping */
+/* a wire (mass, stiffness, length, damping), a resonator, and a damped one on the same node (mass,
+   stiffness, their ratio, damping) */
 static const int32_t structure[] = {RD_WIRE, RD_RESONATOR, RD_RESONATOR},
                      structure_term[] = {CARRYING, CARRYING, CARRYING};
-static const double number[] = {3e-3, 40, 0.05, 0.01, 0.01, 150, 0, 0, 0.02, 900, 0, 0.05};
+static const double number[] = {3e-3, 40, 0.05, 0.01, 0.01, 150, 15000, 0, 0.02, 900, 45000, 0.05};
 
 /* each of the spans cut into so many elements */
 static struct rope plain_rope(enum rd_kind kind, const char *coordinates, double tension,

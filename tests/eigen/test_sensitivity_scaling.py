@@ -35,6 +35,8 @@ PART = {
     "bending": (0, 0, 0),
     "torsion": (0, 0, 0),
     "density": (0, 0, 0),
+    "axial": (0, 0, 0),
+    "lay": (0, 0, 0),
     "damping": (0, 0, 0),
     "frequency": (0.5, -0.5, 0),
     "damping_ratio": (0, 0, 0),

@@ -213,6 +213,7 @@ ENTRIES = {
     "certify": lambda chain: _core.certify(chain, 3, np.inf, True),
     "sweep": lambda chain: _core.sweep(chain, FACTOR.T.copy(), PORT, PORT),
     "steps": lambda chain: _core.steps(chain, FACTOR.T.copy()),
+    "scales": lambda chain: _core.scales(chain, FACTOR.T.copy()),
     "damped": lambda chain: _core.damped(
         chain, CONSTANT, SLOPE, 30.0, np.inf, np.inf, np.array([20j, -20j])
     ),
@@ -239,6 +240,7 @@ SPANS = {
     "certify": ENTRIES["certify"],
     "sweep": ENTRIES["sweep"],
     "steps": ENTRIES["steps"],
+    "scales": ENTRIES["scales"],
     "damped": ENTRIES["damped"],
     "triple": ENTRIES["triple"],
     "tip": ENTRIES["tip"],

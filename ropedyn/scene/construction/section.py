@@ -92,7 +92,15 @@ class Section(Answer):
 
     @classmethod
     def of(cls, construction: Construction, torsion: str, radial: float | None) -> Section:
-        """Compute it; see `Construction.section`."""
+        """Compute it; see `Construction.section`.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> strand = rd.Construction.standard("1x7", diameter=4e-3)
+        >>> rd.Section.of(strand, "slip", None) == strand.section()
+        True
+        """
         check.one_of(torsion, "torsion", stiffness.TORSIONS)
         radial = check.optional(radial, "radial_stiffness", "N", sign="positive")
         strand = construction.strand
