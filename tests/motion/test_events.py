@@ -247,7 +247,7 @@ def test_answer_is_saved_with_the_time_it_is_sure_until(tmp_path):
 @pytest.mark.parametrize("asked", [{"step": 1e-3}, {"partial": True}, {"spectral_radius": 0.5}])
 def test_what_steps_alone_know_is_refused(asked):
     model = rope(rd.Stop(0.5, 1e4)).compile(elements=4)
-    with pytest.raises(rd.SceneError, match="partial, step, .* must be left out"):
+    with pytest.raises(rd.SceneError, match=r"partial, step, .* must be left out"):
         model.transient([0.0, 0.1], method="events", **PUSH, **asked)
     assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "direct"
 

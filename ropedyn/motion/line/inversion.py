@@ -130,7 +130,7 @@ class Line:
         run, omega = self.run, self.grid.omega
         bound = np.zeros(len(run.responses))
         lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
-        if run.model.element == "continuous" or lag > DEAD or _is_indefinite(run.model.chain):
+        if run.model.element == "continuous" or lag > DEAD or is_indefinite(run.model.chain):
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
             return bound
         own = {point: self._light(point) for point in {*run.places, *run.responses}}
@@ -239,7 +239,7 @@ def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, floa
     return most, most * omega, most * omega**2
 
 
-def _is_indefinite(chain: Chain) -> bool:
+def is_indefinite(chain: Chain) -> bool:
     """Whether lumps have negative masses."""
     return bool((np.linalg.eigvalsh(chain.mass) < 0).any())
 

@@ -26,6 +26,7 @@ from ...response.deflection import POINTS
 from ...scene.damping import having
 from ..direct.direct import march
 from ..history import Balance, History, ended_by
+from ..line.inversion import is_indefinite
 from ..linear import solve_linear
 from ..mesh_error import against_spans
 from ..request import TOLERANCE, Run
@@ -68,7 +69,9 @@ def _is_taken(run: Run, component: tuple[str, ...]) -> bool:
     if not laws:
         return True
     plain = without_dashpots(model, component)[0].chain.only(component)
-    return not _has_no_inertia(model, component, laws) and proportional(plain, rates) is not None
+    if is_indefinite(plain) or _has_no_inertia(model, component, laws):
+        return False
+    return proportional(plain, rates) is not None
 
 
 def _has_no_inertia(model: Compiled, component: tuple[str, ...], laws: list[PointLaw]) -> bool:
