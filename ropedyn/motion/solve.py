@@ -17,15 +17,17 @@ from .volterra import follows, has_calls, integrate
 
 def _by_events(run: Run) -> History:
     """Return the motion from event to event, or by another method that is sure of more of it."""
-    found: History | None = None
     try:
         found = solve_events(run)
-        if math.isinf(found.sure_until) or not follows(run):
-            return found
+    except SolveError:
+        if not follows(run):
+            raise
+        return integrate(run)
+    if math.isinf(found.sure_until) or not follows(run):
+        return found
+    try:
         return integrate(run)
     except SolveError:
-        if found is None:
-            return integrate(run)
         return found
 
 
