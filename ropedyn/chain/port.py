@@ -54,7 +54,7 @@ def is_held(chain: Chain, x: Real, coordinates: Sequence[str], point: Point) -> 
     """Whether a point cannot move."""
     node, inside = locate(x, point[1])
     at = list(coordinates).index(moving(point))
-    return inside is None and bool(chain.held[chain.term_of[node], at])
+    return inside is None and bool(chain.held[chain.term[chain.stretch(node)], at])
 
 
 def ports(chain: Chain, x: Real, coordinates: Sequence[str], points: Iterable[Point]) -> Ports:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -16,7 +16,6 @@ from ..base.answer import Cost
 from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..base.progress import silent
-from ..chain.compile import compile_scene
 from ..chain.port import is_force, moving
 from ..chain.tip import is_tip, tip_of
 from ..eigen.damped.proportional import proportional
@@ -28,6 +27,7 @@ from ..scene import damping
 from .history import History
 from .line.inversion import invert
 from .line.transfer import Transfer
+from .mesh_error import against_spans
 from .modal.energy_balance import balance
 from .modal.expansion import refuse_losses
 from .modal.superposition import apart, estimated, fastest, superpose
@@ -83,19 +83,30 @@ def within_tolerance(run: Run) -> Moved:
 
 def nearest(run: Run, tolerance: float) -> Moved:
     """Return the motion within the tolerance, or the nearest to it that a method finds."""
+    methods = ["modal"] if _has_ratios(run) else ["line", *_methods(run)[:1]]
     found: list[Moved] = []
-    refused: list[SolveError] = []
-    for method in ["modal"] if _has_ratios(run) else ["line", *_methods(run)[:1]]:
-        try:
-            found.append((_summed if method == "modal" else invert)(run, tolerance, None))
-        except SolveError as refusal:
-            refused.append(refusal)
-            continue
-        if (found[-1].shares() <= tolerance).all():
-            return found[-1]
+    for _, moved in _tried(run, methods, tolerance, None):
+        if isinstance(moved, SolveError):
+            refused = moved
+        elif (moved.shares() <= tolerance).all():
+            return moved
+        else:
+            found.append(moved)
     if not found:
-        raise refused[-1]
+        raise refused
     return min(found, key=lambda moved: float(np.nan_to_num(moved.shares(), nan=np.inf).max()))
+
+
+def _tried(
+    run: Run, methods: list[str], tolerance: float, kinds: list[str] | None
+) -> Iterator[tuple[str, Moved | SolveError]]:
+    """Return what each method finds, or why it refuses."""
+    for method in methods:
+        try:
+            found: Moved | SolveError = METHOD[method](run, tolerance, kinds)
+        except SolveError as refusal:
+            found = refusal
+        yield method, found
 
 
 def _kinds(run: Run) -> list[str] | None:
@@ -135,12 +146,9 @@ def _by_methods(run: Run) -> Moved:
     tolerance = _tolerance(run)
     kinds = _kinds(run)
     refused: list[str] = []
-    for method in _methods(run):
-        try:
-            take = _summed if method == "modal" else invert
-            moved = take(run, tolerance, kinds)
-        except SolveError as refusal:
-            refused.append(f"{method}: {refusal}")
+    for method, moved in _tried(run, _methods(run), tolerance, kinds):
+        if isinstance(moved, SolveError):
+            refused.append(f"{method}: {moved}")
             continue
         share = moved.shares(kinds)
         late = np.flatnonzero(~(share <= tolerance))
@@ -171,6 +179,10 @@ def _summed(run: Run, tolerance: float, kinds: list[str] | None) -> Moved:
             break
         moved = more
     return moved
+
+
+METHOD: dict[str, Callable[[Run, float, list[str] | None], Moved]]
+METHOD = {"modal": _summed, "line": invert}
 
 
 def _tolerance(run: Run) -> float:
@@ -253,18 +265,14 @@ def snapshots_of(run: Run) -> tuple[Real, Real]:
 
 def mesh_error_of(run: Run, value: Real) -> Real:
     """Return the distance to the motion of continuous spans and the error of that, as value."""
-    nothing = np.full(value.shape, np.inf)
-    try:
-        model = compile_scene(run.model.scene)
-    except SceneError:
-        return nothing
-    exact = replace(run, model=model, modes=None, method="auto", snapshots=np.zeros(0))
+    return against_spans(replace(run, modes=None, method="auto"), value, _loosely)
+
+
+def _loosely(run: Run) -> Moved:
+    """Return the motion within the first of some tolerances that it keeps to."""
     for tolerance in LOOSER:
         try:
-            true = within_tolerance(replace(exact, tolerance=tolerance))
-        except SolveError:
-            continue
-        except SceneError:
-            return nothing
-        return np.asarray(np.abs(value - true.value) + true.error)
-    return nothing
+            return within_tolerance(replace(run, tolerance=tolerance))
+        except SolveError as refusal:
+            refused = refusal
+    raise refused

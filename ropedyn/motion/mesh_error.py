@@ -11,12 +11,13 @@ from ..base.array import Real
 from ..base.errors import SceneError, SolveError
 from ..chain.compile import compile_scene
 from .history import History
+from .moved import Moved
 from .request import Run
 
 NONE = np.zeros(0)
 
 
-def against_spans(run: Run, value: Real, solve: Callable[[Run], History]) -> Real:
+def against_spans(run: Run, value: Real, solve: Callable[[Run], History | Moved]) -> Real:
     """Return the distance and the error of that, as value; infinite where there is no answer."""
     if run.model.element == "continuous":
         return np.zeros(value.shape)

@@ -18,8 +18,8 @@ from ..chain.place import observed, points
 from ..chain.port import Point, is_held
 from ..response.moved_end import is_end
 from ..scene.force import Force, Impulse, forces
-from ..scene.parts.part import standing
 from ..scene.tension import Tension
+from .acting import scene_laws
 from .start import Begun, kicked, released
 
 EVENTS = "events"
@@ -174,9 +174,8 @@ def is_direct(model: Compiled, method: str) -> bool:
 
 def why_direct(model: Compiled) -> str:
     """Say why modes do not tell the motion, with nothing where they do."""
-    for i, part in enumerate(model.scene.parts):
-        if part in standing([part]) and part.term().laws:
-            return f"parts[{i}] is not linear"
+    for one in scene_laws(model.scene):
+        return f"{one.name} is not linear"
     tension = model.scene.tension
     if isinstance(tension, Tension):
         return "the tension pulsates" if tension.pulsates else "the tension is stretching"

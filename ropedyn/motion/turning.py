@@ -25,10 +25,10 @@ from ..chain.compiled import Compiled
 from ..chain.port import moving
 from ..scene.end import end_of
 from ..scene.force import Sine
-from ..scene.parts.part import standing
 from ..scene.parts.stretch import refuse_uneven
 from ..scene.scene import Scene
 from ..scene.tension import Tension
+from .acting import scene_laws
 from .history import History
 from .linear import solve_linear
 from .periodic.asked import SteppedSine
@@ -94,10 +94,9 @@ def _refuse(model: Compiled, asked: list[str]) -> None:
         raise SceneError(
             f"response must not be x {WHY} that pulsates: which end gives way to it is not said"
         )
-    for i, part in enumerate(scene.parts):
-        laws = part.term().laws if part in standing([part]) else ()
-        if turning_ends(scene) and any(law.coordinate == "alpha" for law in laws):
-            raise SceneError(f"parts[{i}] must be linear on alpha {WHY} that pulsates")
+    for one in scene_laws(scene):
+        if turning_ends(scene) and one.point[0] == "alpha":
+            raise SceneError(f"{one.name} must be linear on alpha {WHY} that pulsates")
 
 
 def _with_twist(run: Run, history: History) -> History:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -28,13 +28,12 @@ from ..base.computed import computed
 from ..base.errors import SolveError
 from ..base.progress import silent
 from ..chain.compiled import Compiled
-from ..chain.port import Point, is_held
+from ..chain.port import Point
 from ..scene.force import Samples, Step
-from ..scene.parts.part import standing
 from ..scene.tension import Tension
-from .direct.direct import march
-from .direct.point_law import KINDS
-from .history import Balance, History
+from .acting import acting_laws, core_numbers, scene_laws
+from .direct.direct import balance
+from .history import History
 from .line.grid import is_even
 from .linear import nearest, snapshots_of, within_tolerance
 from .mesh_error import against_spans
@@ -49,11 +48,10 @@ SHARPER = 0.2  # Linear motion is known to this part of the tolerance, if it can
 SHAPED = 0.25  # from shapes and velocities to this.
 TIMES = 2.0  # A run is off by so many times its distance to one with steps twice as long.
 BLOCK = 2048  # So many steps are taken at a time.
-NUMBERS = 4  # of a law at most
 NONE = np.zeros(0)
 
 
-class Acting(NamedTuple):
+class CoreActing(NamedTuple):
     """The laws of a model where something moves, as the core takes them."""
 
     points: tuple[Point, ...]
@@ -61,32 +59,24 @@ class Acting(NamedTuple):
     kind: NDArray[np.int32]
     value: Real
 
+    @classmethod
+    def of(cls, model: Compiled) -> CoreActing:
+        """Return the laws of a model."""
+        found = acting_laws(model)
+        told = [SmoothLaw(one.name, one.law.call) for one in found]
+        return cls(
+            tuple(one.point for one in found), told, *core_numbers([one.law for one in found])
+        )
+
     @property
     def core(self) -> tuple[NDArray[np.int32], Real, tuple[Callable[..., Any] | None, ...]]:
         """What `_core.volterra` takes."""
         return self.kind, self.value, tuple(one.call for one in self.told)
 
 
-def acting_laws(model: Compiled) -> Acting:
-    """Return the laws where something moves."""
-    found = [
-        ((law.coordinate, one.x), SmoothLaw(f"parts[{i}]", law.call), law)
-        for i, part in enumerate(model.scene.parts)
-        for one in standing([part])
-        for law in one.term().laws
-        if law.coordinate in model.coordinates
-    ]
-    place = model.chain, model.x, model.coordinates
-    found = [one for one in found if not is_held(*place, one[0])]
-    value = np.array([np.resize([*law.value, *[0.0] * NUMBERS], NUMBERS) for *_, law in found])
-    kind = np.array([KINDS.index(law.kind) for *_, law in found], dtype=np.int32)
-    points, told = tuple(one[0] for one in found), [one[1] for one in found]
-    return Acting(points, told, kind, value.reshape(-1, NUMBERS))
-
-
 def has_calls(model: Compiled) -> bool:
     """Whether Python knows some of the laws, which steps along the chain ask one by one."""
-    return any(law.call for part in standing(model.scene.parts) for law in part.term().laws)
+    return any(one.law.call for one in scene_laws(model.scene))
 
 
 def follows(run: Run) -> bool:
@@ -105,7 +95,7 @@ class Stepped:
     """Forces of the laws in steps of one length."""
 
     run: Run
-    laws: Acting
+    laws: CoreActing
     count: int
     tolerance: float
 
@@ -199,14 +189,14 @@ def integrate(run: Run) -> History:
         cost=Cost(seconds, "volterra", elements, moved.modes, stepped.count),
         error=moved.error,
         mesh_error=partial(against_spans, kept, moved.value, integrate),
-        balance=partial(_balance, kept),
+        balance=partial(balance, kept),
     )
 
 
 def _agreed(run: Run, tolerance: float) -> tuple[Stepped, Moved]:
     """Halve the steps until two runs agree within the tolerance."""
     count, before, apart = _first(run), None, None
-    laws = acting_laws(run.model)
+    laws = CoreActing.of(run.model)
     while True:
         stepped = Stepped(run, laws, count, tolerance)
         try:
@@ -248,8 +238,3 @@ def _unknown(run: Run, tolerance: float, count: int, late: Any, known: Moved) ->
         f"with {count} steps the error grows to {known.shares().max():.1e}. A larger tolerance or "
         "an earlier end help"
     )
-
-
-def _balance(run: Run) -> Balance:
-    """Return the energies, which steps along the chain account for."""
-    return march(replace(run, snapshots=NONE)).balance

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -71,8 +71,8 @@ def solve_harmonic(
     value = (value * power if QUANTITIES[quantity] else value)[drive]
 
     def rounding() -> RoundingOfResponse:
-        error = told(model, responses, factor, got)[1][drive]
-        return RoundingOfResponse.of(value, error * np.abs(power))
+        error = tip.gather_error(model, responses, factor, got.value, got.error())
+        return RoundingOfResponse.of(value, error[drive] * np.abs(power))
 
     mesh: MeshOfResponse | Callable[[], MeshOfResponse]
     mesh = partial(mesh_of_frf, model.scene, f, drives, responses, quantity=quantity, value=value)
@@ -146,14 +146,6 @@ def line_by_line(question: Question, solver: Solver) -> Summed:
     """Solve at each frequency, with the damping that acts at it."""
     value, bound = solver(question)
     return Summed(value, bound, np.zeros(value.shape), len(question.frequency))
-
-
-def told(
-    model: Compiled, responses: Sequence[Point], factor: Complex, got: Receptance
-) -> tuple[Complex, Real]:
-    """Return what was asked for, tips of wires too, and what bounds its rounding."""
-    error = tip.gather_error(model, responses, factor, got.value, got.error())
-    return tip.gather(model, responses, factor, got.value), error
 
 
 def _refuse_overflow(frequency: Real, value: Complex) -> None:

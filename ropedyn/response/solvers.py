@@ -15,7 +15,7 @@ from .. import _core
 from ..base.array import Complex, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.compiled import EXACT, MOST_STEPS
-from ..chain.port import Point, Ports, is_force, local, locate, moving, ports
+from ..chain.port import Point, Ports, is_force, is_held, local, moving, ports
 from ..chain.reaction import at_start, first_left_end, tellers
 from ..scene import damping
 from .closed import closed_lines
@@ -149,17 +149,14 @@ def _hold(question: Question, value: NDArray[Any]) -> None:
     """Set to 0 what is held, which rounding moves by its last digits."""
     chain, x = question.cut
 
-    def is_held(point: Point) -> bool:
-        node, between = locate(x, point[1])
-        at = question.component.index(moving(point))
-        held = between is None and not is_force(point)
-        return held and bool(chain.held[chain.term[chain.stretch(node)], at])
+    def stands(point: Point) -> bool:
+        return not is_force(point) and is_held(chain, x, question.component, point)
 
     for k, point in enumerate(question.drives):
-        if is_held(point):
+        if stands(point):
             value[k] = 0.0
     for k, point in enumerate(question.responses):
-        if is_held(point):
+        if stands(point):
             value[:, k] = 0.0
 
 

@@ -53,6 +53,11 @@ def march(run: Run) -> History:
     return history
 
 
+def balance(run: Run) -> Balance:
+    """Return the energies of a motion, which steps along the chain account for."""
+    return march(replace(run, snapshots=np.zeros(0))).balance
+
+
 def why_not_march(run: Run) -> str:
     """Say what steps along the chain do not take, with nothing where they take all."""
     if run.is_shaped:

@@ -19,9 +19,10 @@ from ...response.deflection import nodal
 from ...response.moved_end import is_end
 from ...scene.damping import having
 from ...scene.force import Force
+from ..acting import ActingLaw, acting_laws
 from ..request import Run
 from .beside import Beside, plain_lumps, pulsation_of
-from .point_law import Laws, PythonLaw, StandingLaw, laws_of, standing_laws
+from .point_law import Laws, PythonLaw, laws_of
 from .readout import Readout, readout
 
 
@@ -104,7 +105,7 @@ def lumped_chains(run: Run) -> list[Lumps]:
     model = run.model
     found = []
     for component in model.components:
-        laws = standing_laws(model, component)
+        laws = acting_laws(model, component)
         drives = [k for k, d in enumerate(run.drives) if moving(d) in component]
         loads = {p: load for p, load in run.loads.items() if p[0] in component}
         if drives or loads or any(one.law.kind == "call" for one in laws):
@@ -140,7 +141,7 @@ def _refuse_pushes(run: Run, lumps: Lumps) -> None:
 def _lumps(
     run: Run,
     component: tuple[str, ...],
-    laws_there: list[StandingLaw],
+    laws_there: list[ActingLaw],
     driving: list[int],
     loads: dict[Point, float],
 ) -> Lumps:

@@ -18,9 +18,10 @@ from ...chain.port import Point
 from ...response.frf import FRF
 from ...response.harmonic import solve_harmonic
 from ...scene.tension import Tension
+from ..acting import ActingLaw, acting_laws
 from .asked import SteppedSine
 from .balance import HarmonicBalance
-from .laws import ActingLaw, PointForces, PointLaws, StringTension, Together, acting_laws, asked_law
+from .laws import PointForces, PointLaws, StringTension, Together, asked_law
 from .transfer import PanelledTransfer
 
 TOGETHER = 1000  # What acts and the drive must both begin anew within so many periods.

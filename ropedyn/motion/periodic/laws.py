@@ -15,10 +15,7 @@ import numpy as np
 from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
-from ...chain.compiled import Compiled
-from ...chain.port import Point, is_held
-from ...scene.parts.node import Law
-from ...scene.parts.part import standing
+from ..acting import ActingLaw
 
 SMOOTH, BENT = 8, 32  # Samples of a period for each harmonic.
 STEP = 1e-6  # Of the largest motion in a period: numerical slopes of a law in Python.
@@ -46,29 +43,6 @@ class PointForces(Protocol):
 
     def felt(self, time: Real, u: Real, v: Real) -> Felt:
         """Return them with their slopes."""
-
-
-class ActingLaw(NamedTuple):
-    """A law of a scene."""
-
-    part: int  # number among the parts
-    point: Point
-    law: Law
-
-    @property
-    def is_friction(self) -> bool:
-        """Whether it jumps or bends without limit where the velocity changes its sign."""
-        return self.law.kind == "power" and self.law.value[1] < 1
-
-
-def acting_laws(model: Compiled) -> list[ActingLaw]:
-    """Return the laws that act where something can move."""
-    found = []
-    for i, part in enumerate(model.scene.parts):
-        for one in standing([part]):
-            found += [ActingLaw(i, (law.coordinate, one.x), law) for law in one.term().laws]
-    chain, place = model.chain, (model.x, model.coordinates)
-    return [one for one in found if not is_held(chain, *place, one.point)]
 
 
 @dataclass(frozen=True)

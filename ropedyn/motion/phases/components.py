@@ -14,8 +14,8 @@ from ...chain import tip
 from ...chain.compiled import Compiled
 from ...chain.port import Point, moving
 from ...response.moved_end import is_end
-from ...scene.parts.part import standing
 from ...scene.tension import Tension
+from ..acting import scene_laws
 from ..request import Run
 from ..states import states, why_coupled, without_dashpots
 from .laws import phase_laws
@@ -99,10 +99,10 @@ def why_not_events(run: Run) -> str:
     model = run.model
     if run.partial or run.step is not None or run.spectral_radius != 1 or run.is_shaped:
         return "partial, step, spectral_radius, velocity and shapes must be left out"
-    for i, part in enumerate(model.scene.parts):
-        for law in part.term().laws if part in standing([part]) else ():
-            if not (law.kind == "stop" or (law.kind == "power" and law.value[1] == 0)):
-                return f"parts[{i}] must be a stop, friction or linear, got {part}"
+    for one in scene_laws(model.scene):
+        if not (one.law.kind == "stop" or (one.law.kind == "power" and one.law.value[1] == 0)):
+            part = model.scene.parts[one.part]
+            return f"{one.name} must be a stop, friction or linear, got {part}"
     tension = model.scene.tension
     if isinstance(tension, Tension) and (tension.pulsates or tension.stretching):
         return f"tension must not change, got {tension}"

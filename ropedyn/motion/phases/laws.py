@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...chain.compiled import Compiled
-from ...chain.port import Point, is_held
-from ...scene.parts.part import standing
+from ...chain.port import Point
+from ..acting import acting_laws
 from ..states import Resistance, without_dashpots
 
 
@@ -43,16 +43,11 @@ def phase_laws(model: Compiled, component: tuple[str, ...]) -> PhaseLaws:
     """Return the laws of a component."""
     contacts: list[Contact] = []
     friction: dict[Point, float] = {}
-    place = model.x, model.coordinates
-    for part in standing(model.scene.parts):
-        for law in part.term().laws:
-            point = (law.coordinate, part.x)
-            if law.coordinate not in component or is_held(model.chain, *place, point):
-                continue
-            if law.kind == "stop":
-                contacts.append(Contact(point, *law.value))
-            else:
-                friction[point] = friction.get(point, 0.0) + law.value[0]
+    for _, point, law in acting_laws(model, component):
+        if law.kind == "stop":
+            contacts.append(Contact(point, *law.value))
+        else:
+            friction[point] = friction.get(point, 0.0) + law.value[0]
     _, dashpots = without_dashpots(model, component)
     frictions = tuple(Friction(point, force) for point, force in friction.items())
     return PhaseLaws(tuple(contacts), frictions, dashpots)

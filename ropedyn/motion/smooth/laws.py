@@ -12,9 +12,9 @@ from ...base import check
 from ...base.array import Real
 from ...base.errors import SolveError
 from ...chain.compiled import Compiled
-from ...chain.port import Point, is_held
-from ...scene.parts.part import standing
+from ...chain.port import Point
 from ...scene.tension import Tension
+from ..acting import acting_laws, scene_laws
 from ..states import without_dashpots
 
 POWER, CALL = 0, 1  # Kinds of laws in the core's order.
@@ -39,14 +39,10 @@ class PointLaw(NamedTuple):
 
 def laws_on(model: Compiled, component: tuple[str, ...]) -> list[PointLaw]:
     """Return the laws of a component where something moves, and what else its points resist."""
-    found, place = [], (model.x, model.coordinates)
-    for i, part in enumerate(model.scene.parts):
-        for one in standing([part]):
-            for law in one.term().laws:
-                point = (law.coordinate, one.x)
-                if law.coordinate in component and not is_held(model.chain, *place, point):
-                    own = SmoothLaw(f"parts[{i}]", law.call, *law.value)
-                    found.append(PointLaw(point, own))
+    found = [
+        PointLaw(one.point, SmoothLaw(one.name, one.law.call, *one.law.value))
+        for one in acting_laws(model, component)
+    ]
     if found:
         _, resisting = without_dashpots(model, component)
         found += [PointLaw(r.point, SmoothLaw("a dashpot", None, r.damping)) for r in resisting]
@@ -55,12 +51,11 @@ def laws_on(model: Compiled, component: tuple[str, ...]) -> list[PointLaw]:
 
 def why_not_smooth(model: Compiled) -> str:
     """Say why the laws of a scene are not for collocation, with nothing where they are."""
-    for i, part in enumerate(model.scene.parts):
-        for law in part.term().laws if part in standing([part]) else ():
-            if law.kind == "stop":
-                return f"parts[{i}] is a stop"
-            if law.kind == "power" and law.value[1] <= 1:
-                return f"the force of parts[{i}] jumps or is steep where its velocity turns"
+    for one in scene_laws(model.scene):
+        if one.law.kind == "stop":
+            return f"{one.name} is a stop"
+        if one.law.kind == "power" and one.law.value[1] <= 1:
+            return f"the force of {one.name} jumps or is steep where its velocity turns"
     tension = model.scene.tension
     if isinstance(tension, Tension) and tension.pulsates:
         return "the tension pulsates"

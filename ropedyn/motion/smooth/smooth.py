@@ -24,8 +24,8 @@ from ...eigen.damped.rates import Rates
 from ...eigen.vectors import within
 from ...response.deflection import POINTS
 from ...scene.damping import having
-from ..direct.direct import march
-from ..history import Balance, History, ended_by
+from ..direct.direct import balance
+from ..history import History, ended_by
 from ..line.inversion import is_indefinite
 from ..linear import solve_linear
 from ..mesh_error import against_spans
@@ -276,13 +276,8 @@ class _Answer:
             x=self.x,
             snapshot=self.snapshot[seen],
             cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
-            balance=partial(_balance, asked),
+            balance=partial(balance, asked),
             error=self.step_error[:, kept] + self.truncation[:, None],
             mesh_error=partial(against_spans, asked.kept, value, collocate),
             stopped=ended_by(self.error),
         )
-
-
-def _balance(run: Run) -> Balance:
-    """Return the energies, which steps along the chain account for."""
-    return march(replace(run, snapshots=np.zeros(0))).balance

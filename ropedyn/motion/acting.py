@@ -1,0 +1,62 @@
+"""Laws of points: those of a scene, and those among them that act on what moves."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.array import Real
+from ..chain.compiled import Compiled
+from ..chain.port import Point, is_held
+from ..scene.parts.node import Law
+from ..scene.parts.part import standing
+from ..scene.scene import Scene
+
+KINDS = ("power", "stop", "call")  # in the order of csrc/law/law.h
+NUMBERS = 4  # of a law at most, RD_LAW_VALUES there
+
+
+class ActingLaw(NamedTuple):
+    """A law of a scene."""
+
+    part: int  # number among the parts
+    point: Point
+    law: Law
+
+    @property
+    def name(self) -> str:
+        """As messages name it."""
+        return f"parts[{self.part}]"
+
+    @property
+    def is_friction(self) -> bool:
+        """Whether it jumps or bends without limit where the velocity changes its sign."""
+        return self.law.kind == "power" and self.law.value[1] < 1
+
+
+def scene_laws(scene: Scene) -> list[ActingLaw]:
+    """Return the laws of all parts."""
+    return [
+        ActingLaw(i, (law.coordinate, one.x), law)
+        for i, part in enumerate(scene.parts)
+        for one in standing([part])
+        for law in one.term().laws
+    ]
+
+
+def acting_laws(model: Compiled, coordinates: Collection[str] | None = None) -> list[ActingLaw]:
+    """Return the laws on some coordinates, or on all, where something moves."""
+    place, on = (model.x, model.coordinates), coordinates or model.coordinates
+    some = [one for one in scene_laws(model.scene) if one.point[0] in on]
+    return [one for one in some if not is_held(model.chain, *place, one.point)]
+
+
+def core_numbers(laws: Sequence[Law]) -> tuple[NDArray[np.int32], Real]:
+    """Return the kinds and the numbers of laws as the core takes them."""
+    value = np.zeros((len(laws), NUMBERS))
+    for row, law in zip(value, laws):
+        row[: len(law.value)] = law.value
+    return np.array([KINDS.index(law.kind) for law in laws], dtype=np.int32), value
