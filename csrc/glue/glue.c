@@ -421,6 +421,27 @@ int py_workspace_allocate(struct rd_workspace *workspace)
     return -1;
 }
 
+void *py_keep(struct py_kept *kept, PyObject *object, int type, int dimensions,
+              const npy_intp *shape, const char *name)
+{
+    PyArrayObject *array = py_array(object, type, dimensions, shape, name);
+    if (array == NULL)
+        return NULL;
+    kept->array[kept->count++] = array;
+    return PyArray_DATA(array);
+}
+
+npy_intp py_kept_length(const struct py_kept *kept, int axis)
+{
+    return PyArray_DIM(kept->array[kept->count - 1], axis);
+}
+
+void py_kept_release(struct py_kept *kept)
+{
+    while (kept->count > 0)
+        Py_DECREF(kept->array[--kept->count]);
+}
+
 PyObject *py_new(int type, int dimensions, const npy_intp *shape)
 {
     return PyArray_SimpleNew(dimensions, shape, type);

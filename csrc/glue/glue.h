@@ -30,6 +30,21 @@ PyObject *py_raise(PyObject *module, enum rd_status status);
 PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_intp *shape,
                         const char *name);
 
+enum { PY_KEPT = 16 };
+
+/* arrays that live as long as a call */
+struct py_kept {
+    PyArrayObject *array[PY_KEPT];
+    size_t count;
+};
+
+/* what py_array finds, kept: its numbers; NULL and an exception */
+void *py_keep(struct py_kept *kept, PyObject *object, int type, int dimensions,
+              const npy_intp *shape, const char *name);
+/* how long an axis of the last of them is */
+npy_intp py_kept_length(const struct py_kept *kept, int axis);
+void py_kept_release(struct py_kept *kept);
+
 enum { PY_CHAIN_ARRAYS = 19 };
 
 /* a chain and the arrays it views */

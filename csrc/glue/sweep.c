@@ -18,18 +18,23 @@ static struct rd_factors factors_of(PyArrayObject *factor)
     };
 }
 
+/* (chain, factor): 0, or -1 and an exception; both are to be released */
+static int parse_factored(PyObject *arguments, struct py_chain *parsed, PyArrayObject **factor)
+{
+    PyObject *chain, *given;
+    if (!PyArg_ParseTuple(arguments, "OO", &chain, &given) || py_chain_view(chain, parsed) < 0)
+        return -1;
+    *factor = py_array(given, NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
+    return *factor == NULL ? -1 : 0;
+}
+
 PyObject *py_steps(PyObject *module, PyObject *arguments)
 {
     (void)module;
     struct py_chain parsed = {0};
     PyArrayObject *factor = NULL;
-    PyObject *object[2], *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1))
-        return NULL;
-    if (py_chain_view(object[0], &parsed) < 0)
-        goto done;
-    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
-    if (factor == NULL)
+    PyObject *result = NULL;
+    if (parse_factored(arguments, &parsed, &factor) < 0)
         goto done;
     const struct rd_factors factors = factors_of(factor);
     size_t most = 0;
@@ -71,13 +76,8 @@ PyObject *py_scales(PyObject *module, PyObject *arguments)
     (void)module;
     struct py_chain parsed = {0};
     PyArrayObject *factor = NULL;
-    PyObject *object[2], *z = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "OO", object, object + 1))
-        return NULL;
-    if (py_chain_view(object[0], &parsed) < 0)
-        goto done;
-    factor = py_array(object[1], NPY_COMPLEX128, 2, (npy_intp[]){RD_PARTS, -1}, "factor");
-    if (factor == NULL)
+    PyObject *z = NULL, *result = NULL;
+    if (parse_factored(arguments, &parsed, &factor) < 0)
         goto done;
     const struct rd_factors factors = factors_of(factor);
     z = py_new(NPY_DOUBLE, 2, (npy_intp[]){(npy_intp)parsed.chain.width, (npy_intp)factors.count});

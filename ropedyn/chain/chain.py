@@ -92,6 +92,15 @@ class Chain(NamedTuple):
         return int(free_of_term[self.term] @ self._sizes)
 
     @property
+    def spurious(self) -> int:
+        """How many modes there are of lumps whose mass is negative, which are no motion."""
+        # the end correction of tensed elements makes the mass matrix indefinite
+        free = self.held == 0
+        moving = np.where(free[:, :, None] & free[:, None, :], self.mass, 0.0)
+        negative = (np.linalg.eigvalsh(moving) < 0).sum(axis=1)
+        return int(negative[self.term] @ self._sizes)
+
+    @property
     def finite(self) -> int | None:
         """How many modes there can be at most, None where inertia is spread along something."""
         if self.inertia is not None and self.inertia.any():

@@ -6,32 +6,13 @@
 #include "collocation/collocation.h"
 #include "glue/laws/calls.h"
 
-enum { KEPT = 12 }; /* arrays that a call holds */
-
 struct py_collocation {
     struct rd_collocation step;
     struct rd_smooth_laws laws;
     struct rd_collocated run;
     struct py_calls calls;
-    PyArrayObject *keep[KEPT];
-    size_t kept;
+    struct py_kept kept;
 };
-
-/* an array that lives as long as the call; NULL and an exception */
-static void *keep(struct py_collocation *call, PyObject *object, int type, int dimensions,
-                  const npy_intp *shape, const char *name)
-{
-    PyArrayObject *array = py_array(object, type, dimensions, shape, name);
-    if (array == NULL)
-        return NULL;
-    call->keep[call->kept++] = array;
-    return PyArray_DATA(array);
-}
-
-static npy_intp length_of(const struct py_collocation *call, int axis)
-{
-    return PyArray_DIM(call->keep[call->kept - 1], axis);
-}
 
 /* --- arguments ---------------------------------------------------------------------------------*/
 
@@ -44,7 +25,7 @@ static int parse_laws(PyObject *object, struct py_collocation *call)
         return -1;
     const npy_intp count = PyTuple_GET_SIZE(call->calls.law);
     call->laws.count = (size_t)count;
-    call->laws.kind = keep(call, kind, NPY_INT32, 1, (npy_intp[]){count}, "kind");
+    call->laws.kind = py_keep(&call->kept, kind, NPY_INT32, 1, (npy_intp[]){count}, "kind");
     if (call->laws.kind == NULL)
         return -1;
     for (npy_intp d = 0; d < count; d++) {
@@ -56,10 +37,10 @@ static int parse_laws(PyObject *object, struct py_collocation *call)
             return -1;
         }
     }
-    call->laws.value = keep(call, value, NPY_DOUBLE, 2, (npy_intp[]){count, 2}, "value");
-    call->calls.arrays = call->laws.value == NULL
-                             ? NULL
-                             : keep(call, arrays, NPY_UINT8, 1, (npy_intp[]){count}, "arrays");
+    call->laws.value = py_keep(&call->kept, value, NPY_DOUBLE, 2, (npy_intp[]){count, 2}, "value");
+    call->calls.arrays = call->laws.value == NULL ? NULL
+                                                  : py_keep(&call->kept, arrays, NPY_UINT8, 1,
+                                                            (npy_intp[]){count}, "arrays");
     call->laws.call = py_say;
     call->laws.context = &call->calls;
     return call->calls.arrays == NULL ? -1 : 0;
@@ -73,28 +54,29 @@ static int parse_step(PyObject *object, struct py_collocation *call)
     if (!PyArg_ParseTuple(object, "dOOOOOO;step must be (h, node, change, push, seen, own, ahead)",
                           &step->h, &node, &change, &push, &seen, &own, &ahead))
         return -1;
-    step->node = keep(call, node, NPY_DOUBLE, 1, (npy_intp[]){-1}, "node");
+    step->node = py_keep(&call->kept, node, NPY_DOUBLE, 1, (npy_intp[]){-1}, "node");
     if (step->node == NULL)
         return -1;
-    const npy_intp s = length_of(call, 0), n = (npy_intp)call->laws.count;
+    const npy_intp s = py_kept_length(&call->kept, 0), n = (npy_intp)call->laws.count;
     if (s < 1 || s > 64) {
         PyErr_Format(PyExc_ValueError, "node must hold 1 to 64 stages, got %zd", (Py_ssize_t)s);
         return -1;
     }
-    step->change = keep(call, change, NPY_DOUBLE, 3, (npy_intp[]){2, 2, -1}, "change");
+    step->change = py_keep(&call->kept, change, NPY_DOUBLE, 3, (npy_intp[]){2, 2, -1}, "change");
     if (step->change == NULL)
         return -1;
-    const npy_intp m = length_of(call, 2);
+    const npy_intp m = py_kept_length(&call->kept, 2);
     step->stages = (size_t)s;
     step->laws = (size_t)n;
     step->modes = (size_t)m;
-    step->push = keep(call, push, NPY_DOUBLE, 3, (npy_intp[]){s, 2, m}, "push");
+    step->push = py_keep(&call->kept, push, NPY_DOUBLE, 3, (npy_intp[]){s, 2, m}, "push");
     if (step->push != NULL)
-        step->seen = keep(call, seen, NPY_DOUBLE, 6, (npy_intp[]){n, 2, m, s, 2, n}, "seen");
+        step->seen =
+            py_keep(&call->kept, seen, NPY_DOUBLE, 6, (npy_intp[]){n, 2, m, s, 2, n}, "seen");
     if (step->seen != NULL)
-        step->own = keep(call, own, NPY_DOUBLE, 5, (npy_intp[]){s, 2, n, s, n}, "own");
+        step->own = py_keep(&call->kept, own, NPY_DOUBLE, 5, (npy_intp[]){s, 2, n, s, n}, "own");
     if (step->own != NULL)
-        step->ahead = keep(call, ahead, NPY_DOUBLE, 2, (npy_intp[]){s, s}, "ahead");
+        step->ahead = py_keep(&call->kept, ahead, NPY_DOUBLE, 2, (npy_intp[]){s, s}, "ahead");
     return step->ahead == NULL ? -1 : 0;
 }
 
@@ -116,12 +98,13 @@ static int parse_run(PyObject *const *object, struct py_collocation *call, PyObj
     struct rd_collocated *run = &call->run;
     const npy_intp s = (npy_intp)call->step.stages, n = (npy_intp)call->step.laws;
     const npy_intp m = (npy_intp)call->step.modes;
-    run->begin = keep(call, object[0], NPY_DOUBLE, 1, (npy_intp[]){-1}, "begin");
+    run->begin = py_keep(&call->kept, object[0], NPY_DOUBLE, 1, (npy_intp[]){-1}, "begin");
     if (run->begin == NULL)
         return -1;
-    const npy_intp steps = length_of(call, 0);
+    const npy_intp steps = py_kept_length(&call->kept, 0);
     run->steps = (size_t)steps;
-    run->known = keep(call, object[1], NPY_DOUBLE, 4, (npy_intp[]){steps, s, 2, n}, "known");
+    run->known =
+        py_keep(&call->kept, object[1], NPY_DOUBLE, 4, (npy_intp[]){steps, s, 2, n}, "known");
     if (run->known == NULL)
         return -1;
     made[0] = begun(object[2], 3, (npy_intp[]){steps + 1, s, n}, "force");
@@ -183,7 +166,6 @@ done:
     Py_XDECREF(call.calls.error);
     for (int k = 0; k < 4; k++)
         Py_XDECREF(made[k]);
-    while (call.kept > 0)
-        Py_DECREF(call.keep[--call.kept]);
+    py_kept_release(&call.kept);
     return result;
 }

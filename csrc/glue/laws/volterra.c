@@ -6,25 +6,12 @@
 #include "glue/glue.h"
 #include "glue/laws/calls.h"
 
-enum { KEPT = 7 }; /* arrays that a call holds */
-
 struct py_volterra {
     struct rd_volterra system;
     struct rd_volterra_run run;
     struct py_calls calls;
-    PyArrayObject *keep[KEPT];
-    size_t kept;
+    struct py_kept kept;
 };
-
-static void *keep(struct py_volterra *call, PyObject *object, int type, int dimensions,
-                  const npy_intp *shape, const char *name)
-{
-    PyArrayObject *array = py_array(object, type, dimensions, shape, name);
-    if (array == NULL)
-        return NULL;
-    call->keep[call->kept++] = array;
-    return PyArray_DATA(array);
-}
 
 /* laws: (kind, value, calls) */
 static int parse_laws(PyObject *object, struct py_volterra *call)
@@ -37,8 +24,8 @@ static int parse_laws(PyObject *object, struct py_volterra *call)
     const npy_intp shape[] = {count, RD_LAW_VALUES};
     struct rd_laws *laws = &call->system.laws;
     laws->ports.count = (size_t)count;
-    laws->kind = keep(call, kind, NPY_INT32, 1, shape, "kind");
-    laws->value = laws->kind ? keep(call, value, NPY_DOUBLE, 2, shape, "value") : NULL;
+    laws->kind = py_keep(&call->kept, kind, NPY_INT32, 1, shape, "kind");
+    laws->value = laws->kind ? py_keep(&call->kept, value, NPY_DOUBLE, 2, shape, "value") : NULL;
     if (laws->value == NULL)
         return -1;
     for (npy_intp d = 0; d < count; d++) {
@@ -59,10 +46,10 @@ static int parse_laws(PyObject *object, struct py_volterra *call)
 static double *shared(struct py_volterra *call, PyObject *object, int dimensions,
                       const npy_intp *shape, const char *name)
 {
-    double *data = keep(call, object, NPY_DOUBLE, dimensions, shape, name);
+    double *data = py_keep(&call->kept, object, NPY_DOUBLE, dimensions, shape, name);
     if (data == NULL)
         return NULL;
-    PyArrayObject *array = call->keep[call->kept - 1];
+    PyArrayObject *array = call->kept.array[call->kept.count - 1];
     if ((PyObject *)array != object || !PyArray_ISWRITEABLE(array)) {
         PyErr_Format(PyExc_ValueError, "%s must be a writable array of float64 in C order", name);
         return NULL;
@@ -75,13 +62,14 @@ static int parse_arrays(PyObject *const *object, struct py_volterra *call)
 {
     const npy_intp m = (npy_intp)call->system.laws.ports.count;
     struct rd_volterra *system = &call->system;
-    system->kernel = keep(call, object[0], NPY_DOUBLE, 3, (npy_intp[]){m, m, -1}, "kernel");
+    system->kernel =
+        py_keep(&call->kept, object[0], NPY_DOUBLE, 3, (npy_intp[]){m, m, -1}, "kernel");
     if (system->kernel == NULL)
         return -1;
-    const npy_intp steps = PyArray_DIM(call->keep[call->kept - 1], 2);
+    const npy_intp steps = py_kept_length(&call->kept, 2);
     system->steps = (size_t)steps;
     const npy_intp during[] = {m, steps}, at[] = {m, steps + 1};
-    system->linear = keep(call, object[1], NPY_DOUBLE, 2, at, "linear");
+    system->linear = py_keep(&call->kept, object[1], NPY_DOUBLE, 2, at, "linear");
     if (system->linear != NULL)
         call->run.force = shared(call, object[2], 2, during, "force");
     if (call->run.force != NULL)
@@ -135,7 +123,6 @@ done:
     PyMem_RawFree(workspace.base);
     Py_XDECREF(failure);
     Py_XDECREF(call.calls.error);
-    while (call.kept > 0)
-        Py_DECREF(call.keep[--call.kept]);
+    py_kept_release(&call.kept);
     return result;
 }

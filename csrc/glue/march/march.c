@@ -60,17 +60,17 @@ static int parse_steps(PyObject *const *object, int energies, struct py_march *m
 {
     PyObject *force = object[0], *speed = object[1], *extra = object[2];
     const npy_intp d = (npy_intp)march->drives.ports.count, k = (npy_intp)march->push.moved;
-    steps->force = py_march_keep(march, force, 3, (npy_intp[]){-1, 2, d}, "force");
+    steps->force = py_keep(&march->kept, force, NPY_DOUBLE, 3, (npy_intp[]){-1, 2, d}, "force");
     if (steps->force == NULL)
         return -1;
-    const npy_intp count = PyArray_DIM((PyArrayObject *)march->keep[march->kept - 1], 0);
+    const npy_intp count = py_kept_length(&march->kept, 0);
     const npy_intp rows = energies ? count : 0, m = (npy_intp)march->laws.ports.count;
     steps->count = (size_t)count;
-    steps->speed = py_march_keep(march, speed, 3, (npy_intp[]){count, 2, k}, "speed");
+    steps->speed = py_keep(&march->kept, speed, NPY_DOUBLE, 3, (npy_intp[]){count, 2, k}, "speed");
     if (steps->speed == NULL)
         return -1;
     if (extra != Py_None) {
-        steps->extra = py_march_keep(march, extra, 2, (npy_intp[]){count, 2}, "extra");
+        steps->extra = py_keep(&march->kept, extra, NPY_DOUBLE, 2, (npy_intp[]){count, 2}, "extra");
         if (steps->extra == NULL)
             return -1;
     }
@@ -148,8 +148,9 @@ PyObject *py_march_stage(PyObject *module, PyObject *arguments)
         goto done;
     const npy_intp d = (npy_intp)march.push.drives->count, k = (npy_intp)march.push.moved;
     const npy_intp square[] = {(npy_intp)march.laws.ports.count, (npy_intp)march.laws.ports.count};
-    march.push.force = py_march_keep(&march, force, 1, &d, "force");
-    march.push.speed = march.push.force ? py_march_keep(&march, speed, 1, &k, "speed") : NULL;
+    march.push.force = py_keep(&march.kept, force, NPY_DOUBLE, 1, &d, "force");
+    march.push.speed =
+        march.push.force ? py_keep(&march.kept, speed, NPY_DOUBLE, 1, &k, "speed") : NULL;
     if (march.push.speed == NULL)
         goto done;
     alone = py_new(NPY_DOUBLE, 1, square);
@@ -194,7 +195,7 @@ PyObject *py_march_finish(PyObject *module, PyObject *arguments)
         check_stage(stage, &march) < 0)
         goto done;
     const npy_intp m = (npy_intp)march.laws.ports.count;
-    const double *given = py_march_keep(&march, force, 1, &m, "force");
+    const double *given = py_keep(&march.kept, force, NPY_DOUBLE, 1, &m, "force");
     if (given == NULL)
         goto done;
     for (npy_intp k = 0; k < m; k++)
@@ -224,10 +225,13 @@ PyObject *py_march_laws(PyObject *module, PyObject *arguments)
     if (py_law_numbers_parse(law, &march) < 0)
         goto done;
     const npy_intp square[] = {(npy_intp)march.laws.ports.count, (npy_intp)march.laws.ports.count};
-    const double *lean = py_march_keep(&march, number[0], 1, square, "increment");
-    const double *C = lean ? py_march_keep(&march, number[1], 2, square, "compliance") : NULL;
-    const double *start = C ? py_march_keep(&march, number[2], 1, square, "start") : NULL;
-    const double *given = start ? py_march_keep(&march, number[3], 1, square, "force") : NULL;
+    const double *lean = py_keep(&march.kept, number[0], NPY_DOUBLE, 1, square, "increment");
+    const double *C =
+        lean ? py_keep(&march.kept, number[1], NPY_DOUBLE, 2, square, "compliance") : NULL;
+    const double *start =
+        C ? py_keep(&march.kept, number[2], NPY_DOUBLE, 1, square, "start") : NULL;
+    const double *given =
+        start ? py_keep(&march.kept, number[3], NPY_DOUBLE, 1, square, "force") : NULL;
     force = given ? py_new(NPY_DOUBLE, 1, square) : NULL;
     if (force == NULL)
         goto done;

@@ -6,8 +6,6 @@
 
 #include "march/plan.h"
 
-enum { PY_MARCH_KEPT = 16 };
-
 /* a march, what it views and the references that keep it alive */
 struct py_march {
     struct py_chain parsed;
@@ -18,8 +16,7 @@ struct py_march {
     struct rd_workspace workspace;
     struct rd_motion motion;
     struct rd_push push;
-    Py_ssize_t kept;
-    PyObject *keep[PY_MARCH_KEPT];
+    struct py_kept kept;
 };
 
 /* laws without their places, from (kind, value) */
@@ -36,10 +33,6 @@ int py_motion_parse(PyObject *object, struct py_march *march);
 
 /* drives and moved coordinates, their places alone */
 int py_push_parse(PyObject *drive, PyObject *moved, struct py_march *march);
-
-/* a float64 array that is kept until py_march_release, or NULL */
-const double *py_march_keep(struct py_march *march, PyObject *object, int dimensions,
-                            const npy_intp *shape, const char *name);
 
 void py_march_release(struct py_march *march);
 

@@ -4,24 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-static void *keep(struct py_march *march, PyArrayObject *array)
-{
-    if (array == NULL)
-        return NULL;
-    march->keep[march->kept++] = (PyObject *)array;
-    return PyArray_DATA(array);
-}
-
-const double *py_march_keep(struct py_march *march, PyObject *object, int dimensions,
-                            const npy_intp *shape, const char *name)
-{
-    return keep(march, py_array(object, NPY_DOUBLE, dimensions, shape, name));
-}
-
 void py_march_release(struct py_march *march)
 {
-    for (Py_ssize_t k = 0; k < march->kept; k++)
-        Py_DECREF(march->keep[k]);
+    py_kept_release(&march->kept);
     py_ports_release(&march->points);
     py_ports_release(&march->drives);
     py_ports_release(&march->responses);
@@ -40,9 +25,11 @@ static int parse_beside(PyObject *object, struct py_march *march)
     if (!PyArg_ParseTuple(object, "OdOOdd", &rate, &beside->spring_rate, &string, &drag,
                           &beside->stretching, &beside->mass_rate))
         return -1;
-    beside->rate = py_march_keep(march, rate, 1, distinct, "rate");
-    beside->string = beside->rate ? py_march_keep(march, string, 1, distinct, "string") : NULL;
-    beside->drag = beside->string ? py_march_keep(march, drag, 1, distinct, "string_drag") : NULL;
+    beside->rate = py_keep(&march->kept, rate, NPY_DOUBLE, 1, distinct, "rate");
+    beside->string =
+        beside->rate ? py_keep(&march->kept, string, NPY_DOUBLE, 1, distinct, "string") : NULL;
+    beside->drag =
+        beside->string ? py_keep(&march->kept, drag, NPY_DOUBLE, 1, distinct, "string_drag") : NULL;
     return beside->drag ? 0 : -1;
 }
 
@@ -50,7 +37,7 @@ static int parse_beside(PyObject *object, struct py_march *march)
 static int parse_kinds(PyObject *kind, PyObject *value, struct py_march *march)
 {
     const npy_intp shape[] = {(npy_intp)march->laws.ports.count, RD_LAW_VALUES};
-    march->laws.kind = keep(march, py_array(kind, NPY_INT32, 1, shape, "law kind"));
+    march->laws.kind = py_keep(&march->kept, kind, NPY_INT32, 1, shape, "law kind");
     if (march->laws.kind == NULL)
         return -1;
     for (size_t k = 0; k < march->laws.ports.count; k++)
@@ -59,7 +46,7 @@ static int parse_kinds(PyObject *kind, PyObject *value, struct py_march *march)
                          RD_LAW_KINDS - 1, (int)march->laws.kind[k]);
             return -1;
         }
-    march->laws.value = py_march_keep(march, value, 2, shape, "law value");
+    march->laws.value = py_keep(&march->kept, value, NPY_DOUBLE, 2, shape, "law value");
     return march->laws.value ? 0 : -1;
 }
 
@@ -121,8 +108,7 @@ static void *writable(struct py_march *march, PyObject *object, int type, int di
                      "%s must be a contiguous writable array of the march's type and shape", name);
         return NULL;
     }
-    Py_INCREF(object);
-    return keep(march, array);
+    return py_keep(&march->kept, object, type, dimensions, shape, name);
 }
 
 int py_march_open(PyObject *plan, struct py_march *march)
@@ -191,11 +177,10 @@ int py_push_parse(PyObject *drive, PyObject *moved, struct py_march *march)
     const npy_intp pairs[] = {-1, 2};
     if (py_ports_parse(drive, &march->parsed.chain, "drive", &march->drives) < 0)
         return -1;
-    PyArrayObject *place = py_array(moved, NPY_INT32, 2, pairs, "moved");
-    march->push.place = keep(march, place);
-    if (place == NULL)
+    march->push.place = py_keep(&march->kept, moved, NPY_INT32, 2, pairs, "moved");
+    if (march->push.place == NULL)
         return -1;
     march->push.drives = &march->drives.ports;
-    march->push.moved = (size_t)PyArray_DIM(place, 0);
+    march->push.moved = (size_t)py_kept_length(&march->kept, 0);
     return check_moved(march);
 }

@@ -130,7 +130,7 @@ class Line:
         run, omega = self.run, self.grid.omega
         bound = np.zeros(len(run.responses))
         lag = omega * float(Rates.of(run.model.scene.dampings).linear.real[: damping.INERTIA].max())
-        if run.model.element == "continuous" or lag > DEAD or is_indefinite(run.model.chain):
+        if run.model.element == "continuous" or lag > DEAD or run.model.chain.spurious:
             # modes of spans are dense, damped ones over at once, and some of no motion are counted
             return bound
         own = {point: self._light(point) for point in {*run.places, *run.responses}}
@@ -237,11 +237,6 @@ def _excited(force: Force, time: Real, omega: float) -> tuple[float, float, floa
     corners = np.concatenate([corners, np.diff(slopes, prepend=0.0)])
     most = jump + omega * blow + TIMES / omega * float(np.sqrt((corners**2).sum()))
     return most, most * omega, most * omega**2
-
-
-def is_indefinite(chain: Chain) -> bool:
-    """Whether lumps have negative masses."""
-    return bool((np.linalg.eigvalsh(chain.mass) < 0).any())
 
 
 def growth_of(run: Run) -> float:

@@ -191,7 +191,7 @@ def _closed(
         p, r = np.array([-stiff / soften]), np.where(power == 0, rest / soften, 0.0)[:, :, None]
         rest = np.where(power == 0, 0.0, rest)
     bound = np.zeros(rest.shape)
-    if not np.isfinite(beyond) and _spurious(asked.chain):
+    if not np.isfinite(beyond) and asked.chain.spurious:
         beyond = float(eigenvalue.max(initial=0.0))
     if np.isfinite(beyond):
         bound = np.full(rest.shape, np.inf)
@@ -207,13 +207,3 @@ def _apart(asked: _Asked, eigenvalue: Real, circles: contour.Circles) -> tuple[R
     # of all modes only rounding is left, which what is damped fast would make large
     rest = np.where(np.abs(parted.rest) > ROUND * parted.size, parted.rest, 0.0)
     return parted.residue, rest
-
-
-def _spurious(chain: Chain) -> int:
-    """Return how many modes of lumps there are whose mass is negative, which are no motion."""
-    # the end correction of tensed elements makes the mass matrix indefinite
-    each = np.bincount(chain.term_of, minlength=len(chain.mass))
-    free = chain.held == 0
-    kept = free[:, :, None] & free[:, None, :]
-    negative = (np.linalg.eigvalsh(np.where(kept, chain.mass, 0.0)) < 0).sum(axis=1)
-    return int(negative @ each)

@@ -26,7 +26,6 @@ from ...response.deflection import POINTS
 from ...scene.damping import having
 from ..direct.direct import balance
 from ..history import History, ended_by
-from ..line.inversion import is_indefinite
 from ..linear import solve_linear
 from ..mesh_error import against_spans
 from ..request import TOLERANCE, Run
@@ -69,7 +68,7 @@ def _is_taken(run: Run, component: tuple[str, ...]) -> bool:
     if not laws:
         return True
     plain = without_dashpots(model, component)[0].chain.only(component)
-    if is_indefinite(plain) or _has_no_inertia(model, component, laws):
+    if plain.spurious or _has_no_inertia(model, component, laws):
         return False
     return proportional(plain, rates) is not None
 
