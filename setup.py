@@ -29,8 +29,10 @@ or without ROPEDYN_SYSTEM_LAPACKE the wheel scipy-openblas32 is taken."""
 SYSTEM_LAPACKE = os.environ.get("ROPEDYN_SYSTEM_LAPACKE") == "1"
 
 # -O3 takes ten times as long over the kernels of width 3 and 4 and makes them no faster, common
-# subexpressions across blocks twice as long
-COMPILE = ([] if "CFLAGS" in os.environ else ["-O2", "-fno-gcse"]) + [
+# subexpressions across blocks, or after registers are given, twice as long, and what a debugger
+# reads, which some Pythons ask for, half as long again
+QUICK = ["-O2", "-fno-gcse", "-fno-gcse-after-reload", "-g0"]
+COMPILE = ([] if "CFLAGS" in os.environ else QUICK) + [
     "-std=c17",
     "-fvisibility=hidden",
     "-ffp-contract=off",
