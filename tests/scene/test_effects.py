@@ -144,6 +144,7 @@ MECHANISMS = {
 spans and nodes, springs at nodes, sections, complex factors."""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("gcov") is None, reason="needs gcov")
 def test_code_of_an_effect_runs_only_where_a_scene_has_it(tmp_path):
     objects = build(tmp_path)
