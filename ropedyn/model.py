@@ -240,7 +240,7 @@ class Model(Compiled):
         SceneError
             If a value has no meaning, or modal damping stands beside another or lacks a ratio.
         SolveError
-            If a frequency lies on an undamped resonance; the message names it.
+            If a frequency lies on an undamped resonance that answers; the message names it.
 
         Notes
         -----

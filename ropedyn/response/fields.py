@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Flags, Real
 from ..base.computed import computed
-from ..base.errors import SceneError, SolveError
+from ..base.errors import SceneError
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT
 from ..chain.port import Point, Ports, cut, is_force, locate, moving, ports, stops
@@ -208,7 +208,7 @@ class Fields:
         pushed = ports(chain, self.x, component, given)
         value, wrong, solved = _core.sweep(chain, factor, pushed, self._nodes)
         if solved < factor.shape[1]:
-            raise SolveError(self.question.resonance((part.start or 0) + solved))
+            raise self.question.resonance((part.start or 0) + solved)
         each = len(self._held) // len(self.x)
         error = np.zeros((len(value), len(factor[0])))
         for k, point in enumerate(given):

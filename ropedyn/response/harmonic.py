@@ -24,6 +24,7 @@ from ..chain.place import observed, points
 from ..chain.port import Point, moving
 from ..scene import damping
 from ..scene.scene import Scene
+from .at_node import answers_at_nodes
 from .frf import FRF, MeshOfResponse, RoundingOfResponse
 from .frf_rate import Answered, FrequencyRates
 from .modal_sum import Summed, modal_sum, refuse_other_damping
@@ -45,7 +46,7 @@ def solve_harmonic(
     decay: float = 0.0,
 ) -> FRF:
     """Compute the frequency response; see `Model.frf`."""
-    solve = moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)])
+    solve = answers_at_nodes(moves_ends(SOLVERS[check.one_of(solver, "solver", SOLVERS)]))
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
     workers = workers_of(threads)

@@ -327,7 +327,7 @@ def _weights(
     pole = own - z + lost
     on_it = (np.abs(pole) <= poles.error[:, None]).any(axis=0)
     if on_it.any():
-        raise SolveError(question.resonance(part.start + int(on_it.argmax())))
+        raise question.resonance(part.start + int(on_it.argmax()))
     soft = 1 / (own + poles.shift)
     g = (z + poles.shift - lost) * soft / pole
     # lambda in the pole, in what it loses and in the static part; ratios of equal modes

@@ -13,7 +13,7 @@ from ..base import check
 from ..base.array import Complex, Flags, Real
 from ..base.check import COORDINATES
 from ..base.computed import computed
-from ..base.errors import SceneError
+from ..base.errors import SceneError, SolveError
 from ..chain.chain import Chain
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, cut, is_force, locate, stops
@@ -77,12 +77,21 @@ class Question:
         highest = [int(np.abs(factor[damping.INERTIA]).argmax())] if factor.size else []
         return factor.take(highest, axis=1)
 
-    def resonance(self, k: int) -> str:
-        """Say that frequency k has no answer."""
-        return (
-            f"frequency {float(self.frequency[k])!r} Hz has no correct digit in "
-            f"({', '.join(self.component)}): it lies on an undamped resonance"
+    def resonance(self, k: int, more: str = "") -> OnResonance:
+        """Return what says that frequency k has no answer."""
+        at = float(self.frequency[k])
+        refusal = OnResonance(
+            f"frequency {at!r} Hz has no correct digit in ({', '.join(self.component)}): it lies "
+            f"on an undamped resonance{more}"
         )
+        refusal.frequency = at
+        return refusal
+
+
+class OnResonance(SolveError):
+    """A line that a solver has no answer for."""
+
+    frequency: float  # [Hz]
 
 
 Bound = Callable[[], Real]

@@ -105,7 +105,7 @@ def _unassembled(
     def solve(part: slice) -> tuple[Complex, Real]:
         value, error, solved = core(np.ascontiguousarray(factor[:, part]), pushed, watched)
         if solved < value.shape[2]:
-            raise SolveError(question.resonance(part.start + solved))
+            raise question.resonance(part.start + solved)
         return value, error
 
     count = len(question.frequency)
@@ -193,10 +193,8 @@ def _lapack(question: Question) -> tuple[Complex, Bound]:
     )
     if solved < len(question.frequency) or (motion >= 1).any():
         first = min([solved, *np.flatnonzero((motion[:solved] >= 1).any(axis=1))])
-        raise SolveError(
-            f"{question.resonance(first)}, or {chain.nodes - 1} elements are too many for the "
-            "assembled stiffness"
-        )
+        more = f", or {chain.nodes - 1} elements are too many for the assembled stiffness"
+        raise question.resonance(first, more)
     value = np.ascontiguousarray(value.transpose(1, 2, 0))
     error = np.ascontiguousarray(rounding.transpose(1, 2, 0))
     value += _local(question)
