@@ -34,7 +34,7 @@ from .response.second_harmonic import solver_of
 from .scene.scene import Scene
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Model(Compiled):
     """A chain of nodes and elements, or of continuous spans; plain data that pickles.
 

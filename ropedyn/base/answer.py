@@ -144,6 +144,9 @@ class Answer(Frozen):
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         Answer.kinds[cls.__name__] = cls
+        # a dataclass writes one of its own where the class has none
+        if "__repr__" not in vars(cls):
+            cls.__repr__ = Answer.__repr__  # type: ignore[method-assign]
 
     def table(self) -> Table:
         """Return the answer as a table.
@@ -180,6 +183,12 @@ class Answer(Frozen):
 
     def __str__(self) -> str:
         return str(self.table())
+
+    def __repr__(self) -> str:
+        try:
+            return f"{type(self).__name__}: {self.table()!r}"
+        except (SceneError, SolveError) as error:
+            return f"{type(self).__name__}: {error}"
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()

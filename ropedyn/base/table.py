@@ -18,7 +18,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-@dataclass(frozen=True)
+SHOWN, PRINTED = 9, 60  # Rows that a prompt and `print` show at most, with the gap.
+WIDTH = 80  # Characters of a line at a prompt.
+
+
+@dataclass(frozen=True, repr=False)
 class Table:
     """Named columns with their units, in rows.
 
@@ -79,26 +83,85 @@ class Table:
         return tuple(row[at] for row in self.rows)
 
     def __str__(self) -> str:
-        cells = [list(self.columns)] + [[_text(v) for v in row] for row in self.rows]
-        widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
-        right = [all(not isinstance(row[k], str) for row in self.rows) for k in range(len(widths))]
+        return self.to_text(rows=PRINTED)
+
+    def __repr__(self) -> str:
+        return self.to_text(rows=SHOWN, width=WIDTH)
+
+    def to_text(self, *, rows: int | None = None, width: int | None = None) -> str:
+        """Return the table as text: whole, or its head and tail and the columns that fit.
+
+        Parameters
+        ----------
+        rows : int, optional
+            As many at most, the first and the last of them.
+        width : int, optional
+            Characters of a line at most, for which the last columns are left out.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> print(rd.Table.of("squares", {"n": range(100), "n n": [n * n for n in range(100)]}))
+        ... # doctest: +ELLIPSIS
+        squares, 100 rows
+        ...
+        >>> few = rd.Table.of("squares", {"n": range(5), "n n": [n * n for n in range(5)]})
+        >>> print(few.to_text(rows=3))
+        squares, 5 rows
+          n  n n
+        ---  ---
+          0    0
+        ...  ...
+          4   16
+        """
+        shown = self._shown(rows)
+        cells = [list(self.columns), *([_text(v) for v in row] for row in shown)]
+        if len(shown) < len(self.rows):
+            cells.insert(1 + (len(shown) + 1) // 2, ["..."] * len(self.columns))
+        right = [all(not isinstance(row[k], str) for row in shown) for k in range(len(cells[0]))]
+        widths = [max(len(row[k]) for row in cells) for k in range(len(cells[0]))]
+        kept = self._fitting(widths, width)
         lines = [
             "  ".join(
-                cell.rjust(width) if number else cell.ljust(width)
-                for cell, width, number in zip(row, widths, right)
+                row[k].rjust(widths[k]) if right[k] else row[k].ljust(widths[k])
+                for k in range(kept)
             ).rstrip()
             for row in cells
         ]
-        rule = "  ".join("-" * width for width in widths)
-        return "\n".join([self.title, lines[0], rule, *lines[1:]])
+        rule = "  ".join("-" * width for width in widths[:kept])
+        return "\n".join([self._heading(len(shown), kept), lines[0], rule, *lines[1:]])
+
+    def _shown(self, most: int | None) -> tuple[tuple[Any, ...], ...]:
+        """Return the first and the last rows, one less than may be where some are left out."""
+        if most is None or len(self.rows) <= most:
+            return self.rows
+        return self.rows[: most // 2] + self.rows[len(self.rows) - (most - 1) // 2 :]
+
+    def _fitting(self, widths: list[int], width: int | None) -> int:
+        """Return how many columns fit into a line, one at least."""
+        ends = np.cumsum([0, *widths]) + 2 * np.arange(len(widths) + 1) - 2
+        if width is None:
+            return len(widths)
+        return max(1, int(np.searchsorted(ends, width, side="right")) - 1)
+
+    def _heading(self, rows: int, columns: int) -> str:
+        parts = [self.title]
+        if rows < len(self.rows):
+            parts.append(f"{len(self.rows)} rows")
+        if columns < len(self.columns):
+            parts.append(f"{columns} of {len(self.columns)} columns")
+        return ", ".join(parts)
 
     def _repr_html_(self) -> str:
+        shown = self._shown(PRINTED)
+        rows = [[html.escape(_text(v)) for v in row] for row in shown]
+        if len(shown) < len(self.rows):
+            rows.insert((len(shown) + 1) // 2, ["..."] * len(self.columns))
         head = "".join(f"<th>{html.escape(c)}</th>" for c in self.columns)
         body = "".join(
-            "<tr>" + "".join(f"<td>{html.escape(_text(v))}</td>" for v in row) + "</tr>"
-            for row in self.rows
+            "<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows
         )
-        caption = f"<caption>{html.escape(self.title)}</caption>"
+        caption = f"<caption>{html.escape(self._heading(len(shown), len(self.columns)))}</caption>"
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def to_csv(self) -> str:

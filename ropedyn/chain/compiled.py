@@ -13,6 +13,7 @@ from .. import _core
 from ..base.answer import Frozen
 from ..base.array import Real
 from ..base.errors import SceneError
+from ..scene.card import Card, card, card_html, card_text
 from ..scene.damping import having, separable
 from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.scene import Scene
@@ -67,7 +68,7 @@ class NodeTerms(NamedTuple):
     term: NDArray[np.int32]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Compiled(Frozen):
     """A scene compiled to plain arrays that the core reads: what solvers take; see `Model`."""
 
@@ -79,6 +80,19 @@ class Compiled(Frozen):
     chain: Chain
     unknowns: tuple[int, ...]
     choice: Choice | None = None
+
+    def __repr__(self) -> str:
+        return card_text(*self._card)
+
+    def _repr_html_(self) -> str:
+        return card_html(*self._card)
+
+    @property
+    def _card(self) -> tuple[str, Card]:
+        spans = f"continuous spans, {len(self.x)} stations"
+        chain = f"{len(self.x) - 1} {self.element} elements, {self.size} unknowns"
+        cut = {"model": spans if self.element == "continuous" else chain}
+        return "Model of a rope", card(self.scene) | cut
 
     @property
     def size(self) -> int:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
+from importlib import metadata
 from pathlib import Path
 
 from .. import study2015
@@ -27,6 +29,7 @@ COMMANDS = (
     STABILITY,
     SECTION,
 )
+NAME = "ropedyn"
 FOLDER = Path("ropedyn-study")
 
 SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
@@ -36,7 +39,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
     try:
         options = _parser().parse_args(arguments)
-        return options.run(options) or SOLVED
+        status = options.run(options) or SOLVED
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:
+        # who reads has seen enough, and what is left would complain at the end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return SOLVED
     except SolveError as error:
         return _complain(error, REFUSED)
     except (RopedynError, TypeError, OSError, ImportError) as error:
@@ -50,11 +59,12 @@ def _complain(error: Exception, status: int) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="ropedyn",
+        prog=NAME,
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
         epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad, 3 where "
         "what was measured leaves several answers.",
     )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {metadata.version(NAME)}")
     parser.set_defaults(run=_study, folder=FOLDER)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     study = commands.add_parser("study", help="the 2015 study: table, verdict, figures")

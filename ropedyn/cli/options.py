@@ -146,7 +146,7 @@ def show(options: argparse.Namespace, answer: Answer, report: str | None = None)
     elif options.csv:
         print(table.to_csv(), end="")
     else:
-        print(table if report is None else report)
+        print(table.to_text() if report is None else report)
     draw(options, answer)
 
 

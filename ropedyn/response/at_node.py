@@ -27,7 +27,7 @@ ORDERS = np.arange(-HALF // 2, HALF)  # of c_m
 LAST = 4  # The highest orders tell what a circle does not resolve.
 
 
-class Line(NamedTuple):
+class AtNode(NamedTuple):
     """A response at one frequency, (drives, responses)."""
 
     value: Real
@@ -39,7 +39,7 @@ def answers_at_nodes(solver: Solver) -> Solver:
 
     def solve(question: Question) -> tuple[Complex, Bound]:
         missing = np.zeros(len(question.frequency), dtype=np.bool_)
-        lines: list[tuple[Flags, Line]] = []
+        lines: list[tuple[Flags, AtNode]] = []
         while True:
             rest = replace(
                 question,
@@ -75,7 +75,7 @@ def answers_at_nodes(solver: Solver) -> Solver:
     return solve
 
 
-def _mean(solver: Solver, question: Question, frequency: float, factor: Complex) -> Line | None:
+def _mean(solver: Solver, question: Question, frequency: float, factor: Complex) -> AtNode | None:
     """Return the mean on the largest circle that has no pole in it, if there is one."""
     chain = question.model.chain.only(question.component)
     if question.decay or damped_lines(chain, factor).any():
@@ -94,5 +94,5 @@ def _mean(solver: Solver, question: Question, frequency: float, factor: Complex)
         noise = bound().max(axis=-1)
         beside = order[..., ORDERS < 0].sum(axis=-1) + order[..., -LAST:].sum(axis=-1)
         if (beside <= noise).all():
-            return Line(value.real.mean(axis=-1), noise + beside)
+            return AtNode(value.real.mean(axis=-1), noise + beside)
     return None

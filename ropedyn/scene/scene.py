@@ -16,6 +16,7 @@ from ..base.parameter import Description, given, instance, positions
 from . import damping as _damping
 from . import end as _end
 from . import toml
+from .card import card, card_html, card_text
 from .damping import Damping
 from .end import End
 from .gravity import Gravity
@@ -112,8 +113,7 @@ class Scene(Description):
     rope : Rope
         The rope.
     tension : float or Tension
-        [N]; negative is compression, which needs bending stiffness. A `Tension` may pulsate or grow
-        with the amplitude; one that does neither is its number.
+        [N]; negative is compression, which needs bending stiffness.
     ends : pair of {"clamped", "pinned", "free"} or End
         Left and right end.
     damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, optional
@@ -122,8 +122,7 @@ class Scene(Description):
 NodeForce, Stop, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
     gravity : Gravity, optional
-        Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
-        holds the rope along x; the rope has no inertia along x then.
+        The rope's weight, under which it sags.
 
     Raises
     ------
@@ -150,6 +149,12 @@ NodeForce, Stop, AddedMass, LocalChange
     damping: Damping | tuple[Damping, ...] | None = given(_checked_damping, default=None)
     parts: tuple[Part | Stretch, ...] = given(_checked_parts, default=())
     gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
+
+    def __repr__(self) -> str:
+        return card_text("Scene of a rope", card(self))
+
+    def _repr_html_(self) -> str:
+        return card_html("Scene of a rope", card(self))
 
     def _agree(self) -> None:
         self._check_coordinates()

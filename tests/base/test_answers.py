@@ -207,11 +207,41 @@ def test_a_pickled_model_answers_the_same_bits(question):
 @pytest.mark.parametrize("name", ANSWERS)
 def test_text_has_a_title_a_head_and_a_line_for_each_row(name):
     table = ANSWERS[name].table()
-    lines = str(ANSWERS[name]).splitlines()
+    lines = table.to_text().splitlines()
     assert lines[0] == table.title
     assert re.split(r"\s{2,}", lines[1].strip()) == list(table.columns)
     assert set(lines[2]) <= {"-", " "}
     assert len(lines) == 3 + len(table.rows)
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_a_prompt_shows_a_screen_and_print_a_page(name):
+    answer = ANSWERS[name]
+    kind, _, table = repr(answer).partition(": ")
+    assert kind == type(answer).__name__
+    lines = table.splitlines()
+    assert len(lines) <= 12
+    assert max(map(len, lines[1:])) <= 80
+    assert len(str(answer).splitlines()) <= 63
+    assert ("..." in table) == (len(answer.table().rows) > 9)
+
+
+def test_a_long_table_shows_its_first_and_last_rows():
+    table = rd.Table.of("squares", {"n": range(100), "n n": [n * n for n in range(100)]})
+    shown = [line.split() for line in repr(table).splitlines()]
+    assert shown[0] == ["squares,", "100", "rows"]
+    assert [row[0] for row in shown[3:]] == ["0", "1", "2", "3", "...", "96", "97", "98", "99"]
+    assert [row[0] for row in map(str.split, table.to_text().splitlines()[3:])] == [
+        str(n) for n in range(100)
+    ]
+
+
+def test_columns_that_do_not_fit_are_counted():
+    wide = rd.Table.of("words", {f"column {k}": ["x" * 30] for k in range(4)})
+    heading, head, _, row = repr(wide).splitlines()
+    assert heading == "words, 2 of 4 columns"
+    assert head.split("  ")[0] == "column 0"
+    assert row == f"{'x' * 30}  {'x' * 30}"
 
 
 class Cells(HTMLParser):
@@ -239,7 +269,7 @@ def test_html_shows_what_the_text_shows(name):
     table = ANSWERS[name].table()
     cells = Cells()
     cells.feed(ANSWERS[name]._repr_html_())
-    assert cells.cells["caption"] == [table.title]
+    assert cells.cells["caption"] == str(ANSWERS[name]).splitlines()[:1]
     assert cells.cells["th"] == list(table.columns)
     words = " ".join(cells.cells["td"]).split()
     assert words == " ".join(str(ANSWERS[name]).splitlines()[3:]).split()

@@ -4,6 +4,7 @@ import csv
 import json
 import subprocess
 import sys
+from importlib import metadata
 
 import numpy as np
 import pytest
@@ -258,3 +259,21 @@ def test_module_is_the_command_line(tmp_path):
     )
     assert run.returncode == 2
     assert "missing.toml" in run.stderr
+
+
+def test_version_is_that_of_the_package(capsys):
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert left.value.code == 0
+    assert capsys.readouterr().out == f"ropedyn {metadata.version('ropedyn')}\n"
+
+
+def test_a_reader_that_has_seen_enough_is_left_quietly(scene_file):
+    frequency = ["--frequency", "10:400:20000", "--drive", "z@0.5", "--csv"]
+    command = [sys.executable, "-m", "ropedyn", "frf", str(scene_file), *frequency]
+    running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    with running:
+        assert running.stdout.readline().startswith(b"frequency")
+        running.stdout.close()
+        complaint = running.stderr.read()
+    assert (running.returncode, complaint) == (0, b"")

@@ -4,6 +4,7 @@ import copy
 import dataclasses
 import itertools
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -256,7 +257,7 @@ def test_descriptions_travel_by_pickle_and_copy_and_stay_equal(name):
         assert hash(twin) == hash(thing)
 
 
-@pytest.mark.parametrize("name", THINGS)
+@pytest.mark.parametrize("name", sorted(THINGS.keys() - {"scene"}))
 def test_descriptions_can_be_read_back_from_their_repr(name):
     text = repr(THINGS[name])
     names = {each: getattr(rd, each) for each in rd.__all__}
@@ -442,3 +443,32 @@ def test_model_shows_what_stands_at_its_nodes():
     np.testing.assert_allclose(terms.mass[at, 0, 0], [0.0125, 0.025, 0.225, 0.025, 0.0125])
     np.testing.assert_array_equal(terms.stiffness[at, 0, 0], [0, 30, 0, 0, 0])
     np.testing.assert_array_equal(terms.held[at, 0], [1, 0, 0, 0, 1])
+
+
+def test_a_scene_and_its_model_are_cards_in_which_a_slip_of_units_shows():
+    rope = rd.Rope(2.0, 0.1, bending_stiffness=4.0, torsional_stiffness=1.0)
+    ends = ("clamped", rd.End(beta="free", spring={"beta": 2.0}))
+    masses = [rd.PointMass(0.5, 0.1), rd.PointMass(1.0, 0.1)]
+    scene = rd.Scene(rope, tension=1000.0, ends=ends, parts=masses, damping=rd.ViscousDamping(0.1))
+    lines = map(str.strip, repr(scene).splitlines()[1:])
+    told = dict(re.split(r"\s{2,}", line, maxsplit=1) for line in lines)
+    assert told == {
+        "length": "2 m",
+        "mass": "0.2 kg (0.1 kg/m)",
+        "tension": "1000 N",
+        "string": "waves of 100 m/s, first frequency 25 Hz",
+        "T L^2/B": "1000",
+        "ends": "clamped and held but for beta with spring",
+        "parts": "2 PointMass",
+        "damping": "ViscousDamping",
+        "effects": "tension, bending, twist, point mass, spring, viscous damping",
+    }
+    for model, cut in (
+        (scene.compile(), "continuous spans, 4 stations"),
+        (scene.compile(elements=8), "8 tensed elements, 22 unknowns"),
+    ):
+        lines = repr(model).splitlines()
+        assert len(lines) <= 12
+        assert max(map(len, lines)) <= 80
+        assert lines[-1].split(maxsplit=1) == ["model", cut]
+        assert "<td>0.2 kg (0.1 kg/m)</td>" in model._repr_html_()
