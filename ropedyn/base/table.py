@@ -5,9 +5,13 @@ from __future__ import annotations
 import csv
 import html
 import io
+import json
+import math
+import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +24,35 @@ if TYPE_CHECKING:
 
 SHOWN, PRINTED = 9, 60  # Rows that a prompt and `print` show at most, with the gap.
 WIDTH = 80  # Characters of a line at a prompt.
+
+
+class Key(NamedTuple):
+    """What programs call a column."""
+
+    key: str  # of small letters, digits and underscores
+    name: str  # without units
+    unit: str  # "" of what has none
+
+    @classmethod
+    def of(cls, column: str) -> Key:
+        """Part a heading, such as "frequency [Hz]" or "|z at 0.5 m [m/N]|"."""
+        heading = column.replace("|", "")
+        units = re.findall(r"\[([^\]]*)\]", heading)
+        name = re.sub(r"\s*\[[^\]]*\]", "", heading)
+        if column.startswith("|"):
+            name = f"amplitude of {name}"
+        return cls(_snake(name), name, units[-1] if units else "")
+
+
+def _snake(words: str) -> str:
+    return re.sub(r"[^0-9a-z]+", "_", words.lower()).strip("_")
+
+
+def _number(value: Any) -> Any:
+    """Return what JSON knows; None of what is not finite."""
+    if isinstance(value, complex):
+        return [value.real, value.imag]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 @dataclass(frozen=True, repr=False)
@@ -193,6 +226,47 @@ class Table:
         [{'rope': 'thin', 'mass [kg]': 0.1}, {'rope': 'thick', 'mass [kg]': 0.25}]
         """
         return [dict(zip(self.columns, row)) for row in self.rows]
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """What programs call the columns, with their units.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Peaks([64.0, 130.0]).table().keys[0]
+        Key(key='frequency', name='frequency', unit='Hz')
+        """
+        found = [Key.of(column) for column in self.columns]
+        units = [_snake(one.unit.replace("%", "percent")) for one in found]
+        # units part what is called alike, and numbers what has the same unit too
+        for words in (units, [str(k) for k in range(len(found))]):
+            often = Counter(one.key for one in found)
+            found = [
+                one._replace(key=f"{one.key}_{word}") if often[one.key] > 1 and word else one
+                for one, word in zip(found, words)
+            ]
+        return tuple(found)
+
+    def to_json(self) -> str:
+        """Return the table as JSON of the schema "ropedyn.table/1": `ropedyn schema table`.
+
+        Examples
+        --------
+        >>> import json
+        >>> import ropedyn as rd
+        >>> sheet = json.loads(rd.Peaks([64.0, 130.0]).table().to_json())
+        >>> sheet["schema"], sheet["columns"][0]["unit"], sheet["rows"][1]["frequency"]
+        ('ropedyn.table/1', 'Hz', 130.0)
+        """
+        keys = self.keys
+        document = {
+            "schema": "ropedyn.table/1",
+            "title": self.title,
+            "columns": [one._asdict() for one in keys],
+            "rows": [dict(zip((one.key for one in keys), map(_number, row))) for row in self.rows],
+        }
+        return json.dumps(document, indent=1, allow_nan=False)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a pandas data frame.

@@ -12,6 +12,7 @@ from pathlib import Path
 from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
+from .file import INSPECT, SCHEMA
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
 from .tension import TENSION
@@ -28,6 +29,8 @@ COMMANDS = (
     FLOQUET,
     STABILITY,
     SECTION,
+    INSPECT,
+    SCHEMA,
 )
 NAME = "ropedyn"
 FOLDER = Path("ropedyn-study")

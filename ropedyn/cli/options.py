@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any, NamedTuple
 from ..base.answer import Answer
 from ..base.atomic import replacing
 from ..base.errors import RopedynError, SceneError
+from ..base.table import Table
 from ..chain.chain import KINDS
 from ..curves.peaks import Peaks
 from ..experiment.identify.fit import Fit
@@ -62,6 +62,7 @@ class Command(NamedTuple):
     description: str = ""
     elements: tuple[Option, ...] | None = None
     subject: tuple[Option, ...] | None = None
+    form: tuple[Option | OptionGroup, ...] | None = None  # a table's and a figure's
 
     def add(self, commands: Any) -> None:
         """Add it to the commands of a parser."""
@@ -69,7 +70,8 @@ class Command(NamedTuple):
         parser = commands.add_parser(self.name, help=self.text, description=about)
         elements = ELEMENTS if self.elements is None else self.elements
         subject = (SCENE,) if self.subject is None else self.subject
-        for one in (*subject, *elements, *self.own, *OUTPUT):
+        form = OUTPUT if self.form is None else self.form
+        for one in (*subject, *elements, *self.own, *form):
             one.add(parser)
         parser.set_defaults(run=self.run)
 
@@ -140,14 +142,18 @@ def shown_fit(options: argparse.Namespace, fit: Fit, peaks: Peaks | None = None)
 
 def show(options: argparse.Namespace, answer: Answer, report: str | None = None) -> None:
     """Print an answer, as its report or its table, and draw it where that is asked."""
-    table = answer.table()
+    show_table(options, answer.table(), report)
+    draw(options, answer)
+
+
+def show_table(options: argparse.Namespace, table: Table, report: str | None = None) -> None:
+    """Print a table, or the report instead of its text."""
     if options.json:
-        print(json.dumps({"title": table.title, "rows": table.to_records()}, indent=1))
+        print(table.to_json())
     elif options.csv:
         print(table.to_csv(), end="")
     else:
         print(table.to_text() if report is None else report)
-    draw(options, answer)
 
 
 def draw(options: argparse.Namespace, answer: Answer) -> None:

@@ -7,14 +7,17 @@ import functools
 import hashlib
 import io
 import json
+import math
 import pickle
 import re
 import subprocess
 import sys
 import tempfile
 from html.parser import HTMLParser
+from importlib import resources
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pandas as pd
 import pytest
@@ -281,6 +284,28 @@ def test_html_of_a_table_escapes_what_is_not_text():
         "<table><caption>a &lt; b &amp; c</caption><thead><tr><th>&lt;script&gt;</th></tr></thead>"
         "<tbody><tr><td>&lt;b&gt;</td></tr></tbody></table>"
     )
+
+
+SCHEMA = json.loads((resources.files(rd) / "table-1.schema.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_json_is_of_its_schema_and_keeps_every_number(name):
+    table = ANSWERS[name].table()
+    sheet = json.loads(table.to_json())
+    jsonschema.validate(sheet, SCHEMA)
+    keys = [column["key"] for column in sheet["columns"]]
+    assert len(set(keys)) == len(keys) == len(table.columns)
+    for row, own in zip(sheet["rows"], table.rows, strict=True):
+        assert list(row) == keys
+        for value, number in zip(row.values(), own, strict=True):
+            finite = not isinstance(number, float) or math.isfinite(number)
+            assert value == (number if finite else None)
+
+
+def test_columns_that_are_called_alike_are_parted_by_their_units_or_numbers():
+    table = rd.Table.of("t", {"off [Hz]": [1.0], "off [%]": [2.0], "off": [3.0], "off []": [4.0]})
+    assert [one.key for one in table.keys] == ["off_hz", "off_percent", "off_2", "off_3"]
 
 
 @pytest.mark.parametrize("name", ANSWERS)

@@ -29,7 +29,7 @@ def model(path, **how):
 def test_modes_prints_the_frequencies_of_the_model(scene_file, capsys):
     assert main(["modes", str(scene_file), "--modes", "3", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
-    frequency = [row["frequency [Hz]"] for row in rows]
+    frequency = [row["frequency"] for row in rows]
     assert frequency == model(scene_file).modes(3).frequency.tolist()
 
 
@@ -38,7 +38,7 @@ def test_damped_modes_are_those_of_the_model(tmp_path, capsys):
     rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, parts=[rd.Dashpot(0.2, 1.0)]).save(path)
     assert main(["modes", str(path), "--modes", "3", "--damped", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
-    ratio = [row["damping ratio"] for row in rows]
+    ratio = [row["damping_ratio"] for row in rows]
     assert ratio == model(path).modes(3, damped=True).damping_ratio.tolist()
 
 
@@ -53,7 +53,7 @@ def test_damped_modes_are_those_of_the_model(tmp_path, capsys):
 def test_elements_are_those_of_compile(scene_file, capsys, options, how):
     assert main(["modes", str(scene_file), "--modes", "3", "--json", *options]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
-    frequency = [row["frequency [Hz]"] for row in rows]
+    frequency = [row["frequency"] for row in rows]
     assert frequency == model(scene_file, **how).modes(3).frequency.tolist()
 
 
@@ -78,7 +78,7 @@ def test_compare_pairs_the_peaks(scene_file, capsys):
     assert main(["compare", str(scene_file), "--peaks", "20,41", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert [row["mode"] for row in rows] == [1, 2]
-    assert [row["measured [Hz]"] for row in rows] == [20.0, 41.0]
+    assert [row["measured"] for row in rows] == [20.0, 41.0]
 
 
 ACCURACY = ["--elements", "16,32"]
@@ -95,6 +95,15 @@ QUESTIONS = [
 ]
 
 
+def column_of(printed, heading):
+    """Return a column of a printed table by what the text calls it."""
+    headings = [
+        f"{c['name']} [{c['unit']}]" if c["unit"] else c["name"] for c in printed["columns"]
+    ]
+    key = printed["columns"][headings.index(heading)]["key"]
+    return [row[key] for row in printed["rows"]]
+
+
 @pytest.mark.parametrize(("options", "question"), QUESTIONS)
 def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, question):
     assert main(["accuracy", str(scene_file), *ACCURACY, *options, "--json"]) == 0
@@ -103,8 +112,7 @@ def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, qu
     cost = rd.accuracy_cost(scene, question, elements=[16, 32], repeat=1)
     assert printed["title"] == cost.table().title
     for column in ("element", "elements", "solver", "true error", "estimated error"):
-        found = [row[column] for row in printed["rows"]]
-        assert found == list(cost.table().column(column))
+        assert column_of(printed, column) == list(cost.table().column(column))
 
 
 def test_accuracy_takes_some_elements_and_solvers(scene_file, capsys):
@@ -135,7 +143,7 @@ def test_effects_prints_what_each_changes(scene_file, capsys, options, question,
     table = rd.effect_cost(rd.Scene.load(scene_file), question, repeat=1, **how).table()
     assert printed["title"] == table.title
     for column in ("left out", "changes the answer", "unknowns", *question.measures):
-        assert [row[column] for row in printed["rows"]] == list(table.column(column))
+        assert column_of(printed, column) == list(table.column(column))
 
 
 def test_effects_prints_refused_rows(scene_file, capsys):

@@ -55,8 +55,8 @@ def test_transient_prints_the_motion_of_the_model(scene_file, capsys, text):
     assert main(["transient", str(scene_file), *options]) == 0
     table = printed(capsys)
     history = model(scene_file, elements=8).transient(TIME, drive=("z", 0.5), force=FORCES[text])
-    assert [row["time [s]"] for row in table["rows"]] == TIME.tolist()
-    assert [row["z at 0.500 m [m]"] for row in table["rows"]] == history.value[0].tolist()
+    assert [row["time"] for row in table["rows"]] == TIME.tolist()
+    assert [row["z_at_0_500_m"] for row in table["rows"]] == history.value[0].tolist()
 
 
 def test_transient_sums_drives_and_watches_several_points(scene_file, capsys):
@@ -95,7 +95,7 @@ def test_transient_takes_a_force_from_a_file(scene_file, tmp_path, capsys, head)
     (tmp_path / "force.csv").write_text(head + "".join(lines))
     options = ["--elements", "8", "--drive", "z@0.5", "--force", str(tmp_path / "force.csv")]
     assert main(["transient", str(scene_file), *OPTIONS, *options, "--json"]) == 0
-    found = [row["z at 0.500 m [m]"] for row in printed(capsys)["rows"]]
+    found = [row["z_at_0_500_m"] for row in printed(capsys)["rows"]]
     history = model(scene_file, elements=8).transient(TIME, drive=("z", 0.5), force=force)
     assert found == history.value[0].tolist()
 
@@ -169,7 +169,7 @@ def test_motion_that_cannot_be_parsed_ends_with_status_2(scene_file, options, ca
 
 def test_modes_of_a_pulsating_tension_are_those_of_its_mean(pulsating_file, capsys):
     assert main(["modes", str(pulsating_file), "--modes", "2", "--json"]) == 0
-    frequency = [row["frequency [Hz]"] for row in printed(capsys)["rows"]]
+    frequency = [row["frequency"] for row in printed(capsys)["rows"]]
     steady = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
     assert frequency == steady.compile().modes(2).frequency.tolist()
 
@@ -177,7 +177,7 @@ def test_modes_of_a_pulsating_tension_are_those_of_its_mean(pulsating_file, caps
 def test_frf_moves_an_end(scene_file, capsys):
     options = ["--frequency", "5,10", "--drive", "end:0:z", "--response", "z@0.5", "--json"]
     assert main(["frf", str(scene_file), *options]) == 0
-    found = [row["|z at 0.500 m [m/m]|"] for row in printed(capsys)["rows"]]
+    found = [row["amplitude_of_z_at_0_500_m"] for row in printed(capsys)["rows"]]
     frf = model(scene_file).frf([5.0, 10.0], drive=("end", 0, "z"), response=("z", 0.5))
     assert found == np.abs(frf.value[0]).tolist()
 
@@ -185,7 +185,7 @@ def test_frf_moves_an_end(scene_file, capsys):
 def test_floquet_prints_the_growth_of_the_model(pulsating_file, capsys):
     assert main(["floquet", str(pulsating_file), "--modes", "2", "--json"]) == 0
     table = model(pulsating_file).floquet(modes=2).table()
-    assert printed(capsys)["rows"] == table.to_records()
+    assert printed(capsys) == json.loads(table.to_json())
 
 
 def test_stability_prints_and_draws_where_motion_grows(pulsating_file, tmp_path, capsys):
@@ -195,7 +195,7 @@ def test_stability_prints_and_draws_where_motion_grows(pulsating_file, tmp_path,
     chart = model(pulsating_file).stability_map(
         np.linspace(20, 40, 9), np.linspace(0, 40, 3), modes=2
     )
-    assert printed(capsys)["rows"] == chart.table().to_records()
+    assert printed(capsys) == json.loads(chart.table().to_json())
     assert figure.read_bytes().startswith(b"\x89PNG")
 
 

@@ -1,0 +1,50 @@
+"""Commands about files: what a measured one holds, and the schemas of what is printed."""
+
+from __future__ import annotations
+
+import argparse
+from importlib import resources
+from pathlib import Path
+
+from ..curves.files.contents import contents
+from .options import FORM, Command, OptionGroup, option, show_table
+
+SCHEMAS = ("table", "tension")
+
+
+def _inspect(options: argparse.Namespace) -> None:
+    layout = {name: getattr(options, name) for name in ("delimiter", "decimal", "comments", "skip")}
+    show_table(options, contents(options.file, **layout))
+
+
+def _schema(options: argparse.Namespace) -> None:
+    file = resources.files("ropedyn") / f"{options.name}-1.schema.json"
+    print(file.read_text(encoding="utf-8"), end="")
+
+
+INSPECT = Command(
+    "inspect",
+    _inspect,
+    "what a measured file holds: functions of a universal file, columns of text",
+    (
+        option("--delimiter", "between columns of text (found from the first line)"),
+        option("--decimal", "of text (%(default)s)", choices=(".", ","), default="."),
+        option("--comments", "how comments begin in text (%(default)s)", default="#"),
+        option("--skip", "lines of text before the table", type=int, default=0),
+    ),
+    elements=(),
+    subject=(option("file", "measured", type=Path, metavar="FILE"),),
+    form=(OptionGroup(FORM),),
+)
+SCHEMA = Command(
+    "schema",
+    _schema,
+    "the JSON schema of what --json prints",
+    (),
+    "The JSON schema of what --json prints: of tables, or of what `tension` and `identify` find.",
+    elements=(),
+    subject=(
+        option("name", "of the schema (%(default)s)", nargs="?", choices=SCHEMAS, default="table"),
+    ),
+    form=(),
+)
