@@ -17,8 +17,8 @@ TERMS = 30  # by so many terms.
 
 def straight_lines(modes: Oscillators, rest: Real, force: Samples, time: Real, order: int) -> Real:
     """Return the responses to a force by its samples, from rest at the first time."""
-    inside = (force.time > time[0]) & (force.time < time[-1])
-    grid = np.union1d(time, force.time[inside])
+    inside = force.time[(force.time > time[0]) & (force.time < time[-1])]
+    grid = time if np.array_equal(inside, time[1:-1]) else np.union1d(time, inside)
     sample = force.value(grid)
     slope = np.diff(sample) / np.diff(grid)
     slope = np.append(slope, slope[-1])
@@ -37,14 +37,16 @@ def _followed(modes: Oscillators, grid: Real, sample: Real) -> Real:
     wide = Oscillators(*(np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, spare)]) for each in modes))
     seen = np.ascontiguousarray(np.stack([wide.a, wide.b], axis=1))
     state = np.zeros((2, len(wide.sigma)))
-    h = np.diff(grid)
-    if is_uniform(grid):
+    h, uniform = np.diff(grid), is_uniform(grid)
+    if uniform:
         h[:] = (grid[-1] - grid[0]) / len(h)
     value = []
     known, change = np.zeros(0), np.zeros(0)
     for first in range(0, len(h), STEPS):
-        now = slice(first, first + STEPS)
-        lengths, which = np.unique(h[now], return_inverse=True)
+        now = h[first : first + STEPS]
+        lengths, which = now[:1], np.zeros(len(now), dtype=np.intp)
+        if not uniform:
+            lengths, which = np.unique(now, return_inverse=True)
         if not np.array_equal(lengths, known):
             known, change = lengths, changes(wide.sigma, wide.square, lengths)
         force = sample[first : first + STEPS + 1]
