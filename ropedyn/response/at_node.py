@@ -65,7 +65,8 @@ def answers_at_nodes(solver: Solver) -> Solver:
 
         def bounded() -> Real:
             error = np.zeros(value.shape)
-            error[..., ~missing] = bound()
+            if not missing.all():
+                error[..., ~missing] = bound()
             for same, line in lines:
                 error[..., same] = line.error[..., None]
             return error

@@ -227,6 +227,17 @@ def test_spans_answer_where_a_node_of_the_resonant_mode_is_driven(watched):
     assert abs(frf.value[0, 0] - exact) <= frf.rounding_limit[0, 0] <= 1e-17
 
 
+def test_a_line_alone_at_a_node_has_its_bound_beside_structures_too():
+    resonator = rd.Resonator(0.5, 0.01, 40.0)
+    model = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0, parts=[resonator]).compile()
+    # the second mode of the rope alone, in which the resonator stands still
+    frf = model.frf([100.0], drive=("z", 0.5), response=("z", 0.3))
+    beside = model.frf([100.0 - 1e-3, 100.0 + 1e-3], drive=("z", 0.5), response=("z", 0.3))
+    # curvature over (1e-5)^2
+    assert frf.value[0, 0] == pytest.approx(beside.value[0].mean(), rel=1e-8)
+    assert frf.rounding_error[0, 0] <= 1e-11
+
+
 def test_static_limit_of_a_clamped_beam_is_the_textbook_value():
     frf = beam(8).compile(elements=8, element="rigid").frf(0.0, drive=("z", LENGTH / 2))
     # F L^3/192 B; condition 50 n^4/pi^4 times eps
