@@ -220,9 +220,8 @@ def compare(seed):
 
 
 def test_errors_cover_the_distance_to_exact_phases():
-    found = [one for one in map(compare, range(81_000, 81_003)) if one is not None]
-    assert len(found) >= 2
-    for said, off, most in found:
+    # of the first three both refuse the second, after five seconds
+    for said, off, most in map(compare, (81_000, 81_002)):
         assert (off <= said).all()
         assert said.max() <= 1e-3 * most
 
