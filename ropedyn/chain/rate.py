@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
@@ -19,21 +19,22 @@ from ..scene.parts.part import places as places_of
 from ..scene.parts.part import standing, stretches
 from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.parts.stretch import (
-    RopeChange,
     Stretch,
     changed_by,
     changes,
+    numbers_of,
     rope_rate,
     ropes,
     stretch_rate,
 )
-from ..scene.rope import Rope
+from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest
 from .chain import CONTINUOUS
 from .compile import (
     INERTIA,
     carried_by,
+    channels_of,
     dragged,
     halves,
     has_inertia,
@@ -62,7 +63,8 @@ STIFFNESS = {
 }
 """d/dp of the section's stiffness about its own axes (axial, torsion, bending)."""
 
-SECTION = STIFFNESS.keys() | {"lay_slope"}  # Properties of a rope that its section depends on.
+SECTION = STIFFNESS.keys() | {"lay_slope", ACROSS["bending_stiffness"]}
+"""Properties of a rope that its section depends on."""
 
 GRAVITY = ("g", "inclination")  # Numbers of gravity.
 
@@ -70,12 +72,19 @@ DENSITIES = tuple(dict.fromkeys(INERTIA.values()))
 """Properties of a rope that are inertia per length."""
 
 
-def section_rate(rope: Rope, name: str) -> Real:
+def section_rate(rope: Rope, name: str, channels: int) -> Real:
     """Return the derivative of the section flexibility with respect to a property of the rope.
 
     With S = R^T K^-1 R, R the turn by the angle arctan H of the lay slope in (torsion, bending):
     dS = -S~^T dK S~ with S~ = K^-1 R, and dS/dH = (J^T S + S J)/(1 + H^2) with R' = R J.
     """
+    if name == ACROSS["bending_stiffness"] or channels > 3:
+        both = np.zeros((channels, channels))
+        if name == ACROSS["bending_stiffness"]:
+            both[-1, -1] = -((section(rope, channels)[-1, -1]) ** 2)
+        else:
+            both[:-1, :-1] = section_rate(rope, name, channels - 1)
+        return both
     slope = rope.lay_slope or 0.0
     turn = np.eye(3)
     turn[1:, 1:] = np.array([[1.0, slope], [-slope, 1.0]]) / np.hypot(1.0, slope)
@@ -100,7 +109,8 @@ class Weights:
     times that of slopes times `moving`, `mass` and `heavier`.
     """
 
-    element: Real  # (stretches - 1, 9) Section, tension, length of massless elements, sag
+    # (stretches - 1, 9 or 10) Section, tension, length of massless elements, sag; section across
+    element: Real
     place: Real  # (stretches, 2) of the first node of each, of continuous elements, and 0
     moving: Real  # (stretches - 1, width) inertia per length of continuous elements
     jump: Real  # (stretches - 1, width) stiffness of hinges
@@ -201,8 +211,9 @@ class Places:
         return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
 
     def sections(self, name: str) -> Real:
-        """Return the derivative of the section flexibility of each span, shape (spans, 3, 3)."""
-        return self.longer(np.stack([section_rate(rope, name) for rope in self.ropes]))
+        """Return the derivative of the section flexibility of each span."""
+        channels = channels_of(self.model.scene)
+        return self.longer(np.stack([section_rate(rope, name, channels) for rope in self.ropes]))
 
     def longer(self, flexibility: Real) -> Real:
         """Return sections of a rope that hangs, longer than its chord along x."""
@@ -232,12 +243,20 @@ class Rate:
     def weights(self, places: Places) -> Weights:
         """Return the weights that belong to it."""
         span, station, inside = places.span, places.station, places.inside
-        section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
+        flexibility = self._flexibility(places)
+        section, across = flexibility[:, ENTRIES[0], ENTRIES[1]], flexibility[:, 3:, 3:]
         longer, place = self.length, np.zeros(len(station))
         if places.model.chain.kind == CONTINUOUS:
             moved = np.append(0.0, np.cumsum(longer * places.counts))
             longer, place = np.zeros_like(longer), np.where(inside, 0.0, moved[station])
-        element = np.column_stack([section, self.tension, longer, self._sag(places)])
+        columns = [
+            section,
+            self.tension,
+            longer,
+            self._sag(places),
+            across.reshape(len(section), -1),
+        ]
+        element = np.column_stack(columns)
         inertia = self.inertia(places)
         rows = places.model.chain.attached_row
         larger = self.moves if rows is None else self.size[:, None, None] / 2 * rows
@@ -259,8 +278,8 @@ class Rate:
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
-        flexibility = np.zeros((len(places.counts), 3, 3))
-        for name in self.rope.keys() & SECTION:
+        flexibility = np.zeros((len(places.counts), *2 * (channels_of(places.model.scene),)))
+        for name in self.rope.keys() & SECTION & _acting(places.model):
             flexibility += self.rope[name][:, None, None] * places.sections(name)
         flexibility[:, 0, 0] += self._lengthening(places) * places.stretch
         return flexibility
@@ -307,8 +326,13 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
         found["tension"] = partial(_of_tension, places)
     acting = _acting(model)
     for name in (*STIFFNESS, "lay_slope", *DENSITIES):
-        if name in acting and getattr(rope, name) is not None:
-            found[name] = partial(_of_rope, places, name)
+        if name in ACROSS.values() or getattr(rope, name) is None:
+            continue
+        names = [name, ACROSS[name]] if name in ACROSS else [name]
+        is_pair = isinstance(getattr(rope, name), tuple)
+        for k, each in enumerate([[one] for one in names] if is_pair else [names]):
+            if own := [one for one in each if one in acting]:
+                found[f"{name}[{k}]" if is_pair else name] = partial(_of_rope, places, own)
     found["length"] = partial(_of_length, places)
     for i, part in enumerate(model.scene.parts):
         for name, of in _of_numbers(places, i, acting).items():
@@ -336,7 +360,9 @@ def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _A
 
 def _acting(model: Compiled) -> set[str]:
     """Return the properties that a rope may have and this model's depends on."""
-    stiffness = {name for name in SECTION if getattr(model.scene.rope, name) is not None}
+    stiffness = {name for name in SECTION if own_number(model.scene.rope, name) is not None}
+    if channels_of(model.scene) == 3:
+        stiffness -= {ACROSS["bending_stiffness"]}
     return stiffness | {c for c in DENSITIES if inertia_rate(model.scene, c).any()}
 
 
@@ -345,9 +371,9 @@ def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[
     part = places.model.scene.parts[i]
     if isinstance(part, STRETCHES):
         return {
-            name: partial(_of_stretch, places, part, name)
-            for name in RopeChange._fields
-            if hasattr(part, name) and acting & changed_by(name)
+            name: partial(_of_stretch, places, part, fields)
+            for name, fields in numbers_of(part).items()
+            if any(acting & changed_by(field) for field in fields)
         }
     return {
         name: partial(_of_part, places, i, rate)
@@ -378,11 +404,11 @@ def _of_gravity(places: Places, name: str) -> Rate:
     return rate
 
 
-def _of_rope(places: Places, name: str) -> Rate:
-    """Return that of a property of the rope, which stretches multiply."""
+def _of_rope(places: Places, names: Sequence[str]) -> Rate:
+    """Return that of a property of the rope, in one plane or both, which stretches multiply."""
     rate = Rate(places)
-    rate.rope[name] = rope_rate(places.change, name)
-    if name == "linear_density":
+    rate.rope |= {name: rope_rate(places.change, name) for name in names}
+    if "linear_density" in names:
         rate.chord = places.model.scene.rope.length
     return rate
 
@@ -411,11 +437,11 @@ def _of_position(places: Places, i: int, name: str) -> Rate:
     return rate
 
 
-def _of_stretch(places: Places, part: Stretch, name: str) -> Rate:
+def _of_stretch(places: Places, part: Stretch, names: Sequence[str]) -> Rate:
     """Return that of what a part does to the rope between its ends."""
     start, stop = nearest(_stations(places), [part.start, part.stop])
     rate, rope = Rate(places), places.model.scene.rope
-    for of, change in stretch_rate(rope, places.change[start:stop], part, name).items():
+    for of, change in stretch_rate(rope, places.change[start:stop], part, names).items():
         rate.rope[of] = np.zeros(len(places.counts))
         rate.rope[of][start:stop] = change
     return rate

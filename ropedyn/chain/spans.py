@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.array import Flags, Real
-from ..base.check import COORDINATES
-from .chain import CHANNELS, Chain
+from ..scene.rope import ACROSS
+from .chain import CHANNELS, PLANE, Chain, role, roles
 from .rate import Places, Rate
 
 BENT, PLAIN = 4, 2
@@ -18,6 +18,9 @@ BENT, PLAIN = 4, 2
 
 PLAIN_STIFFNESS = {"z": "tension", "alpha": "torsional_stiffness", "x": "axial_stiffness"}
 """What carries the waves of a coordinate that moves alone."""
+
+
+BENDING = "bending_stiffness"
 
 
 class Spans(NamedTuple):
@@ -40,7 +43,7 @@ class Spans(NamedTuple):
 
 def spans_of(chain: Chain) -> Spans | None:
     """Return the spans of a component of a chain, None where they have no closed form."""
-    names = tuple(COORDINATES[k] for k in chain.coordinate)
+    names = tuple(PLANE[k] for k in chain.coordinate)
     bends = names == ("z", "beta")
     if not (bends or len(names) == 1) or chain.inertia is None or chain.sag is not None:
         return None
@@ -88,9 +91,9 @@ def rates_of_spans(rate: Rate, places: Places, coordinates: Sequence[str]) -> Re
     """Return how fast the numbers of `spans_of` change, shape (numbers,)."""
     kept = [places.model.coordinates.index(c) for c in coordinates]
     own = {"tension": rate.tension} | rate.rope
-    carries = ["tension", "bending_stiffness"]
-    if "beta" not in coordinates:
-        carries = [PLAIN_STIFFNESS[coordinates[0]]]
+    carries = ["tension", ACROSS[BENDING] if "gamma" in coordinates else BENDING]
+    if "beta" not in roles(coordinates):
+        carries = [PLAIN_STIFFNESS[role(coordinates[0])]]
     along = [own.get(name, np.zeros(len(places.counts))) for name in carries]
     span = np.column_stack([rate.length, rate.inertia(places)[:, kept[0]], *along])
     station = np.hstack([rate.mass[:, kept], rate.stiffness[:, kept]])

@@ -9,11 +9,13 @@ from contextlib import suppress
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Cost, Work
 from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
+from ..chain.chain import plane_of
 from ..chain.compile import check_points, compile_scene
 from ..chain.compiled import Compiled
 from ..scene.scene import Scene
@@ -80,11 +82,20 @@ def solve_modes(
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
         rounding_error=error_in_hertz(eigenvalue, error),
+        plane=partial(_planes, model, found, order),
         cost=_cost(model, solver, seconds, found),
         vectors=later if found[0].shape is None else vectors_of(model, found, eigenvalue, order),
         mesh=mesh,
         solve_shapes=partial(solve_shapes, model, solver, eigenvalue),
     )
+
+
+def _planes(model: Compiled, found: Sequence[ComponentModes], order: Index) -> NDArray[np.str_]:
+    """Return the plane of each mode: that of the coordinates that move with it."""
+    words = np.array([plane_of(component) for component in model.components])
+    plane = np.repeat(words, [len(part.eigenvalue) for part in found])[order]
+    plane.setflags(write=False)
+    return plane
 
 
 def check_asked(number: int | None, below: float | None) -> float:

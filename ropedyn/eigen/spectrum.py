@@ -197,8 +197,10 @@ def _scale(model: Compiled, component: tuple[str, ...]) -> float:
     soft = np.tensordot(share / share.sum(), chain.flexibility, 1).diagonal()
     with np.errstate(divide="ignore", over="ignore"):
         own = np.divide(1.0, soft)
-    stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}
-    stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.mean_tension)
+    elastic = np.where(np.isfinite(own), own, 0.0)
+    stiffness = {c: float(elastic[CHANNELS[c]]) for c in model.coordinates}
+    pull = abs(model.scene.mean_tension)
+    stiffness |= {c: stiffness[c] * wave + pull for c in ("y", "z") if c in stiffness}
     orders = [
         stiffness[c] * wave / inertia[k]
         for k, c in enumerate(model.coordinates)

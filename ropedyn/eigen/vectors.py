@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
 from ..base.array import Index, Real
 from ..base.errors import SolveError
 from ..base.unit import FAMILY
@@ -83,8 +82,8 @@ def later_within(
     points = points or least
     more = -(-least // points)
     vectors = later_vectors(finer(model, points * more), "sweep", number, limit)
-    own = np.array([FAMILY[c] for c in model.coordinates])
-    size = largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))
+    own = np.stack([vectors.energy[c] for c in model.coordinates]).argmax(axis=0)
+    size = largest(vectors.shape[:, ::more], own)
     size = np.where(np.abs(size) < UNSEEN, 1.0, size)
     return replace(
         vectors,
@@ -170,7 +169,7 @@ def vectors_of(
 ) -> UndampedVectors:
     """Return what follows from the shapes of all components, in order."""
     shape = _spread(model, found)[order]
-    strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
+    strain, kinetic, dragged = model.chain.energy(shape, eigenvalue)
     motion = _motion(model, found)[order]
     carried = AttachedEnergy.real(model.chain, shape, motion, eigenvalue).of(model.chain)
     own = kinetic.argmax(axis=1)
