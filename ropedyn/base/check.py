@@ -225,10 +225,9 @@ def end(value: Any, name: str, present: Sequence[str]) -> tuple[str, int, str]:
         what = 'an end and a coordinate such as ("end", 0, "z")'
         raise SceneError(_expected(name, what, "", value))
     number = count(value[1], f"{name}[1]", least=0, most=1)
-    coordinate = one_of(value[2], f"{name}[2]", COORDINATES)
-    if coordinate not in present:
-        raise absent(f"{name}[2] must be a coordinate", present, coordinate)
-    return (END, number, coordinate)
+    if value[2] in tuple(ROLE) and value[2] not in present:
+        raise absent(f"{name}[2] must be a coordinate", present, value[2])
+    return (END, number, one_of(value[2], f"{name}[2]", present))
 
 
 def is_end(value: Any) -> bool:

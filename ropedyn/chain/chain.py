@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Flags, Index, Real
-from ..base.unit import ROLE
+from ..base.unit import ROLE, UNIT
 
 KINDS = ("difference", "rigid", "tensed", "continuous")  # Kinds of element, in the core's order.
 
@@ -23,6 +23,8 @@ ATTACHED = ("resonator", "broken wire")
 CARRIED = {kind: f"{kind} mass" for kind in ATTACHED}  # Names of the kinetic energy of each.
 
 PLANE = ("x", "z", "alpha", "beta")  # Coordinates of a chain in one plane, in the core's order.
+
+NUMBERS = {c: PLANE.index(ROLE.get(c, c)) for c in UNIT}  # Of each coordinate in its plane.
 
 CHANNELS = {"x": 0, "y": 3, "z": 2, "alpha": 1, "beta": 2, "gamma": 3}
 """Channel of the section that carries a coordinate's force: axial, torsion, bending, the same in
@@ -254,7 +256,7 @@ class Chain(NamedTuple):
 
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
-        wanted = [PLANE.index(role(c)) for c in coordinates]
+        wanted = [NUMBERS[c] for c in coordinates]
         if wanted == self.coordinate.tolist():
             return self
         names = self._names

@@ -20,7 +20,7 @@ from ..scene.parts.stretch import ropes
 from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest, shares, stations_at
-from .chain import ATTACHED, CONTINUOUS, KINDS, PLANE, TENSED, Chain, components, role
+from .chain import ATTACHED, CONTINUOUS, KINDS, NUMBERS, TENSED, Chain, components
 from .compiled import EXACT, MOST_POINTS, Compiled
 
 MOST_ELEMENTS = 10_000_000
@@ -140,7 +140,7 @@ def check_points(model: Compiled, points: int | None) -> None:
 
 def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
     """Refuse boundary layers too thin for the rope to be halved into them."""
-    names = ("bending_stiffness", ACROSS["bending_stiffness"])
+    names = ["bending_stiffness"] + [ACROSS["bending_stiffness"]] * ("gamma" in scene.coordinates)
     bending = [B for rope in local for name in names if (B := own_number(rope, name)) is not None]
     if not bending:
         return
@@ -228,7 +228,7 @@ def _chain(
     stiffness, held, hinge = _terms(scene, terms, mass, damping)
     chain = Chain(
         kind=kind,
-        coordinate=np.array([PLANE.index(role(c)) for c in scene.coordinates], dtype=np.int32),
+        coordinate=np.array([NUMBERS[c] for c in scene.coordinates], dtype=np.int32),
         length=length,
         tension=np.full(len(length), scene.mean_tension),
         flexibility=elements.flexibility,

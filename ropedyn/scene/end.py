@@ -107,7 +107,7 @@ class End(Description):
         >>> term.held, term.stiffness
         (['x', 'y', 'z', 'alpha', 'gamma'], {'beta': 12.0})
         """
-        held = [c for c in check.COORDINATES if self.holds(c)]
+        held = [c for c in check.COORDINATES if getattr(self, c) == "held"]
         return NodeTerm(self.mass, self.spring, held, damping=self.dashpot)
 
 

@@ -20,6 +20,8 @@ from .construction.section import Section
 ACROSS = {name: f"{name}[1]" for name in ("bending_stiffness", "rotary_inertia")}
 """Properties that the plane of y has of its own, and what they are called there."""
 
+_ACROSS_OF = {across: name for name, across in ACROSS.items()}
+
 
 def in_plane(value: Any, plane: int) -> Any:
     """Return what a number, or the one of a pair, is in the plane of z (0) or of y (1)."""
@@ -28,8 +30,11 @@ def in_plane(value: Any, plane: int) -> Any:
 
 def own_number(rope: Rope, name: str) -> float | None:
     """Return a property of the plane of z, or of that of y by its name in `ACROSS`."""
-    found: float | None = in_plane(getattr(rope, name.removesuffix("[1]")), name.endswith("[1]"))
-    return found
+    if name in _ACROSS_OF:
+        found: float | tuple[float, float] | None = getattr(rope, _ACROSS_OF[name])
+        return found[1] if isinstance(found, tuple) else found
+    found = getattr(rope, name)
+    return found[0] if isinstance(found, tuple) else found
 
 
 class Rope(Description):

@@ -177,19 +177,18 @@ NodeForce, Stop, AddedMass, LocalChange
             )
 
     def _check_planes(self) -> None:
+        for name in ACROSS if self.planes == "z" else ():
+            self._refuse_pair(f"rope.{name}", getattr(self.rope, name))
         for i, part in enumerate(self.parts if self.planes == "both" else ()):
             if isinstance(part, BrokenWire):
                 raise SceneError(
                     f'planes must be "z" where there is a broken wire, as parts[{i}]: its tip is '
                     'known in one plane, got "both"'
                 )
-        pairs = {f"rope.{name}": getattr(self.rope, name) for name in ACROSS}
-        pairs |= {
-            f"parts[{i}].bending": getattr(p, "bending", 1.0) for i, p in enumerate(self.parts)
-        }
-        for name, value in pairs.items() if self.planes == "z" else ():
-            if isinstance(value, tuple):
-                raise SceneError(f'{name} must be one number where planes is "z", got {value!r}')
+
+    def _refuse_pair(self, name: str, value: Any) -> None:
+        if self.planes == "z" and isinstance(value, tuple):
+            raise SceneError(f'{name} must be one number where planes is "z", got {value!r}')
 
     def _check_places(self) -> None:
         for i, part in enumerate(self.parts):
@@ -221,6 +220,7 @@ NodeForce, Stop, AddedMass, LocalChange
             )
         for name, what in part.acts_on.items():
             factor = getattr(part, name)
+            self._refuse_pair(f"parts[{i}].{name}", factor)
             if factor != 1 and what not in changeable(self.rope, self.coordinates):
                 raise SceneError(
                     f"parts[{i}].{name} must be 1 where the scene has no {what} "

@@ -53,9 +53,9 @@ class PointMass(Part):
 
     def term(self) -> NodeTerm:
         """Inertia on the diagonal."""
-        mass = dict.fromkeys(("x", "y", "z"), self.mass)
-        turning = dict.fromkeys(("beta", "gamma"), self.rotary_inertia)
-        return NodeTerm(mass={**mass, "alpha": self.polar_inertia, **turning})
+        mass, turning = self.mass, self.rotary_inertia
+        along = {"x": mass, "y": mass, "z": mass}
+        return NodeTerm(along | {"alpha": self.polar_inertia, "beta": turning, "gamma": turning})
 
     def rates(self) -> dict[str, NodeRate]:
         """Each of its numbers is an inertia."""
