@@ -47,6 +47,9 @@ def plane_of(component: Sequence[str]) -> str:
     return "space" if len(planes) > 1 else "".join(planes)
 
 
+TRANSVERSE = (("z", "beta"), ("y", "gamma"))  # What moves across in each plane, and what turns.
+
+
 class Plane(NamedTuple):
     """One of the planes of a chain, as the core takes it."""
 

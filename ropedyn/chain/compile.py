@@ -20,7 +20,7 @@ from ..scene.parts.stretch import ropes
 from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest, shares, stations_at
-from .chain import ATTACHED, CONTINUOUS, KINDS, NUMBERS, TENSED, Chain, components
+from .chain import ATTACHED, CONTINUOUS, KINDS, NUMBERS, TENSED, TRANSVERSE, Chain, components
 from .compiled import EXACT, MOST_POINTS, Compiled
 
 MOST_ELEMENTS = 10_000_000
@@ -349,7 +349,7 @@ def lumped(
             f"elements must be short enough for linear_density length^2 to be a number [kg m], got "
             f"{float(density.max())!r} kg/m and {float(length.max())!r} m"
         )
-    for across, turn in (("z", "beta"), ("y", "gamma")):
+    for across, turn in TRANSVERSE:
         if across in coordinates:
             i, j = coordinates.index(across), coordinates.index(turn)
             given[:, 0, i, j] = given[:, 0, j, i] = correction

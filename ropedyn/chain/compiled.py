@@ -18,7 +18,7 @@ from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.rope import ACROSS, own_number
 from ..scene.scene import Scene
 from . import matrices
-from .chain import Chain
+from .chain import TRANSVERSE, Chain
 from .mesh_choice import Choice
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Compiled(Frozen):
         if self.element == "continuous":
             return dict.fromkeys(self.coordinates, math.inf)
         order = dict.fromkeys(self.coordinates, 2.0)
-        for across, turns in (("z", "beta"), ("y", "gamma")):
+        for across, turns in TRANSVERSE:
             if turns in order:
                 order[across] = order[turns] = self._bending_order(across, turns)
         moved = np.abs(np.diagonal(self.chain.mass, axis1=1, axis2=2)).max(axis=0)

@@ -30,7 +30,7 @@ class Spans(NamedTuple):
     length, inertia and stiffness; stations have inertias and then springs, infinite where held.
     """
 
-    coordinates: tuple[str, ...]  # ("z", "beta"), or one alone
+    coordinates: tuple[str, ...]  # ("z", "beta"), or one alone, in the plane of y as in that of z
     span: Real  # (spans, 4 or 3)
     station: Real  # (spans + 1, 4 or 2)
     hinged: NDArray[np.uint8]  # (spans + 1,) where the rope turns freely beside the node

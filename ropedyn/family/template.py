@@ -19,7 +19,7 @@ from ..scene.end import End, end_of
 from ..scene.path import value_at, with_values
 from ..scene.scene import Scene
 
-SPRING = re.compile(r"ends\[([01])\]\.spring\.(x|z|alpha|beta)")
+SPRING = re.compile(rf"ends\[([01])\]\.spring\.({'|'.join(check.COORDINATES)})")
 
 
 class Template(NamedTuple):
