@@ -126,6 +126,14 @@ class Weights:
     moves: Real  # (attached, 2, width) the same, but for those that are larger as a whole
     damped: Real  # (attached,) of their damping ratios, which undamped modes do not feel
 
+    def element_in(self, coordinates: Sequence[str]) -> Real:
+        """Return `element` for some coordinates alone, whose own bending is the section's."""
+        element, across = self.element[:, :9], self.element[:, 9:]
+        if "y" in coordinates:
+            element = element.copy()
+            element[:, :6], element[:, 2:3] = 0.0, across
+        return element
+
 
 @dataclass(frozen=True, eq=False)
 class Places:

@@ -70,7 +70,9 @@ def _shapes(model: Compiled, given: Any, name: str) -> dict[str, Shape]:
     if not isinstance(given, Mapping) or not any(map(callable, given.values())):
         return {}
     for coordinate, shape in given.items():
-        check.one_of(coordinate, f"{name}'s coordinate", model.coordinates)
+        check.one_of(coordinate, f"{name}'s coordinate", check.COORDINATES)
+        if coordinate not in model.coordinates:
+            raise check.absent(f"{name}'s coordinate must be one", model.coordinates, coordinate)
         check.instance(shape, f"{name}[{coordinate!r}]", Callable, "a function of x")  # type: ignore[arg-type]
     return dict(given)
 

@@ -203,6 +203,8 @@ def identify(
     whole = isinstance(measured, Measured)
     sought, calibrated = _calibrated(unknown, whole=whole)
     given = None if whole else _given(measured)
+    if given is not None and scene.planes == "both":
+        raise SceneError('planes must be "z" of peaks, which do not say their plane, got "both"')
     sought, damping = _damped(sought, given)
     checked = Unknowns.of(_tensed(scene, 1.0), sought)
     taken = _ends(ends, scene, checked, whole=whole)
@@ -290,12 +292,10 @@ def _calibrated(unknown: Any, *, whole: bool) -> tuple[Any, bool]:
 def _ends(ends: Any, scene: Scene, unknowns: Unknowns, *, whole: bool) -> str:
     """Return whether the ends are unknown; they are where that is not said and acts."""
     sought = any(map(ROTATIONAL.fullmatch, unknowns.at_place))
-    space = "gamma" in scene.coordinates
-    free = "beta" in scene.coordinates and not (sought or whole or space)
+    free = "beta" in scene.coordinates and not sought and not whole
     ends = (ENDS[0] if free else ENDS[1]) if ends is None else check.one_of(ends, "ends", ENDS)
     if ends == ENDS[0] and not free:
         why = "a whole response" if whole else "ends that are sought" if sought else "a string"
-        why = "a rope in both planes" if space else why
         raise SceneError(f'ends must be "given" of {why}, got "unknown"')
     if unknowns.tied and ends == ENDS[0]:
         raise SceneError('ends must be "given" where numbers are tied, got "unknown"')

@@ -326,9 +326,7 @@ class RopeTask:
     def _cross_checks(self, orders: Integer) -> tuple[str, ...]:
         """Say what closed formulas give, of one rope alone."""
         scene = self.scene
-        if scene.parts or scene.gravity is not None or scene.planes == "both":
-            return ()
-        if "tension" not in self.how.paths:
+        if scene.parts or scene.gravity is not None or "tension" not in self.how.paths:
             return ()
         found = cross_checks(scene.rope, np.asarray(self.peaks.frequency), orders)
         return tuple(
