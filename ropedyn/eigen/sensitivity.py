@@ -231,7 +231,8 @@ class Sensitivity:
         weights = self.rate(path).weights(self.places)
         form = self.pairs.matrix(self.slopes.weigh(weights))
         change = np.diag(form) / np.diag(self.mass)
-        for cluster in (c for c in self.shapes.clusters if len(c) > 1):
+        clusters = [part for c in self.shapes.clusters for part in self._apart(c, form)]
+        for cluster in (c for c in clusters if len(c) > 1):
             within = np.ix_(cluster, cluster)
             half = np.linalg.inv(np.linalg.cholesky(self.mass[within]))
             change[cluster] = np.linalg.eigvalsh(half @ form[within] @ half.T)
@@ -240,6 +241,13 @@ class Sensitivity:
             bound = self.largest.weigh_stiffness(sizes(weights)) / np.diag(self.mass)
             change[rigid & (np.abs(change) <= NOTHING * bound.max(where=rigid, initial=0.0))] = 0.0
         return change
+
+    def _apart(self, cluster: Index, form: Real) -> list[Index]:
+        """Return the modes of each component, each with its own, where nothing ties them."""
+        which = self.shapes.which[cluster]
+        parts = [cluster[which == k] for k in np.unique(which)]
+        tied = form[np.ix_(cluster, cluster)] * (which[:, None] != which)
+        return [cluster] if tied.any() else parts
 
     def error(self, path: str, of: str) -> Real:
         """Return a bound of the error of a derivative: of shapes that are rounded and mixed."""
