@@ -31,14 +31,9 @@ CHANNELS = {"x": 0, "y": 3, "z": 2, "alpha": 1, "beta": 2, "gamma": 3}
 the plane of y."""
 
 
-def role(coordinate: str) -> str:
-    """Return what a coordinate is in its own plane."""
-    return ROLE.get(coordinate, coordinate)
-
-
 def roles(coordinates: Sequence[str]) -> tuple[str, ...]:
     """Return what coordinates are in their own plane: of y and gamma z and beta."""
-    return tuple(map(role, coordinates))
+    return tuple([ROLE.get(c, c) for c in coordinates])
 
 
 def plane_of(component: Sequence[str]) -> str:
@@ -263,7 +258,9 @@ class Chain(NamedTuple):
         if wanted == self.coordinate.tolist():
             return self
         names = self._names
-        kept = np.array([names.index(c if self.is_spatial else role(c)) for c in coordinates])
+        kept = np.array(
+            [names.index(c if self.is_spatial else ROLE.get(c, c)) for c in coordinates]
+        )
 
         def columns(array: Any) -> Any:
             return None if array is None else array.take(kept, axis=-1)

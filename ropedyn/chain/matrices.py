@@ -47,16 +47,12 @@ def damping(chain: Chain, dampings: Sequence[Damping]) -> sp.csr_array:
 
 def _assembled(chain: Chain) -> tuple[Real, ...]:
     """Return what the core assembles of each plane, over all coordinates."""
-    if not chain.is_spatial:
-        return tuple(_core.assemble(chain))
-    whole: tuple[Real, ...] = ()
+    width, couplings = chain.mass.shape[-1], (1, 3)
+    whole = [np.zeros((chain.nodes - (k in couplings), width, width)) for k in range(7)]
     for plane in chain.planes:
-        parts = _core.assemble(plane.chain)
-        width = chain.mass.shape[-1]
-        whole = whole or tuple(np.zeros((len(part), width, width)) for part in parts)
-        for into, part in zip(whole, parts):
+        for into, part in zip(whole, _core.assemble(plane.chain)):
             into[:, *plane.square] = part
-    return whole
+    return tuple(whole)
 
 
 def _sparse(chain: Chain, diagonal: Real, coupling: Real) -> sp.csr_array:

@@ -72,19 +72,12 @@ DENSITIES = tuple(dict.fromkeys(INERTIA.values()))
 """Properties of a rope that are inertia per length."""
 
 
-def section_rate(rope: Rope, name: str, channels: int) -> Real:
+def section_rate(rope: Rope, name: str) -> Real:
     """Return the derivative of the section flexibility with respect to a property of the rope.
 
     With S = R^T K^-1 R, R the turn by the angle arctan H of the lay slope in (torsion, bending):
     dS = -S~^T dK S~ with S~ = K^-1 R, and dS/dH = (J^T S + S J)/(1 + H^2) with R' = R J.
     """
-    if name == ACROSS["bending_stiffness"] or channels > 3:
-        both = np.zeros((channels, channels))
-        if name == ACROSS["bending_stiffness"]:
-            both[-1, -1] = -((section(rope, channels)[-1, -1]) ** 2)
-        else:
-            both[:-1, :-1] = section_rate(rope, name, channels - 1)
-        return both
     slope = rope.lay_slope or 0.0
     turn = np.eye(3)
     turn[1:, 1:] = np.array([[1.0, slope], [-slope, 1.0]]) / np.hypot(1.0, slope)
@@ -218,10 +211,20 @@ class Places:
             return 0.0
         return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
 
+    @property
+    def flexibility(self) -> Real:
+        """Zeros for the section of each span."""
+        return np.zeros((len(self.ropes), *2 * (channels_of(self.model.scene),)))
+
     def sections(self, name: str) -> Real:
         """Return the derivative of the section flexibility of each span."""
-        channels = channels_of(self.model.scene)
-        return self.longer(np.stack([section_rate(rope, name, channels) for rope in self.ropes]))
+        rate = self.flexibility
+        if name == ACROSS["bending_stiffness"]:
+            soft = [section(rope, 4)[3, 3] for rope in self.ropes]
+            rate[:, 3, 3] = -np.square(soft)
+        else:
+            rate[:, :3, :3] = [section_rate(rope, name) for rope in self.ropes]
+        return self.longer(rate)
 
     def longer(self, flexibility: Real) -> Real:
         """Return sections of a rope that hangs, longer than its chord along x."""
@@ -257,14 +260,8 @@ class Rate:
         if places.model.chain.kind == CONTINUOUS:
             moved = np.append(0.0, np.cumsum(longer * places.counts))
             longer, place = np.zeros_like(longer), np.where(inside, 0.0, moved[station])
-        columns = [
-            section,
-            self.tension,
-            longer,
-            self._sag(places),
-            across.reshape(len(section), -1),
-        ]
-        element = np.column_stack(columns)
+        sag, across = self._sag(places), across.reshape(len(section), -1)
+        element = np.column_stack([section, self.tension, longer, sag, across])
         inertia = self.inertia(places)
         rows = places.model.chain.attached_row
         larger = self.moves if rows is None else self.size[:, None, None] / 2 * rows
@@ -286,8 +283,8 @@ class Rate:
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
-        flexibility = np.zeros((len(places.counts), *2 * (channels_of(places.model.scene),)))
-        for name in self.rope.keys() & SECTION & _acting(places.model):
+        flexibility = places.flexibility
+        for name in self.rope.keys() & SECTION:
             flexibility += self.rope[name][:, None, None] * places.sections(name)
         flexibility[:, 0, 0] += self._lengthening(places) * places.stretch
         return flexibility
@@ -379,9 +376,9 @@ def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[
     part = places.model.scene.parts[i]
     if isinstance(part, STRETCHES):
         return {
-            name: partial(_of_stretch, places, part, fields)
+            name: partial(_of_stretch, places, part, own)
             for name, fields in numbers_of(part).items()
-            if any(acting & changed_by(field) for field in fields)
+            if (own := [field for field in fields if acting & changed_by(field)])
         }
     return {
         name: partial(_of_part, places, i, rate)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..base.array import Flags, Real
 from ..scene.rope import ACROSS
-from .chain import CHANNELS, PLANE, Chain, role, roles
+from .chain import CHANNELS, PLANE, Chain, roles
 from .rate import Places, Rate
 
 BENT, PLAIN = 4, 2
@@ -93,7 +93,7 @@ def rates_of_spans(rate: Rate, places: Places, coordinates: Sequence[str]) -> Re
     own = {"tension": rate.tension} | rate.rope
     carries = ["tension", ACROSS[BENDING] if "gamma" in coordinates else BENDING]
     if "beta" not in roles(coordinates):
-        carries = [PLAIN_STIFFNESS[role(coordinates[0])]]
+        carries = [PLAIN_STIFFNESS[roles(coordinates)[0]]]
     along = [own.get(name, np.zeros(len(places.counts))) for name in carries]
     span = np.column_stack([rate.length, rate.inertia(places)[:, kept[0]], *along])
     station = np.hstack([rate.mass[:, kept], rate.stiffness[:, kept]])

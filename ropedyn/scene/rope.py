@@ -115,18 +115,6 @@ class Rope(Description):
     )
     polar_inertia: float | None = number("kg m", sign="nonnegative", default=None)
 
-    @property
-    def rotates(self) -> bool:
-        """Whether bending rotation has an inertia, in one of the planes at least.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Rope(1.0, 0.1, rotary_inertia=(0.0, 1e-6)).rotates
-        True
-        """
-        return any(own_number(self, name) for name in ("rotary_inertia", ACROSS["rotary_inertia"]))
-
     def _agree(self) -> None:
         needs = {
             "lay_coupling": ("axial_stiffness", "torsional_stiffness"),

@@ -348,7 +348,8 @@ NodeForce, Stop, AddedMass, LocalChange
             "twist": rope.torsional_stiffness is not None,
             "stretch": rope.axial_stiffness is not None,
             "lay": bool(rope.lay_coupling or rope.lay_slope),
-            "rotary inertia": rope.rotates and rope.bending_stiffness is not None,
+            "rotary inertia": bool(rope.bending_stiffness)
+            and rope.rotary_inertia not in (None, 0.0, (0.0, 0.0)),
             "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
             Gravity.kind: self.gravity is not None,
             SECOND_PLANE: self.planes == "both",
