@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import SceneError
-from .unit import END, OF_FORCE, WIRE, is_quantity, magnitude
+from .unit import END, OF_FORCE, ROLE, UNIT, WIRE, is_quantity, magnitude
 
-COORDINATES = ("x", "z", "alpha", "beta")
+COORDINATES = tuple(UNIT)
 """Coordinates of a node in their fixed order: axial, transverse, twist, bending rotation."""
 
 NEAR = 1e-9  # Positions closer than this part of the length are one node.
@@ -204,13 +204,19 @@ def point(
             raise SceneError(f"{name} must not ask for a wire: the scene has no BrokenWire")
         return coordinate, count(value[1], f"{name}[1]", least=0, most=wires - 1)
     if OF_FORCE.get(coordinate, coordinate) not in present:
-        raise SceneError(
-            f"{name}[0] must be a coordinate the scene has ({', '.join(present)}), "
-            f"got {coordinate!r}"
-        )
+        raise absent(f"{name}[0] must be a coordinate", present, coordinate)
     if length is None:
         return coordinate, number(value[1], f"{name}[1]", "m")
     return coordinate, position(value[1], f"{name}[1]", length)
+
+
+def absent(must: str, present: Sequence[str], got: str) -> SceneError:
+    """Return the error of a coordinate that the scene does not have."""
+    across = OF_FORCE.get(got, got) in ROLE and not ROLE.keys() & set(present)
+    return SceneError(
+        f"{must} the scene has ({', '.join(present)}), got {got!r}"
+        + (': y and gamma need planes="both"' if across else "")
+    )
 
 
 def end(value: Any, name: str, present: Sequence[str]) -> tuple[str, int, str]:
@@ -219,6 +225,8 @@ def end(value: Any, name: str, present: Sequence[str]) -> tuple[str, int, str]:
         what = 'an end and a coordinate such as ("end", 0, "z")'
         raise SceneError(_expected(name, what, "", value))
     number = count(value[1], f"{name}[1]", least=0, most=1)
+    if value[2] in tuple(ROLE) and value[2] not in present:
+        raise absent(f"{name}[2] must be a coordinate", present, value[2])
     return (END, number, one_of(value[2], f"{name}[2]", present))
 
 

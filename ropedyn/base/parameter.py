@@ -30,7 +30,9 @@ class Parameter(NamedTuple):
 
     def unit_on(self, coordinate: object) -> str:
         """Return the unit on a coordinate."""
-        return self.turning if self.turning and coordinate in ("alpha", "beta") else self.unit
+        return (
+            self.turning if self.turning and coordinate in ("alpha", "beta", "gamma") else self.unit
+        )
 
 
 def _declared(parameter: Parameter, default: Any, **metadata: Any) -> Any:
@@ -58,6 +60,23 @@ def number(
 
     parameter = Parameter(checked, unit, turning, is_position, bool(turning), sign)
     return _declared(parameter, default)
+
+
+def pair(unit: str = "", *, sign: str = "any", default: Any = MISSING) -> Any:
+    """Declare a number, or one for the plane of z and one for that of y."""
+
+    def checked(value: Any, name: str, thing: Any) -> float | tuple[float, float] | None:
+        if value is None and default is None:
+            return None
+        if not isinstance(value, (tuple, list)):
+            return check.number(value, name, unit, sign=sign)
+        if len(value) != 2:
+            what = "a number or a pair of them, for the planes of z and of y"
+            raise TypeError(f"{name} must be {what}, got {check.shown(value)}")
+        one, other = (check.number(v, f"{name}[{k}]", unit, sign=sign) for k, v in enumerate(value))
+        return one, other
+
+    return _declared(Parameter(checked, unit, sign=sign), default)
 
 
 def position() -> Any:
@@ -137,6 +156,7 @@ def depending(
     frozen_default=True,
     field_specifiers=(
         number,
+        pair,
         position,
         numbers,
         per_coordinate,

@@ -6,18 +6,31 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-UNIT = {"x": "m", "z": "m", "alpha": "rad", "beta": "rad"}
-FORCE = {"x": "F_x", "z": "F_z", "alpha": "M_alpha", "beta": "M_beta"}
+UNIT = {"x": "m", "y": "m", "z": "m", "alpha": "rad", "beta": "rad", "gamma": "rad"}
+FORCE = {c: f"{'F' if unit == 'm' else 'M'}_{c}" for c, unit in UNIT.items()}
 OF_FORCE = {force: coordinate for coordinate, force in FORCE.items()}
 """The coordinate of each internal force."""
-FORCE_UNIT = {"x": "N", "z": "N", "alpha": "N m", "beta": "N m"}
+FORCE_UNIT = {c: "N" if unit == "m" else "N m" for c, unit in UNIT.items()}
 NAME = {
     "x": "axial displacement",
+    "y": "transverse displacement in the plane of y",
     "z": "transverse displacement",
     "alpha": "twist",
     "beta": "bending rotation",
+    "gamma": "bending rotation in the plane of y",
 }
+ROLE = {"y": "z", "gamma": "beta"}
+"""What the coordinates of the plane of y are in their own plane: both planes look the same."""
 FAMILY = {"x": "axial", "z": "transverse", "alpha": "torsional", "beta": "bending rotation"}
+FAMILY |= {c: FAMILY[role] for c, role in ROLE.items()}
+
+
+def own_coordinate(family: str, plane: str) -> str:
+    """Return the coordinate that a family of modes in a plane has the most kinetic energy of."""
+    across = plane == "y"
+    return next(c for c, name in FAMILY.items() if name == family and (c in ROLE) == across)
+
+
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """How often each kind of response differentiates the displacement."""
 MOTIONS = {"displacement": 0, "velocity": 1, "acceleration": 2}

@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..base.array import Flags, Index, Real
-from ..base.check import COORDINATES
+from ..base.unit import ROLE, UNIT
 
 KINDS = ("difference", "rigid", "tensed", "continuous")  # Kinds of element, in the core's order.
 
@@ -21,22 +22,51 @@ ATTACHED = ("resonator", "broken wire")
 
 CARRIED = {kind: f"{kind} mass" for kind in ATTACHED}  # Names of the kinetic energy of each.
 
-CHANNELS = {"x": 0, "z": 2, "alpha": 1, "beta": 2}
-"""Channel of the section (axial, torsion, bending) that carries a coordinate's force."""
+PLANE = ("x", "z", "alpha", "beta")  # Coordinates of a chain in one plane, in the core's order.
+
+NUMBERS = {c: PLANE.index(ROLE.get(c, c)) for c in UNIT}  # Of each coordinate in its plane.
+
+CHANNELS = {"x": 0, "y": 3, "z": 2, "alpha": 1, "beta": 2, "gamma": 3}
+"""Channel of the section that carries a coordinate's force: axial, torsion, bending, the same in
+the plane of y."""
+
+
+def roles(coordinates: Sequence[str]) -> tuple[str, ...]:
+    """Return what coordinates are in their own plane: of y and gamma z and beta."""
+    return tuple([ROLE.get(c, c) for c in coordinates])
+
+
+def plane_of(component: Sequence[str]) -> str:
+    """Return the plane that coordinates move across in: "z", "y", "space", or "" where in none."""
+    planes = [name for name in ("z", "y") if name in component]
+    return "space" if len(planes) > 1 else "".join(planes)
+
+
+TRANSVERSE = (("z", "beta"), ("y", "gamma"))  # What moves across in each plane, and what turns.
+
+
+class Plane(NamedTuple):
+    """One of the planes of a chain, as the core takes it."""
+
+    chain: Chain
+    kept: Any  # the index of its coordinates among those of the whole chain
+    square: Any  # that of both axes of a matrix over them
+    carried: Any  # that of its structures
 
 
 class Chain(NamedTuple):
     """A chain as the core takes it; see csrc/chain/chain.h.
 
     Nodes with the same term and the same element on their right are a stretch; the last node is
-    one alone.
+    one alone. A chain in both planes has four channels, and the coordinates of both: y and gamma
+    are another z and beta, for which the core takes them where a chain is theirs alone.
     """
 
     kind: int
-    coordinate: NDArray[np.int32]  # (width,) numbers of the coordinates
+    coordinate: NDArray[np.int32]  # (width,) numbers in `PLANE` of what each is in its plane
     length: Real  # (distinct,) [m]
     tension: Real  # (distinct,) [N]
-    flexibility: Real  # (distinct, 3, 3) of the section: axial, torsion, bending
+    flexibility: Real  # (distinct, channels, channels) of the section, see `CHANNELS`
     first: NDArray[np.int32]  # (stretches,) first node, increasing from 0 to the last node
     element: NDArray[np.int32]  # (stretches - 1,) which distinct element stands right of each node
     mass: Real  # (terms, width, width)
@@ -182,13 +212,64 @@ class Chain(NamedTuple):
         nodes[0], nodes[-1] = 0, last - first
         return self._replace(first=nodes, element=self.element[begin : end + 1], term=term)
 
+    @property
+    def is_spatial(self) -> bool:
+        """Whether it lies in both planes."""
+        return self.flexibility.shape[1] > CHANNELS["gamma"]
+
+    @property
+    def _names(self) -> list[str]:
+        """The coordinates, of one plane as those of z."""
+        own = [PLANE[k] for k in self.coordinate]
+        if self.is_spatial:  # y stands before z, gamma behind beta
+            own[own.index("z")] = "y"
+            own[-1] = "gamma" if own[-1] == "beta" else own[-1]
+        return own
+
+    @property
+    def planes(self) -> list[Plane]:
+        """The plane of z, with x and alpha, and that of y; the chain itself where it is in one."""
+        if not self.is_spatial:
+            return [Plane(self, slice(None), (slice(None), slice(None)), slice(None))]
+        names, found = self._names, []
+        for inside in (False, True):
+            own = [c for c in names if (c in ROLE) == inside]
+            kept, rows = np.array([names.index(c) for c in own]), self.attached_row
+            carried = slice(None) if rows is None else rows[:, :, kept].any(axis=(1, 2))
+            found.append(Plane(self.only(own), kept, (kept[:, None], kept), carried))
+        return found
+
+    def shape(self, left: int, s: float, at: int) -> Real:
+        """Return how a coordinate inside an element moves with the nodes beside, (2, width)."""
+        rows = np.zeros((2, len(self.coordinate)))
+        for plane in self.planes:
+            own = np.arange(len(self.coordinate))[plane.kept]
+            if at in own:
+                rows[:, own] = _core.shape(plane.chain, left, s)[own.searchsorted(at)]
+        return rows
+
+    def energy(self, shape: Real, eigenvalue: Real) -> tuple[Real, Real, Real]:
+        """Return strain, kinetic and dragged energy of shapes, twice; see `_core.energy`."""
+        parts = []
+        for plane in self.planes:
+            own = np.ascontiguousarray(shape[..., plane.kept])
+            parts.append(_core.energy(plane.chain, own, eigenvalue))
+        if len(parts) == 1:
+            return parts[0]
+        kinetic = np.zeros((len(shape), shape.shape[2]))
+        for plane, part in zip(self.planes, parts):
+            kinetic[:, plane.kept] = part[1]
+        return parts[0][0] + parts[1][0], kinetic, parts[0][2] + parts[1][2]
+
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
-        wanted = [COORDINATES.index(c) for c in coordinates]
-        own = self.coordinate.tolist()
-        if wanted == own:
+        wanted = [NUMBERS[c] for c in coordinates]
+        if wanted == self.coordinate.tolist():
             return self
-        kept = np.array([own.index(c) for c in wanted])
+        names = self._names
+        kept = np.array(
+            [names.index(c if self.is_spatial else ROLE.get(c, c)) for c in coordinates]
+        )
 
         def columns(array: Any) -> Any:
             return None if array is None else array.take(kept, axis=-1)
@@ -196,8 +277,13 @@ class Chain(NamedTuple):
         def squares(array: Any) -> Any:
             return None if array is None else array.take(kept, axis=-1).take(kept, axis=-2)
 
+        flexibility = self.flexibility
+        if self.is_spatial:
+            of = [0, 1, CHANNELS["gamma" if ROLE.keys() & set(coordinates) else "beta"]]
+            flexibility = np.ascontiguousarray(flexibility[:, of][:, :, of])
         return self._replace(
             coordinate=np.array(wanted, dtype=np.int32),
+            flexibility=flexibility,
             mass=squares(self.mass),
             stiffness=squares(self.stiffness),
             held=columns(self.held),

@@ -17,19 +17,21 @@ from ..scene.end import end_of
 from ..scene.parts.node import Attached, NodeTerm
 from ..scene.parts.part import places, standing, stretches
 from ..scene.parts.stretch import ropes
-from ..scene.rope import Rope
+from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest, shares, stations_at
-from .chain import ATTACHED, CONTINUOUS, KINDS, TENSED, Chain, components
-from .compiled import MOST_POINTS, Compiled
+from .chain import ATTACHED, CONTINUOUS, KINDS, NUMBERS, TENSED, TRANSVERSE, Chain, components
+from .compiled import EXACT, MOST_POINTS, Compiled
 
 MOST_ELEMENTS = 10_000_000
 
 INERTIA = {
     "x": "linear_density",
+    "y": "linear_density",
     "z": "linear_density",
     "alpha": "polar_inertia",
     "beta": "rotary_inertia",
+    "gamma": ACROSS["rotary_inertia"],
 }
 """Property of the rope that is the inertia per length of each coordinate."""
 
@@ -73,6 +75,11 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
         raise SceneError(
             'element must not be "difference" where there is bending and tension: the '
             "2015 study's kinematics has no geometric stiffness"
+        )
+    if "y" in scene.coordinates and element not in EXACT:
+        raise SceneError(
+            f'element must be "continuous" or "tensed" where planes is "both", got {element!r}: '
+            "it has one plane"
         )
     spans = stations[1:] - stations[:-1]
     if not (spans / counts > 0).all():
@@ -133,7 +140,8 @@ def check_points(model: Compiled, points: int | None) -> None:
 
 def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
     """Refuse boundary layers too thin for the rope to be halved into them."""
-    bending = [rope.bending_stiffness for rope in local if rope.bending_stiffness is not None]
+    names = ["bending_stiffness"] + [ACROSS["bending_stiffness"]] * ("gamma" in scene.coordinates)
+    bending = [B for rope in local for name in names if (B := own_number(rope, name)) is not None]
     if not bending:
         return
     radians = scene.rope.length * np.sqrt(abs(scene.mean_tension)) / np.sqrt(min(bending))
@@ -144,15 +152,27 @@ def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
         )
 
 
-def section(rope: Rope) -> Real:
-    """Return the section flexibility of a rope."""
-    return _core.section(
+def section(rope: Rope, channels: int = 3) -> Real:
+    """Return the section flexibility of a rope, with that of bending in the plane of y beside."""
+    own = _core.section(
         rope.axial_stiffness or 0.0,
         rope.torsional_stiffness or 0.0,
-        rope.bending_stiffness or 0.0,
+        own_number(rope, "bending_stiffness") or 0.0,
         rope.lay_coupling or 0.0,
         rope.lay_slope or 0.0,
     )
+    if channels == len(own):
+        return own
+    both = np.zeros((channels, channels))
+    both[:-1, :-1] = own
+    across = own_number(rope, ACROSS["bending_stiffness"])
+    both[-1, -1] = 0.0 if across is None else 1.0 / across
+    return both
+
+
+def channels_of(scene: Scene) -> int:
+    """Return how many channels the sections of a scene have."""
+    return 4 if "y" in scene.coordinates else 3
 
 
 class Division(NamedTuple):
@@ -181,7 +201,7 @@ class Elements(NamedTuple):
 
 def _elements(scene: Scene, local: Sequence[Rope], rope: Index) -> Elements:
     """Return what elements of so many different ropes are made of, by which of them each is of."""
-    flexibility = np.array([section(one) for one in local])
+    flexibility = np.array([section(one, channels_of(scene)) for one in local])
     inertia = np.array([inertia_of(scene, one) for one in local])
     sag = None
     if scene.gravity is not None:
@@ -208,9 +228,7 @@ def _chain(
     stiffness, held, hinge = _terms(scene, terms, mass, damping)
     chain = Chain(
         kind=kind,
-        coordinate=np.array(
-            [check.COORDINATES.index(c) for c in scene.coordinates], dtype=np.int32
-        ),
+        coordinate=np.array([NUMBERS[c] for c in scene.coordinates], dtype=np.int32),
         length=length,
         tension=np.full(len(length), scene.mean_tension),
         flexibility=elements.flexibility,
@@ -323,8 +341,7 @@ def lumped(
     given = halves(kind, inertia, length)
     if kind != TENSED or "beta" not in coordinates:
         return given
-    z, beta = coordinates.index("z"), coordinates.index("beta")
-    density = inertia[:, z]
+    density = inertia[:, coordinates.index("z")]
     with np.errstate(over="ignore", invalid="ignore"):
         correction = density * length**2 / 12
     if not np.isfinite(correction).all():
@@ -332,14 +349,17 @@ def lumped(
             f"elements must be short enough for linear_density length^2 to be a number [kg m], got "
             f"{float(density.max())!r} kg/m and {float(length.max())!r} m"
         )
-    given[:, 0, z, beta] = given[:, 0, beta, z] = correction
-    given[:, 1, z, beta] = given[:, 1, beta, z] = -correction
+    for across, turn in TRANSVERSE:
+        if across in coordinates:
+            i, j = coordinates.index(across), coordinates.index(turn)
+            given[:, 0, i, j] = given[:, 0, j, i] = correction
+            given[:, 1, i, j] = given[:, 1, j, i] = -correction
     return given
 
 
 def inertia_of(scene: Scene, rope: Rope) -> Real:
     """Return the inertia per length of each coordinate [kg/m, kg m]; sag follows at once."""
-    own = [getattr(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
+    own = [own_number(rope, INERTIA[c]) or 0.0 for c in scene.coordinates]
     return np.array(own) * has_inertia(scene)
 
 
@@ -351,7 +371,7 @@ def has_inertia(scene: Scene) -> Flags:
 
 def dragged(scene: Scene) -> Real:
     """Return 1 for each coordinate that damping along the rope acts on, else 0, shape (width,)."""
-    along = ("x", "z") if scene.gravity is None else ("z",)
+    along = ("x", "y", "z") if scene.gravity is None else ("y", "z")
     return np.array([float(c in along) for c in scene.coordinates])
 
 

@@ -16,9 +16,10 @@ from ..base.errors import SceneError
 from ..scene.card import Card, card, card_html, card_text
 from ..scene.damping import having, separable
 from ..scene.parts.stretch import KINDS as STRETCHES
+from ..scene.rope import ACROSS, own_number
 from ..scene.scene import Scene
 from . import matrices
-from .chain import Chain
+from .chain import TRANSVERSE, Chain
 from .mesh_choice import Choice
 
 if TYPE_CHECKING:
@@ -118,8 +119,9 @@ class Compiled(Frozen):
         if self.element == "continuous":
             return dict.fromkeys(self.coordinates, math.inf)
         order = dict.fromkeys(self.coordinates, 2.0)
-        if "beta" in order:
-            order["z"] = order["beta"] = self._bending_order()
+        for across, turns in TRANSVERSE:
+            if turns in order:
+                order[across] = order[turns] = self._bending_order(across, turns)
         moved = np.abs(np.diagonal(self.chain.mass, axis1=1, axis2=2)).max(axis=0)
         slow = {self.coordinates[k] for k in np.flatnonzero(moved)}
         for part in self.components:
@@ -127,12 +129,14 @@ class Compiled(Frozen):
             order |= dict.fromkeys(part, least)
         return order
 
-    def _bending_order(self) -> float:
+    def _bending_order(self, across: str, turning: str) -> float:
         if self.element != "tensed":
             return 2.0 if self.element == "rigid" else 0.0
-        turns, hinge = bool(self.scene.rope.rotary_inertia), self.chain.hinge
-        held = self.chain.held[:, self.coordinates.index("z")] != 0
-        if hinge is not None and (hinge.any(axis=1) & ~held).any():
+        name = "rotary_inertia" if turning == "beta" else ACROSS["rotary_inertia"]
+        turns, hinge = bool(own_number(self.scene.rope, name)), self.chain.hinge
+        held = self.chain.held[:, self.coordinates.index(across)] != 0
+        at = self.coordinates.index(turning)
+        if hinge is not None and ((hinge[:, at] != 0) & ~held).any():
             return 1.0 if turns else 2.0
         return 2.0 if turns else 4.0
 
@@ -172,7 +176,12 @@ class Compiled(Frozen):
         >>> model.triples.G.round(6), model.triples.element
         (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
         """
-        return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
+        found = np.zeros((3, len(self.chain.length), *2 * (len(self.coordinates),)))
+        for plane in self.chain.planes:
+            for whole, own in zip(found, _core.triples(plane.chain.at_rest)):
+                whole[:, *plane.square] = own
+        F, G, Q = found
+        return Triples(F, G, Q, self.chain.element_of)
 
     @property
     def node_terms(self) -> NodeTerms:

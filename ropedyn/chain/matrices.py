@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 def stiffness(chain: Chain) -> sp.csr_array:
     """Assemble sections, tension and springs."""
-    elastic, elastic_coupling, string, string_coupling, springs, _, _ = _core.assemble(chain)
+    elastic, elastic_coupling, string, string_coupling, springs, _, _ = _assembled(chain)
     return _sparse(chain, elastic + string + springs, elastic_coupling + string_coupling)
 
 
 def mass(chain: Chain) -> sp.csr_array:
     """Assemble the inertia."""
-    inertia = _core.assemble(chain)[5]
+    inertia = _assembled(chain)[5]
     return _sparse(chain, inertia, np.zeros((len(inertia) - 1, *inertia.shape[1:])))
 
 
@@ -32,7 +32,7 @@ def damping(chain: Chain, dampings: Sequence[Damping]) -> sp.csr_array:
     """Assemble what the dampings add to the dynamic stiffness per i omega."""
     # every damping here is i omega times a constant on each part
     share = factors(dampings, np.array(1.0)).imag
-    parts = _core.assemble(chain)
+    parts = _assembled(chain)
     elastic, elastic_coupling, string, string_coupling, springs, inertia, dashpots = parts
     diagonal = (
         share[SECTION] * elastic
@@ -43,6 +43,16 @@ def damping(chain: Chain, dampings: Sequence[Damping]) -> sp.csr_array:
     )
     coupling = share[SECTION] * elastic_coupling + share[TENSION] * string_coupling
     return _sparse(chain, diagonal, coupling)
+
+
+def _assembled(chain: Chain) -> tuple[Real, ...]:
+    """Return what the core assembles of each plane, over all coordinates."""
+    width, couplings = chain.mass.shape[-1], (1, 3)
+    whole = [np.zeros((chain.nodes - (k in couplings), width, width)) for k in range(7)]
+    for plane in chain.planes:
+        for into, part in zip(whole, _core.assemble(plane.chain)):
+            into[:, *plane.square] = part
+    return tuple(whole)
 
 
 def _sparse(chain: Chain, diagonal: Real, coupling: Real) -> sp.csr_array:

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Real
-from ..base.check import COORDINATES, NEAR
+from ..base.check import NEAR
 from ..base.errors import SolveError
 from ..base.unit import END, OF_FORCE
-from .chain import Chain
+from .chain import CHANNELS, PLANE, Chain
 
 MOST_PIECES = 1000  # That a compressed element is cut into.
 
@@ -74,7 +74,7 @@ def ports(chain: Chain, x: Real, coordinates: Sequence[str], points: Iterable[Po
             row[k, int(last), at] = 1.0
         else:
             node[k] = left
-            row[k] = _core.shape(chain, left, s)[at]
+            row[k] = chain.shape(left, s, at)
     return Ports(node, row, force if force.any() else None)
 
 
@@ -99,10 +99,11 @@ def stops(chain: Chain, x: Real) -> list[float]:
     Under compression an element of kappa l = pi/2, kappa^2 = |T| S_bb, buckles as a cantilever
     though the rope may not: F, G and Q have no digits around it. Pieces have kappa l <= 1.
     """
-    if COORDINATES.index("beta") not in chain.coordinate:
+    if PLANE.index("beta") not in chain.coordinate:
         return []
     with np.errstate(over="ignore"):
-        kappa = np.sqrt(np.maximum(-chain.tension * chain.flexibility[:, 2, 2], 0.0))
+        soft = np.einsum("eii->ei", chain.flexibility)[:, CHANNELS["beta"] :].max(axis=1)
+        kappa = np.sqrt(np.maximum(-chain.tension * soft, 0.0))
         each = np.ceil(kappa * chain.length)
     if not each.max() <= MOST_PIECES:
         raise SolveError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
@@ -19,21 +19,22 @@ from ..scene.parts.part import places as places_of
 from ..scene.parts.part import standing, stretches
 from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.parts.stretch import (
-    RopeChange,
     Stretch,
     changed_by,
     changes,
+    numbers_of,
     rope_rate,
     ropes,
     stretch_rate,
 )
-from ..scene.rope import Rope
+from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest
 from .chain import CONTINUOUS
 from .compile import (
     INERTIA,
     carried_by,
+    channels_of,
     dragged,
     halves,
     has_inertia,
@@ -62,7 +63,8 @@ STIFFNESS = {
 }
 """d/dp of the section's stiffness about its own axes (axial, torsion, bending)."""
 
-SECTION = STIFFNESS.keys() | {"lay_slope"}  # Properties of a rope that its section depends on.
+SECTION = STIFFNESS.keys() | {"lay_slope", ACROSS["bending_stiffness"]}
+"""Properties of a rope that its section depends on."""
 
 GRAVITY = ("g", "inclination")  # Numbers of gravity.
 
@@ -100,7 +102,8 @@ class Weights:
     times that of slopes times `moving`, `mass` and `heavier`.
     """
 
-    element: Real  # (stretches - 1, 9) Section, tension, length of massless elements, sag
+    # (stretches - 1, 9 or 10) Section, tension, length of massless elements, sag; section across
+    element: Real
     place: Real  # (stretches, 2) of the first node of each, of continuous elements, and 0
     moving: Real  # (stretches - 1, width) inertia per length of continuous elements
     jump: Real  # (stretches - 1, width) stiffness of hinges
@@ -115,6 +118,14 @@ class Weights:
     foot: Real  # (attached, 2, width) displacement and rotation of their feet
     moves: Real  # (attached, 2, width) the same, but for those that are larger as a whole
     damped: Real  # (attached,) of their damping ratios, which undamped modes do not feel
+
+    def element_in(self, coordinates: Sequence[str]) -> Real:
+        """Return `element` for some coordinates alone, whose own bending is the section's."""
+        element, across = self.element[:, :9], self.element[:, 9:]
+        if "y" in coordinates:
+            element = element.copy()
+            element[:, :6], element[:, 2:3] = 0.0, across
+        return element
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,9 +211,20 @@ class Places:
             return 0.0
         return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
 
+    @property
+    def flexibility(self) -> Real:
+        """Zeros for the section of each span."""
+        return np.zeros((len(self.ropes), *2 * (channels_of(self.model.scene),)))
+
     def sections(self, name: str) -> Real:
-        """Return the derivative of the section flexibility of each span, shape (spans, 3, 3)."""
-        return self.longer(np.stack([section_rate(rope, name) for rope in self.ropes]))
+        """Return the derivative of the section flexibility of each span."""
+        rate = self.flexibility
+        if name == ACROSS["bending_stiffness"]:
+            soft = [section(rope, 4)[3, 3] for rope in self.ropes]
+            rate[:, 3, 3] = -np.square(soft)
+        else:
+            rate[:, :3, :3] = [section_rate(rope, name) for rope in self.ropes]
+        return self.longer(rate)
 
     def longer(self, flexibility: Real) -> Real:
         """Return sections of a rope that hangs, longer than its chord along x."""
@@ -232,12 +254,14 @@ class Rate:
     def weights(self, places: Places) -> Weights:
         """Return the weights that belong to it."""
         span, station, inside = places.span, places.station, places.inside
-        section = self._flexibility(places)[:, ENTRIES[0], ENTRIES[1]]
+        flexibility = self._flexibility(places)
+        section, across = flexibility[:, ENTRIES[0], ENTRIES[1]], flexibility[:, 3:, 3:]
         longer, place = self.length, np.zeros(len(station))
         if places.model.chain.kind == CONTINUOUS:
             moved = np.append(0.0, np.cumsum(longer * places.counts))
             longer, place = np.zeros_like(longer), np.where(inside, 0.0, moved[station])
-        element = np.column_stack([section, self.tension, longer, self._sag(places)])
+        sag, across = self._sag(places), across.reshape(len(section), -1)
+        element = np.column_stack([section, self.tension, longer, sag, across])
         inertia = self.inertia(places)
         rows = places.model.chain.attached_row
         larger = self.moves if rows is None else self.size[:, None, None] / 2 * rows
@@ -259,7 +283,7 @@ class Rate:
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
-        flexibility = np.zeros((len(places.counts), 3, 3))
+        flexibility = places.flexibility
         for name in self.rope.keys() & SECTION:
             flexibility += self.rope[name][:, None, None] * places.sections(name)
         flexibility[:, 0, 0] += self._lengthening(places) * places.stretch
@@ -307,8 +331,13 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
         found["tension"] = partial(_of_tension, places)
     acting = _acting(model)
     for name in (*STIFFNESS, "lay_slope", *DENSITIES):
-        if name in acting and getattr(rope, name) is not None:
-            found[name] = partial(_of_rope, places, name)
+        if name in ACROSS.values() or getattr(rope, name) is None:
+            continue
+        names = [name, ACROSS[name]] if name in ACROSS else [name]
+        is_pair = isinstance(getattr(rope, name), tuple)
+        for k, each in enumerate([[one] for one in names] if is_pair else [names]):
+            if own := [one for one in each if one in acting]:
+                found[f"{name}[{k}]" if is_pair else name] = partial(_of_rope, places, own)
     found["length"] = partial(_of_length, places)
     for i, part in enumerate(model.scene.parts):
         for name, of in _of_numbers(places, i, acting).items():
@@ -336,7 +365,9 @@ def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _A
 
 def _acting(model: Compiled) -> set[str]:
     """Return the properties that a rope may have and this model's depends on."""
-    stiffness = {name for name in SECTION if getattr(model.scene.rope, name) is not None}
+    stiffness = {name for name in SECTION if own_number(model.scene.rope, name) is not None}
+    if channels_of(model.scene) == 3:
+        stiffness -= {ACROSS["bending_stiffness"]}
     return stiffness | {c for c in DENSITIES if inertia_rate(model.scene, c).any()}
 
 
@@ -345,9 +376,9 @@ def _of_numbers(places: Places, i: int, acting: set[str]) -> dict[str, Callable[
     part = places.model.scene.parts[i]
     if isinstance(part, STRETCHES):
         return {
-            name: partial(_of_stretch, places, part, name)
-            for name in RopeChange._fields
-            if hasattr(part, name) and acting & changed_by(name)
+            name: partial(_of_stretch, places, part, own)
+            for name, fields in numbers_of(part).items()
+            if (own := [field for field in fields if acting & changed_by(field)])
         }
     return {
         name: partial(_of_part, places, i, rate)
@@ -378,11 +409,11 @@ def _of_gravity(places: Places, name: str) -> Rate:
     return rate
 
 
-def _of_rope(places: Places, name: str) -> Rate:
-    """Return that of a property of the rope, which stretches multiply."""
+def _of_rope(places: Places, names: Sequence[str]) -> Rate:
+    """Return that of a property of the rope, in one plane or both, which stretches multiply."""
     rate = Rate(places)
-    rate.rope[name] = rope_rate(places.change, name)
-    if name == "linear_density":
+    rate.rope |= {name: rope_rate(places.change, name) for name in names}
+    if "linear_density" in names:
         rate.chord = places.model.scene.rope.length
     return rate
 
@@ -411,11 +442,11 @@ def _of_position(places: Places, i: int, name: str) -> Rate:
     return rate
 
 
-def _of_stretch(places: Places, part: Stretch, name: str) -> Rate:
+def _of_stretch(places: Places, part: Stretch, names: Sequence[str]) -> Rate:
     """Return that of what a part does to the rope between its ends."""
     start, stop = nearest(_stations(places), [part.start, part.stop])
     rate, rope = Rate(places), places.model.scene.rope
-    for of, change in stretch_rate(rope, places.change[start:stop], part, name).items():
+    for of, change in stretch_rate(rope, places.change[start:stop], part, names).items():
         rate.rope[of] = np.zeros(len(places.counts))
         rate.rope[of][start:stop] = change
     return rate

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..base.array import Complex, Flags, Real
-from ..base.check import COORDINATES
 from ..base.unit import FORCE
-from .chain import CHANNELS, KINDS, Chain
+from .chain import CHANNELS, KINDS, PLANE, Chain
 from .port import Point, is_force, locate
 
 BENDING = CHANNELS["beta"]
@@ -69,14 +68,14 @@ def first_left_end(chain: Chain, factor: Complex) -> LeftEnd:
 
 def _is_strut(chain: Chain) -> Flags:
     """Whether each distinct element is one: see csrc/sweep/kernel/kernel.h, sweep_is_strut."""
-    if chain.kind != KINDS.index("rigid") or COORDINATES.index("beta") not in chain.coordinate:
+    if chain.kind != KINDS.index("rigid") or PLANE.index("beta") not in chain.coordinate:
         return np.zeros(len(chain.length), dtype=np.bool_)
     return -chain.tension * chain.flexibility[:, BENDING, BENDING] * chain.length**2 > 1
 
 
 def _strut(chain: Chain, e: int) -> tuple[Real, Real]:
     """Return E and Q = P of a strut."""
-    channel = [CHANNELS[COORDINATES[c]] for c in chain.coordinate]
+    channel = [CHANNELS[PLANE[c]] for c in chain.coordinate]
     S = chain.flexibility[e]
     E, Q = np.eye(len(channel)), np.zeros((len(channel),) * 2)
     E[-1] = [-2 * S[c, BENDING] / S[BENDING, BENDING] if c != BENDING else 0.0 for c in channel]

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.array import Flags, Real
-from ..base.check import COORDINATES
-from .chain import CHANNELS, Chain
+from ..scene.rope import ACROSS
+from .chain import CHANNELS, PLANE, Chain, roles
 from .rate import Places, Rate
 
 BENT, PLAIN = 4, 2
@@ -20,6 +20,9 @@ PLAIN_STIFFNESS = {"z": "tension", "alpha": "torsional_stiffness", "x": "axial_s
 """What carries the waves of a coordinate that moves alone."""
 
 
+BENDING = "bending_stiffness"
+
+
 class Spans(NamedTuple):
     """A component between nodes that nothing moves, of spans in closed form.
 
@@ -27,7 +30,7 @@ class Spans(NamedTuple):
     length, inertia and stiffness; stations have inertias and then springs, infinite where held.
     """
 
-    coordinates: tuple[str, ...]  # ("z", "beta"), or one alone
+    coordinates: tuple[str, ...]  # ("z", "beta"), or one alone, in the plane of y as in that of z
     span: Real  # (spans, 4 or 3)
     station: Real  # (spans + 1, 4 or 2)
     hinged: NDArray[np.uint8]  # (spans + 1,) where the rope turns freely beside the node
@@ -40,7 +43,7 @@ class Spans(NamedTuple):
 
 def spans_of(chain: Chain) -> Spans | None:
     """Return the spans of a component of a chain, None where they have no closed form."""
-    names = tuple(COORDINATES[k] for k in chain.coordinate)
+    names = tuple(PLANE[k] for k in chain.coordinate)
     bends = names == ("z", "beta")
     if not (bends or len(names) == 1) or chain.inertia is None or chain.sag is not None:
         return None
@@ -88,9 +91,9 @@ def rates_of_spans(rate: Rate, places: Places, coordinates: Sequence[str]) -> Re
     """Return how fast the numbers of `spans_of` change, shape (numbers,)."""
     kept = [places.model.coordinates.index(c) for c in coordinates]
     own = {"tension": rate.tension} | rate.rope
-    carries = ["tension", "bending_stiffness"]
-    if "beta" not in coordinates:
-        carries = [PLAIN_STIFFNESS[coordinates[0]]]
+    carries = ["tension", ACROSS[BENDING] if "gamma" in coordinates else BENDING]
+    if "beta" not in roles(coordinates):
+        carries = [PLAIN_STIFFNESS[roles(coordinates)[0]]]
     along = [own.get(name, np.zeros(len(places.counts))) for name in carries]
     span = np.column_stack([rate.length, rate.inertia(places)[:, kept[0]], *along])
     station = np.hstack([rate.mass[:, kept], rate.stiffness[:, kept]])

@@ -120,9 +120,9 @@ def animated(
 def _shown(
     coordinates: tuple[str, ...], x: Real, shape: Real | Complex, own: str
 ) -> tuple[str, ...]:
-    """Return the mode's own coordinate and the others that move; beta follows from z."""
+    """Return the mode's own coordinate and the others that move; beta and gamma follow."""
     length = x[-1] - x[0]
-    far = np.abs(shape).max(axis=0) / np.where(np.isin(coordinates, ("x", "z")), length, 1.0)
+    far = np.abs(shape).max(axis=0) / np.where(np.isin(coordinates, ("x", "y", "z")), length, 1.0)
     least = SMALL * far[coordinates.index(own)]
     others = (c for c, size in zip(coordinates, far) if size > least)
-    return (own, *(c for c in others if c not in (own, "beta")))
+    return (own, *(c for c in others if c not in (own, "beta", "gamma")))

@@ -15,7 +15,9 @@ from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..chain.compile import lumped
 from ..chain.rate import DENSITIES, ENTRIES, Places, inertia_rate
-from .sensitivity import SAG, SECTIONS, ModePairs, Shapes, Slopes
+from ..scene.rope import ACROSS, own_number
+from .sensitivity import ACROSS as BY_ACROSS
+from .sensitivity import SAG, ModePairs, Shapes, Slopes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -161,12 +163,18 @@ def _forms(model: Compiled, pairs: ModePairs) -> dict[str, Real]:
     forms = {}
     for name in STIFFNESSES:
         if getattr(model.scene.rope, name) is not None:
-            value = np.array([getattr(rope, name) for rope in places.ropes])
+            value = np.array([own_number(rope, name) for rope in places.ropes])
             rate = value[:, None] * places.sections(name)[:, ENTRIES[0], ENTRIES[1]]
             section = slopes.element[..., : rate.shape[1]]
             forms[name] = np.einsum("mei,ei->me", section, rate[span])
-    for name in DENSITIES:
-        own = places.inertia[span] * inertia_rate(model.scene, name)
+    if chain.is_spatial and STIFFNESSES[0] in forms:
+        soft = chain.flexibility[chain.element_of, -1, -1]
+        forms[STIFFNESSES[0]] -= slopes.element[..., BY_ACROSS] * soft
+    for name in (name for name in DENSITIES if name not in ACROSS.values()):
+        rate = inertia_rate(model.scene, name)
+        if name in ACROSS:
+            rate = rate + inertia_rate(model.scene, ACROSS[name])
+        own = places.inertia[span] * rate
         if own.any():
             forms[name] = -slopes.eigenvalue[:, None] * _moving(model, slopes, own)
     if model.scene.gravity is not None:
@@ -179,7 +187,7 @@ def _forms(model: Compiled, pairs: ModePairs) -> dict[str, Real]:
 def _moving(model: Compiled, slopes: Slopes, inertia: Real) -> Real:
     """Return what inertia per length gives of each element to u^T M u, shape (m, elements)."""
     given = lumped(model.chain.kind, model.coordinates, inertia, np.diff(model.x))
-    moving = np.einsum("mei,ei->me", slopes.element[..., SECTIONS:], inertia)
+    moving = np.einsum("mei,ei->me", slopes.inertia, inertia)
     for side, nodes in enumerate((slopes.node[:, :-1], slopes.node[:, 1:])):
         moving = moving + np.einsum("meab,eab->me", nodes, given[:, side])
     return np.asarray(moving)

@@ -9,11 +9,13 @@ from contextlib import suppress
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import Cost, Work
 from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
+from ..chain.chain import plane_of
 from ..chain.compile import check_points, compile_scene
 from ..chain.compiled import Compiled
 from ..scene.scene import Scene
@@ -61,17 +63,19 @@ def solve_modes(
             f"number must be at most {existing}, the modes this model has, got {number}"
         )
     eigenvalue, error, order = merged(found, number)
-    later: Callable[[], UndampedVectors] = partial(later_vectors, model, solver, number, limit)
+    which = _which(found, order) if len(found) > 1 else None
+    later: Callable[[], UndampedVectors]
+    later = partial(later_vectors, model, solver, number, limit, which)
     frequency = np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi)
     mesh: Callable[[], UndampedMesh]
     x: Real | Callable[[], Real] = model.x
     if model.element == "continuous":
         mesh = partial(no_mesh, frequency)
         x = partial(places_within, model, eigenvalue, points)
-        later = partial(later_within, model, number, limit, eigenvalue, points)
+        later = partial(later_within, model, number, limit, eigenvalue, points, which=which)
     else:
-        which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])
-        mesh = partial(mesh_of_modes, model.scene, model.components, which[order], eigenvalue)
+        own = _which(found, order)
+        mesh = partial(mesh_of_modes, model.scene, model.components, own, eigenvalue)
     return Modes(
         coordinates=model.coordinates,
         certified=all(part.certified for part in found),
@@ -80,11 +84,25 @@ def solve_modes(
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
         rounding_error=error_in_hertz(eigenvalue, error),
+        plane=partial(_planes, model, which, len(eigenvalue)),
         cost=_cost(model, solver, seconds, found),
         vectors=later if found[0].shape is None else vectors_of(model, found, eigenvalue, order),
         mesh=mesh,
-        solve_shapes=partial(solve_shapes, model, solver, eigenvalue),
+        solve_shapes=partial(solve_shapes, model, solver, eigenvalue, which),
     )
+
+
+def _which(found: Sequence[ComponentModes], order: Index) -> Index:
+    """Return the component of each mode."""
+    return np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
+
+
+def _planes(model: Compiled, which: Index | None, number: int) -> NDArray[np.str_]:
+    """Return the plane of each mode: that of the coordinates that move with it."""
+    words = np.array([plane_of(component) for component in model.components])
+    plane = words[np.zeros(number, dtype=np.intp) if which is None else which]
+    plane.setflags(write=False)
+    return plane
 
 
 def check_asked(number: int | None, below: float | None) -> float:

@@ -14,7 +14,7 @@ from ..base.answer import Answer, Frozen, axes
 from ..base.array import Real
 from ..base.computed import Lazy, Read
 from ..base.errors import SceneError
-from ..base.unit import FAMILY
+from ..base.unit import own_coordinate
 from ..chain.chain import CARRIED
 from .animation import Animation, animated
 
@@ -47,6 +47,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
 
     coordinates: tuple[str, ...]
     x: Lazy[Real]
+    plane: Lazy[NDArray[np.str_]]
     vectors: Lazy[OfShapes]
     mesh: Lazy[OfMesh]
 
@@ -116,7 +117,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
             self.coordinates,
             self.x,
             self.shape[k],
-            own=next(c for c in self.coordinates if FAMILY[c] == self.family[k]),
+            own=own_coordinate(self.family[k], self.plane[k]),
             frames=count,
             seconds=duration,
         )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base import check
 from ..base.answer import TRANSIENT, Cost, axes
@@ -77,6 +78,9 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     family : ndarray of str, shape (k,)
         "transverse", "bending rotation", "torsional" or "axial": the coordinate with the most
         kinetic energy.
+    plane : ndarray of str, shape (k,)
+        In which it moves across, with what its coordinates are tied to: "z", "y", "space" for both
+        at once, "" where in none.
     modal_mass : ndarray, shape (k,)
         shape^T M shape, of continuous spans its integral [kg, kg m^2]: of the shape as it is given,
         so that shape^2/modal_mass at a place does not depend on the other points.
@@ -85,10 +89,10 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         its nodes at all of them, that elsewhere.
     energy : dict of ndarray, shape (k,)
         Fractions: strain "bending", "twist", "stretch", "lay", "tension", "spring" as far as the
-        scene has them, sum 1 (all 0 for rigid-body motion); kinetic "x", "z", "alpha", "beta" of
-        the coordinates there are, sum 1. What the rope carries is, where the scene has any,
-        "resonator" and "broken wire" in the first, "resonator mass" and "broken wire mass" in the
-        second.
+        scene has them, sum 1 (all 0 for rigid-body motion); kinetic "x", "y", "z", "alpha", "beta",
+        "gamma" of the coordinates there are, sum 1. What the rope carries is, where the scene has
+        any, "resonator" and "broken wire" in the first, "resonator mass" and "broken wire mass" in
+        the second.
     cost : Cost
         What the frequencies cost, and what of the rest has been read.
 
@@ -113,6 +117,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     eigenvalue: Real = field(metadata=axes("mode", unit="rad^2/s^2"))
     growth: Real = field(metadata=axes("mode", unit="1/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
+    plane: Lazy[NDArray[np.str_]] = lazy(np.ndarray, axes("mode"))
     cost: Cost
     vectors: Lazy[UndampedVectors] = lazy(UndampedVectors)
     mesh: Lazy[UndampedMesh] = lazy(UndampedMesh)
@@ -274,6 +279,8 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
             "damping ratio": self.damping_ratio,
             "family": self.family,
         }
+        if (self.plane == "y").any():
+            columns["plane"] = self.plane
         if (self.growth > 0).any():
             columns["growth [1/s]"] = self.growth
         return Table.of("natural frequencies", columns | self._shares)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
@@ -20,8 +21,9 @@ if TYPE_CHECKING:
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
 SECTIONS = 9
-"""An element has so many slopes (section, tension, length, sag) before those of its inertia."""
-TENSION, SAG = 6, 8  # Numbers of the slopes by tension and sag among those of an element.
+"""An element has so many slopes (section, tension, length, sag) before those of its inertia; in
+both planes one more, of the section across."""
+BENDING, TENSION, SAG, ACROSS = 2, 6, 8, 9  # Numbers of some among those of an element.
 ROUNDINGS, MIXED = 32, 32
 """Shapes and forces are rounded so many times, and mixed with others by so many errors."""
 NOTHING = 1e-12
@@ -61,7 +63,7 @@ class Slopes:
 
     eigenvalue: Real  # (m,) of each shape
     # see csrc/energy/sensitivity.h
-    element: Real  # (m, stretches - 1, 9 + width)
+    element: Real  # (m, stretches - 1, 9 or 10 + width)
     jump: Real  # (m, stretches - 1, width)
     node: Real  # (m, stretches, width, width)
     # (m, stretches, 2) by the place of the first node of each, and of what size its terms are
@@ -74,14 +76,47 @@ class Slopes:
     @classmethod
     def of(cls, chain: Chain, eigenvalue: Real, shape: Real, motion: Real) -> Slopes:
         """Ask the core."""
-        element, jump, node, place = _core.sensitivity(chain, shape, motion, eigenvalue)
-        number, foot = _core.carried_slopes(chain, shape, motion, eigenvalue)
-        element = element[..., : SECTIONS + shape.shape[2]]
-        return cls(eigenvalue, element, jump, node, place, number[..., 1], number[..., 0], foot)
+        parts = []
+        for plane in chain.planes:
+            u, y = (
+                np.ascontiguousarray(of)
+                for of in (shape[..., plane.kept], motion[:, plane.carried])
+            )
+            element, jump, node, place = _core.sensitivity(plane.chain, u, y, eigenvalue)
+            number, foot = _core.carried_slopes(plane.chain, u, y, eigenvalue)
+            element = element[..., : SECTIONS + u.shape[2]]
+            heavier, stiffer = number[..., 0], number[..., 1]
+            parts.append(cls(eigenvalue, element, jump, node, place, stiffer, heavier, foot))
+        return parts[0] if len(parts) == 1 else cls._in_space(parts, chain, shape, motion)
+
+    @classmethod
+    def _in_space(cls, parts: Sequence[Slopes], chain: Chain, shape: Real, motion: Real) -> Slopes:
+        """Return those of both planes together; bending across has a slope of its own."""
+        (m, s, _), width, carried = parts[0].element.shape, shape.shape[2], motion.shape[1]
+        element, jump = np.zeros((m, s, ACROSS + 1 + width)), np.zeros((m, s, width))
+        node, place = np.zeros((m, s + 1, width, width)), parts[0].place + parts[1].place
+        stiffer, heavier = np.zeros((2, m, carried))
+        foot = np.zeros((m, carried, 2, width))
+        for part, plane in zip(parts, chain.planes):
+            own, rows = np.arange(width)[plane.kept], np.arange(carried)[plane.carried]
+            element[..., TENSION:ACROSS] += part.element[..., TENSION:SECTIONS]
+            element[..., ACROSS + 1 + own] = part.element[..., SECTIONS:]
+            jump[..., own], node[..., own[:, None], own] = part.jump, part.node
+            stiffer[:, rows], heavier[:, rows] = part.stiffer, part.heavier
+            foot[:, rows[:, None, None], np.arange(2)[:, None], own] = part.foot
+        element[..., :TENSION] = parts[0].element[..., :TENSION]
+        element[..., ACROSS] = parts[1].element[..., BENDING]
+        value = parts[0].eigenvalue
+        return cls(value, element, jump, node, place, stiffer, heavier, foot)
+
+    @property
+    def inertia(self) -> Real:
+        """Of those of each element that of its inertia, shape (m, stretches - 1, width)."""
+        return self.element[..., -self.jump.shape[-1] :]
 
     def weigh(self, weights: Weights) -> Real:
         """Return dPi/dp, shape (m,)."""
-        moving = _sum(self.element[..., SECTIONS:], weights.moving) + _sum(self.node, weights.mass)
+        moving = _sum(self.inertia, weights.moving) + _sum(self.node, weights.mass)
         moving += _sum(self.heavier, weights.heavier)
         return self.weigh_stiffness(weights) - self.eigenvalue * moving
 
@@ -93,7 +128,7 @@ class Slopes:
 
     def weigh_stiffness(self, weights: Weights) -> Real:
         """Return the part of dPi/dp that is not inertia, shape (m,)."""
-        elastic = _sum(self.element[..., :SECTIONS], weights.element)
+        elastic = _sum(self.element[..., : weights.element.shape[1]], weights.element)
         elastic += _sum(self.jump, weights.jump) + _sum(self.node, weights.node)
         elastic += _sum(self.place, weights.place)
         return elastic + _sum(self.stiffer, weights.stiffer) + _sum(self.foot, weights.foot)
@@ -102,7 +137,7 @@ class Slopes:
         """Return shape^T M shape, shape (m,)."""
         mass = _sum(self.node, chain.mass[chain.term]) + self.heavier.sum(axis=1)
         if chain.inertia is not None:
-            mass += _sum(self.element[..., SECTIONS:], chain.inertia[chain.element])
+            mass += _sum(self.inertia, chain.inertia[chain.element])
         return mass
 
 
@@ -196,7 +231,8 @@ class Sensitivity:
         weights = self.rate(path).weights(self.places)
         form = self.pairs.matrix(self.slopes.weigh(weights))
         change = np.diag(form) / np.diag(self.mass)
-        for cluster in (c for c in self.shapes.clusters if len(c) > 1):
+        clusters = [part for c in self.shapes.clusters for part in self._apart(c, form)]
+        for cluster in (c for c in clusters if len(c) > 1):
             within = np.ix_(cluster, cluster)
             half = np.linalg.inv(np.linalg.cholesky(self.mass[within]))
             change[cluster] = np.linalg.eigvalsh(half @ form[within] @ half.T)
@@ -205,6 +241,13 @@ class Sensitivity:
             bound = self.largest.weigh_stiffness(sizes(weights)) / np.diag(self.mass)
             change[rigid & (np.abs(change) <= NOTHING * bound.max(where=rigid, initial=0.0))] = 0.0
         return change
+
+    def _apart(self, cluster: Index, form: Real) -> list[Index]:
+        """Return the modes of each component, each with its own, where nothing ties them."""
+        which = self.shapes.which[cluster]
+        parts = [cluster[which == k] for k in np.unique(which)]
+        tied = form[np.ix_(cluster, cluster)] * (which[:, None] != which)
+        return [cluster] if tied.any() else parts
 
     def error(self, path: str, of: str) -> Real:
         """Return a bound of the error of a derivative: of shapes that are rounded and mixed."""

@@ -74,14 +74,33 @@ def _count(chain: Chain, limit: float) -> int:
     return int(_core.count(chain, np.array([limit]))[0]) if found is None else found
 
 
-def merged(found: Sequence[ComponentModes], number: int | None) -> tuple[Real, Real, Index]:
-    """Return eigenvalues and errors of all components in order, and that order."""
+def merged(
+    found: Sequence[ComponentModes], number: int | None, which: Index | None = None
+) -> tuple[Real, Real, Index]:
+    """Return eigenvalues and errors of all components in order, and that order.
+
+    Modes solved before have the components `which`; so they have again, however close they are.
+    """
     eigenvalue = np.concatenate([part.eigenvalue for part in found])
     error = np.concatenate([part.error for part in found])
     # what rounding cannot tell from 0 is rigid-body motion
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
-    order = np.argsort(eigenvalue, kind="stable")[:number]
+    order = np.argsort(eigenvalue, kind="stable")
+    if which is not None:
+        order = _in_turn([len(part.eigenvalue) for part in found], which, order)
+    order = order[:number]
     return eigenvalue[order], error[order], order
+
+
+def _in_turn(counts: Sequence[int], which: Index, order: Index) -> Index:
+    """Return an order of modes that begins with those of these components, the lowest of each."""
+    rank = np.zeros_like(which)
+    for k in range(len(counts)):
+        rank[which == k] = np.arange(np.count_nonzero(which == k))
+    if (rank >= np.take(counts, which)).any():
+        return order  # one that a limit parts
+    first = (np.cumsum(counts) - counts)[which] + rank
+    return np.concatenate([first, order[~np.isin(order, first)]])
 
 
 def refuse_short_waves(model: Compiled, eigenvalue: float) -> None:
@@ -197,8 +216,10 @@ def _scale(model: Compiled, component: tuple[str, ...]) -> float:
     soft = np.tensordot(share / share.sum(), chain.flexibility, 1).diagonal()
     with np.errstate(divide="ignore", over="ignore"):
         own = np.divide(1.0, soft)
-    stiffness = {c: float(own[k]) if np.isfinite(own[k]) else 0.0 for c, k in CHANNELS.items()}
-    stiffness["z"] = stiffness["beta"] * wave + abs(model.scene.mean_tension)
+    elastic = np.where(np.isfinite(own), own, 0.0)
+    stiffness = {c: float(elastic[CHANNELS[c]]) for c in model.coordinates}
+    pull = abs(model.scene.mean_tension)
+    stiffness |= {c: stiffness[c] * wave + pull for c in ("y", "z") if c in stiffness}
     orders = [
         stiffness[c] * wave / inertia[k]
         for k, c in enumerate(model.coordinates)

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
 from ..base.array import Index, Real
 from ..base.errors import SolveError
 from ..base.unit import FAMILY
@@ -31,11 +30,11 @@ UNSEEN = 1e-8
 
 
 def later_vectors(
-    model: Compiled, solver: str, number: int | None, limit: float
+    model: Compiled, solver: str, number: int | None, limit: float, which: Index | None
 ) -> UndampedVectors:
     """Solve once more, with shapes."""
     found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
-    eigenvalue, _, order = merged(found, number)
+    eigenvalue, _, order = merged(found, number if which is None else len(which), which)
     return vectors_of(model, found, eigenvalue, order)
 
 
@@ -73,7 +72,13 @@ def places_within(model: Compiled, eigenvalue: Real, points: int | None) -> Real
 
 
 def later_within(
-    model: Compiled, number: int | None, limit: float, eigenvalue: Real, points: int | None
+    model: Compiled,
+    number: int | None,
+    limit: float,
+    eigenvalue: Real,
+    points: int | None,
+    *,
+    which: Index | None,
 ) -> UndampedVectors:
     """Solve continuous spans once more, with shapes inside them."""
     # energies want elements below their own resonance, and a mode may have its nodes at all points,
@@ -82,9 +87,9 @@ def later_within(
     least = points_for(model, eigenvalue)
     points = points or least
     more = -(-least // points)
-    vectors = later_vectors(finer(model, points * more), "sweep", number, limit)
-    own = np.array([FAMILY[c] for c in model.coordinates])
-    size = largest(vectors.shape[:, ::more], (vectors.family[:, None] == own).argmax(axis=1))
+    vectors = later_vectors(finer(model, points * more), "sweep", number, limit, which)
+    own = np.stack([vectors.energy[c] for c in model.coordinates]).argmax(axis=0)
+    size = largest(vectors.shape[:, ::more], own)
     size = np.where(np.abs(size) < UNSEEN, 1.0, size)
     return replace(
         vectors,
@@ -113,7 +118,7 @@ def _cut(model: Compiled, highest: float, points: int | None) -> tuple[Compiled,
 
 
 def solve_shapes(
-    model: Compiled, solver: str, eigenvalue: Real, points: int | None = None
+    model: Compiled, solver: str, eigenvalue: Real, which: Index | None, points: int | None = None
 ) -> Shapes:
     """Solve as many modes as there are eigenvalues, with the shapes that sensitivities need."""
     # modes that coincide with the last one belong to them. Of eigenvalues of continuous spans the
@@ -122,29 +127,31 @@ def solve_shapes(
     edges = np.arange(len(model.x))
     if model.element == "continuous":
         model, edges = _cut(model, float(eigenvalue.max(initial=0.0)), points)
-    return shapes_of(model, solver, len(eigenvalue), edges)
+    return shapes_of(model, solver, len(eigenvalue), edges, which)
 
 
-def shapes_of(model: Compiled, solver: str, number: int, edges: Index) -> Shapes:
+def shapes_of(
+    model: Compiled, solver: str, number: int, edges: Index, which: Index | None
+) -> Shapes:
     """Solve for so many modes, and those that coincide with the last one, with their shapes."""
     more = number
     while True:
         more += 1
         found = [SOLVERS[solver](model, c, more, math.inf, shaped=True) for c in model.components]
-        value, error, order = merged(found, more)
+        value, error, order = merged(found, more, which)
         clusters = clusters_of(value, error)
         kept = [cluster for cluster in clusters if cluster[0] < number]
         last = kept[-1][-1] if kept else -1
         if last < more - 1 or len(value) < more:
             break
         more *= 2
-    which = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
+    own = np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
     beyond = float(value[last + 1]) if last + 1 < len(value) else math.inf
     order = order[: last + 1]
     shape, motion = _spread(model, found)[order], _motion(model, found)[order]
     value, error = value[: last + 1], error[: last + 1]
-    which = which[: last + 1]
-    return Shapes(model, value, shape, motion, tuple(kept), edges, error, which, beyond)
+    own = own[: last + 1]
+    return Shapes(model, value, shape, motion, tuple(kept), edges, error, own, beyond)
 
 
 def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
@@ -157,7 +164,7 @@ def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
     if model.element == "continuous" and inside:
         x = np.unique(np.concatenate([model.x, inside]))
         model = divided(model.scene, "continuous", x, np.ones(len(x) - 1, dtype=np.intp))
-        shapes = shapes_of(model, "sweep", number, np.arange(len(x)))
+        shapes = shapes_of(model, "sweep", number, np.arange(len(x)), shapes.which[:number])
     shape = shapes.shape[:number]
     shape = shape / np.abs(shape).max(axis=(1, 2), keepdims=True)
     node, row, _ = ports(model.chain, model.x, model.coordinates, points)
@@ -170,7 +177,7 @@ def vectors_of(
 ) -> UndampedVectors:
     """Return what follows from the shapes of all components, in order."""
     shape = _spread(model, found)[order]
-    strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
+    strain, kinetic, dragged = model.chain.energy(shape, eigenvalue)
     motion = _motion(model, found)[order]
     carried = AttachedEnergy.real(model.chain, shape, motion, eigenvalue).of(model.chain)
     own = kinetic.argmax(axis=1)

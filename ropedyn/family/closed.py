@@ -24,6 +24,7 @@ PROBE = 2.0**-10
 class Component(NamedTuple):
     """A component in closed form whose numbers are linear in the values of a row."""
 
+    coordinates: tuple[str, ...]  # what moves in it
     chain: Chain  # of the scene, damping included
     spans: Spans  # of the scene
     form: ClosedSpans
@@ -37,11 +38,6 @@ class Component(NamedTuple):
             # an infinite value of another number must not be multiplied by 0
             found[:, j] += self.jacobian[j, c] * rows[:, c]
         return found
-
-    @property
-    def coordinates(self) -> tuple[str, ...]:
-        """What moves in it."""
-        return self.spans.coordinates
 
     def parted(self, numbers: Real) -> tuple[Real, Real]:
         """Return rows of numbers as those of spans and of stations, a matrix each."""
@@ -100,7 +96,7 @@ def _linearised(template: Template, row: Real) -> tuple[Component, ...] | None:
             number[j] = 0.0 if np.isinf(row[c]) else number[j] - jacobian[j, c] * row[c]
         varied: Flags = np.any(jacobian, axis=1)
         form = closed_form(spans, varied)
-        found.append(Component(chain, spans, form, number, jacobian))
+        found.append(Component(names, chain, spans, form, number, jacobian))
     return tuple(found)
 
 

@@ -207,10 +207,11 @@ def _stacked(
     base, width, rows = component.chain, len(component.coordinates), len(x)
     own = spans[:, cut.span]
     length = np.where(cut.whole, own[:, :, 0], np.diff(x, axis=1))
-    channel = CHANNELS[component.coordinates[-1]]
+    own_roles = component.spans.coordinates
+    channel = CHANNELS[own_roles[-1]]
     flexibility = np.zeros((rows, len(cut.span), 3, 3))
-    tension = own[:, :, 2] if "z" in component.coordinates else np.zeros_like(length)
-    if component.coordinates != ("z",):
+    tension = own[:, :, 2] if "z" in own_roles else np.zeros_like(length)
+    if own_roles != ("z",):
         flexibility[:, :, channel, channel] = 1 / own[:, :, -1]
     inertia = np.zeros((rows, len(cut.span), width))
     inertia[:, :, 0] = own[:, :, 1]

@@ -19,7 +19,7 @@ from ..scene.end import End, end_of
 from ..scene.path import value_at, with_values
 from ..scene.scene import Scene
 
-SPRING = re.compile(r"ends\[([01])\]\.spring\.(x|z|alpha|beta)")
+SPRING = re.compile(rf"ends\[([01])\]\.spring\.({'|'.join(check.COORDINATES)})")
 
 
 class Template(NamedTuple):
@@ -79,10 +79,8 @@ def _known(scene: Scene, path: str) -> str:
     check.instance(path, "path", str, 'a string such as "tension"')
     if found := SPRING.fullmatch(path):
         if found[2] not in scene.coordinates:
-            raise SceneError(
-                f"path {path!r} must be of a coordinate the scene has "
-                f"({', '.join(scene.coordinates)})"
-            )
+            must = f"path {path!r} must be of a coordinate"
+            raise check.absent(must, scene.coordinates, found[2])
         return path
     value_at(scene, path)
     return "tension" if path == "tension.mean" else path

@@ -11,6 +11,7 @@ import numpy as np
 from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
+from ..chain.chain import TRANSVERSE
 from ..chain.compiled import Compiled
 from ..chain.port import Point
 from ..response.deflection import Deflection, checked_loads
@@ -69,7 +70,9 @@ def _shapes(model: Compiled, given: Any, name: str) -> dict[str, Shape]:
     if not isinstance(given, Mapping) or not any(map(callable, given.values())):
         return {}
     for coordinate, shape in given.items():
-        check.one_of(coordinate, f"{name}'s coordinate", model.coordinates)
+        check.one_of(coordinate, f"{name}'s coordinate", check.COORDINATES)
+        if coordinate not in model.coordinates:
+            raise check.absent(f"{name}'s coordinate must be one", model.coordinates, coordinate)
         check.instance(shape, f"{name}[{coordinate!r}]", Callable, "a function of x")  # type: ignore[arg-type]
     return dict(given)
 
@@ -109,12 +112,13 @@ def _refuse_support(model: Compiled, shapes: Mapping[str, Shape]) -> None:
                 raise SceneError(
                     f"start must be 0 where {coordinate} is held, got {value!r} at {float(x)!r} m"
                 )
-        if coordinate == "z" and "beta" in model.coordinates:
-            for x in _held(model, "beta"):
+        turns = dict(TRANSVERSE).get(coordinate)
+        if turns in model.coordinates:
+            for x in _held(model, turns):
                 slope = float(_slope(shape, np.array([x]), length)[0])
                 if abs(slope) * length > FLAT * most:
                     raise SceneError(
-                        "start must have no slope where beta is held, got "
+                        f"start must have no slope where {turns} is held, got "
                         f"{slope:.3g} at {float(x)!r} m"
                     )
 
@@ -149,8 +153,9 @@ def _impulses(model: Compiled, shapes: Mapping[str, Shape], parts: int) -> dict[
 
     def rate(x: Real) -> Real:
         each = [_values(moves[c], x, "velocity") if c in moves else 0 * x for c in names]
-        if "z" in moves and "beta" in names and "beta" not in moves:
-            each[names.index("beta")] = _slope(moves["z"], x, length)
+        for z, beta in TRANSVERSE:
+            if z in moves and beta in names and beta not in moves:
+                each[names.index(beta)] = _slope(moves[z], x, length)
         return np.stack(each, axis=1)
 
     momentum = np.einsum("nij,nj->ni", chain.mass[chain.term_of], rate(model.x))

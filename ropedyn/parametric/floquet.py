@@ -16,7 +16,7 @@ from ..base.table import Table
 from ..chain.compiled import Compiled
 from ..scene.tension import Tension
 from .hill import motion_next_to
-from .modal_system import ModalSystem, modal_system
+from .modal_system import ModalSystem, modal_system, transverse
 from .monodromy import finite, monodromy, rates, scales, steps_for
 
 EPS = float(np.finfo(float).eps)
@@ -221,8 +221,8 @@ def checked_modes(model: Compiled, modes: int | None) -> int | None:
         return check.count(modes, "modes", most=MOST_MODES)
     if model.element == "continuous":
         raise SceneError("modes must be a number for continuous spans, which have no last one")
-    finite = model.chain.only(model.component_of("z")).finite if "z" in model.coordinates else 0
-    if finite is None or finite > MOST_MODES:
+    finite = [model.chain.only(component).finite for component in transverse(model)]
+    if None in finite or sum(one or 0 for one in finite) > MOST_MODES:
         raise SceneError(f"modes must be a number for models with more than {MOST_MODES} of them")
     return None
 

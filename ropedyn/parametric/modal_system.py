@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from .. import _core
 from ..base.array import Index, Real
 from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
-from ..chain.chain import ATTACHED, Chain
+from ..chain.chain import ATTACHED, Chain, roles
 from ..chain.compile import divided
 from ..chain.compiled import Compiled
 from ..eigen.sensitivity import by_tension
@@ -61,7 +62,34 @@ def modal_system(model: Compiled, number: int | None) -> ModalSystem:
     # exact for what the modes span. Of tensed elements Gamma is the derivative of their stiffness,
     # which is not quite a straight line of the tension; the rest vanishes with the mesh.
     _refuse(model)
-    component = model.component_of("z")
+    parts = [_of_component(model, component, number) for component in transverse(model)]
+    there = sum(len(part.eigenvalue) for part in parts)
+    if number is not None and there < number:
+        raise SolveError(
+            f"modes must be at most {there}, the transverse ones this model has, got {number}"
+        )
+    return parts[0] if len(parts) == 1 else _together(parts, number)
+
+
+def transverse(model: Compiled) -> list[tuple[str, ...]]:
+    """Return the components that a tension that pulsates acts on: those of each plane."""
+    return [c for c in model.components if "z" in roles(c)]
+
+
+def _together(parts: Sequence[ModalSystem], number: int | None) -> ModalSystem:
+    """Return the lowest modes of systems that nothing ties to each other."""
+    from scipy.linalg import block_diag
+
+    value = np.concatenate([part.eigenvalue for part in parts])
+    geometric, damping = (
+        block_diag(*matrices)
+        for matrices in zip(*((part.geometric, part.damping) for part in parts))
+    )
+    return ModalSystem(value, geometric, damping).only(np.argsort(value, kind="stable")[:number])
+
+
+def _of_component(model: Compiled, component: tuple[str, ...], number: int | None) -> ModalSystem:
+    """Return the modes of one component."""
     basis = _Basis.of(model, component, number)
     half = np.linalg.inv(np.linalg.cholesky(basis.mass))
     geometric = _cut(half @ basis.geometric @ half.T)
@@ -125,11 +153,6 @@ class _Basis:
         chain = model.chain.only(component)
         wanted = chain.finite if number is None else number
         found = SOLVERS["sweep"](model, component, wanted, math.inf, shaped=True)
-        if number is not None and len(found.eigenvalue) < number:
-            raise SolveError(
-                f"modes must be at most {len(found.eigenvalue)}, the transverse ones this model "
-                f"has, got {number}"
-            )
         shape = found.shape
         assert shape is not None
         of_structures, stiffness, resisted = _structures(chain, found)
@@ -145,8 +168,8 @@ class _Basis:
             mass = np.diag(np.diag(mass))  # what is not known of wires makes modes orthogonal
         if weight is None:
             geometric = by_tension(chain, shape)
-        elif "beta" in component:
-            slope = shape[:, :, component.index("beta")]
+        elif "beta" in roles(component):
+            slope = shape[:, :, roles(component).index("beta")]
             geometric = (slope * weight) @ slope.T
         else:
             # in tension is stored what springs and structures do not store

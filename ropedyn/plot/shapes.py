@@ -25,13 +25,14 @@ if TYPE_CHECKING:
 
 @plots(FreeMotion)
 def plot_modes(modes: Modes | DampedModes, ax: Axes, coordinate: str | None) -> None:
-    """Plot shapes of one coordinate, of complex ones the real part."""
-    coordinate = coordinate_of(modes, coordinate)
-    at = modes.coordinates.index(coordinate)
+    """Plot shapes of one coordinate, of complex ones the real part; modes in y show y."""
+    shown = coordinate_of(modes, coordinate)
     for k, f in enumerate(modes.frequency):
-        label = f"{k + 1}: {f:.4g} Hz, {modes.family[k]}"
+        across = coordinate is None and modes.plane[k] == "y"
+        at = modes.coordinates.index("y" if across else shown)
+        label = f"{k + 1}: {f:.4g} Hz, {modes.family[k]}{' in the plane of y' if across else ''}"
         ax.plot(modes.x, modes.shape[k, :, at].real, label=label)
-    along_the_rope(ax, coordinate)
+    along_the_rope(ax, shown)
     ax.set_title("mode shapes, largest component of the mode's own coordinate 1")
     ax.legend(title="mode", fontsize="small")
 

@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..base.array import Complex, Flags, Real
 from ..base.check import NEAR
-from ..chain.chain import Chain
+from ..chain.chain import Chain, roles
 from ..chain.port import Point
 from ..chain.spans import spans_of
 from ..eigen.closed import ClosedSpans, closed_form
@@ -42,7 +42,7 @@ def closed_response(
         form.taken is None
         or form.kind != "bent"
         or chain.damping is not None
-        or any(p[0] != "z" for p in asked)
+        or set(roles([p[0] for p in asked])) != {"z"}
     ):
         return None
     drag = 0.0 if chain.drag is None else float(chain.drag[0, 0])

@@ -138,7 +138,7 @@ class ComponentRates:
         """Yield what the elements give."""
         factor, chain = self.fields.question.factor, self.fields.chain
         source = self._source
-        element = weights.element[source]
+        element = weights.element_in(self.fields.question.component)[source]
         element[:, LENGTH] = self._longer(weights)
         yield slopes.element[:, :, :INERTIA], element, 1.0
         width = len(self._kept)

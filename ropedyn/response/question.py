@@ -11,10 +11,9 @@ import numpy as np
 from .. import _core
 from ..base import check
 from ..base.array import Complex, Flags, Real
-from ..base.check import COORDINATES
 from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
-from ..chain.chain import Chain
+from ..chain.chain import PLANE, Chain
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, cut, is_force, locate, stops
 from ..chain.reaction import at_start
@@ -109,7 +108,7 @@ def angular(frequency: Real, decay: float) -> Real | Complex:
 
 def damped_lines(chain: Chain, factor: Complex) -> Flags:
     """Return at which lines a factor of something that a component has is complex, shape (f,)."""
-    names = {COORDINATES[k] for k in chain.coordinate}
+    names = {PLANE[k] for k in chain.coordinate}
     has = {
         damping.SECTION: names != {"z"},
         damping.TENSION: "z" in names and bool(chain.tension.any()),

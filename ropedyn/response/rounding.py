@@ -12,8 +12,7 @@ import numpy as np
 
 from .. import _core
 from ..base.array import Complex, Index, Real
-from ..base.check import COORDINATES
-from ..chain.chain import CHANNELS, CONTINUOUS, Chain
+from ..chain.chain import CHANNELS, CONTINUOUS, PLANE, Chain
 from ..chain.port import Ports
 from ..scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION
 
@@ -146,7 +145,7 @@ def _radians(chain: Chain, stations: Stations, factor: Complex) -> Real:
     first, size = stations.node[:-1], np.abs(factor)
     element, apart = chain.element_of[first], np.diff(stations.node)
     load = _loads(chain, first, apart, factor)
-    names = [COORDINATES[k] for k in chain.coordinate]
+    names = [PLANE[k] for k in chain.coordinate]
     pull = np.abs(chain.tension[element])[:, None] * size[TENSION]
     turn = np.zeros(load.shape)
     for k, name in enumerate(names):

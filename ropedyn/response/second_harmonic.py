@@ -28,6 +28,7 @@ from ..base.array import Complex, Index, Real
 from ..base.errors import SceneError
 from ..base.unit import QUANTITIES
 from ..chain import tip
+from ..chain.chain import CHANNELS, TRANSVERSE
 from ..chain.compiled import Compiled
 from ..chain.place import points
 from ..chain.port import Point, cut, moving, ports
@@ -267,13 +268,18 @@ def _scales(model: Compiled, fastest: float) -> tuple[float, float]:
     if "alpha" in inertia:
         turns = turns + 2 * omega * np.sqrt(inertia["alpha"] * S[:, 1, 1])
     thin = np.full(len(S), np.inf)
-    if "beta" in names:
-        bends = S[:, 2, 2]
-        root = np.sqrt(chain.tension**2 + 4 * inertia["z"] * omega**2 / bends)
-        turns = turns + 2 * np.sqrt(np.maximum(root - chain.tension, 0.0) * bends / 2)
-        thin = 1 / np.sqrt(np.maximum((root + chain.tension) * bends / 2, 1e-300))
-    elif "z" in names:
-        turns = turns + 2 * omega * np.sqrt(inertia["z"] / chain.tension)
+    across = np.zeros(len(S))
+    for z, beta in _planes(model):
+        if beta in names:
+            bends = S[:, CHANNELS[beta], CHANNELS[beta]]
+            root = np.sqrt(chain.tension**2 + 4 * inertia[z] * omega**2 / bends)
+            own = 2 * np.sqrt(np.maximum(root - chain.tension, 0.0) * bends / 2)
+            layer = 1 / np.sqrt(np.maximum((root + chain.tension) * bends / 2, 1e-300))
+            thin = np.minimum(thin, layer)
+        else:
+            own = 2 * omega * np.sqrt(inertia[z] / chain.tension)
+        across = np.maximum(across, own)
+    turns = turns + across
     longest = float(TURN / np.maximum(turns.max(), 1e-300))
     return min(float(thin.min()), longest), longest
 
@@ -282,7 +288,7 @@ class FieldsAlong(NamedTuple):
     """Fields at the places of a rule under loads one after another."""
 
     tension: Complex  # (loads, places, f) N
-    slope: Complex  # (loads, places, f) z'
+    slope: Complex  # (planes, loads, places, f) z', y'
     rounding: Real  # (loads, f) relative
 
 
@@ -302,8 +308,9 @@ def _integrated(
         moved = _fields(model, f[part], drives, rule)
         told = _fields(model, 2 * f[part], responses, rule)
         for d in range(len(drives)):
-            slope, tension = moved.slope[d], moved.tension[d]
-            work = told.tension * slope**2 + 2 * tension * slope * told.slope
+            slope, tension = moved.slope[:, d], moved.tension[d]
+            work = told.tension * (slope**2).sum(axis=0)
+            work += (2 * tension * slope[:, None] * told.slope).sum(axis=0)
             value[d, :, part] = -np.einsum("rxf,x->rf", work, rule.weight) / 4
             rounding[d, :, part] = 2 * moved.rounding[d] + told.rounding
     return value, rounding
@@ -312,12 +319,13 @@ def _integrated(
 def _fields(model: Compiled, f: Real, loads: Sequence[Point], rule: Rule) -> FieldsAlong:
     """Return the fields of unit loads, dislocations and motions of ends."""
     shape = (len(loads), len(rule.x), len(f))
-    tension, slope = np.zeros(shape, np.complex128), np.zeros(shape, np.complex128)
+    planes = _planes(model)
+    tension, slope = np.zeros(shape, np.complex128), np.zeros((len(planes), *shape), np.complex128)
     rounding = np.zeros((len(loads), len(f)))
     factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
     for component in model.components:
         here = [k for k, load in enumerate(loads) if moving(load) in component]
-        if not here or not {"x", "z"} & set(component):
+        if not here or not {"x", "y", "z"} & set(component):
             continue
         fine = _cut(model, component, rule.x)
         question = Question(fine, component, f, factor, [loads[k] for k in here], [], 1)
@@ -328,13 +336,19 @@ def _fields(model: Compiled, f: Real, loads: Sequence[Point], rule: Rule) -> Fie
         )
         if "x" in component:
             tension[here] = told[:, at, 1, component.index("x")]
-        if "beta" in component:
-            slope[here] = told[:, at, 0, component.index("beta")]
-        elif "z" in component:
-            pull = model.scene.mean_tension * factor[damping.TENSION]
-            slope[here] = told[:, at, 1, component.index("z")] / pull
+        for own, (z, beta) in zip(slope, planes):
+            if beta in component:
+                own[here] = told[:, at, 0, component.index(beta)]
+            elif z in component:
+                pull = model.scene.mean_tension * factor[damping.TENSION]
+                own[here] = told[:, at, 1, component.index(z)] / pull
         rounding[here] = _rounding(fields, factor, at)
     return FieldsAlong(tension, slope, rounding)
+
+
+def _planes(model: Compiled) -> list[tuple[str, str]]:
+    """Return what moves across and turns, in each plane there is."""
+    return [plane for plane in TRANSVERSE if plane[0] in model.coordinates]
 
 
 def _cut(model: Compiled, component: tuple[str, ...], positions: Real) -> Compiled:

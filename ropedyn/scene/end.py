@@ -22,11 +22,12 @@ class End(Description):
 
     Parameters
     ----------
-    x, z, alpha, beta : {"held", "free"}
-        The coordinate cannot move, or nothing holds it.
+    x, y, z, alpha, beta, gamma : {"held", "free"}
+        The coordinate cannot move, or nothing holds it. In a clevis ``End(beta="held",
+        gamma="free")`` the rope is clamped in the plane of z and pinned in that of y.
     spring : mapping, optional
         Stiffness from the end to the ground at free coordinates, such as ``{"beta": 12.0}``
-        [N/m for x and z, N m for alpha and beta].
+        [N/m for x, y and z, N m for alpha, beta and gamma].
     dashpot : mapping, optional
         Damping from the end to the ground at free coordinates [N s/m, N m s].
     mass : mapping, optional
@@ -47,11 +48,13 @@ class End(Description):
     12.0
     """
 
+    _: KW_ONLY
     x: str = one_of(HELD_OR_FREE, default="held")
+    y: str = one_of(HELD_OR_FREE, default="held")
     z: str = one_of(HELD_OR_FREE, default="held")
     alpha: str = one_of(HELD_OR_FREE, default="held")
     beta: str = one_of(HELD_OR_FREE, default="held")
-    _: KW_ONLY
+    gamma: str = one_of(HELD_OR_FREE, default="held")
     spring: Mapping[str, float] = per_coordinate("N/m", turning="N m", sign="nonzero", default={})
     dashpot: Mapping[str, float] = per_coordinate(
         "N s/m", turning="N m s", sign="positive", default={}
@@ -75,7 +78,7 @@ class End(Description):
         Examples
         --------
         >>> import ropedyn as rd
-        >>> pinned = rd.End(beta="free")
+        >>> pinned = rd.End(beta="free", gamma="free")
         >>> pinned.holds("z"), pinned.holds("beta")
         (True, False)
         """
@@ -102,16 +105,16 @@ class End(Description):
         >>> import ropedyn as rd
         >>> term = rd.End(beta="free", spring={"beta": 12.0}).term()
         >>> term.held, term.stiffness
-        (['x', 'z', 'alpha'], {'beta': 12.0})
+        (['x', 'y', 'z', 'alpha', 'gamma'], {'beta': 12.0})
         """
-        held = [c for c in check.COORDINATES if self.holds(c)]
+        held = [c for c in check.COORDINATES if getattr(self, c) == "held"]
         return NodeTerm(self.mass, self.spring, held, damping=self.dashpot)
 
 
 NAMED = {
     "clamped": End(),
-    "pinned": End(beta="free"),
-    "free": End(x="free", z="free", alpha="free", beta="free"),
+    "pinned": End(beta="free", gamma="free"),
+    "free": End(x="free", y="free", z="free", alpha="free", beta="free", gamma="free"),
 }
 """The words that are ends."""
 

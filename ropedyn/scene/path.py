@@ -21,8 +21,10 @@ from .tension import Tension
 
 _PATH = re.compile(
     r"(?:(?P<one>tension|gravity|damping)|(?P<many>parts|damping)\[(?P<at>\d+)\]"
-    rf"|ends\[(?P<end>[01])\]\.(?P<kind>{'|'.join(STANDING)}))\.(?P<name>\w+)"
+    rf"|ends\[(?P<end>[01])\]\.(?P<kind>{'|'.join(STANDING)}))\.(?P<name>[^.]+)"
 )
+
+_ENTRY = re.compile(r"(.*)\[([01])\]")  # one number of a pair, for the plane of z or of y
 
 
 class _Place(NamedTuple):
@@ -32,6 +34,7 @@ class _Place(NamedTuple):
     name: str
     at: int | None = None
     kind: str = ""  # of what stands at an end; then the name is a coordinate
+    entry: int | None = None  # which number of a pair
 
 
 def _place(path: str) -> _Place:
@@ -40,12 +43,17 @@ def _place(path: str) -> _Place:
     if path == "tension":
         return _Place("tension", "mean")
     found = _PATH.fullmatch(path)
+    name = path.rsplit(".", 1)[-1] if found is None else found["name"]
+    one_of_pair = _ENTRY.fullmatch(name)
+    if one_of_pair:
+        name = one_of_pair[1]
+    entry = int(one_of_pair[2]) if one_of_pair else None
     if found is None:
-        return _Place("rope", path.rsplit(".", 1)[-1])
+        return _Place("rope", name, entry=entry)
     if found["end"]:
-        return _Place("ends", found["name"], int(found["end"]), found["kind"])
+        return _Place("ends", name, int(found["end"]), found["kind"], entry)
     at = int(found["at"]) if found["many"] else None
-    return _Place(found["one"] or found["many"], found["name"], at)
+    return _Place(found["one"] or found["many"], name, at, entry=entry)
 
 
 def value_at(scene: Scene, path: str) -> float:
@@ -58,6 +66,10 @@ def value_at(scene: Scene, path: str) -> float:
         value = getattr(owner, place.name, None)
     if value is None:
         raise _absent(path, "the scene has none")
+    if place.entry is not None:
+        if not isinstance(value, tuple):
+            raise _absent(path, f"there is one number, {check.shown(value)}")
+        value = value[place.entry]
     if isinstance(value, bool) or not isinstance(value, Real):
         raise _absent(path, f"there is {check.shown(value)}")
     return float(value)
@@ -73,6 +85,10 @@ def with_values(scene: Scene, values: Mapping[str, float]) -> Scene:
         if place.kind:
             beside = change.get(place.kind, getattr(_owner(scene, place, path), place.kind))
             change[place.kind] = {**beside, place.name: value}
+        elif place.entry is not None:
+            pair = list(change.get(place.name, getattr(_owner(scene, place, path), place.name)))
+            pair[place.entry] = value
+            change[place.name] = tuple(pair)
         else:
             change[place.name] = value
     kept: dict[str, list[Any]] = {}

@@ -12,18 +12,21 @@ from typing import TYPE_CHECKING, Any
 from ..base import check
 from ..base.computed import computed
 from ..base.errors import SceneError
-from ..base.parameter import Description, given, instance, positions
+from ..base.parameter import Description, given, instance, one_of, positions
+from ..base.unit import ROLE
 from . import damping as _damping
 from . import end as _end
-from . import toml
+from . import left, toml
 from .card import card, card_html, card_text
 from .damping import Damping
 from .end import End
 from .gravity import Gravity
+from .left import SECOND_PLANE
 from .parts import part as _part
+from .parts.broken_wire import BrokenWire
 from .parts.node import Part
 from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
-from .rope import Rope
+from .rope import ACROSS, Rope
 from .stations import stations_at
 from .tension import Tension
 
@@ -44,18 +47,9 @@ EFFECTS = (
     *(kind.kind for kind in _part.KINDS),
     *(kind.kind for kind in _damping.KINDS),
     Gravity.kind,
+    SECOND_PLANE,
 )
 """The effects that a scene can have, in their fixed order."""
-
-_PROPERTIES = {
-    "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
-    "twist": ("torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia"),
-    "stretch": ("axial_stiffness", "lay_coupling"),
-    "lay": ("lay_coupling", "lay_slope"),
-    "rotary inertia": ("rotary_inertia",),
-    "polar inertia": ("polar_inertia",),
-}
-"""What a rope never had that never had one of these effects."""
 
 _PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
 
@@ -122,7 +116,12 @@ class Scene(Description):
 NodeForce, Stop, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
     gravity : Gravity, optional
-        The rope's weight, under which it sags.
+        Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
+        holds the rope along x; the rope has no inertia along x then. It acts in the plane of z; in
+        that of y the rope is a straight one.
+    planes : {"z", "both"}
+        Whether the rope moves across in one plane, or in that of y too, with the coordinates y and
+        gamma = dy/dx; nothing ties the planes to each other.
 
     Raises
     ------
@@ -149,6 +148,7 @@ NodeForce, Stop, AddedMass, LocalChange
     damping: Damping | tuple[Damping, ...] | None = given(_checked_damping, default=None)
     parts: tuple[Part | Stretch, ...] = given(_checked_parts, default=())
     gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
+    planes: str = one_of(("z", "both"), default="z")
 
     def __repr__(self) -> str:
         return card_text("Scene of a rope", card(self))
@@ -158,6 +158,7 @@ NodeForce, Stop, AddedMass, LocalChange
 
     def _agree(self) -> None:
         self._check_coordinates()
+        self._check_planes()
         self._check_places()
         # a rope that is changed must be one
         if changing := _part.stretches(self.parts):
@@ -181,6 +182,20 @@ NodeForce, Stop, AddedMass, LocalChange
                 "bending_stiffness, torsional_stiffness and axial_stiffness are None"
             )
 
+    def _check_planes(self) -> None:
+        for name in ACROSS if self.planes == "z" else ():
+            self._refuse_pair(f"rope.{name}", getattr(self.rope, name))
+        for i, part in enumerate(self.parts if self.planes == "both" else ()):
+            if isinstance(part, BrokenWire):
+                raise SceneError(
+                    f'planes must be "z" where there is a broken wire, as parts[{i}]: its tip is '
+                    'known in one plane, got "both"'
+                )
+
+    def _refuse_pair(self, name: str, value: Any) -> None:
+        if self.planes == "z" and isinstance(value, tuple):
+            raise SceneError(f'{name} must be one number where planes is "z", got {value!r}')
+
     def _check_places(self) -> None:
         for i, part in enumerate(self.parts):
             for name in positions(part):
@@ -192,20 +207,15 @@ NodeForce, Stop, AddedMass, LocalChange
                 if coordinate not in self.coordinates:
                     chosen = hasattr(part, "coordinate")
                     name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
-                    raise SceneError(
-                        f"{name} must be one the scene has ({', '.join(self.coordinates)}), "
-                        f"got {coordinate!r}"
-                    )
+                    raise check.absent(f"{name} must be one", self.coordinates, coordinate)
             if isinstance(part, _part.Hinge):
                 self._check_hinge(i, part.x)
         for i, end in enumerate(self.ends):
             for name, values in _end.end_of(end).standing.items():
                 for coordinate in values:
                     if coordinate not in self.coordinates:
-                        raise SceneError(
-                            f"ends[{i}].{name} must stand on coordinates the scene has "
-                            f"({', '.join(self.coordinates)}), got {coordinate!r}"
-                        )
+                        must = f"ends[{i}].{name} must stand on coordinates"
+                        raise check.absent(must, self.coordinates, coordinate)
 
     def _check_stretch(self, i: int, part: Stretch) -> None:
         least = check.NEAR * self.rope.length
@@ -216,6 +226,7 @@ NodeForce, Stop, AddedMass, LocalChange
             )
         for name, what in part.acts_on.items():
             factor = getattr(part, name)
+            self._refuse_pair(f"parts[{i}].{name}", factor)
             if factor != 1 and what not in changeable(self.rope, self.coordinates):
                 raise SceneError(
                     f"parts[{i}].{name} must be 1 where the scene has no {what} "
@@ -255,6 +266,11 @@ NodeForce, Stop, AddedMass, LocalChange
     def _check_stretching(self) -> None:
         if not isinstance(self.tension, Tension) or not self.tension.stretching:
             return
+        if self.planes == "both":
+            raise SceneError(
+                'planes must be "z" where the tension is stretching, got "both": motion in one '
+                "plane would strain the rope in the other"
+            )
         refuse_uneven(self.parts, "where the tension is stretching")
         if self.rope.axial_stiffness is None:
             raise SceneError(
@@ -288,6 +304,8 @@ NodeForce, Stop, AddedMass, LocalChange
     def coordinates(self) -> tuple[str, ...]:
         """Coordinates of a node: z with bending or tension, beta with bending, and so on.
 
+        In both planes y is where z is, gamma where beta is.
+
         Examples
         --------
         >>> import ropedyn as rd
@@ -302,7 +320,9 @@ NodeForce, Stop, AddedMass, LocalChange
             "alpha": rope.torsional_stiffness is not None,
             "beta": bends,
         }
-        return tuple([c for c in check.COORDINATES if present[c]])
+        if self.planes == "both":
+            present |= {c: present[role] for c, role in ROLE.items()}
+        return tuple([c for c in check.COORDINATES if present.get(c, False)])
 
     @property
     def dampings(self) -> tuple[Damping, ...]:
@@ -334,9 +354,11 @@ NodeForce, Stop, AddedMass, LocalChange
             "twist": rope.torsional_stiffness is not None,
             "stretch": rope.axial_stiffness is not None,
             "lay": bool(rope.lay_coupling or rope.lay_slope),
-            "rotary inertia": bool(rope.rotary_inertia and rope.bending_stiffness),
+            "rotary inertia": bool(rope.bending_stiffness)
+            and rope.rotary_inertia not in (None, 0.0, (0.0, 0.0)),
             "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
             Gravity.kind: self.gravity is not None,
+            SECOND_PLANE: self.planes == "both",
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
 
@@ -392,21 +414,20 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
-        gone = {name for effect in effects for name in _PROPERTIES.get(effect, ())}
-        rope = self.rope.replace(**dict.fromkeys(gone))
-        tension = _left_of_tension(self.tension, effects)
+        tension = left.of_tension(self.tension, effects)
         mean = tension.mean if isinstance(tension, Tension) else tension
-        bare = Scene(rope, tension=mean)
+        planes = "z" if SECOND_PLANE in effects else self.planes
+        bare = Scene(left.of_rope(self.rope, effects), tension=mean, planes=planes)
         kept = tuple(d for d in self.dampings if d.kind not in effects)
         return bare.replace(
             tension=tension,
-            ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
+            ends=tuple(left.of_end(end, bare.coordinates, effects) for end in self.ends),
             damping=kept,
             gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
             parts=tuple(
-                left
+                kept_part
                 for part in self.parts
-                if part.kind not in effects and (left := _left_of(part, bare)) is not None
+                if part.kind not in effects and (kept_part := left.of_part(part, bare)) is not None
             ),
         )
 
@@ -567,34 +588,3 @@ NodeForce, Stop, AddedMass, LocalChange
         True
         """
         return toml.load(Scene, path)
-
-
-def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
-    """Return the tension of a scene that never had these effects."""
-    if "tension" in effects:
-        return 0.0
-    if not isinstance(tension, Tension):
-        return tension
-    if Tension.pulsating in effects:
-        tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
-    if {Tension.growing, "stretch"} & set(effects):
-        tension = dataclasses.replace(tension, stretching=False)
-    return _checked_tension(tension)
-
-
-def _left_of(part: Part | Stretch, bare: Scene) -> Part | Stretch | None:
-    """Return what is left of a part in a scene with less, None where nothing is."""
-    if isinstance(part, Stretch):
-        return part.on(changeable(bare.rope, bare.coordinates))
-    return part if set(part.stands_on) <= set(bare.coordinates) else None
-
-
-def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
-    """Return an end without what goes with coordinates or with the effect itself."""
-    if isinstance(end, str):
-        return end
-    kept: dict[str, Any] = {}
-    for name, values in end.standing.items():
-        gone = _end.STANDING[name] in effects
-        kept[name] = {c: v for c, v in values.items() if c in present and not gone}
-    return dataclasses.replace(end, **kept)

@@ -51,6 +51,8 @@ def save(scene: Any, path: str | os.PathLike[str]) -> None:
         "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
         "rope": _plain(scene.rope),
     }
+    if scene.planes != "z":
+        document["planes"] = scene.planes
     if scene.gravity is not None:
         document["gravity"] = _plain(scene.gravity)
     if scene.dampings:

@@ -12,7 +12,7 @@ import ropedyn as rd
 from ropedyn.chain import matrices
 
 LENGTH = 1.0
-FREE = rd.End("free", "free", "free", "free")
+FREE = rd.End(x="free", z="free", alpha="free", beta="free")
 
 
 def value(low, high):

@@ -167,7 +167,7 @@ def test_numbers_by_hand_are_a_measurement():
         ({"coherence": [0.9, 1.1]}, rd.SceneError, "coherence must lie between 0 and 1"),
         ({"averages": 0}, rd.SceneError, "averages must be a finite number > 0"),
         ({"drive": None}, TypeError, "drive must be a coordinate and a position"),
-        ({"drive": ("y", 0.5)}, rd.SceneError, r"drive\[0\] must be one of"),
+        ({"drive": ("w", 0.5)}, rd.SceneError, r"drive\[0\] must be one of"),
         ({"drive": [("z", 0.5), ("z", 0.6)]}, rd.SceneError, "drive must be one point"),
         ({"response": ("F_q", 0.5)}, rd.SceneError, r"response\[0\] must be one of"),
         ({"response": ()}, rd.SceneError, "response must be"),

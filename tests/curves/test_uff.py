@@ -316,7 +316,7 @@ REFUSED = {
     "no node left": ([function()], {"positions": {1: None, 2: 0.2}}, "positions must leave"),
     "no coordinate": ([function()], {"coordinate": None}, r"coordinate must say .*\(Z\)"),
     "two directions": ([function(response=(1, 1))], {}, r"coordinate must say .*\(X, Z\)"),
-    "no such coordinate": ([function()], {"coordinate": "y"}, "coordinate.* must be one of"),
+    "no such coordinate": ([function()], {"coordinate": "w"}, "coordinate.* must be one of"),
     "no unit": ([function()], {}, "unit must be stated"),
     "half a unit": ([function(labels=("m/s2", "NONE"))], {}, "unit must be stated"),
     "unknown unit": ([function(labels=("furlong", "N"))], {}, "'furlong', which is not known"),

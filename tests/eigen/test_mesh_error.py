@@ -13,8 +13,8 @@ from random_scene import WIDTHS, random_line, taut_scene
 
 import ropedyn as rd
 from ropedyn import _core
-from ropedyn.base import check
 from ropedyn.chain.chain import KINDS as ELEMENTS
+from ropedyn.chain.chain import PLANE
 from ropedyn.response.harmonic import mesh_of_frf
 
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
@@ -211,7 +211,7 @@ def test_modes_that_continuous_spans_do_not_find_have_an_infinite_mesh_error(ref
 
 def chain_names(chain):
     """Coordinates of a chain."""
-    return [check.COORDINATES[k] for k in chain.coordinate]
+    return [PLANE[k] for k in chain.coordinate]
 
 
 # when it is computed, and what becomes of it

@@ -64,7 +64,7 @@ for kind, given in {
         "coordinate",
         lambda v, kind=kind, given=given: kind(**given, coordinate=v),
         NOT_A_WORD,
-        {"unknown": "y", "empty": "", "capital": "Z"},
+        {"unknown": "w", "empty": "", "capital": "Z"},
     )
 row("NodeForce", "law", lambda v: rd.NodeForce(0.5, v), LAW)
 row("Stop", "stiffness", lambda v: rd.Stop(0.5, v), NOT_A_NUMBER, NOT_FINITE | NEGATIVE | ZERO)

@@ -141,7 +141,7 @@ def test_shape_of_a_continuous_rope_is_taken_to_the_tolerance():
     [
         ({"start": lambda x: x, **SEEN}, "start must be 0 where z is held, got 1.3 at 1.3 m"),
         ({"start": lambda x: np.sin(np.pi * x / LENGTH), **SEEN}, "no slope where beta is held"),
-        ({"velocity": {"y": abs}, **SEEN}, "velocity's coordinate must be"),
+        ({"velocity": {"w": abs}, **SEEN}, "velocity's coordinate must be"),
         ({"drive": ("z", 0.0), "force": rd.Step(1.0)}, r"drive must be free to move, got \('z', 0"),
         (
             {"drive": ("z", 0.4), "force": np.full(401, np.nan)},

@@ -580,7 +580,7 @@ REFUSED = {
     ),
     "a wire as drive": (
         lambda: taut(WIRE).compile().frf(1.0, drive=("wire", 0)),
-        'drive[0] must be one of "x", "z", "alpha", "beta", got \'wire\'',
+        'drive[0] must be one of "x", "y", "z", "alpha", "beta", "gamma", got \'wire\'',
     ),
     "assembled modes": (
         lambda: taut(WIRE).compile(elements=8).modes(2, solver="lapack"),

@@ -87,7 +87,7 @@ for name, wrong in (
         name,
         lambda v, name=name: rd.End(z="free", **{name: v}),
         {"none": None, "number": 3.0, "list": [("z", 1.0)], "text": "z", "number_key": {3: 1.0}},
-        {"unknown_key": {"y": 1.0}, "held_key": {"beta": 1.0}},
+        {"unknown_key": {"w": 1.0}, "held_key": {"beta": 1.0}},
     )
     row(
         "End",
@@ -141,7 +141,7 @@ for part in ("Spring", "Dashpot", "Support"):
         "coordinate",
         lambda v, part=part: PARTS[part](coordinate=v),
         NOT_A_WORD,
-        {"unknown": "y", "empty": "", "capital": "Z"},
+        {"unknown": "w", "empty": "", "capital": "Z"},
     )
     row(
         f"Scene with {part}",
@@ -378,7 +378,7 @@ def test_what_has_no_meaning_is_refused_by_name(argument, call, wrong_types, wro
         (lambda: rd.Rope(1.0, 0.1, 1.0), "positional"),
         (lambda: rd.Rope(1.0, 0.1, stiffness=1.0), "stiffness"),
         (lambda: rope().replace(stiffness=1.0), "stiffness"),
-        (lambda: rd.End(y="held"), "y"),
+        (lambda: rd.End(w="held"), "w"),
         (lambda: rd.PointMass(0.5), "mass"),
         (lambda: rd.Spring(0.5, 1.0, "z"), "positional"),
         (rd.Support, "x"),

@@ -168,7 +168,8 @@ def every_effect_but_a_law():
     )
     # a rope that sags cannot stretch with the amplitude
     stretching = rd.Scene(rope, tension=rd.Tension(1.0, stretching=True))
-    return sagging, stretching
+    plain = {"rope": rope.replace(bending_stiffness=(1.0, 2.0)), "parts": (), "planes": "both"}
+    return sagging, stretching, sagging.replace(**plain)
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e != rd.NodeForce.kind])
@@ -241,7 +242,7 @@ REFUSED = {
         changed("rope", "diameter", value=4e-3),
         "unknown key 'diameter' in rope: expected one of axial_stiffness, bending_stiffness",
     ),
-    "unknown key of an end": (changed("ends", 1, "y", value="held"), "unknown key 'y' in ends[1]"),
+    "unknown key of an end": (changed("ends", 1, "w", value="held"), "unknown key 'w' in ends[1]"),
     "unknown key of a damping": (
         changed("damping", 0, "eta", value=0.1),
         "unknown key 'eta' in damping[0]",
@@ -303,7 +304,7 @@ REFUSED = {
     "number as end": (changed("ends", 0, value=1), "ends[0] must be a word or an End, got 1"),
     "unknown word": (changed("ends", 1, "beta", value="loose"), "ends[1].beta must be one of"),
     "spring of a number": (changed("ends", 1, "spring", value=3.0), "ends[1].spring must be"),
-    "spring at unknown": (changed("ends", 1, "spring", value={"y": 1.0}), "ends[1].key of spring"),
+    "spring at unknown": (changed("ends", 1, "spring", value={"w": 1.0}), "ends[1].key of spring"),
     "damping of a number": (changed("damping", value=0.1), "damping[0] must be a table, got 0.1"),
     "unknown damping": (
         changed("damping", 0, "kind", value="NoDamping"),

@@ -71,7 +71,7 @@ BAD_POINT = {
     "empty": (),
     "short": ("z",),
     "long": ("z", 0.5, 1.0),
-    "unknown_coordinate": ("y", 0.5),
+    "unknown_coordinate": ("w", 0.5),
     "empty_word": ("", 0.5),
     "absent_coordinate": ("x", 0.5),
     "left_of_the_rope": ("z", -0.01),

@@ -194,8 +194,8 @@ def _state_bytes(file: Path, sizes: Sequence[int]) -> None:
 
 
 EVEN = 1e-13  # Frequencies nearer than this relative distance differ by rounding of start + k step.
-CODE = {"x": 1, "z": 3, "alpha": 4, "beta": -5}
-"""Directions: x along the rope and z of a right-handed system, where dz/dx turns against +Y."""
+CODE = {"x": 1, "y": 2, "z": 3, "alpha": 4, "beta": -5, "gamma": 6}
+"""Directions of a right-handed system, x along the rope: dz/dx turns against +Y, dy/dx as +Z."""
 
 
 def write(content: Content, path: Path, binary: bool) -> None:

@@ -35,11 +35,13 @@ class AttachedEnergy(NamedTuple):
     def real(cls, chain: Chain, shape: Real, motion: Real, eigenvalue: Real) -> AttachedEnergy:
         """Return those of undamped modes, whose own motion is known."""
         every = cls.none(len(shape))
-        for kind in chain.carried:
-            these = chain.carries(kind)
-            own = np.ascontiguousarray(motion[:, these])
-            energy = _core.carried(chain.carrying(these), shape, own, eigenvalue)
-            every.energy[ATTACHED.index(kind)] = energy
+        for plane in chain.planes if chain.carried else ():
+            part, u = plane.chain, np.ascontiguousarray(shape[..., plane.kept])
+            for kind in part.carried:
+                these = part.carries(kind)
+                own = np.ascontiguousarray(motion[:, plane.carried][:, these])
+                energy = _core.carried(part.carrying(these), u, own, eigenvalue)
+                every.energy[ATTACHED.index(kind)] += energy
         np.abs(motion).max(axis=1, initial=0.0, out=every.motion)
         return every
 

@@ -11,13 +11,12 @@ from functools import partial
 
 import numpy as np
 
-from ... import _core
 from ...base import check
 from ...base.answer import Cost
 from ...base.array import Complex, Index, Real
 from ...base.errors import SceneError, SolveError
 from ...base.unit import FAMILY
-from ...chain.chain import Chain
+from ...chain.chain import Chain, plane_of
 from ...chain.compile import check_points, compile_scene, finer
 from ...chain.compiled import Compiled
 from ...scene.damping import having
@@ -96,6 +95,7 @@ def solve_damped(
         x=x,
         eigenvalue=value,
         rounding_error=answer.error / (2 * math.pi),
+        plane=np.array([plane_of(answer.parts[k][0]) for k in answer.which], dtype=np.str_),
         cost=Cost(seconds, solver, len(model.x) - 1, model.size, answer.sweeps),
         vectors=partial(_vectors, model, answer, finest),
         mesh=mesh,
@@ -217,7 +217,7 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
         carried.energy[:, real], carried.motion[real] = AttachedEnergy.real(
             chain, own, moved, eigenvalue
         )
-        mass[real] = _core.energy(chain.undamped, own, eigenvalue)[1].sum(axis=1)
+        mass[real] = chain.undamped.energy(own, eigenvalue)[1].sum(axis=1)
         mass[real] += carried.energy[:, real, 1].sum(axis=0)
         if part.closed is not None:
             mass *= part.closed.mass_ratio(value, eigenvalue)
@@ -234,8 +234,8 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
 def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
     """Return strain and kinetic energy over a period, twice."""
     eigenvalue = -np.square(value).real
-    real = _core.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
-    imag = _core.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
+    real = chain.undamped.energy(np.ascontiguousarray(shape.real), eigenvalue)
+    imag = chain.undamped.energy(np.ascontiguousarray(shape.imag), eigenvalue)
     return real[0] + imag[0], real[1] + imag[1]
 
 

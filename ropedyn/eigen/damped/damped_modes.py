@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...base.answer import Cost, axes
 from ...base.array import Complex, Real
@@ -62,6 +63,8 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     family : ndarray of str, shape (k,)
         "transverse", "bending rotation", "torsional" or "axial": the coordinate with the most
         kinetic energy.
+    plane : ndarray of str, shape (k,)
+        As in `Modes`.
     modal_mass : ndarray of complex, shape (k,)
         shape^T D'(s) shape/2 s with the dynamic stiffness D [kg, kg m^2], no part conjugate: the
         response has the poles shape shape^T/(2 s modal_mass)/(i omega - s). shape^T M shape where
@@ -92,6 +95,7 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     x: Lazy[Real] = lazy(np.ndarray, axes("node", unit="m"))
     eigenvalue: Complex = field(metadata=axes("mode", unit="rad/s"))
     rounding_error: Real = field(metadata=axes("mode", unit="Hz"))
+    plane: Lazy[NDArray[np.str_]] = lazy(np.ndarray, axes("mode"))
     cost: Cost
     vectors: Lazy[Vectors[np.complex128]] = lazy(Vectors)
     mesh: Lazy[MeshOfModes] = lazy(MeshOfModes)
@@ -129,6 +133,8 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
             "rounding error [Hz]": self.rounding_error,
             "family": self.family,
         }
+        if (self.plane == "y").any():
+            columns["plane"] = self.plane
         return Table.of("damped modes", columns | self._shares)
 
     def plot(self, ax: Axes | None = None, *, coordinate: str | None = None) -> Axes:

@@ -86,6 +86,7 @@ def _answer(
         x=undamped.x,
         eigenvalue=value,
         rounding_error=undamped.rounding_error[mode] * scale,
+        plane=undamped.plane[mode],
         cost=replace(undamped.cost),
         vectors=partial(_vectors, undamped, mode, value, (ratio * omega)[mode]),
         mesh=partial(_mesh, undamped, mode, scale),

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.array import Complex
-from ...base.check import COORDINATES
-from ...chain.chain import Chain
+from ...chain.chain import PLANE, Chain
 from ...scene.damping import INERTIA, SECTION, TENSION, Damping
 
 
@@ -42,7 +41,7 @@ class Rates:
 
 def elastic(chain: Chain) -> list[int]:
     """Return which of sections and tension hold a chain together."""
-    names = {COORDINATES[c] for c in chain.coordinate}
+    names = {PLANE[c] for c in chain.coordinate}
     parts = [SECTION] if names & {"x", "alpha", "beta"} else []
     return parts + ([TENSION] if "z" in names and chain.tension.any() else [])
 

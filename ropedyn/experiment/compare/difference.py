@@ -23,6 +23,7 @@ from ...response.frf import FRF
 MOTIONS = {
     "axial": ("x",),
     "transverse": ("z", "beta"),
+    "transverse in y": ("y", "gamma"),
     "torsional": ("alpha",),
     **{kind: (name,) for kind, name in CARRIED.items()},
 }

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.array import Real
 from ...scene.end import end_of
+from ...scene.rope import own_number
 from ...scene.scene import Scene
 from .tracked import Tracked
 
@@ -68,7 +69,8 @@ def _may_turn(tracked: Tracked) -> bool:
 
 def _scale(scene: Scene) -> float:
     """Return a stiffness against turning that is neither free nor clamped [N m]."""
-    bending, tension = scene.rope.bending_stiffness or 0.0, max(scene.mean_tension, 0.0)
+    bending = own_number(scene.rope, "bending_stiffness") or 0.0
+    tension = max(scene.mean_tension, 0.0)
     return math.sqrt(tension * bending + (bending / scene.rope.length) ** 2)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.array import Index, Real
 from ...base.computed import computed
 from ...base.errors import SceneError, SolveError
-from ...base.unit import FAMILY
+from ...base.unit import own_coordinate
 from ...chain.compile import remeshed
 from ...chain.compiled import Compiled
 from ...eigen.modes import Modes
@@ -33,8 +33,8 @@ class Tracked:
     @computed
     def parts(self) -> list[tuple[tuple[str, ...], Index, Index]]:
         """Components, which of the tracked modes are theirs, and their numbers in them."""
-        coordinate = {name: c for c, name in FAMILY.items()}
-        own = [self.model.component_of(coordinate[name]) for name in self.modes.family]
+        names = map(own_coordinate, self.modes.family.tolist(), self.modes.plane.tolist())
+        own = [self.model.component_of(name) for name in names]
         found = []
         for component in self.model.components:
             mine = np.array([one == component for one in own])

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...base.array import Index, Real
 from ...base.errors import SolveError
-from ...base.unit import FAMILY
+from ...base.unit import own_coordinate
 from ...chain.compiled import Compiled
 from ...eigen.damped.damped import solve_damped
+from ...eigen.damped.damped_modes import DampedModes
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
 from ...scene.damping import ModalDamping
@@ -35,8 +36,8 @@ def natural_of(model: Compiled, modes: Modes) -> Natural:
         return found
     damped = solve_damped(model, len(modes.frequency), below=None, solver="sweep", points=None)
     oscillates = np.flatnonzero(damped.eigenvalue.imag > ROUNDING * np.abs(damped.eigenvalue))
-    own = np.where(modes.frequency > 0, _components(model, modes.family), -1)
-    theirs = _components(model, damped.family[oscillates])
+    own = np.where(modes.frequency > 0, _components(model, modes), -1)
+    theirs = _components(model, damped)[oscillates]
     for one in range(len(model.components)):
         mine, of = np.flatnonzero(own == one), oscillates[theirs == one]
         both = min(len(mine), len(of))
@@ -71,8 +72,8 @@ def shift_by_damping(scene: Scene, number: int) -> Real:
     return shift
 
 
-def _components(model: Compiled, family: Any) -> Index:
-    """Return which component modes of these families move."""
-    coordinate = {name: c for c, name in FAMILY.items()}
+def _components(model: Compiled, modes: Modes | DampedModes) -> Index:
+    """Return which component each mode moves."""
     number = {c: k for k, component in enumerate(model.components) for c in component}
-    return np.array([number[coordinate[name]] for name in family.tolist()], dtype=np.intp)
+    own = map(own_coordinate, modes.family.tolist(), modes.plane.tolist())
+    return np.array([number[c] for c in own], dtype=np.intp)

@@ -46,6 +46,8 @@ def cross_checks(
     check.instance(rope, "rope", Rope, "a Rope")
     f = _modes(frequency, orders)
     length, density, stiffness = rope.length, rope.linear_density, rope.bending_stiffness or 0.0
+    if isinstance(stiffness, tuple):
+        raise SceneError(f"rope must bend alike in both planes, got bending_stiffness {stiffness}")
     c = math.sqrt(stiffness / density) / length**2
     found = []
     for name, source, formula in FORMULAS:

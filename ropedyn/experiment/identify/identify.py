@@ -203,6 +203,8 @@ def identify(
     whole = isinstance(measured, Measured)
     sought, calibrated = _calibrated(unknown, whole=whole)
     given = None if whole else _given(measured)
+    if given is not None and scene.planes == "both":
+        raise SceneError('planes must be "z" of peaks, which do not say their plane, got "both"')
     sought, damping = _damped(sought, given)
     checked = Unknowns.of(_tensed(scene, 1.0), sought)
     taken = _ends(ends, scene, checked, whole=whole)

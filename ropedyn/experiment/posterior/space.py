@@ -14,6 +14,7 @@ from ...scene.end import End, end_of
 from ...scene.parts.part import PointMass, Support
 from ...scene.parts.stretch import AddedMass
 from ...scene.path import value_at
+from ...scene.rope import own_number
 from ...scene.scene import Scene
 from .belief import Belief
 from .task import PosteriorTask
@@ -192,8 +193,9 @@ def _numbers(scene: Scene, names: Sequence[str], belief: Belief, pivot: bool) ->
     length = found.get("length", _constant(names, np.log(scene.rope.length)))
     if LAMBDA in axis:
         found[STIFFNESS] = tension + 2 * length - axis[LAMBDA]
-    if scene.rope.bending_stiffness is not None:
-        guess = _constant(names, np.log(scene.rope.bending_stiffness))
+    stiffness = own_number(scene.rope, STIFFNESS)
+    if stiffness is not None:
+        guess = _constant(names, np.log(stiffness))
         root = (tension + found.get(STIFFNESS, guess)) / 2
         found |= {path: axis[path] + root for path in SPRINGS if path in axis and path not in found}
     return found

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...base.array import Real
-from ...chain.chain import KINDS, Chain
+from ...chain.chain import KINDS, Chain, roles
 from ...chain.compiled import Compiled
 from ...scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION, factors
 from ...scene.tension import Tension
@@ -34,15 +34,16 @@ def plain_lumps(model: Compiled, component: tuple[str, ...], chain: Chain) -> tu
     damping = share[INERTIA] * mass
     if chain.damping is not None:
         damping += share[DASHPOT] * chain.damping
-    is_string = "beta" not in component and "z" in component
+    names = roles(component)
+    is_string = "beta" not in names and "z" in names
     rate = share[TENSION if is_string else SECTION]
     apart = (
         chain.kind == RIGID
-        and "beta" in component
+        and "beta" in names
         and (share[TENSION] != rate or model.scene.mean_tension < 0)
     )
     scene, stiffness = model.scene, 0.0
-    if "z" in component and isinstance(scene.tension, Tension) and scene.tension.stretching:
+    if "z" in names and isinstance(scene.tension, Tension) and scene.tension.stretching:
         stiffness = scene.rope.axial_stiffness or 0.0
     string = chain.tension if apart else np.zeros_like(chain.tension)
     return chain._replace(
@@ -62,5 +63,5 @@ def plain_lumps(model: Compiled, component: tuple[str, ...], chain: Chain) -> tu
 def pulsation_of(model: Compiled, component: tuple[str, ...]) -> Callable[[Real], Real] | None:
     """Return what is added to the tension of these coordinates [N] at times [s]."""
     tension = model.scene.tension
-    acts = "z" in component and isinstance(tension, Tension) and tension.pulsates
+    acts = "z" in roles(component) and isinstance(tension, Tension) and tension.pulsates
     return tension.pulsation if acts and isinstance(tension, Tension) else None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ... import _core
 from ...base.array import Flags, Index, Real
 from ...base.errors import SceneError, SolveError
-from ...chain.chain import TENSED, Chain
+from ...chain.chain import TENSED, Chain, roles
 from ...chain.compiled import Compiled
 from ...chain.port import Point, Ports, cut, is_force, local, locate, moving, ports, stops
 from ...response.deflection import nodal
@@ -164,7 +164,8 @@ def _lumps(
     inside = inside.reshape(len(asked), len(points))
     if inside.any():
         # the shape inside a driven element is to follow forces at once and steadily
-        changes = "beta" not in component and (pulsation is not None or beside.stretching != 0)
+        bends = "beta" in roles(component)
+        changes = not bends and (pulsation is not None or beside.stretching != 0)
         if changes or beside.rate.any() or run.order == 2:
             raise SceneError(
                 f'element must be "tensed", got {model.element!r}, where a response lies between '
@@ -223,8 +224,8 @@ def _start(chain: Chain, component: tuple[str, ...], load: Real, beside: Beside)
                 f"({', '.join(component)}): there is no rest under the loads of start: a rigid "
                 "motion is free or the compression is critical"
             ) from error
-        if "z" in component:
-            z, each = component.index("z"), chain.element_of
+        if "z" in (names := roles(component)):
+            z, each = names.index("z"), chain.element_of
             f[:, z] -= beside.string[each] / chain.length[each] * np.diff(u[:, z])
     y = np.zeros(0)  # how far the feet of resonators are moved
     if chain.attached_row is not None:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ...base.array import Real
 from ...base.errors import SolveError
+from ...base.unit import UNIT
 from ...chain.port import is_force, moving
 from ...scene.force import is_sampled
 from ...scene.tension import Tension
@@ -184,7 +185,7 @@ def _others(run: Run, passage: Passage) -> Real:
     for component in model.components:
         at = [model.coordinates.index(c) for c in component]
         # a rotation moves what is as far away as the rope is long
-        arm = np.array([1.0 if c in ("x", "z") else model.scene.rope.length for c in component])
+        arm = np.array([1.0 if UNIT[c] == "m" else model.scene.rope.length for c in component])
         most = (passage.largest[:, at] * arm).max(axis=1, keepdims=True)
         size[:, at] = most / arm
     return size

@@ -216,15 +216,18 @@ def _string(
             "elements must be given where the tension pulsates or is stretching, such as "
             "compile(elements=16): its work is summed up over nodes"
         )
-    chain, at = model.chain, model.coordinates.index("z")
-    free = np.flatnonzero(chain.held[chain.term_of, at] == 0)
-    rises = np.diff(np.eye(len(model.x)), axis=0)[:, free]
+    chain, own = model.chain, [c for c in ("z", "y") if c in model.coordinates]
+    # the planes one after another: none of them but z where the tension is stretching
+    every = [(c, k) for c in own for k in range(len(model.x))]
+    rises = np.asarray(np.kron(np.eye(len(own)), np.diff(np.eye(len(model.x)), axis=0)))
+    stays = chain.held[chain.term_of][:, [model.coordinates.index(c) for c in own]] != 0
+    free = np.flatnonzero(~stays.T.ravel())
     stretching = (scene.rope.axial_stiffness or 0.0) / (2 * scene.rope.length)
-    nodes: list[Point] = [("z", float(model.x[k])) for k in free]
+    nodes: list[Point] = [(every[k][0], float(model.x[every[k][1]])) for k in free]
     kept = [k for k, node in enumerate(nodes) if node not in held]
     return [nodes[k] for k in kept], StringTension(
-        chain.length[chain.element_of],
-        rises[:, kept],
+        np.tile(chain.length[chain.element_of], len(own)),
+        rises[:, free[kept]],
         stretching if tension.stretching else 0.0,
         tension.pulsation,
     )

@@ -34,7 +34,7 @@ class NodeForce(Part):
     law : callable
         ``law(t, u, v)`` returns the force on the rope [N, or N m on a rotation] at the time t [s]
         from the displacement u [m, rad] and the velocity v [m/s, rad/s].
-    coordinate : {"z", "x", "alpha", "beta"}
+    coordinate : {"z", "x", "y", "alpha", "beta", "gamma"}
         What it acts on.
 
     Raises
@@ -82,12 +82,12 @@ class Stop(Part):
     x : float
         Where it stands [m].
     stiffness : float
-        While in contact [N/m for x and z, N m for alpha and beta].
+        While in contact [N/m for x, y and z, N m for alpha, beta and gamma].
     gap : float
         From rest to contact [m, rad].
     side : {1, -1}
         Whether it stops motion in the positive or in the negative direction.
-    coordinate : {"z", "x", "alpha", "beta"}
+    coordinate : {"z", "x", "y", "alpha", "beta", "gamma"}
         What it acts on.
 
     Raises

@@ -8,6 +8,8 @@ from typing import ClassVar, NamedTuple
 
 from ...base.parameter import Description, position
 
+PLANES = ("z", "y")  # In one of which a part acts, by the displacement in it.
+
 NOTHING: Mapping[str, float] = MappingProxyType({})
 
 

@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 
 from ...base import check
 from ...base.parameter import depending, number, one_of, positions
+from ...base.unit import UNIT
 from . import stretch as _stretch
 from .broken_wire import BrokenWire
 from .law import NodeForce, Stop
-from .node import Law, NodeRate, NodeTerm, Part
+from .node import PLANES, Law, NodeRate, NodeTerm, Part
 from .resonator import Resonator
 from .stretch import Stretch
 
@@ -27,7 +28,7 @@ class PointMass(Part):
     mass : float
         [kg]; 0 is allowed, for a disc that only turns.
     rotary_inertia, polar_inertia : float
-        About the transverse axis and about the rope's own [kg m^2].
+        About any transverse axis and about the rope's own [kg m^2].
 
     Raises
     ------
@@ -52,19 +53,15 @@ class PointMass(Part):
 
     def term(self) -> NodeTerm:
         """Inertia on the diagonal."""
-        mass = {
-            "x": self.mass,
-            "z": self.mass,
-            "alpha": self.polar_inertia,
-            "beta": self.rotary_inertia,
-        }
-        return NodeTerm(mass=mass)
+        mass, turning = self.mass, self.rotary_inertia
+        along = {"x": mass, "y": mass, "z": mass}
+        return NodeTerm(along | {"alpha": self.polar_inertia, "beta": turning, "gamma": turning})
 
     def rates(self) -> dict[str, NodeRate]:
         """Each of its numbers is an inertia."""
         return {
-            "mass": NodeRate(mass={"x": 1.0, "z": 1.0}),
-            "rotary_inertia": NodeRate(mass={"beta": 1.0}),
+            "mass": NodeRate(mass={"x": 1.0, "y": 1.0, "z": 1.0}),
+            "rotary_inertia": NodeRate(mass={"beta": 1.0, "gamma": 1.0}),
             "polar_inertia": NodeRate(mass={"alpha": 1.0}),
         }
 
@@ -77,8 +74,8 @@ class Spring(Part):
     x : float
         Where it stands [m].
     stiffness : float
-        [N/m for x and z, N m for alpha and beta]; may be negative.
-    coordinate : {"z", "x", "alpha", "beta"}
+        [N/m for x, y and z, N m for alpha, beta and gamma]; may be negative.
+    coordinate : {"z", "x", "y", "alpha", "beta", "gamma"}
         What it acts on.
 
     Raises
@@ -111,7 +108,7 @@ class Spring(Part):
 
 
 def _checked_damping(value: Any, name: str, dashpot: Dashpot) -> float:
-    along, exponent = dashpot.coordinate in ("x", "z"), dashpot.exponent
+    along, exponent = UNIT[dashpot.coordinate] == "m", dashpot.exponent
     unit = "N s/m" if along else "N m s"
     if exponent != 1:
         unit = f"{'N (s/m)^' if along else 'N m s^'}{exponent!r}"
@@ -126,8 +123,8 @@ class Dashpot(Part):
     x : float
         Where it stands [m].
     damping : float
-        c [N s/m for x and z, N m s for alpha and beta, of exponent 1].
-    coordinate : {"z", "x", "alpha", "beta"}
+        c [N s/m for x, y and z, N m s for alpha, beta and gamma, of exponent 1].
+    coordinate : {"z", "x", "y", "alpha", "beta", "gamma"}
         What it acts on.
     exponent : float
         1: in proportion to velocity; 2: a quadratic damper; 0: Coulomb friction, which holds the
@@ -175,7 +172,7 @@ class Support(Part):
     ----------
     x : float
         Where it stands [m].
-    coordinate : {"z", "x", "alpha", "beta"}
+    coordinate : {"z", "x", "y", "alpha", "beta", "gamma"}
         What it holds.
 
     Raises
@@ -218,6 +215,8 @@ class Hinge(Part):
         the same thing.
     stiffness : float
         Of the rotation spring across it [N m]; 0 is a free hinge, which carries no moment.
+    plane : {"z", "y"}
+        In which it turns; a hinge in both planes is two.
 
     Raises
     ------
@@ -242,20 +241,21 @@ class Hinge(Part):
 
     _: KW_ONLY
     stiffness: float = number("N m", sign="nonnegative", default=0.0)
+    plane: str = one_of(PLANES, default="z")
 
     @property
     def stands_on(self) -> tuple[str, ...]:
         """Bending rotation."""
-        return ("beta",)
+        return ("beta" if self.plane == "z" else "gamma",)
 
     def term(self) -> NodeTerm:
         """Return the compliance of its spring."""
         compliance = 1.0 / self.stiffness if self.stiffness > 0.0 else math.inf
-        return NodeTerm(hinge={"beta": compliance})
+        return NodeTerm(hinge=dict.fromkeys(self.stands_on, compliance))
 
     def rates(self) -> dict[str, NodeRate]:
         """Return that of its stiffness."""
-        return {"stiffness": NodeRate(hinge={"beta": 1.0})}
+        return {"stiffness": NodeRate(hinge=dict.fromkeys(self.stands_on, 1.0))}
 
 
 KINDS = (

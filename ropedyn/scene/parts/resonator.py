@@ -9,16 +9,16 @@ from typing import ClassVar
 import numpy as np
 
 from ...base.errors import SceneError
-from ...base.parameter import number
-from .node import Attached, AttachedRate, NodeRate, NodeTerm, Part
+from ...base.parameter import number, one_of
+from .node import PLANES, Attached, AttachedRate, NodeRate, NodeTerm, Part
 
 
 class Resonator(Part):
     """A mass on a spring: a tuned absorber, an attached instrument.
 
-    It moves transversely, with the rope's z as the motion of its foot. In undamped modes it is free
-    of damping, as the rope is. Rayleigh damping of the rope acts on its mass, other dampings of the
-    rope do not act on it.
+    It moves transversely, with the rope's z, or y, as the motion of its foot. In undamped modes it
+    is free of damping, as the rope is. Rayleigh damping of the rope acts on its mass, other
+    dampings of the rope do not act on it.
 
     Parameters
     ----------
@@ -31,6 +31,8 @@ class Resonator(Part):
     damping_ratio : float, optional
         Of the critical damping at that frequency: a dashpot 2 damping_ratio mass (2 pi frequency)
         beside the spring.
+    plane : {"z", "y"}
+        In which it moves; in the other one it weighs nothing: there a second one moves.
 
     Raises
     ------
@@ -57,6 +59,7 @@ class Resonator(Part):
     frequency: float = number("Hz", sign="positive")
     _: KW_ONLY
     damping_ratio: float = number(sign="nonnegative", default=0.0)
+    plane: str = one_of(PLANES, default="z")
 
     def _agree(self) -> None:
         if not np.isfinite(self._values).all() or 0.0 in self._values[1:3]:
@@ -78,11 +81,11 @@ class Resonator(Part):
     @property
     def stands_on(self) -> tuple[str, ...]:
         """The displacement of its foot."""
-        return ("z",)
+        return (self.plane,)
 
     def term(self) -> NodeTerm:
-        """Return the structure, which moves with z."""
-        return NodeTerm(attached=[Attached(self.kind, {"z": 1.0}, {}, self._values)])
+        """Return the structure, which moves with its plane."""
+        return NodeTerm(attached=[Attached(self.kind, {self.plane: 1.0}, {}, self._values)])
 
     def rates(self) -> dict[str, NodeRate]:
         """Return those of a spring mass (2 pi frequency)^2; undamped modes feel no dashpot."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import KW_ONLY
 from typing import Any, ClassVar, NamedTuple
 
@@ -12,8 +12,8 @@ import numpy as np
 from ...base import check
 from ...base.array import Index, Real
 from ...base.errors import SceneError
-from ...base.parameter import Description, number, position
-from ..rope import Rope
+from ...base.parameter import Description, number, pair, position
+from ..rope import ACROSS, Rope, in_plane, own_number
 from ..stations import nearest
 
 
@@ -25,11 +25,12 @@ class RopeChange(NamedTuple):
     axial: float = 1.0
     lay: float = 1.0
     density: float = 1.0
+    across: float = 1.0  # on bending in the plane of y
     linear_density: float = 0.0  # [kg/m]
     polar_inertia: float = 0.0  # [kg m]
 
 
-FACTORS = slice(0, 5)  # A change begins with its factors; the rest of it is added.
+FACTORS = slice(0, 6)  # A change begins with its factors; the rest of it is added.
 
 LAY = "lay coupling"  # What a factor on the lay has no meaning without.
 
@@ -41,6 +42,8 @@ FACTOR = {
     "linear_density": "density",
     "rotary_inertia": "density",
     "polar_inertia": "density",
+    ACROSS["bending_stiffness"]: "across",
+    ACROSS["rotary_inertia"]: "density",
 }
 """The factor on each property of a rope that changes; what is added to one has its name."""
 
@@ -146,7 +149,7 @@ class LocalChange(_Between):
         Where it begins and ends [m].
     bending, torsion, axial, lay : float
         On the rope's bending, torsional and axial stiffness and on its lay coupling; 1 leaves it as
-        it is.
+        it is. Of bending a pair, for the planes of z and of y, where the scene has both.
     density : float
         On its linear density, and on its rotary and polar inertia: there is so much more or less
         of the same material. What an `AddedMass` adds stays as it is.
@@ -184,7 +187,7 @@ class LocalChange(_Between):
     }
 
     _: KW_ONLY
-    bending: float = number(sign="positive", default=1.0)
+    bending: float | tuple[float, float] = pair(sign="positive", default=1.0)
     torsion: float = number(sign="positive", default=1.0)
     axial: float = number(sign="positive", default=1.0)
     lay: float = number(sign="positive", default=1.0)
@@ -263,7 +266,8 @@ class LocalChange(_Between):
         >>> rd.LocalChange(0.0, 0.5, bending=0.9).change().bending
         0.9
         """
-        return RopeChange(self.bending, self.torsion, self.axial, self.lay, self.density)
+        bending, across = in_plane(self.bending, 0), in_plane(self.bending, 1)
+        return RopeChange(bending, self.torsion, self.axial, self.lay, self.density, across)
 
     def on(self, coordinates: Collection[str]) -> LocalChange | None:
         """Return what is left of it on these coordinates, None where that changes nothing.
@@ -280,6 +284,8 @@ class LocalChange(_Between):
         """
         gone = [name for name, what in self.acts_on.items() if what not in coordinates]
         kept: dict[str, Any] = dict.fromkeys(gone, 1.0)
+        if "gamma" not in coordinates:
+            kept = {"bending": in_plane(self.bending, 0)} | kept
         left = dataclasses.replace(self, **kept)
         return None if left != self and left.change() == RopeChange() else left
 
@@ -338,11 +344,15 @@ def refuse_uneven(parts: Sequence[object], why: str) -> None:
 
 def _changed(rope: Rope, change: RopeChange) -> Rope:
     """Return the rope with the change."""
-    values = {}
+    values: dict[str, Any] = {}
     for name, factor in FACTOR.items():
-        own, more = getattr(rope, name), getattr(change, name, 0.0)
+        own, more = own_number(rope, name), getattr(change, name, 0.0)
         if own is not None or more:
             values[name] = (own or 0.0) * getattr(change, factor) + more
+    for name, across in ACROSS.items():
+        other = values.pop(across, None)
+        if other is not None and other != values[name]:
+            values[name] = (values[name], other)
     return rope.replace(**values)
 
 
@@ -358,9 +368,26 @@ def rope_rate(change: Real, name: str) -> Real:
     return change[:, RopeChange._fields.index(FACTOR[name])]
 
 
-def stretch_rate(rope: Rope, change: Real, part: Stretch, name: str) -> dict[str, Real]:
+def numbers_of(part: Stretch) -> dict[str, tuple[str, ...]]:
+    """Return the numbers of a part, and what each is in its `RopeChange`."""
+    names: dict[str, tuple[str, ...]] = {}
+    names |= {name: (name,) for name in RopeChange._fields if hasattr(part, name)}
+    if not isinstance(part, LocalChange):
+        return names
+    if not isinstance(part.bending, tuple):
+        return names | {"bending": ("bending", "across")}
+    del names["bending"]
+    return names | {"bending[0]": ("bending",), "bending[1]": ("across",)}
+
+
+def stretch_rate(rope: Rope, change: Real, part: Stretch, names: Iterable[str]) -> dict[str, Real]:
     """Return how fast properties of changed ropes grow with a number of one of the stretches."""
-    if RopeChange._fields.index(name) >= FACTORS.stop:
-        return {name: np.ones(len(change))}
-    others = change[:, RopeChange._fields.index(name)] / getattr(part, name)
-    return {of: others * (getattr(rope, of) or 0.0) for of in changed_by(name)}
+    rates = {}
+    for name in names:
+        at = RopeChange._fields.index(name)
+        if at >= FACTORS.stop:
+            rates[name] = np.ones(len(change))
+            continue
+        others = change[:, at] / part.change()[at]
+        rates |= {of: others * (own_number(rope, of) or 0.0) for of in changed_by(name)}
+    return rates
