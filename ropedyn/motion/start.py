@@ -13,6 +13,7 @@ from ..base.array import Real
 from ..base.errors import SceneError
 from ..chain.compiled import Compiled
 from ..chain.port import Point
+from ..response.critical import refuse_critical
 from ..response.deflection import Deflection, checked_loads
 from .line.transfer import Transfer
 
@@ -40,7 +41,9 @@ def released(model: Compiled, start: Any) -> Begun:
         return Begun(dict(start.load))
     shapes = _shapes(model, start, "start")
     if not shapes:
-        return Begun(checked_loads(model, start, "start"))
+        loads = checked_loads(model, start, "start")
+        refuse_critical(model, loads, "start takes Model.static(.., unstable=True) all the same")
+        return Begun(loads)
     _refuse_support(model, shapes)
     return _at_places(model, lambda parts: _loads(model, shapes, parts))
 
