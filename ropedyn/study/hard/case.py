@@ -1,0 +1,192 @@
+"""A hard case: a scene, a question, and its value in 40 digits, from the file of the package."""
+
+from __future__ import annotations
+
+import json
+import time
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...base.array import Complex, Real
+from ...base.errors import IdentifyWarning, SolveError
+from ...curves.peaks import Peaks
+from ...eigen.spectrum import in_hertz
+from ...experiment.identify.identify import identify
+from ...model import Model
+from ...scene import toml
+from ...scene.scene import Scene
+
+FILE = Path(__file__).with_name("cases.json")
+MOST_DIGITS = 53 * np.log10(2.0)  # A double next to the true value keeps so many.
+
+Known = str | Sequence[str]  # A number of many digits, or the real and imaginary part of one.
+
+
+class Found(NamedTuple):
+    """What was answered: numbers and their absolute bounds, NaN where none is stated."""
+
+    value: Real | Complex
+    bound: Real
+
+
+class Kept(NamedTuple):
+    """What an answer kept."""
+
+    digits: float  # right ones, of the worst of its numbers
+    stated: float  # that its bounds leave, NaN where none is stated
+    held: bool  # whether no bound was exceeded
+    refusal: str  # why there was no answer
+    seconds: float
+
+
+@dataclass(frozen=True)
+class HardCase:
+    """A case that is hard to keep stable, as `cases.json` has it."""
+
+    name: str
+    hard: str  # what makes it hard
+    decades: float  # how far apart the scales are that meet, in powers of ten
+    digits: float | None  # promised; None: a refusal is
+    test: str  # that covers it
+    scene: Scene
+    compile: Mapping[str, Any]  # arguments of `Scene.compile`
+    ask: Mapping[str, Any]  # the kind of question and its arguments
+    value: Sequence[Known]
+    refusal: str  # what it says where no number is right
+    peer: bool  # whether SciPy has an answer within a second
+    how: str  # where the value comes from
+
+    def run(self) -> Kept:
+        """Ask, and hold the answer against the value."""
+        start = time.perf_counter()
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", IdentifyWarning)
+                found = QUESTIONS[self.ask["kind"]](self.scene.compile(**self.compile), self.ask)
+        except (SolveError, IdentifyWarning) as refusal:
+            seconds, words = time.perf_counter() - start, str(refusal)
+            return Kept(0.0, np.nan, self.refusal in words, words, seconds)
+        seconds = time.perf_counter() - start
+        error, size = self.errors(found.value), np.abs(found.value)
+        stated = bool(np.isfinite(found.bound).any())
+        worst = np.divide(found.bound, size, out=np.zeros(len(size)), where=size > 0).max()
+        return Kept(
+            self.kept(found.value),
+            digits_of(float(worst)) if stated else np.nan,
+            bool((error <= found.bound).all()) if stated else True,
+            "",
+            seconds,
+        )
+
+    def errors(self, value: Real | Complex) -> Real:
+        """Return how far numbers are from the known ones, exactly subtracted."""
+        return np.array([_apart(v, known) for v, known in zip(value.tolist(), self.value)])
+
+    def kept(self, value: Real | Complex) -> float:
+        """Return how many digits of the worst of some numbers are right."""
+        if len(value) != len(self.value):
+            return 0.0
+        size = np.array([_apart(0.0, known) for known in self.value])
+        # motion of 0 Hz is held against the first that is not
+        relative = self.errors(value) / np.where(size == 0, size[size > 0].min(), size)
+        return digits_of(float(np.nan_to_num(relative, nan=np.inf).max()))
+
+    def keeps(self, kept: Kept) -> bool:
+        """Whether it kept what is promised."""
+        if self.digits is None:
+            return kept.held and kept.refusal != ""
+        return kept.digits >= self.digits and not kept.refusal
+
+
+def hard_list() -> list[HardCase]:
+    """Read the cases."""
+    found = json.loads(FILE.read_text(encoding="utf-8"))
+    return [HardCase(**one | {"scene": toml.built(Scene, one["scene"])}) for one in found]
+
+
+def digits_of(error: float) -> float:
+    """Return how many digits a relative error leaves."""
+    return float(np.clip(-np.log10(max(error, 1e-99)), 0.0, MOST_DIGITS))
+
+
+def _apart(value: complex, known: Known) -> float:
+    parts = [known] if isinstance(known, str) else known
+    given = (value.real, value.imag)
+    if not np.isfinite(given).all():
+        return float("inf")
+    square = sum((Decimal(a) - Decimal(b)) ** 2 for a, b in zip(given, [*parts, "0"]))
+    return float(Decimal(square).sqrt())
+
+
+# --- questions ------------------------------------------------------------------------------------
+
+
+def _modes(model: Model, ask: Mapping[str, Any]) -> Found:
+    modes = model.modes(ask["number"])
+    return Found(in_hertz(modes.eigenvalue), modes.rounding_error)
+
+
+def _rates(model: Model, ask: Mapping[str, Any]) -> Found:
+    modes = model.modes(ask["number"], damped=True)
+    return Found(modes.eigenvalue, 2 * np.pi * modes.rounding_error)
+
+
+def _frf(model: Model, ask: Mapping[str, Any]) -> Found:
+    points = {name: (ask[name][0], ask[name][1]) for name in ("drive", "response")}
+    frf = model.frf(ask["frequency"], **points)
+    return Found(frf.value[0], frf.rounding_limit[0])
+
+
+def _static(model: Model, ask: Mapping[str, Any]) -> Found:
+    coordinate, x = ask["load"]
+    static = model.static({(coordinate, x): 1.0}, unstable=ask.get("unstable", False))
+    at = np.abs(static.x - x).argmin(), static.coordinates.index(coordinate)
+    # of a long chain the bound at every node takes longer than the answer
+    long = len(model.x) > 1000
+    still = model.frf(0.0, drive=(coordinate, x)).rounding_limit[0] if long else None
+    bound = static.rounding_error[at][None] if still is None else still
+    return Found(static.displacement[at][None], bound)
+
+
+def _motion(model: Model, ask: Mapping[str, Any]) -> Found:
+    coordinate, x, load = ask["start"]
+    history = model.transient(
+        [0.0, *ask["time"]],
+        start={(coordinate, x): load},
+        response=(ask["response"][0], ask["response"][1]),
+        tolerance=ask["tolerance"],
+    )
+    return Found(history.value[0, 1:], history.error[0, 1:])
+
+
+def _tongues(model: Model, ask: Mapping[str, Any]) -> Found:
+    chart = model.stability_map(ask["frequency"], [0.0], modes=ask["modes"])
+    edges = chart.boundary(ask["amplitude"]).frequency
+    return Found(edges, np.full(len(edges), np.nan))
+
+
+def _count(model: Model, ask: Mapping[str, Any]) -> Found:
+    return Found(np.array([float(model.count(below=ask["below"]))]), np.zeros(1))
+
+
+def _identify(model: Model, ask: Mapping[str, Any]) -> Found:
+    fit = identify(model.scene, Peaks(ask["peaks"], order=[1, 2, 3]), ask["unknown"])
+    return Found(np.array(list(fit.value.values())), np.array(list(fit.std.values())))
+
+
+QUESTIONS: dict[str, Callable[[Model, Mapping[str, Any]], Found]] = {
+    "modes": _modes,
+    "rates": _rates,
+    "frf": _frf,
+    "static": _static,
+    "motion": _motion,
+    "tongues": _tongues,
+    "count": _count,
+    "identify": _identify,
+}
