@@ -10,6 +10,7 @@ from pathlib import Path
 from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
+from .hard import HARD
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
 from .tension import TENSION
@@ -20,6 +21,7 @@ COMMANDS = (
     COMPARE,
     ACCURACY,
     EFFECTS,
+    HARD,
     IDENTIFY,
     TENSION,
     TRANSIENT,
@@ -52,8 +54,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ropedyn",
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
-        epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad, 3 where "
-        "what was measured leaves several answers.",
+        epilog="Exit status: 0, 1 where the numbers refused or a hard case failed, 2 where the "
+        "input was bad, 3 where what was measured leaves several answers.",
     )
     parser.set_defaults(run=_study, folder=FOLDER)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")

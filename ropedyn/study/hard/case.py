@@ -138,8 +138,8 @@ def _rates(model: Model, ask: Mapping[str, Any]) -> Found:
 
 
 def _frf(model: Model, ask: Mapping[str, Any]) -> Found:
-    points = {name: (ask[name][0], ask[name][1]) for name in ("drive", "response")}
-    frf = model.frf(ask["frequency"], **points)
+    drive, response = tuple(ask["drive"]), tuple(ask["response"])
+    frf = model.frf(ask["frequency"], drive=drive, response=response)
     return Found(frf.value[0], frf.rounding_limit[0])
 
 
@@ -177,7 +177,7 @@ def _count(model: Model, ask: Mapping[str, Any]) -> Found:
 
 def _identify(model: Model, ask: Mapping[str, Any]) -> Found:
     fit = identify(model.scene, Peaks(ask["peaks"], order=[1, 2, 3]), ask["unknown"])
-    return Found(np.array(list(fit.value.values())), np.array(list(fit.std.values())))
+    return Found(fit.value[:], fit.std[:])
 
 
 QUESTIONS: dict[str, Callable[[Model, Mapping[str, Any]], Found]] = {
