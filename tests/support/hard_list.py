@@ -358,7 +358,7 @@ def _(one):
 
 # --- critical loads -----------------------------------------------------------------------------
 
-for side, digits, word in ((1e-6, 9, "below"), (1e-12, 2, "below"), (-1e-12, 2, "beyond")):
+for side, digits, word in ((1e-6, 9, "below"), (1e-12, 2, "below"), (-1e-12, 3, "beyond")):
 
     @case(
         f"{abs(side):g} {word} the critical load",
