@@ -71,13 +71,6 @@ class Deflection(Answer):
     cost: Cost
     rounding_error: Lazy[Real] = lazy(np.ndarray, axes=axes("node", "coordinate", unit="m or rad"))
 
-    @property
-    def words(self) -> str:
-        """What it is: a static deflection, and whether the rope stays in it."""
-        if not self.critical_loads:
-            return "static deflection"
-        return f"static deflection, unstable: {exceeds(self.critical_loads)}"
-
     def table(self) -> Table:
         """Return displacement and force at every node."""
         columns: dict[str, Any] = {"x [m]": self.x}
@@ -85,7 +78,9 @@ class Deflection(Answer):
             columns[f"{c} [{UNIT[c]}]"] = self.displacement[:, k]
         for k, c in enumerate(self.coordinates):
             columns[f"{FORCE[c]} [{FORCE_UNIT[c]}]"] = self.force[:, k]
-        return Table.of(self.words, columns)
+        critical = self.critical_loads
+        unstable = f", unstable: {exceeds(critical)}" if critical else ""
+        return Table.of(f"static deflection{unstable}", columns)
 
 
 def solve_static(

@@ -28,14 +28,14 @@ MOST_DIGITS = 53 * np.log10(2.0)  # A double next to the true value keeps so man
 Known = str | Sequence[str]  # A number of many digits, or the real and imaginary part of one.
 
 
-class Found(NamedTuple):
+class Numbers(NamedTuple):
     """What was answered: numbers and their absolute bounds, NaN where none is stated."""
 
     value: Real | Complex
     bound: Real
 
 
-class Kept(NamedTuple):
+class Digits(NamedTuple):
     """What an answer kept."""
 
     digits: float  # right ones, of the worst of its numbers
@@ -62,7 +62,7 @@ class HardCase:
     peer: bool  # whether SciPy has an answer within a second
     how: str  # where the value comes from
 
-    def run(self) -> Kept:
+    def run(self) -> Digits:
         """Ask, and hold the answer against the value."""
         start = time.perf_counter()
         try:
@@ -71,12 +71,12 @@ class HardCase:
                 found = QUESTIONS[self.ask["kind"]](self.scene.compile(**self.compile), self.ask)
         except (SolveError, IdentifyWarning) as refusal:
             seconds, words = time.perf_counter() - start, str(refusal)
-            return Kept(0.0, np.nan, self.refusal in words, words, seconds)
+            return Digits(0.0, np.nan, self.refusal in words, words, seconds)
         seconds = time.perf_counter() - start
         error, size = self.errors(found.value), np.abs(found.value)
         stated = bool(np.isfinite(found.bound).any())
         worst = np.divide(found.bound, size, out=np.zeros(len(size)), where=size > 0).max()
-        return Kept(
+        return Digits(
             self.kept(found.value),
             digits_of(float(worst)) if stated else np.nan,
             bool((error <= found.bound).all()) if stated else True,
@@ -97,7 +97,7 @@ class HardCase:
         relative = self.errors(value) / np.where(size == 0, size[size > 0].min(), size)
         return digits_of(float(np.nan_to_num(relative, nan=np.inf).max()))
 
-    def keeps(self, kept: Kept) -> bool:
+    def keeps(self, kept: Digits) -> bool:
         """Whether it kept what is promised."""
         if self.digits is None:
             return kept.held and kept.refusal != ""
@@ -127,23 +127,23 @@ def _apart(value: complex, known: Known) -> float:
 # --- questions ------------------------------------------------------------------------------------
 
 
-def _modes(model: Model, ask: Mapping[str, Any]) -> Found:
+def _modes(model: Model, ask: Mapping[str, Any]) -> Numbers:
     modes = model.modes(ask["number"])
-    return Found(in_hertz(modes.eigenvalue), modes.rounding_error)
+    return Numbers(in_hertz(modes.eigenvalue), modes.rounding_error)
 
 
-def _rates(model: Model, ask: Mapping[str, Any]) -> Found:
+def _rates(model: Model, ask: Mapping[str, Any]) -> Numbers:
     modes = model.modes(ask["number"], damped=True)
-    return Found(modes.eigenvalue, 2 * np.pi * modes.rounding_error)
+    return Numbers(modes.eigenvalue, 2 * np.pi * modes.rounding_error)
 
 
-def _frf(model: Model, ask: Mapping[str, Any]) -> Found:
+def _frf(model: Model, ask: Mapping[str, Any]) -> Numbers:
     drive, response = tuple(ask["drive"]), tuple(ask["response"])
     frf = model.frf(ask["frequency"], drive=drive, response=response)
-    return Found(frf.value[0], frf.rounding_limit[0])
+    return Numbers(frf.value[0], frf.rounding_limit[0])
 
 
-def _static(model: Model, ask: Mapping[str, Any]) -> Found:
+def _static(model: Model, ask: Mapping[str, Any]) -> Numbers:
     coordinate, x = ask["load"]
     static = model.static({(coordinate, x): 1.0}, unstable=ask.get("unstable", False))
     at = np.abs(static.x - x).argmin(), static.coordinates.index(coordinate)
@@ -151,10 +151,10 @@ def _static(model: Model, ask: Mapping[str, Any]) -> Found:
     long = len(model.x) > 1000
     still = model.frf(0.0, drive=(coordinate, x)).rounding_limit[0] if long else None
     bound = static.rounding_error[at][None] if still is None else still
-    return Found(static.displacement[at][None], bound)
+    return Numbers(static.displacement[at][None], bound)
 
 
-def _motion(model: Model, ask: Mapping[str, Any]) -> Found:
+def _motion(model: Model, ask: Mapping[str, Any]) -> Numbers:
     coordinate, x, load = ask["start"]
     history = model.transient(
         [0.0, *ask["time"]],
@@ -162,25 +162,25 @@ def _motion(model: Model, ask: Mapping[str, Any]) -> Found:
         response=(ask["response"][0], ask["response"][1]),
         tolerance=ask["tolerance"],
     )
-    return Found(history.value[0, 1:], history.error[0, 1:])
+    return Numbers(history.value[0, 1:], history.error[0, 1:])
 
 
-def _tongues(model: Model, ask: Mapping[str, Any]) -> Found:
+def _tongues(model: Model, ask: Mapping[str, Any]) -> Numbers:
     chart = model.stability_map(ask["frequency"], [0.0], modes=ask["modes"])
     edges = chart.boundary(ask["amplitude"]).frequency
-    return Found(edges, np.full(len(edges), np.nan))
+    return Numbers(edges, np.full(len(edges), np.nan))
 
 
-def _count(model: Model, ask: Mapping[str, Any]) -> Found:
-    return Found(np.array([float(model.count(below=ask["below"]))]), np.zeros(1))
+def _count(model: Model, ask: Mapping[str, Any]) -> Numbers:
+    return Numbers(np.array([float(model.count(below=ask["below"]))]), np.zeros(1))
 
 
-def _identify(model: Model, ask: Mapping[str, Any]) -> Found:
+def _identify(model: Model, ask: Mapping[str, Any]) -> Numbers:
     fit = identify(model.scene, Peaks(ask["peaks"], order=[1, 2, 3]), ask["unknown"])
-    return Found(fit.value[:], fit.std[:])
+    return Numbers(fit.value[:], fit.std[:])
 
 
-QUESTIONS: dict[str, Callable[[Model, Mapping[str, Any]], Found]] = {
+QUESTIONS: dict[str, Callable[[Model, Mapping[str, Any]], Numbers]] = {
     "modes": _modes,
     "rates": _rates,
     "frf": _frf,
