@@ -118,21 +118,30 @@ def test_a_wrong_value_fails_and_is_named(monkeypatch, capsys):
     monkeypatch.setattr(module, "hard_list", lambda: [wrong(right, value=spoilt)])
     found = rd.hard_cases()
     assert not found.ok
-    assert "Not so: free beam" in found.verdict
+    assert "(not so: free beam)" in found.verdict
     assert main(["hard"]) == 1
     assert "0 of 1 hard cases" in capsys.readouterr().out
 
 
 def test_an_answer_where_a_refusal_is_promised_fails():
-    case = wrong(CASES["the same, asked for"], digits=None, value=[])
-    assert not case.keeps(case.run())
+    assert not wrong(CASES["the same, asked for"], digits=None, value=[]).run().passed
 
 
 def test_another_refusal_than_the_promised_one_fails():
-    case = wrong(CASES["a dashpot that matches"], refusal="something else")
-    kept = case.run()
-    assert not kept.held
-    assert not case.keeps(kept)
+    assert not wrong(CASES["a dashpot that matches"], refusal="something else").run().passed
+
+
+def test_a_refusal_where_numbers_are_promised_fails():
+    beyond = CASES["deflection beyond three critical loads"]
+    assert not wrong(beyond, digits=13, value=["1.0"]).run().passed
+
+
+def test_an_exceeded_bound_fails():
+    right = CASES["free beam"]
+    # one part in 1e12: more digits than are promised, and less than the bound
+    spoilt = [*right.value[:-1], str(float(right.value[-1]) * (1 + 1e-12))]
+    assert wrong(right, digits=1).run().passed
+    assert not wrong(right, digits=1, value=spoilt).run().passed
 
 
 @pytest.mark.parametrize(

@@ -26,22 +26,23 @@ FILE = Path(__file__).with_name("cases.json")
 MOST_DIGITS = 53 * np.log10(2.0)  # A double next to the true value keeps so many.
 
 Known = str | Sequence[str]  # A number of many digits, or the real and imaginary part of one.
+Ask = Mapping[str, Any]
 
 
 class Numbers(NamedTuple):
-    """What was answered: numbers and their absolute bounds, NaN where none is stated."""
+    """What was answered, with absolute bounds: NaN where none is stated."""
 
     value: Real | Complex
     bound: Real
 
 
 class Digits(NamedTuple):
-    """What an answer kept."""
+    """What an answer kept; see `HardCases`."""
 
-    digits: float  # right ones, of the worst of its numbers
-    stated: float  # that its bounds leave, NaN where none is stated
-    held: bool  # whether no bound was exceeded
-    refusal: str  # why there was no answer
+    kept: float
+    stated: float
+    passed: bool
+    refusal: str
     seconds: float
 
 
@@ -55,8 +56,8 @@ class HardCase:
     digits: float | None  # promised; None: a refusal is
     test: str  # that covers it
     scene: Scene
-    compile: Mapping[str, Any]  # arguments of `Scene.compile`
-    ask: Mapping[str, Any]  # the kind of question and its arguments
+    compile: Ask  # arguments of `Scene.compile`
+    ask: Ask  # the kind of question and its arguments
     value: Sequence[Known]
     refusal: str  # what it says where no number is right
     peer: bool  # whether SciPy has an answer within a second
@@ -70,19 +71,14 @@ class HardCase:
                 warnings.simplefilter("error", IdentifyWarning)
                 found = QUESTIONS[self.ask["kind"]](self.scene.compile(**self.compile), self.ask)
         except (SolveError, IdentifyWarning) as refusal:
-            seconds, words = time.perf_counter() - start, str(refusal)
-            return Digits(0.0, np.nan, self.refusal in words, words, seconds)
-        seconds = time.perf_counter() - start
-        error, size = self.errors(found.value), np.abs(found.value)
-        stated = bool(np.isfinite(found.bound).any())
-        worst = np.divide(found.bound, size, out=np.zeros(len(size)), where=size > 0).max()
-        return Digits(
-            self.kept(found.value),
-            digits_of(float(worst)) if stated else np.nan,
-            bool((error <= found.bound).all()) if stated else True,
-            "",
-            seconds,
-        )
+            words, seconds = str(refusal), time.perf_counter() - start
+            return Digits(0.0, np.nan, self.refusal in words and not self.value, words, seconds)
+        seconds, kept = time.perf_counter() - start, self.kept(found.value)
+        exceeded = (self.errors(found.value) > found.bound).any()
+        passed = self.digits is not None and kept >= self.digits and not exceeded
+        size = np.abs(found.value)
+        stated = np.max(found.bound / np.where(size > 0, size, np.inf))
+        return Digits(kept, digits_of(float(stated)), passed, "", seconds)
 
     def errors(self, value: Real | Complex) -> Real:
         """Return how far numbers are from the known ones, exactly subtracted."""
@@ -90,18 +86,12 @@ class HardCase:
 
     def kept(self, value: Real | Complex) -> float:
         """Return how many digits of the worst of some numbers are right."""
-        if len(value) != len(self.value):
+        if not len(value) == len(self.value) > 0:
             return 0.0
         size = np.array([_apart(0.0, known) for known in self.value])
         # motion of 0 Hz is held against the first that is not
         relative = self.errors(value) / np.where(size == 0, size[size > 0].min(), size)
         return digits_of(float(np.nan_to_num(relative, nan=np.inf).max()))
-
-    def keeps(self, kept: Digits) -> bool:
-        """Whether it kept what is promised."""
-        if self.digits is None:
-            return kept.held and kept.refusal != ""
-        return kept.digits >= self.digits and not kept.refusal
 
 
 def hard_list() -> list[HardCase]:
@@ -127,23 +117,23 @@ def _apart(value: complex, known: Known) -> float:
 # --- questions ------------------------------------------------------------------------------------
 
 
-def _modes(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _modes(model: Model, ask: Ask) -> Numbers:
     modes = model.modes(ask["number"])
     return Numbers(in_hertz(modes.eigenvalue), modes.rounding_error)
 
 
-def _rates(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _rates(model: Model, ask: Ask) -> Numbers:
     modes = model.modes(ask["number"], damped=True)
     return Numbers(modes.eigenvalue, 2 * np.pi * modes.rounding_error)
 
 
-def _frf(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _frf(model: Model, ask: Ask) -> Numbers:
     drive, response = tuple(ask["drive"]), tuple(ask["response"])
     frf = model.frf(ask["frequency"], drive=drive, response=response)
     return Numbers(frf.value[0], frf.rounding_limit[0])
 
 
-def _static(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _static(model: Model, ask: Ask) -> Numbers:
     coordinate, x = ask["load"]
     static = model.static({(coordinate, x): 1.0}, unstable=ask.get("unstable", False))
     at = np.abs(static.x - x).argmin(), static.coordinates.index(coordinate)
@@ -154,7 +144,7 @@ def _static(model: Model, ask: Mapping[str, Any]) -> Numbers:
     return Numbers(static.displacement[at][None], bound)
 
 
-def _motion(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _motion(model: Model, ask: Ask) -> Numbers:
     coordinate, x, load = ask["start"]
     history = model.transient(
         [0.0, *ask["time"]],
@@ -165,22 +155,22 @@ def _motion(model: Model, ask: Mapping[str, Any]) -> Numbers:
     return Numbers(history.value[0, 1:], history.error[0, 1:])
 
 
-def _tongues(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _tongues(model: Model, ask: Ask) -> Numbers:
     chart = model.stability_map(ask["frequency"], [0.0], modes=ask["modes"])
     edges = chart.boundary(ask["amplitude"]).frequency
     return Numbers(edges, np.full(len(edges), np.nan))
 
 
-def _count(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _count(model: Model, ask: Ask) -> Numbers:
     return Numbers(np.array([float(model.count(below=ask["below"]))]), np.zeros(1))
 
 
-def _identify(model: Model, ask: Mapping[str, Any]) -> Numbers:
+def _identify(model: Model, ask: Ask) -> Numbers:
     fit = identify(model.scene, Peaks(ask["peaks"], order=[1, 2, 3]), ask["unknown"])
     return Numbers(fit.value[:], fit.std[:])
 
 
-QUESTIONS: dict[str, Callable[[Model, Mapping[str, Any]], Numbers]] = {
+QUESTIONS: dict[str, Callable[[Model, Ask], Numbers]] = {
     "modes": _modes,
     "rates": _rates,
     "frf": _frf,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,10 +11,10 @@ import numpy as np
 
 from ...base.array import Complex, Real
 from ...base.errors import SolveError
+from ...chain.port import Point
 from ...eigen.modes import Modes
 from ...eigen.spectrum import in_hertz
 from ...model import Model
-from ...response.frf import FRF
 from ...scene.damping import StiffnessDamping
 from ...scene.end import End
 from ...scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
@@ -41,32 +41,39 @@ def attack(seed: int, number: int) -> list[str] | None:
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A random scene, compiled in two ways, and what both answer."""
+    """A random scene, compiled whole and cut, and what is asked of both."""
 
     scene: Scene
     models: tuple[Model, Model]
     modes: tuple[Modes, Modes]
-    points: tuple[tuple[str, float], tuple[str, float]]
-    lines: Real  # (f,) [Hz]
+    points: tuple[Point, Point]
+    lines: Real  # (f,) next to modes [Hz]
 
     @classmethod
     def of(cls, scene: Scene, random: Random) -> Drawn:
         """Compile and solve."""
         whole = scene.compile()
-        parts = len(whole.x) - 1 + CUTS
-        models = whole, scene.compile(elements=parts, element="continuous")
-        modes = models[0].modes(MODES), models[1].modes(MODES)
+        cut = scene.compile(elements=len(whole.x) - 1 + CUTS, element="continuous")
+        modes = whole.modes(MODES), cut.modes(MODES)
         near = np.abs(in_hertz(modes[0].eigenvalue))
-        near = near[near > 0]
-        beside = random.choice(near, LINES) * (1 + 10.0 ** random.uniform(-12, 0, LINES))
+        lines = random.choice(near[near > 0], LINES) * (1 + 10.0 ** random.uniform(-12, 0, LINES))
         x = random.uniform(0.01, 0.99, 2).tolist()
-        points = ("z", x[0]), (str(random.choice(moving(scene))), x[1])
-        return cls(scene, models, modes, points, beside)
+        moving = ["z"] + ["beta"] * (scene.rope.bending_stiffness is not None)
+        return cls(
+            scene, (whole, cut), modes, (("z", x[0]), (str(random.choice(moving)), x[1])), lines
+        )
 
-
-def moving(scene: Scene) -> list[str]:
-    """Return the coordinates that move with z."""
-    return ["z"] + ["beta"] * (scene.rope.bending_stiffness is not None)
+    def answers(self, model: Model, drive: Point, response: Point) -> tuple[Complex, Real]:
+        """Return values and bounds of the lines, NaN where there is none."""
+        found = []
+        for f in self.lines.tolist():
+            try:
+                frf = model.frf(f, drive=drive, response=response)
+                found.append((frf.value[0, 0], frf.rounding_limit[0, 0]))
+            except SolveError:
+                found.append((np.nan, np.nan))
+        value, bound = map(np.array, zip(*found))
+        return value, bound
 
 
 # --- what must hold -----------------------------------------------------------------------------
@@ -74,35 +81,29 @@ def moving(scene: Scene) -> list[str]:
 
 def counts(drawn: Drawn) -> list[str]:
     """Hold the count between two modes against their number."""
-    modes, model = drawn.modes[0], drawn.models[0]
-    value, error = in_hertz(modes.eigenvalue), modes.rounding_error
+    value, error = in_hertz(drawn.modes[0].eigenvalue), drawn.modes[0].rounding_error
     wrong = []
-    for k, (low, high) in enumerate(zip((value + error)[:-1], (value - error)[1:])):
+    for k, (low, high) in enumerate(zip((value + error)[:-1], (value - error)[1:]), 1):
         middle = float(low + high) / 2
-        # below 0 Hz there is nothing to count, and too near no number between
-        if middle <= 0 or not low < middle < high:
-            continue
-        found = model.count(below=middle)
-        if found != k + 1:
-            wrong.append(f"{found} modes counted below {middle!r} Hz, {k + 1} found")
+        # nothing is counted below 0 Hz, and between the closest there is no number
+        if middle > 0 and low < middle < high:
+            found = drawn.models[0].count(below=middle)
+            wrong += [f"{found} modes counted below {middle!r} Hz, {k} found"] * (found != k)
     return wrong
 
 
 def cuts(drawn: Drawn) -> list[str]:
-    """Hold modes and lines of a rope against those of the same rope in three parts."""
-    one, other = drawn.modes
-    apart = np.abs(in_hertz(one.eigenvalue) - in_hertz(other.eigenvalue))
-    wrong = [
-        f"mode {k + 1} is {apart[k]:.3g} Hz off that of the rope cut {CUTS} times"
-        for k in np.flatnonzero(apart > one.rounding_error + other.rounding_error).tolist()
-    ]
-    return wrong + _unlike(drawn, "cuts", *(_lines(drawn, model) for model in drawn.models))
+    """Hold modes and lines of a rope against those of the same rope cut elsewhere."""
+    whole, cut = ((in_hertz(one.eigenvalue), one.rounding_error) for one in drawn.modes)
+    lines = [drawn.answers(model, *drawn.points) for model in drawn.models]
+    return _apart("mode", range(1, MODES + 1), whole, cut) + _apart("cut line", drawn.lines, *lines)
 
 
 def reciprocity(drawn: Drawn) -> list[str]:
     """Hold a response against that of drive and response exchanged."""
-    here = drawn.models[0]
-    return _unlike(drawn, "reciprocity", _lines(drawn, here), _lines(drawn, here, swap=True))
+    model, (one, other) = drawn.models[0], drawn.points
+    there, back = drawn.answers(model, one, other), drawn.answers(model, other, one)
+    return _apart("exchanged line", drawn.lines, there, back)
 
 
 def passivity(drawn: Drawn) -> list[str]:
@@ -110,81 +111,47 @@ def passivity(drawn: Drawn) -> list[str]:
     # a spring that pushes gives energy where damping is in proportion to stiffness
     if any(isinstance(part, Spring) and part.stiffness < 0 for part in drawn.scene.parts):
         return []
-    answers = _asked(drawn, drawn.models[0], drawn.points[0], drawn.points[0])
-    return [
-        f"the rope gives energy to a force at {f!r} Hz"
-        for f, frf in zip(drawn.lines.tolist(), answers)
-        if frf is not None and frf.value[0, 0].imag > frf.rounding_limit[0, 0]
-    ]
+    value, bound = drawn.answers(drawn.models[0], drawn.points[0], drawn.points[0])
+    given = drawn.lines[value.imag > bound].tolist()
+    return [f"the rope gives energy to a force at {f!r} Hz" for f in given]
 
 
 def energy(drawn: Drawn) -> list[str]:
     """Hold each eigenvalue against the energies of the parts: it grows as all stiffness does."""
     modes = drawn.modes[0]
     hertz, error = in_hertz(modes.eigenvalue), modes.rounding_error
-    total = -modes.eigenvalue
+    total = np.zeros(MODES)
     bound = 4 * math.pi**2 * error * (2 * np.abs(hertz) + error)
-    for path, value, power in stiffnesses(drawn.scene):
-        total = total + value / power * modes.derivative(path, of="eigenvalue")
-        bound = bound + abs(value / power) * modes.derivative_error(path, of="eigenvalue")
-    return [
-        f"the energies of mode {k + 1} are {total[k]:.3g} rad^2/s^2 off"
-        for k in np.flatnonzero(np.abs(total) > bound).tolist()
-    ]
+    for path, share in _stiffnesses(drawn.scene):
+        total = total + share * modes.derivative(path, of="eigenvalue")
+        bound = bound + abs(share) * modes.derivative_error(path, of="eigenvalue")
+    return _apart("energies of mode", range(1, MODES + 1), (total, bound), (modes.eigenvalue, 0.0))
 
 
-CHECKS: tuple[Callable[[Drawn], list[str]], ...] = (counts, cuts, reciprocity, passivity, energy)
+CHECKS = (counts, cuts, reciprocity, passivity, energy)
 
 
-def stiffnesses(scene: Scene) -> list[tuple[str, float, int]]:
-    """Return path, value and power of all numbers that stiffness grows with."""
-    names = ("bending_stiffness", "torsional_stiffness", "axial_stiffness", "lay_coupling")
-    found = [(name, getattr(scene.rope, name), 1) for name in names if getattr(scene.rope, name)]
-    found += [("tension", scene.mean_tension, 1)] if scene.mean_tension else []
-    for k, end in enumerate(scene.ends):
-        if isinstance(end, End):
-            found += [(f"ends[{k}].spring.{c}", value, 1) for c, value in end.spring.items()]
-    for k, part in enumerate(scene.parts):
-        if isinstance(part, Spring) or (isinstance(part, Hinge) and part.stiffness):
-            found.append((f"parts[{k}].stiffness", part.stiffness, 1))
-        elif isinstance(part, Resonator):
-            found.append((f"parts[{k}].frequency", part.frequency, 2))
-    return found
-
-
-def _asked(
-    drawn: Drawn, model: Model, drive: tuple[str, float], response: tuple[str, float]
-) -> list[FRF | None]:
-    """Ask line by line, None where there is no answer."""
-    answers: list[FRF | None] = []
-    for f in drawn.lines.tolist():
-        try:
-            answers.append(model.frf(f, drive=drive, response=response))
-        except SolveError:
-            answers.append(None)
-    return answers
-
-
-def _lines(drawn: Drawn, model: Model, *, swap: bool = False) -> tuple[Complex, Real]:
-    """Return values and bounds, NaN where there is no answer."""
-    drive, response = reversed(drawn.points) if swap else drawn.points
-    found = [
-        (np.nan, np.nan) if frf is None else (frf.value[0, 0], frf.rounding_limit[0, 0])
-        for frf in _asked(drawn, model, drive, response)
-    ]
-    value, bound = zip(*found)
-    return np.array(value, dtype=np.complex128), np.array(bound)
-
-
-def _unlike(
-    drawn: Drawn, name: str, one: tuple[Complex, Real], other: tuple[Complex, Real]
-) -> list[str]:
+def _apart(name: str, of: Sequence[float] | Real, one: Any, other: Any) -> list[str]:
     """Say where two answers are further apart than their bounds."""
     apart = np.abs(one[0] - other[0])
-    return [
-        f"{name}: {apart[k]:.3g} apart at {float(drawn.lines[k])!r} Hz, {drawn.points}"
-        for k in np.flatnonzero(apart > one[1] + other[1]).tolist()
-    ]
+    far = np.flatnonzero(apart > one[1] + other[1])
+    return [f"{name} {float(of[k])!r} is {apart[k]:.3g} off" for k in far.tolist()]
+
+
+def _stiffnesses(scene: Scene) -> list[tuple[str, float]]:
+    """Return paths of all numbers that stiffness grows with, and them over their power."""
+    names = ("bending_stiffness", "torsional_stiffness", "axial_stiffness", "lay_coupling")
+    found = [(name, getattr(scene.rope, name) or 0.0) for name in names]
+    found.append(("tension", scene.mean_tension))
+    for k, end in enumerate(scene.ends):
+        if isinstance(end, End):
+            found += [(f"ends[{k}].spring.{c}", value) for c, value in end.spring.items()]
+    for k, part in enumerate(scene.parts):
+        if isinstance(part, (Spring, Hinge)):
+            found.append((f"parts[{k}].stiffness", part.stiffness))
+        elif isinstance(part, Resonator):
+            found.append((f"parts[{k}].frequency", part.frequency / 2))
+    return [(path, share) for path, share in found if share]
 
 
 # --- scenes -------------------------------------------------------------------------------------
@@ -196,16 +163,13 @@ def drawn_scene(random: Random) -> Scene:
     places = np.sort(random.uniform(0.02, 0.98, int(random.integers(0, 4)))).tolist()
     if places and random.random() < 0.3:
         places.append(places[-1] + _log(random, 2e-9, 1e-3))
-    parts: list[Any] = [_part(random, rope, x) for x in places]
-    damping = None
-    if random.random() < 0.4:
-        damping = StiffnessDamping(_log(random, 1e-12, 1e-3))
-    elif random.random() < 0.3:
+    parts = [_part(random, rope, x) for x in places]
+    damping = StiffnessDamping(_log(random, 1e-12, 1e-3)) if random.random() < 0.4 else None
+    if damping is None and random.random() < 0.3:
         parts.append(Dashpot(float(random.uniform(0.02, 0.98)), _log(random, 1e-9, 1e9)))
     ends = _end(random, rope), _end(random, rope)
-    return Scene(
-        rope, tension=_tension(random, rope), ends=ends, damping=damping, parts=tuple(parts)
-    )
+    tension = _tension(random, rope)
+    return Scene(rope, tension=tension, ends=ends, damping=damping, parts=tuple(parts))
 
 
 def _log(random: Random, low: float, high: float) -> float:
@@ -218,19 +182,16 @@ def _rope(random: Random) -> Rope:
     if kind < 0.2:
         return Rope(1.0, DENSITY)
     turning = float(random.choice([0.0, 1e-6, 1e-4])) or None
-    beam = Rope(1.0, DENSITY, bending_stiffness=bending, rotary_inertia=turning)
+    rope = Rope(1.0, DENSITY, bending_stiffness=bending, rotary_inertia=turning)
     if kind < 0.7:
-        return beam
-    laid = beam.replace(
-        torsional_stiffness=bending * _log(random, 1e-4, 10.0),
-        polar_inertia=_log(random, 1e-8, 1e-3),
-        lay_slope=_log(random, 1e-4, 1.0),
-    )
+        return rope
+    torsional, axial = bending * _log(random, 1e-4, 10.0), _log(random, 1e3, 1e8)
+    slope, polar = _log(random, 1e-4, 1.0), _log(random, 1e-8, 1e-3)
+    rope = rope.replace(torsional_stiffness=torsional, polar_inertia=polar, lay_slope=slope)
     if kind < 0.85:
-        return laid
-    axial = _log(random, 1e3, 1e8)
-    most = math.sqrt(axial * (laid.torsional_stiffness or 0.0))
-    return laid.replace(axial_stiffness=axial, lay_coupling=most * (1 - _log(random, 1e-4, 1.0)))
+        return rope
+    coupling = math.sqrt(axial * torsional) * (1 - _log(random, 1e-4, 1.0))
+    return rope.replace(axial_stiffness=axial, lay_coupling=coupling)
 
 
 def _tension(random: Random, rope: Rope) -> float:
@@ -249,9 +210,11 @@ def _tension(random: Random, rope: Rope) -> float:
 
 
 def _end(random: Random, rope: Rope) -> str | End:
-    kind = str(random.choice(["clamped", "pinned", "free", "springs"]))
-    if kind != "springs" or rope.bending_stiffness is None:
-        return kind if rope.bending_stiffness else ("clamped", "free")[kind == "free"]
+    kind = str(random.choice(["clamped", "free", "pinned", "springs"]))
+    if rope.bending_stiffness is None:
+        return "free" if kind == "free" else "clamped"
+    if kind != "springs":
+        return kind
     spring = {"z": _log(random, 1e-12, 1e12), "beta": _log(random, 1e-12, 1e12)}
     return End(z="free", beta="free", spring=spring)
 
@@ -263,8 +226,7 @@ def _part(random: Random, rope: Rope, x: float) -> Any:
         turning = _log(random, 1e-12, 1e6) if random.random() < 0.3 else 0.0
         return PointMass(x, DENSITY * size, rotary_inertia=turning)
     if kind < 0.75:
-        sign = -1.0 if random.random() < 0.15 else 1.0
-        return Spring(x, sign * size)
+        return Spring(x, -size if random.random() < 0.15 else size)
     if kind < 0.85:
         return Support(x)
     if kind < 0.92 and rope.bending_stiffness is not None:

@@ -14,7 +14,7 @@ from ...base.array import Flags, Real
 from ...base.errors import SceneError
 from ...base.progress import Progress, reporter
 from ...base.table import Table, numbers
-from .case import HardCase, hard_list
+from .case import Digits, hard_list
 from .drawn import attack
 from .peer import SPARSE, peer_of
 
@@ -26,7 +26,7 @@ class HardCases(Answer):
     Attributes
     ----------
     case : ndarray of str, shape (rows,)
-        What it is.
+        What it is; the hardest have most decades.
     hard : ndarray of str, shape (rows,)
         What makes it hard.
     decades : ndarray, shape (rows,)
@@ -92,25 +92,20 @@ class HardCases(Answer):
     def verdict(self) -> str:
         """What came out, in a few sentences."""
         good, rows = int(self.passed.sum()), len(self.case)
-        texts = [
-            f"{good} of {rows} hard cases keep the digits they promise, and no bound they state is "
-            f"exceeded{' in those' if good < rows else ''}."
-        ]
-        if good < rows:
-            texts.append(f"Not so: {'; '.join(self.case[~self.passed].tolist())}.")
+        lost = f" (not so: {'; '.join(self.case[~self.passed].tolist())})" if good < rows else ""
         asked = self.peer != ""
         half = int((self.peer_kept[asked] < self.kept[asked] / 2).sum())
-        texts.append(
-            f"SciPy on assembled matrices, the best of {SPARSE[0]} to {SPARSE[-1]} elements, keeps "
-            f"less than half of their digits in {half} of the {int(asked.sum())} it can be asked."
+        wrong = len(self.failures)
+        of_random = (
+            f" {self.drawn} random scenes: {wrong or 'no'} check{'s' * (wrong != 1)} failed, "
+            f"{self.refused} had no answer and said why."
         )
-        if self.drawn:
-            wrong = len(self.failures)
-            texts.append(
-                f"{self.drawn} random scenes: {wrong or 'no'} check{'s' * (wrong != 1)} failed, "
-                f"{self.refused} had no answer and said why."
-            )
-        return " ".join(texts)
+        return (
+            f"{good} of {rows} hard cases keep the digits they promise, and no bound they state is "
+            f"exceeded{lost}. SciPy on assembled matrices, the best of {SPARSE[0]} to {SPARSE[-1]} "
+            f"elements, keeps less than half of their digits in {half} of the {int(asked.sum())} "
+            f"it can be asked.{of_random * (self.drawn > 0)}"
+        )
 
     def table(self) -> Table:
         """Return one row for each case, those whose scales are closest first."""
@@ -173,40 +168,27 @@ def hard_cases(random: int = 0, seed: int | None = None, *, progress: Progress =
         check.count(seed, "seed", least=0, most=2**63)
     report = reporter(progress)
     start, cases = time.perf_counter(), hard_list()
-    rows = []
-    for k, case in enumerate(cases):
-        rows.append(_row(case))
-        report((k + 1) / (len(cases) + random))
-    refused, failures = 0, []
+    whole, kept, peers = len(cases) + random, [], []
+    for case in cases:
+        kept.append(case.run())
+        peers.append(peer_of(case))
+        report(len(kept) / whole)
+    wrong: list[list[str] | None] = []
     for k in range(random):
-        found = attack(seed or 0, k)
-        refused += found is None
-        failures += found or []
-        report((len(cases) + k + 1) / (len(cases) + random))
+        wrong.append(attack(seed or 0, k))
+        report((len(cases) + len(wrong)) / whole)
+    columns = dict(zip(Digits._fields, map(np.array, zip(*kept))))
+    columns |= dict(zip(("peer", "peer_kept"), map(np.array, zip(*peers))))
+    promised = [np.nan if case.digits is None else float(case.digits) for case in cases]
     return HardCases(
-        **{name: np.array([row[name] for row in rows]) for name in rows[0]},
+        case=np.array([case.name for case in cases]),
+        hard=np.array([case.hard for case in cases]),
+        decades=np.array([float(case.decades) for case in cases]),
+        promised=np.array(promised),
+        test=np.array([case.test for case in cases]),
         drawn=random,
-        refused=refused,
-        failures=tuple(failures),
+        refused=wrong.count(None),
+        failures=tuple(text for one in wrong for text in one or []),
         cost=Cost(time.perf_counter() - start, "trials", 0, 0),
+        **columns,
     )
-
-
-def _row(case: HardCase) -> dict[str, float | str | bool]:
-    """Run a case and its peer."""
-    kept = case.run()
-    peer, peer_kept = peer_of(case)
-    return {
-        "case": case.name,
-        "hard": case.hard,
-        "decades": float(case.decades),
-        "promised": np.nan if case.digits is None else float(case.digits),
-        "kept": kept.digits,
-        "stated": kept.stated,
-        "passed": case.keeps(kept) and kept.held,
-        "refusal": kept.refusal,
-        "seconds": kept.seconds,
-        "peer": peer,
-        "peer_kept": peer_kept,
-        "test": case.test,
-    }
