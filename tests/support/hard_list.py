@@ -246,15 +246,15 @@ for count in (1000, 10_000, 1_000_000):
 
 
 @case(
-    "10^5 elements under a load",
+    "32768 elements under a load",
     "stiffness of an element over that of the rope is n^4",
-    decades=20,
+    decades=18,
     digits=13,
     test="response/test_digits.py::test_assembled_stiffness_loses_digits_as_the_fourth_power_of_n",
     scene=RIGID_BEAM.replace(),
     ask=static(["z", 0.5]),
     how="L^3/48 B, exact for rigid elements",
-    compile={"elements": 100_000, "element": "rigid"},
+    compile={"elements": 32768, "element": "rigid"},
 )
 def _(one):
     return [mpf(1) / (48 * mpf(B))]
@@ -267,7 +267,7 @@ def _(one):
     digits=12,
     test="response/test_sweep_frf.py::test_long_pinned_chain_responds_as_its_two_waves",
     scene=rd.Scene(STRING, tension=T),
-    ask=frf([3.0, 70.0, 1003.0], ["z", 0.5]),
+    ask=frf(70.0, ["z", 0.5]),
     how="Lagrange's string: tan(n theta/2)/(2 (T/a) sin theta), mpmath",
     compile={"elements": 1_000_000, "element": "rigid"},
 )

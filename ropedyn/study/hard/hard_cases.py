@@ -52,7 +52,7 @@ class HardCases(Answer):
     drawn : int
         How many random scenes were attacked.
     refused : int
-        How many of them had no answer, by name.
+        How many of them had no modes, or none that are certified, and said so.
     failures : tuple of str
         What failed in which random scene, with the scene.
     cost : Cost
@@ -98,7 +98,7 @@ class HardCases(Answer):
         wrong = len(self.failures)
         of_random = (
             f" {self.drawn} random scenes: {wrong or 'no'} check{'s' * (wrong != 1)} failed, "
-            f"{self.refused} had no answer and said why."
+            f"{self.refused} had no certified answer and said so."
         )
         return (
             f"{good} of {rows} hard cases keep the digits they promise, and no bound they state is "
