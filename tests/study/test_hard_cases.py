@@ -124,7 +124,7 @@ def test_a_wrong_value_fails_and_is_named(monkeypatch, capsys):
 
 
 def test_an_answer_where_a_refusal_is_promised_fails():
-    assert not wrong(CASES["the same, asked for"], digits=None, value=[]).run().passed
+    assert not wrong(CASES["that deflection, asked for"], digits=None, value=[]).run().passed
 
 
 def test_another_refusal_than_the_promised_one_fails():

@@ -88,6 +88,11 @@ def static(load, **more):
     return {"kind": "static", "load": load, **more}
 
 
+def short(number):
+    """A power of ten as it is said: 1e-6."""
+    return f"{number:.0e}".replace("e-0", "e-")
+
+
 # --- references ---------------------------------------------------------------------------------
 
 
@@ -230,7 +235,7 @@ RIGID_BEAM = rd.Scene(BEAM, ends=PINNED)
 for count in (1000, 10_000, 1_000_000):
 
     @case(
-        f"{count} elements",
+        f"10^{round(math.log10(count))} elements",
         "stiffness of an element over that of the rope is n^4",
         decades=4 * math.log10(count),
         digits=14,
@@ -287,7 +292,7 @@ FIRST = math.sqrt(math.pi**2 * (T + B * math.pi**2) / MU) / (2 * math.pi)
 for beside, digits in ((1e-3, 12), (1e-6, 10), (1e-9, 5), (1e-12, 2)):
 
     @case(
-        f"{beside:g} beside a resonance",
+        f"{short(beside)} beside a resonance",
         "the answer is the quotient of what two stiffnesses leave",
         decades=-math.log10(beside),
         digits=digits,
@@ -299,6 +304,46 @@ for beside, digits in ((1e-3, 12), (1e-6, 10), (1e-9, 5), (1e-12, 2)):
     )
     def _(one):
         return [pinned_middle(one.scene, f) for f in one.ask["frequency"]]
+
+
+@case(
+    "on a resonance",
+    "no digit is left, and some number would come out",
+    decades=16,
+    digits=None,
+    test="response/test_hard_resonances.py::"
+    "test_response_next_to_a_resonance_is_known_to_its_rounding_error",
+    scene=TENSED.replace(),
+    ask=frf(FIRST, ["z", 0.5]),
+    how="refused",
+    refusal="lies on an undamped resonance",
+    peer=False,
+)
+def _(one):
+    return []
+
+
+PAIR = rd.Scene(
+    BEAM.replace(length=2.0),
+    tension=30.0,
+    ends=PINNED,
+    parts=[rd.PointMass(1.0, 1e5, rotary_inertia=1e5)],
+)
+
+
+@case(
+    "between two resonances 2e-7 apart",
+    "two large answers of unlike sign cancel what the nearer one says",
+    decades=7,
+    digits=14,
+    test="response/test_hard_resonances.py::"
+    "test_response_between_nearly_repeated_resonances_is_known_to_its_rounding_error",
+    scene=PAIR,
+    ask=frf(float(PAIR.compile().modes(4).frequency[2:].mean()), ["z", 0.5], ["z", 1.5]),
+    how="response of the exact transfer matrices, mpmath",
+)
+def _(one):
+    return receptance(one.scene, one.ask)
 
 
 LOADED = rd.Scene(STRING, tension=1000.0, parts=[rd.PointMass(0.3, 0.1)])
@@ -361,7 +406,7 @@ def _(one):
 for side, digits, word in ((1e-6, 9, "below"), (1e-12, 2, "below"), (-1e-12, 3, "beyond")):
 
     @case(
-        f"{abs(side):g} {word} the critical load",
+        f"{short(abs(side))} {word} the critical load",
         "what is left of the stiffness, or grows",
         decades=-math.log10(abs(side)),
         digits=digits,
@@ -385,7 +430,7 @@ def static_middle(scene):
 for side, digits in ((1e-6, 8), (1e-12, 2)):
 
     @case(
-        f"deflection {side:g} below the critical load",
+        f"deflection {short(side)} below the critical load",
         "hardly any stiffness is left to hold the load",
         decades=-math.log10(side),
         digits=digits,
@@ -419,7 +464,7 @@ def _(one):
 
 
 @case(
-    "the same, asked for",
+    "that deflection, asked for",
     "three directions give way, and the answer says so",
     decades=1,
     digits=13,
@@ -620,7 +665,7 @@ ALIKE = rd.Rope(1.0, 0.25)
 for miss, digits in ((1e-3, 12), (1e-9, 7)):
 
     @case(
-        f"a dashpot that matches to {miss:g}",
+        f"a dashpot that matches to {short(miss)}",
         "waves come back that weak: rates are logarithms of the mismatch",
         decades=-math.log10(miss),
         digits=digits,
@@ -744,7 +789,7 @@ def laid(scene, number):
 for miss, digits in ((1e-3, 14), (1e-9, 14)):
 
     @case(
-        f"lay coupling of 1 - {miss:g}",
+        f"lay coupling of 1 - {short(miss)}",
         "stretch and twist are nearly one motion: what is left of their stiffness is a difference",
         decades=-math.log10(miss),
         digits=digits,

@@ -159,7 +159,7 @@ def hard_cases(random: int = 0, seed: int | None = None, *, progress: Progress =
     --------
     >>> import ropedyn as rd
     >>> print(rd.hard_cases().verdict.split(",")[0])
-    50 of 50 hard cases keep the digits they promise
+    52 of 52 hard cases keep the digits they promise
     """
     check.count(random, "random", least=0, most=1_000_000)
     if (seed is None) != (random == 0):
