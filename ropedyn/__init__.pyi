@@ -62,6 +62,7 @@ from .signal.ringdown import RingDown
 from .signal.spectrum import Spectrum
 from .study.accuracy import AccuracyCost, accuracy_cost
 from .study.effect import EffectCost, effect_cost
+from .study.hard.hard_cases import HardCases, hard_cases
 from .study.sweep import Sweep, sweep
 
 __version__: str
@@ -95,6 +96,7 @@ __all__ = [
     "Fits",
     "Floquet",
     "Gravity",
+    "HardCases",
     "Hinge",
     "History",
     "IdentifyWarning",
@@ -145,6 +147,7 @@ __all__ = [
     "ask",
     "compare",
     "effect_cost",
+    "hard_cases",
     "identify",
     "load",
     "plan_measurement",

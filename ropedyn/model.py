@@ -244,14 +244,9 @@ class Model(Compiled):
 
         Notes
         -----
-        Between two nodes the displacement is the element's own static shape; a force acts through
-        the same shape, and points in the driven element also move by its local flexibility.
-
         With `ModalDamping` the response is the exact static one and a sum over the modes below
-        eight times the highest frequency, 64 at least: h = h_static + sum r_k (1/(w_k^2 - w^2 +
-        2 i zeta_k w_k w) - 1/w_k^2), about an imaginary frequency instead of 0 where the rope can
-        move as a rigid body. A bound of what is left out is part of `FRF.mesh_error`; no other
-        damping may act beside it, and internal forces are refused.
+        eight times the highest frequency, 64 at least. A bound of what is left out is part of
+        `FRF.mesh_error`; no other damping may act beside it, and internal forces are refused.
 
         Examples
         --------
@@ -265,7 +260,12 @@ class Model(Compiled):
         return ask(quantity=quantity, solver=solver, threads=threads, decay=decay)
 
     def static(
-        self, load: Mapping[Point, float], *, solver: str = "sweep", points: int | None = None
+        self,
+        load: Mapping[Point, float],
+        *,
+        solver: str = "sweep",
+        points: int | None = None,
+        unstable: bool = False,
     ) -> Deflection:
         """Find the static deflection under forces and moments.
 
@@ -274,11 +274,12 @@ class Model(Compiled):
         load : mapping from points to float
             Such as ``{("z", 0.5): 10.0}`` [N, N m].
         solver : {"sweep", "lapack", "band"}
-            ``"sweep"`` and ``"band"``: as `frf` at 0 Hz; ``"lapack"``: band LU of the assembled
-            stiffness.
+            As `frf` at 0 Hz; ``"lapack"``: band LU of the assembled stiffness.
         points : int, optional
-            Of continuous spans: the answer is given at the ends of so many equal parts of each
-            span or element (64 where left out) and under the loads.
+            Of continuous spans: given at the ends of so many equal parts of each span or element
+            (64 where left out) and under the loads.
+        unstable : bool
+            True: answer beyond a critical load too, where no rope stays, and say so in it.
 
         Returns
         -------
@@ -291,13 +292,12 @@ class Model(Compiled):
         SceneError
             If a value has no meaning.
         SolveError
-            If the stiffness is singular: a rigid motion is free or the compression is critical.
+            If a rigid motion is free, or critical loads are met or exceeded: how many.
 
         Notes
         -----
-        Motion is about the tensed state. How far tension stretches and turns a laid rope is
-        ``static({("x", length): tension})`` of the scene without tension whose right end is
-        ``End(x="free", alpha="free")``; an end's torque is in `Deflection.force`.
+        How far tension stretches and turns a laid rope is ``static({("x", length): tension})`` of
+        the scene without tension that ends in ``End(x="free", alpha="free")``.
 
         Examples
         --------
@@ -307,7 +307,7 @@ class Model(Compiled):
         [0.02]
         """
         refuse_nonlinear(self)
-        return solve_static(self, load, solver=solver, points=points)
+        return solve_static(self, load, solver=solver, points=points, unstable=unstable)
 
     def transient(
         self,

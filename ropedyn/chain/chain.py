@@ -179,6 +179,22 @@ class Chain(NamedTuple):
         return np.where(carries.any(axis=1), self.first[carries.argmax(axis=1)], -1)
 
     @property
+    def section_loss(self) -> float:
+        """What rounding in continuous spans grows by where bending twists or pulls: 1/det of S.
+
+        S is the section's flexibility over the root of its diagonal: 1 without coupling.
+        """
+        if self.inertia is None:
+            return 1.0
+        S = self.flexibility[self.flexibility[:, :2, 2].any(axis=1)]
+        size = np.sqrt(np.diagonal(S, axis1=1, axis2=2))
+        size = np.where(size > 0, size, 1.0)
+        scaled = S / (size[:, :, None] * size[:, None, :])
+        absent = np.diagonal(scaled, axis1=1, axis2=2) == 0
+        left = np.linalg.det(scaled + np.eye(3) * absent[:, None, :])
+        return float(1 / max(left.min(initial=1.0), np.finfo(float).eps))
+
+    @property
     def at_rest(self) -> Chain:
         """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
         kind = self.kind if self.inertia is None else TENSED

@@ -13,6 +13,7 @@ from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
 from .file import INSPECT, SCHEMA
+from .hard import HARD
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
 from .tension import TENSION
@@ -23,6 +24,7 @@ COMMANDS = (
     COMPARE,
     ACCURACY,
     EFFECTS,
+    HARD,
     IDENTIFY,
     TENSION,
     TRANSIENT,
@@ -64,8 +66,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=NAME,
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
-        epilog="Exit status: 0, 1 where the numbers refused, 2 where the input was bad, 3 where "
-        "what was measured leaves several answers.",
+        epilog="Exit status: 0, 1 where the numbers refused or a hard case failed, 2 where the "
+        "input was bad, 3 where what was measured leaves several answers.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {metadata.version(NAME)}")
     parser.set_defaults(run=_study, folder=FOLDER)

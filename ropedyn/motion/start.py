@@ -14,6 +14,7 @@ from ..base.errors import SceneError
 from ..chain.chain import TRANSVERSE
 from ..chain.compiled import Compiled
 from ..chain.port import Point
+from ..response.critical import refuse_critical
 from ..response.deflection import Deflection, checked_loads
 from .line.transfer import Transfer
 
@@ -41,7 +42,9 @@ def released(model: Compiled, start: Any) -> Begun:
         return Begun(dict(start.load))
     shapes = _shapes(model, start, "start")
     if not shapes:
-        return Begun(checked_loads(model, start, "start"))
+        loads = checked_loads(model, start, "start")
+        refuse_critical(model, loads, "start takes Model.static(.., unstable=True) all the same")
+        return Begun(loads)
     _refuse_support(model, shapes)
     return _at_places(model, lambda parts: _loads(model, shapes, parts))
 

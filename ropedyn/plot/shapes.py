@@ -80,7 +80,7 @@ def plot_deflection(deflection: Deflection, ax: Axes) -> None:
         if largest > 0:
             ax.plot(deflection.x, u / largest, label=f"{NAME[c]}, largest {largest:.3g} {UNIT[c]}")
     ax.set(xlabel="position along the rope [m]", ylabel="share of the largest [1]")
-    ax.set_title("static deflection")
+    ax.set_title(deflection.table().title)
     ax.legend(fontsize="small")
 
 

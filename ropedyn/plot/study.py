@@ -1,4 +1,4 @@
-"""Figures of what accuracy and effects cost."""
+"""Figures of what accuracy and effects cost, and of what hard cases keep."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ..base.array import Index
 from ..base.unit import power
 from ..study.accuracy import AccuracyCost
 from ..study.effect import EffectCost
+from ..study.hard.hard_cases import HardCases
 from .figure import light_grid, plots
 
 if TYPE_CHECKING:
@@ -131,3 +132,23 @@ def _plot_shares(cost: EffectCost, rows: Index, ax: Axes) -> None:
         "share of the time from the scene to the answer [%], hollow: not told apart", color=TIME
     )
     above.tick_params(axis="x", colors=TIME)
+
+
+@plots(HardCases, height=lambda table: 1.6 + 0.2 * len(table.case))
+def plot_hard_cases(table: HardCases, ax: Axes) -> None:
+    """Plot digits kept, a row for each case that has numbers: the hardest at the bottom."""
+    rows = np.flatnonzero(~np.isnan(table.promised))
+    rows = rows[np.argsort(table.decades[rows], kind="stable")]
+    y = np.arange(len(rows))
+    ax.hlines(y, table.peer_kept[rows], table.kept[rows], color="0.8", zorder=0)
+    ax.scatter(table.promised[rows], y, marker="|", color="black", s=60, label="promised")
+    ax.scatter(table.peer_kept[rows], y, marker="x", color="C3", label="SciPy")
+    ax.scatter(table.kept[rows], y, marker="o", color="C2", s=30, label="ropedyn")
+    ax.set(yticks=y, ylim=(len(rows) - 0.4, -0.6), xlim=(-0.4, 16.4))
+    names = zip(table.case[rows].tolist(), table.decades[rows].tolist())
+    ax.set_yticklabels([f"{name}  [{decades:g}]" for name, decades in names], fontsize="small")
+    ax.set(xlabel="right digits", ylabel="case, and how many powers of ten meet in it")
+    ax.set_title("what is kept of hard cases, the hardest at the bottom", fontsize="medium")
+    ax.grid(True, axis="x", color="0.92")
+    ax.set_axisbelow(True)
+    ax.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.05), ncols=3)

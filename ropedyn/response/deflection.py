@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from .. import _core
 from ..base import check
 from ..base.answer import Answer, Cost, Work, axes
 from ..base.array import Index, Real
+from ..base.computed import Late, Lazy, lazy
 from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..base.unit import FORCE, FORCE_UNIT, UNIT
@@ -21,6 +23,8 @@ from ..chain.compile import check_points, finer
 from ..chain.compiled import EXACT, Compiled
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
+from .critical import critical_loads, exceeds, refuse_critical
+from .rounding import bound_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +42,14 @@ class Deflection(Answer):
     force : ndarray, shape (nodes, coordinates)
         What the surroundings put on each node: loads, and reactions where a coordinate is held or
         a spring stands [N, N m].
+    rounding_error : ndarray, shape (nodes, coordinates)
+        Bound of what rounding does to the displacement, to first order, computed when it is read
+        [m, rad]. The closer a load is to a critical one the larger it is.
     load : tuple of (point, float)
         That was asked for [N, N m].
+    critical_loads : int
+        How many critical loads the compression exceeds, those within rounding of it included; of
+        springs that push too. The rope does not stay in this state unless it is 0.
     cost : Cost
         What it cost.
 
@@ -57,7 +67,9 @@ class Deflection(Answer):
     displacement: Real = field(metadata=axes("node", "coordinate", unit="m or rad"))
     force: Real = field(metadata=axes("node", "coordinate", unit="N or N m"))
     load: tuple[tuple[Point, float], ...]
+    critical_loads: int
     cost: Cost
+    rounding_error: Lazy[Real] = lazy(np.ndarray, axes=axes("node", "coordinate", unit="m or rad"))
 
     def table(self) -> Table:
         """Return displacement and force at every node."""
@@ -66,16 +78,27 @@ class Deflection(Answer):
             columns[f"{c} [{UNIT[c]}]"] = self.displacement[:, k]
         for k, c in enumerate(self.coordinates):
             columns[f"{FORCE[c]} [{FORCE_UNIT[c]}]"] = self.force[:, k]
-        return Table.of("static deflection", columns)
+        critical = self.critical_loads
+        unstable = f", unstable: {exceeds(critical)}" if critical else ""
+        return Table.of(f"static deflection{unstable}", columns)
 
 
 def solve_static(
-    model: Compiled, load: Mapping[Point, float], *, solver: str, points: int | None = None
+    model: Compiled,
+    load: Mapping[Point, float],
+    *,
+    solver: str,
+    points: int | None = None,
+    unstable: bool = False,
 ) -> Deflection:
     """Find the static deflection; see `Model.static`."""
-    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    solver_of = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
     loads = checked_loads(model, load)
     check_points(model, points)
+    check.instance(unstable, "unstable", bool, "True or False")
+    start = time.perf_counter()
+    if not unstable:
+        refuse_critical(model, loads, "unstable=True answers all the same")
     if model.element == "continuous":
         model = finer(model, points or POINTS)
         x = cut(model.chain, model.x, [at for _, at in loads])[1]
@@ -84,14 +107,13 @@ def solve_static(
     width = len(model.coordinates)
     displacement, force = np.zeros((len(x), width)), np.zeros((len(x), width))
     unknowns, works = 0, []
-    start = time.perf_counter()
     for component, free in zip(model.components, model.unknowns):
         here = {point: value for point, value in loads.items() if point[0] in component}
         if not here:
             continue
         at = [model.coordinates.index(c) for c in component]
         try:
-            displacement[:, at], force[:, at], work = solve(model, component, here, x)
+            displacement[:, at], force[:, at], work = solver_of.solve(model, component, here, x)
         except SolveError as error:
             raise SolveError(
                 f"({', '.join(component)}): the stiffness is singular to working precision: a "
@@ -109,6 +131,8 @@ def solve_static(
         displacement=displacement,
         force=force,
         load=tuple(loads.items()),
+        critical_loads=critical_loads(model, loads) if unstable else 0,
+        rounding_error=Late(partial(_rounding, model, loads, x, solver_of.bound)),
         cost=Cost(seconds, solver, len(model.x) - 1, unknowns, *Work.of(works)),
     )
 
@@ -124,22 +148,18 @@ def _sweep(
     longer, finer, kept = _cut(model, component, loads, nodes)
     pushed = ports(longer, finer, component, loads)
     amount = np.array(list(loads.values()))
-    factor = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
     asked = 0
 
     def ask(node: Index, forces: bool) -> Real:
         """Return motion of nodes, or force on the right end of the elements left of them."""
         w = len(component)
-        rows = np.zeros((len(node) * w, 2, w))
-        force = np.tile(np.eye(w), (len(node), 1)) if forces else None
-        left = node - 1 if forces else np.minimum(node, longer.nodes - 2)
-        if not forces:
-            side = np.repeat(node - left, w)
-            rows[np.arange(len(rows)), side] = np.tile(np.eye(w), (len(node), 1))
-        watched = Ports(np.repeat(left, w).astype(np.int32), rows, force)
+        watched = _watching(longer, node)
+        if forces:
+            unit = np.tile(np.eye(w), (len(node), 1))
+            watched = Ports(np.repeat(node - 1, w).astype(np.int32), 0 * watched.row, unit)
         nonlocal asked
         asked += 1
-        value, _, solved = _core.sweep(longer, factor, pushed, watched)
+        value, _, solved = _core.sweep(longer, STILL, pushed, watched)
         if solved == 0:
             raise SolveError("singular")
         answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)
@@ -162,6 +182,53 @@ def _band(
     u, force = _core.mixed_deflection(chain, nodal(chain, x, component, loads))
     on_nodes = _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
     return u[kept], on_nodes, Work(factorisations=1)
+
+
+STILL = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
+"""At 0 Hz the factors on sections, tension, springs, inertia and dashpots."""
+AT_ONCE = 32  # The rounding of so many nodes is bounded together.
+Bound = Callable[[Chain, Ports, Ports], Real]
+
+
+def _rounding(model: Compiled, loads: dict[Point, float], nodes: Real, bound: Bound) -> Real:
+    """Bound what rounding does to the displacement of the nodes, linear in the loads [m, rad]."""
+    error = np.zeros((len(nodes), len(model.coordinates)))
+    for component in model.components:
+        here = {point: value for point, value in loads.items() if point[0] in component}
+        if not here:
+            continue
+        chain, x, kept = _cut(model, component, here, nodes)
+        pushed, amount = ports(chain, x, component, here), np.abs(list(here.values()))
+        parts = [
+            amount @ bound(chain, pushed, _watching(chain, kept[k : k + AT_ONCE]))
+            for k in range(0, len(kept), AT_ONCE)
+        ]
+        moves = chain.held[chain.term_of[kept]] == 0
+        at = [model.coordinates.index(c) for c in component]
+        error[:, at] = np.concatenate(parts).reshape(moves.shape) * moves
+    error.setflags(write=False)
+    return error
+
+
+def _watching(chain: Chain, node: Index) -> Ports:
+    """Return the ports of all coordinates of nodes."""
+    width = chain.held.shape[1]
+    left = np.minimum(node, chain.nodes - 2)
+    row = np.zeros((len(node) * width, 2, width))
+    row[np.arange(len(row)), np.repeat(node - left, width)] = np.tile(np.eye(width), (len(node), 1))
+    return Ports(np.repeat(left, width).astype(np.int32), row, None)
+
+
+def _sweep_bound(chain: Chain, pushed: Ports, watched: Ports) -> Real:
+    return bound_of(chain, STILL, pushed, watched)[:, :, 0]
+
+
+def _band_bound(chain: Chain, pushed: Ports, watched: Ports) -> Real:
+    return _core.mixed(chain, STILL, pushed, watched)[1][:, :, 0]
+
+
+def _lapack_bound(chain: Chain, pushed: Ports, watched: Ports) -> Real:
+    return _core.frf(chain, np.ascontiguousarray(STILL.T), pushed, watched)[1][0]
 
 
 def _on_nodes(
@@ -212,8 +279,18 @@ def _cut(
     return chain, x, np.flatnonzero(np.isin(x, nodes))
 
 
-SOLVERS = {"sweep": _sweep, "band": _band, "lapack": _lapack}
-"""What finds motion of and forces on the nodes of one component."""
+class Static(NamedTuple):
+    """A solver: what finds motion of and forces on the nodes of one component, and its rounding."""
+
+    solve: Callable[[Compiled, tuple[str, ...], dict[Point, float], Real], tuple[Real, Real, Work]]
+    bound: Bound  # of each motion watched under unit loads, (loads, watched)
+
+
+SOLVERS = {
+    "sweep": Static(_sweep, _sweep_bound),
+    "band": Static(_band, _band_bound),
+    "lapack": Static(_lapack, _lapack_bound),
+}
 
 
 def checked_loads(model: Compiled, load: Any, name: str = "load") -> dict[Point, float]:

@@ -93,7 +93,7 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     lost = _added((load + slip) * (1 - 1 / (1 + heavy)), axis=2)
     around = _added(moved + pulled, axis=2)
     energy += OF_LOADS * _added(lost[d, None] * around[r] + around[d, None] * lost[r], axis=2)
-    return np.where(np.isfinite(energy), EPS * energy, np.inf)
+    return np.where(np.isfinite(energy), EPS * chain.section_loss * energy, np.inf)
 
 
 def _added(terms: Real, axis: int) -> Real:

@@ -32,8 +32,7 @@ def load(scene: type[_Scene], path: str | os.PathLike[str]) -> _Scene:
         document = tomllib.loads(content.decode("utf-8-sig"))
     with reading(file, "a TOML file of a scene"):
         try:
-            known = {field.name for field in dataclasses.fields(scene)}
-            return scene(**_arguments(document, known))
+            return built(scene, document)
         except TypeError as error:  # of a number that is text
             raise SceneError(str(error)) from error
 
@@ -46,7 +45,17 @@ def save(scene: Any, path: str | os.PathLike[str]) -> None:
     for i, one in enumerate(scene.parts):
         if isinstance(one, NodeForce):
             raise SceneError(f"parts[{i}].law cannot be written to a file, got {one.law!r}")
-    document: dict[str, Any] = {
+    write_bytes(path, tomli_w.dumps(document(scene)).encode())
+
+
+def built(scene: type[_Scene], document: Mapping[str, Any]) -> _Scene:
+    """Build a scene from its keys in a file."""
+    return scene(**_arguments(document, {field.name for field in dataclasses.fields(scene)}))
+
+
+def document(scene: Any) -> dict[str, Any]:
+    """Return the keys of a scene in a file."""
+    found: dict[str, Any] = {
         "tension": scene.tension if isinstance(scene.tension, float) else _plain(scene.tension),
         "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
         "rope": _plain(scene.rope),
@@ -54,12 +63,12 @@ def save(scene: Any, path: str | os.PathLike[str]) -> None:
     if scene.planes != "z":
         document["planes"] = scene.planes
     if scene.gravity is not None:
-        document["gravity"] = _plain(scene.gravity)
+        found["gravity"] = _plain(scene.gravity)
     if scene.dampings:
-        document["damping"] = [_named(one) for one in scene.dampings]
+        found["damping"] = [_named(one) for one in scene.dampings]
     if scene.parts:
-        document["parts"] = [_named(one) for one in scene.parts]
-    write_bytes(path, tomli_w.dumps(document).encode())
+        found["parts"] = [_named(one) for one in scene.parts]
+    return found
 
 
 def _plain(thing: Any) -> dict[str, Any]:

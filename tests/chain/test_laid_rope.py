@@ -1,5 +1,6 @@
 """A laid rope at rest: pulled it turns, pushed aside it twists; closed forms of its section."""
 
+import itertools
 import math
 
 import numpy as np
@@ -142,3 +143,30 @@ def test_cantilever_with_lay_slope_held_from_turning_puts_a_torque_on_its_clamp(
     response = model.frf([0.0], drive=("z", L), response=("M_alpha", 0.0)).value[0, 0]
     # the sweep's forces are right to hundreds of eps
     assert response.real * PULL == pytest.approx(torque, rel=1e-13)
+
+
+@pytest.mark.parametrize("torsional", [1e-1, 1e-3, 1e-5])
+@pytest.mark.parametrize("slope", [0.1, 0.9])
+def test_rounding_error_covers_what_a_pulled_rope_that_twists_softly_loses(slope, torsional):
+    """Tension lets the rope hardly bend, and the section gives nearly all that way."""
+    rope = rd.Rope(
+        1.0,
+        0.1,
+        bending_stiffness=1.0,
+        torsional_stiffness=torsional,
+        polar_inertia=1e-6,
+        lay_slope=slope,
+    )
+    scene = rd.Scene(rope, tension=1e6)
+    cuts = [scene.compile(elements=n, element="continuous").modes(6) for n in range(1, 9)]
+    for one, other in itertools.combinations(cuts, 2):
+        apart = np.abs(one.frequency - other.frequency)
+        assert (apart <= one.rounding_error + other.rounding_error).all()
+
+
+def test_uncoupled_sections_lose_nothing():
+    rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, torsional_stiffness=1e-9, polar_inertia=1e-6)
+    assert rd.Scene(rope, tension=1.0).compile().chain.section_loss == 1.0
+    laid = rd.Scene(rope.replace(lay_slope=1.0), tension=1.0).compile().chain
+    # S = c (1/B, 1/C) turned by 45 degrees: 1/det = (1/B + 1/C)^2/(4/B C)
+    assert laid.section_loss == pytest.approx((1 + 1e9) ** 2 / 4e9, rel=1e-6)

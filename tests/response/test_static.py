@@ -2,6 +2,7 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 from conftest import EPS, dense, free
@@ -223,3 +224,98 @@ def test_spring_that_cancels_the_stiffness_is_refused():
     scene = rd.Scene(rd.Rope(1.0, 0.1), tension=8.0, parts=[rd.Spring(0.5, -32.0)])
     with pytest.raises(rd.SolveError, match=r"critical|rigid"):
         scene.compile(elements=2, element="rigid").static({("z", 0.5): 1.0})
+
+
+# critical loads -----------------------------------------------------------------------------------
+
+EULER = math.pi**2 * B / L**2
+"""Of the pinned beam [N]."""
+HALF_WAY = {("z", L / 2): 1.0}
+
+
+def pushed(times, elements=None, **more):
+    scene = rd.Scene(BEAM, tension=-times * EULER, ends=("pinned", "pinned"), **more)
+    return scene.compile(elements=elements)
+
+
+def half_way(tension):
+    """Compliance of the pinned beam in its middle, (tan(u)/u - 1) L/4P, u = L sqrt(P/B)/2."""
+    with mpmath.workdps(40):
+        P = -mpmath.mpf(tension)
+        u = L * mpmath.sqrt(P / B) / 2
+        return (mpmath.tan(u) / u - 1) * L / (4 * P)
+
+
+@pytest.mark.parametrize(("elements", "solver"), [(None, "sweep"), (8, "band"), (8, "lapack")])
+@pytest.mark.parametrize(("times", "exceeded"), [(1.5, 1), (4.1, 2), (9.5, 3)])
+def test_deflection_beyond_critical_loads_is_refused_and_said(times, exceeded, elements, solver):
+    model = pushed(times, elements)
+    with pytest.raises(
+        rd.SolveError, match=rf"{exceeded} critical loads? (is|are) met or exceeded"
+    ):
+        model.static(HALF_WAY, solver=solver)
+    static = model.static(HALF_WAY, solver=solver, unstable=True)
+    assert static.critical_loads == exceeded
+    assert f"unstable: {exceeded} critical" in str(static)
+    assert static.to_xarray().attrs["ropedyn_critical_loads"] == str(exceeded)
+    middle = static.displacement[list(static.x).index(L / 2), 0]
+    assert middle == pytest.approx(float(half_way(model.scene.tension)), rel=1e-9)
+    # the response at 0 Hz says the same, asked or not
+    assert model.frf(0.0, drive=("z", L / 2)).value[0, 0].real == pytest.approx(middle, rel=1e-9)
+
+
+@pytest.mark.parametrize(("elements", "solver"), [(None, "sweep"), (8, "band"), (8, "lapack")])
+@pytest.mark.parametrize("below", [1.0, 1e-3, 1e-6, 1e-9, 1e-12, *(1e-4, 1e-8, 1e-11)])
+def test_rounding_error_covers_what_is_lost_next_to_the_critical_load(below, elements, solver):
+    model = pushed(1 - below, elements) if below < 1 else pushed(0.3, elements)
+    try:
+        static = model.static(HALF_WAY, solver=solver)
+    except rd.SolveError as refusal:
+        assert below < (1e-12 if solver != "lapack" else 1e-5)
+        assert "critical" in str(refusal)
+        return
+    node = list(static.x).index(L / 2)
+    error = abs(static.displacement[node, 0] - half_way(model.scene.tension))
+    bound = static.rounding_error[node, 0]
+    assert error <= bound <= 1e3 * EPS * (elements or 1) ** 4 / below * static.displacement[node, 0]
+    assert (static.rounding_error[[0, -1], 0] == 0).all()
+
+
+@pytest.mark.parametrize("away", [0.0, 1e-15, -1e-15])
+def test_load_that_rounding_cannot_tell_from_critical_is_refused(away):
+    # a moment in the middle leaves the half wave that buckles at rest
+    model = pushed(1 + away)
+    with pytest.raises(rd.SolveError, match="1 critical load is met or exceeded"):
+        model.static({("beta", L / 2): 1.0})
+
+
+def test_rope_buckles_between_the_nodes_of_a_chain():
+    model = rd.Scene(BEAM, tension=-4.2 * EULER).compile(elements=1)
+    with pytest.raises(rd.SolveError, match="1 critical load is met or exceeded"):
+        model.static({("z", L / 4): 1.0})
+
+
+def test_springs_that_push_exceed_critical_loads():
+    model = pushed(0.0, parts=[rd.Spring(L / 2, -1.1 * 48 * B / L**3)])
+    with pytest.raises(rd.SolveError, match="1 critical load is met or exceeded"):
+        model.static(HALF_WAY)
+    held = pushed(0.0, parts=[rd.Spring(L / 2, -0.9 * 48 * B / L**3)]).static(HALF_WAY)
+    assert held.critical_loads == 0
+    assert held.displacement[:, 0].max() == pytest.approx(10 * L**3 / (48 * B), rel=1e-12)
+
+
+def test_only_what_a_load_moves_is_counted():
+    rope = BEAM.replace(torsional_stiffness=C)
+    model = rd.Scene(rope, tension=-2 * EULER, ends=("pinned", "pinned")).compile()
+    assert model.static({("alpha", L / 2): 1.0}).critical_loads == 0
+
+
+def test_loads_that_are_let_go_rest_where_the_rope_stays():
+    model = pushed(1.5, 8)
+    how = {"method": "line", "response": ("z", L / 2)}
+    with pytest.raises(rd.SolveError, match="1 critical load is met or exceeded"):
+        model.transient([0.0, 1e-3], start=HALF_WAY, **how)
+    asked = model.static(HALF_WAY, unstable=True)
+    moved = model.transient([0.0, 1e-3], start=asked, **how).value[0]
+    # away from where the load would push it
+    assert moved[1] < moved[0] < 0
