@@ -157,7 +157,7 @@ class SteppedSineQuestion(FRFQuestion):
 
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order, that harmonic balance takes: n a line."""
-        return 2e-5 * model.size * len(self.frequency)
+        return 6e-3 * model.size * len(self.frequency)
 
 
 @dataclass(frozen=True, eq=False)

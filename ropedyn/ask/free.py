@@ -124,7 +124,7 @@ class ModesQuestion(AnyQuestion):
         """Return the seconds, by their order: n^3 of the assembled solver, n of damped modes."""
         if self.damped:
             return 1e-4 * model.size
-        return 7e-11 * sum(float(n) ** 3 for n in model.unknowns) * (solver == "lapack")
+        return 3e-10 * sum(float(n) ** 3 for n in model.unknowns) * (solver == "lapack")
 
 
 @dataclass(frozen=True)

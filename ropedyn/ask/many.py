@@ -75,7 +75,7 @@ class IdentifyQuestion(AnyQuestion):
 
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order, that a fit takes: n."""
-        return 2e-4 * model.size
+        return 1e-3 * model.size
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..ask import AnyQuestion
 from ..base import check
+from ..base.array import Real
 from ..base.errors import RopedynError, SceneError
 from ..base.stopwatch import Times, timed
 from ..model import Model
@@ -43,6 +44,13 @@ class Way:
         asked = partial(ask_once, self.question, self.model, self.solver)
         return partial(self.scene.compile, **self.how), asked
 
+    def bound(self) -> Real:
+        """Ask, and read the error bar: relative errors of the mesh and of rounding."""
+        answer = ask_once(self.question, self.model, self.solver)
+        rounding = self.question.rounding(answer)
+        spans = self.model.element == "continuous"
+        return rounding if spans else rounding + self.question.mesh(answer)
+
     def __str__(self) -> str:
         return words(self.model.element, len(self.model.x) - 1, self.solver)
 
@@ -63,10 +71,10 @@ def answered(
 
 
 def words(element: str, elements: int, solver: str) -> str:
-    """Say a way in words; to all but motion over time continuous spans are swept."""
+    """Say a way in words; the usual solver of continuous spans is not named."""
     if element != "continuous":
         return f"{element}, {elements}, {solver}"
-    return element if solver == "sweep" else f"{element}, {solver}"
+    return element if solver in ("sweep", "auto") else f"{element}, {solver}"
 
 
 # Tries a way, and returns it with the numbers of its row.
@@ -85,10 +93,14 @@ def priced(
     repeat: int,
     report: Callable[[float], Any],
     *first: Way,
+    bounds: bool = False,
 ) -> tuple[dict[str, NDArray[Any]], Times]:
-    """Try ways, with rows of nothing for refusals, and time them after those that come first."""
+    """Try ways, with rows of nothing for refusals, and time them after those that come first.
+
+    With `bounds` also with the error bar.
+    """
     rows: list[Mapping[str, Any]] = []
-    calls = [way.calls for way in first]
+    calls: list[tuple[Callable[[], Any], ...]] = [way.calls for way in first]
     for attempt in attempts:
         try:
             way, numbers = attempt()
@@ -97,7 +109,7 @@ def priced(
             calls.append(())
         else:
             rows.append({**numbers, "refusal": ""})
-            calls.append(way.calls)
+            calls.append((*way.calls, way.bound) if bounds and way.question.bounded else way.calls)
         report(len(rows) / len(attempts) / 2)
     columns = {name: np.array([row[name] for row in rows]) for name in (*nothing, "refusal")}
     return columns, timed(calls, repeat, lambda fraction: report((1 + fraction) / 2))

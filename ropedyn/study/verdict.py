@@ -1,0 +1,82 @@
+"""What the price of accuracy amounts to, in two sentences."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.unit import duration, power
+
+if TYPE_CHECKING:
+    from .accuracy import AccuracyCost
+
+ASKED = (1e-3, 1e-6, 1e-12)  # What to take is said for each of them.
+ROUGH = 0.1  # A way that is off by more is no answer, however little it takes.
+
+
+def verdict_of(cost: AccuracyCost) -> str:
+    """Say what to take for each accuracy, and what the cheapest way would save and cost."""
+    taken: dict[int, list[str]] = {}
+    missed: list[str] = []
+    for tolerance in ASKED:
+        row = cost.cheapest_within(tolerance)
+        (missed if row is None else taken.setdefault(row, [])).append(power(tolerance))
+    if not taken:
+        return f"Nothing that was tried is right to {power(ASKED[0])}."
+    parts = [
+        f"{_in_words(cost, row)} for {_and(of)} ({_told(cost, row)})" for row, of in taken.items()
+    ]
+    least = f"; nothing that was tried is right to {' or '.join(missed)}" if missed else ""
+    best = list(taken)[-1]
+    return f"Take {_and(parts)}{least}. {_cheaper(cost, best)}"
+
+
+def _told(cost: AccuracyCost, row: int) -> str:
+    """Say what a row takes, and how wrong it is."""
+    count, part = cost.parts, cost.part
+    each = f", {duration(cost.total_seconds[row] / count)} a {part}" if part else ""
+    bound = cost.compile_seconds[row] + cost.seconds_with_bound[row]
+    told = "" if np.isnan(bound) else f", with an error bar {duration(bound)}"
+    return f"{duration(cost.total_seconds[row])}{each}{told}, off by {cost.error[row]:.1g}"
+
+
+def _cheaper(cost: AccuracyCost, best: int) -> str:
+    """Say what the cheapest way saves and costs beside the best one that is taken."""
+    rough = cost.cheapest_within(ROUGH)
+    if rough is None or rough == best:
+        return "Nothing that was tried is faster beyond the noise of the times."
+    saved = cost.total_seconds[best] - cost.total_seconds[rough]
+    digits = float(np.log10(cost.error[rough] / cost.error[best]))
+    many = not _in_words(cost, rough).startswith("1 ")
+    does = ("save", "cost", "they are") if many else ("saves", "costs", "it is")
+    words = f"{_in_words(cost, rough)} {does[0]} {duration(saved)}"
+    lost = f" and {does[1]} {digits:.0f} digits" if digits >= 0.5 else ""
+    return f"{_capital(words)}{lost}{_with_bound(cost, rough, best, does[2])}."
+
+
+def _with_bound(cost: AccuracyCost, rough: int, best: int, they: str) -> str:
+    """Say how both compare when the error bar is read too."""
+    with_bound = cost.compile_seconds + cost.seconds_with_bound
+    if np.isnan(with_bound[[rough, best]]).any():
+        return ", without an error bar" if np.isnan(with_bound[rough]) else ""
+    slower = with_bound[rough] > with_bound[best]
+    times = f"{duration(with_bound[rough])} to {duration(with_bound[best])}"
+    return f"; with an error bar {they} {'slower' if slower else 'faster still'}, {times}"
+
+
+def _in_words(cost: AccuracyCost, row: int) -> str:
+    """Say which way a row is, as in a sentence."""
+    solver = "" if cost.solver[row] in ("sweep", "auto") else f" by {cost.solver[row]}"
+    if cost.element[row] == "continuous":
+        return f"continuous spans{solver}"
+    n = cost.elements[row]
+    return f"{n} {cost.element[row]} element{'s' * bool(n > 1)}{solver}"
+
+
+def _and(words: list[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
+
+
+def _capital(words: str) -> str:
+    return words[0].upper() + words[1:]
