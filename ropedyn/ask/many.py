@@ -146,7 +146,7 @@ class FamilyQuestion(AnyQuestion):
 
 
 def cut_as(model: Model) -> dict[str, Any]:
-    """Return the arguments that cut other ropes as a model is."""
-    if model.element == "continuous":
+    """Return the arguments that cut other ropes as a model is: none where its spans are whole."""
+    if model.element == "continuous" and len(model.x) == len(model.scene.compile().x):
         return {}
     return {"elements": len(model.x) - 1, "element": model.element}

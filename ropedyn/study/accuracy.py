@@ -124,7 +124,7 @@ class AccuracyCost(Answer):
         """
         return {tolerance: self.cheapest_within(tolerance) for tolerance in TOLERANCES}
 
-    def cheapest_within(self, tolerance: float) -> int | None:
+    def cheapest_within(self, tolerance: float, *, before: float = np.inf) -> int | None:
         """Return the row that takes the least time of those whose true error is within a tolerance.
 
         Of rows whose time quartiles do not tell from the least it is the most accurate.
@@ -133,6 +133,8 @@ class AccuracyCost(Answer):
         ----------
         tolerance : float
             Relative error.
+        before : float
+            Only of rows whose time is less than this [s] by its quartiles.
 
         Returns
         -------
@@ -149,13 +151,13 @@ class AccuracyCost(Answer):
         4
         """
         within = check.number(tolerance, "tolerance", sign="positive")
-        enough = np.flatnonzero(self.error <= within)
+        soonest = self.compile_seconds + self.lower_quartile
+        latest = self.compile_seconds + self.upper_quartile
+        enough = np.flatnonzero((self.error <= within) & (latest < before))
         if len(enough) == 0:
             return None
         quickest = enough[np.argmin(self.total_seconds[enough])]
-        soonest = self.compile_seconds + self.lower_quartile
-        latest = self.compile_seconds[quickest] + self.upper_quartile[quickest]
-        tied = enough[soonest[enough] <= latest]
+        tied = enough[soonest[enough] <= latest[quickest]]
         # of errors that rounding makes equal no mesh, and the quickest
         meshed, error = self.element[tied] != "continuous", np.maximum(self.error[tied], ROUNDING)
         return int(tied[np.lexsort((self.total_seconds[tied], meshed, error))[0]])

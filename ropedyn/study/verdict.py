@@ -17,19 +17,30 @@ ROUGH = 0.1  # A way that is off by more is no answer, however little it takes.
 
 def verdict_of(cost: AccuracyCost) -> str:
     """Say what to take for each accuracy, and what the cheapest way would save and cost."""
-    taken: dict[int, list[str]] = {}
-    missed: list[str] = []
-    for tolerance in ASKED:
-        row = cost.cheapest_within(tolerance)
-        (missed if row is None else taken.setdefault(row, [])).append(power(tolerance))
-    if not taken:
+    missed = [power(tolerance) for tolerance in ASKED if cost.cheapest_within(tolerance) is None]
+    reached = ASKED[: len(ASKED) - len(missed)]
+    if not reached:
         return f"Nothing that was tried is right to {power(ASKED[0])}."
+    # a way that noise cannot part from a better one is that one
+    best = cost.cheapest_within(reached[-1])
+    assert best is not None
+    row, taken = best, dict[int, list[str]]()
+    for tolerance in reversed(reached):
+        faster = _quicker(cost, row, tolerance)
+        row = row if faster is None else faster
+        taken.setdefault(row, []).insert(0, power(tolerance))
     parts = [
-        f"{_in_words(cost, row)} for {_and(of)} ({_told(cost, row)})" for row, of in taken.items()
+        f"{_in_words(cost, row)} for {_and(of)} ({_told(cost, row)})"
+        for row, of in reversed(taken.items())
     ]
     least = f"; nothing that was tried is right to {' or '.join(missed)}" if missed else ""
-    best = list(taken)[-1]
     return f"Take {_and(parts)}{least}. {_cheaper(cost, best)}"
+
+
+def _quicker(cost: AccuracyCost, row: int, tolerance: float) -> int | None:
+    """Return the row that takes less than another one for sure, if any is within a tolerance."""
+    soonest = cost.compile_seconds[row] + cost.lower_quartile[row]
+    return cost.cheapest_within(tolerance, before=float(soonest))
 
 
 def _told(cost: AccuracyCost, row: int) -> str:
@@ -43,8 +54,8 @@ def _told(cost: AccuracyCost, row: int) -> str:
 
 def _cheaper(cost: AccuracyCost, best: int) -> str:
     """Say what the cheapest way saves and costs beside the best one that is taken."""
-    rough = cost.cheapest_within(ROUGH)
-    if rough is None or rough == best:
+    rough = _quicker(cost, best, ROUGH)
+    if rough is None:
         return "Nothing that was tried is faster beyond the noise of the times."
     saved = cost.total_seconds[best] - cost.total_seconds[rough]
     digits = float(np.log10(cost.error[rough] / cost.error[best]))
