@@ -100,7 +100,7 @@ class Truth:
         return way, {
             "error": max(error, EPSILON / 2),
             "estimated_error": _largest(estimated, self.known),
-            "digits_lost": float(np.log10(np.clip(rounding / EPSILON, 1.0, 1 / EPSILON))),
+            "digits_lost": _digits(rounding) if np.isfinite(rounding) else np.nan,
             "memory": float(memory[0]),
         }
 
@@ -114,6 +114,11 @@ class Truth:
 
 def _largest(errors: Real, known: Flags) -> float:
     return float(errors[known].max())
+
+
+def _digits(rounding: float) -> float:
+    """Return how many of the 15.7 digits an error takes."""
+    return float(np.log10(np.clip(rounding / EPSILON, 1.0, 1 / EPSILON)))
 
 
 @contextmanager

@@ -109,6 +109,16 @@ def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, qu
         assert found == list(cost.table().column(column))
 
 
+def test_accuracy_of_damped_modes_begins_with_what_to_take(scene_file, capsys):
+    assert main(["accuracy", str(scene_file), "--modes", "2", "--damped", "--elements", "16"]) == 0
+    verdict, blank, about = capsys.readouterr().out.splitlines()[:3]
+    assert verdict.startswith("Take ")
+    assert (blank, about[:15]) == ("", "2 damped modes:")
+    lines = ["--damped", "--frequency", "5", "--drive", "z@0.3"]
+    assert main(["accuracy", str(scene_file), *lines]) == 2
+    assert "--damped must be given with modes" in capsys.readouterr().err
+
+
 def test_accuracy_takes_some_elements_and_solvers(scene_file, capsys):
     options = ["--elements", "16,32", "--element", "tensed,continuous", "--solver", "sweep"]
     assert main(["accuracy", str(scene_file), *options, "--modes", "2", "--json"]) == 0
