@@ -42,7 +42,8 @@ class Cost:
     ----------
     seconds : float
         Wall time of the solution, and of what has been computed since because it was read, as
-        `mesh_error`. What follows counts the solution alone.
+        `mesh_error`, shapes and what tables show: what a caller waits but for checks and layout,
+        some 0.1 ms. What follows counts the solution alone.
     method : str
         The solver.
     elements, unknowns : int

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Generic, Self, TypeVar, cast, overload
@@ -32,7 +33,20 @@ class computed(Reader[Value], cached_property[Value]):
     def read(self, thing: object) -> Value:
         """Compute it, since it is not kept yet."""
         assert self.attrname is not None
-        return vars(thing).setdefault(self.attrname, self.func(thing))
+        with paid(thing):
+            return vars(thing).setdefault(self.attrname, self.func(thing))
+
+
+@contextmanager
+def paid(thing: object) -> Iterator[None]:
+    """Count what is computed meanwhile as part of what a thing cost, where it has a cost."""
+    kept, start = vars(thing), time.perf_counter()
+    before = kept["cost"].seconds if "cost" in kept else 0.0
+    yield
+    if "cost" in kept:
+        # what has been read on the way counted itself, and is part of the time
+        seconds = before + time.perf_counter() - start
+        kept["cost"] = replace(kept["cost"], seconds=seconds)
 
 
 class Lazy(Reader[Value]):
@@ -59,11 +73,9 @@ class Lazy(Reader[Value]):
         compute = kept.get(self.unread)
         if self.name not in kept:
             assert compute is not None
-            start = time.perf_counter()
-            kept.setdefault(self.name, compute())
-            if kept.pop(self.unread, None) is not None and "cost" in kept:
-                seconds = kept["cost"].seconds + time.perf_counter() - start
-                kept["cost"] = replace(kept["cost"], seconds=seconds)
+            with paid(thing):
+                kept.setdefault(self.name, compute())
+                kept.pop(self.unread, None)
         return kept[self.name]
 
 

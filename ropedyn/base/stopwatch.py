@@ -10,8 +10,9 @@ import numpy as np
 
 from .array import Real
 
-LONG, FEW = 0.05, 3
+LONG, FEW = 0.01, 3
 """Calls longer than this [s] are not warmed up again, and made so many times at most."""
+LONGEST = 0.3  # Calls longer than this [s] are made once.
 
 
 def in_turns(
@@ -28,7 +29,8 @@ def in_turns(
     times: list[list[float]] = [[] for _ in calls]
     for turn in range(repeat):
         for k, call in enumerate(calls):
-            if turn < FEW or times[k][-1] <= LONG:
+            last = times[k][-1] if turn else 0.0
+            if last <= LONG or (turn < FEW and last <= LONGEST):
                 first = _seconds(call)
                 times[k].append(_seconds(call) if first <= LONG else first)
             report((turn * len(calls) + k + 1) / (repeat * len(calls)))
@@ -42,6 +44,7 @@ class Times(NamedTuple):
     lower_quartile: Real  # of what asks
     seconds: Real  # median of the same
     upper_quartile: Real  # of the same
+    seconds_with_bound: Real  # median of what asks and reads the error bar, if that is a third call
 
 
 def timed(
@@ -51,12 +54,14 @@ def timed(
 ) -> Times:
     """Time ways to an answer in turns."""
     times = iter(in_turns([call for calls in ways for call in calls], repeat, report))
-    compiled, asked = zip(*((next(times), next(times)) if calls else _NEVER for calls in ways))
+    kept = [[next(times) for _ in calls] + [_NEVER] * (3 - len(calls)) for calls in ways]
+    compiled, asked, bound = zip(*kept)
     lower, median, upper = np.array([np.quantile(each, [0.25, 0.5, 0.75]) for each in asked]).T
-    return Times(np.array([np.median(each) for each in compiled]), lower, median, upper)
+    middle, bounded = (np.array([np.median(each) for each in of]) for of in (compiled, bound))
+    return Times(middle, lower, median, upper, bounded)
 
 
-_NEVER = (np.array([np.nan]), np.array([np.nan]))  # What has no answer has these times.
+_NEVER = np.array([np.nan])  # What is not called has these times.
 
 
 def _seconds(call: Callable[[], Any]) -> float:

@@ -119,7 +119,7 @@ class Table:
         return self.to_text(rows=PRINTED)
 
     def __repr__(self) -> str:
-        return self.to_text(rows=SHOWN, width=WIDTH)
+        return self.to_text(rows=max(3, SHOWN - self.title.count("\n")), width=WIDTH)
 
     def to_text(self, *, rows: int | None = None, width: int | None = None) -> str:
         """Return the table as text: whole, or its head and tail and the columns that fit.

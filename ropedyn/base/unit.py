@@ -95,6 +95,12 @@ def power(value: float) -> str:
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
 
 
+def duration(seconds: float) -> str:
+    """Write a time with two digits, such as ``0.42 ms``."""
+    size, unit = (1.0, "s") if seconds >= 1 else (1e-3, "ms") if seconds >= 1e-4 else (1e-6, "us")
+    return f"{float(f'{seconds / size:.2g}'):g} {unit}"
+
+
 def is_quantity(value: object) -> bool:
     """Whether a value is a number, or an array, with a unit of a registry."""
     return hasattr(value, "_REGISTRY") and hasattr(value, "magnitude")

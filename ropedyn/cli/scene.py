@@ -44,6 +44,7 @@ QUESTION = (
             option(*LINES),
         )
     ),
+    switch("--damped", "complex modes"),
     option(*DRIVE),
     RESPONSE,
 )
@@ -78,7 +79,7 @@ MODES = Command(
 )
 
 
-def _frf_question(options: argparse.Namespace) -> ask.FRFQuestion:
+def _frf_question(options: argparse.Namespace) -> ask.AnyQuestion:
     return ask.frf(options.frequency, drive=options.drive, response=options.response)
 
 
@@ -90,15 +91,16 @@ FRF = Command(
 )
 
 
-def _question(options: argparse.Namespace) -> ask.Question:
+def _question(options: argparse.Namespace) -> ask.AnyQuestion:
     if options.frequency is not None:
         if options.drive is None:
             raise SceneError("--drive must be given with --frequency, got none")
+        if options.damped:
+            raise SceneError("--damped must be given with modes, got --frequency")
         return _frf_question(options)
     refuse(options, (option(*DRIVE), RESPONSE), "--frequency")
-    if options.below is not None:
-        return ask.modes(below=options.below)
-    return ask.modes(10 if options.modes is None else options.modes)
+    number = 10 if options.modes is None and options.below is None else options.modes
+    return ask.modes(number, below=options.below, damped=options.damped)
 
 
 def _accuracy(options: argparse.Namespace) -> None:
@@ -123,7 +125,7 @@ ACCURACY = Command(
             "--elements", "of chains, comma list (powers of two from 8 to 4096)", text.whole_numbers
         ),
         option("--element", "kinds (%(default)s)", text.words, default="rigid,tensed,continuous"),
-        option("--solver", "comma list (%(default)s)", text.words, default="sweep,lapack"),
+        option("--solver", "comma list (those usual for the question)", text.words),
     ),
 )
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from textwrap import fill
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,57 +18,68 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLOR = {"difference": "C3", "rigid": "C0", "tensed": "C1", "continuous": "C2"}
-LINE = {"sweep": "-", "lapack": "--", "band": ":"}
-"""Colours of each kind of element, and lines of each solver."""
+LINE = {"sweep": "-", "auto": "-", "lapack": "--", "direct": "--"}
+"""Colours of each kind of element, and lines of solvers, dotted those of the others."""
 CHANGE, TIME = "C0", "C1"
 """Colours of what an effect changes, and of its share of time."""
 
 
-@plots(AccuracyCost)
+@plots(AccuracyCost, height=lambda cost: 6.0)
 def plot_accuracy(cost: AccuracyCost, ax: Axes) -> None:
-    """Plot true errors over time from the scene to the answer, one curve for each way."""
+    """Plot true errors over time: every way, and the front that no other way beats."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
     total = cost.total_seconds
     spread = np.stack([cost.seconds - cost.lower_quartile, cost.upper_quartile - cost.seconds])
-    handles: list[Any] = []
     for element, solver in dict.fromkeys(zip(cost.element.tolist(), cost.solver.tolist())):
         rows = (cost.element == element) & (cost.solver == solver) & (cost.refusal == "")
         if not rows.any():
             continue
         n = cost.elements[rows]
         chain = f"{element}, {solver}, {n[0]} to {n[-1]} elements"
-        curve = ax.errorbar(
+        ax.errorbar(
             total[rows],
             cost.error[rows],
             xerr=spread[:, rows],
             label="continuous" if element == "continuous" else chain,
             color=COLOR[element],
-            linestyle=LINE[solver],
+            linestyle=LINE.get(solver, ":"),
+            linewidth=1.0,
             marker="*" if element == "continuous" else ".",
             markersize=12 if element == "continuous" else 7,
         )
-        handles.append(curve)
-    found: dict[int, list[str]] = {}
-    for tolerance, row in cost.cheapest.items():
+    _plot_front(cost, ax)
+    for tolerance in cost.cheapest:
         ax.axhline(tolerance, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
-        if row is not None:
-            found.setdefault(row, []).append(power(tolerance))
-    for (row, tolerances), marker in zip(found.items(), ("o", "s", "D", "^")):
-        mark = ax.scatter(
-            total[row],
-            cost.error[row],
-            s=130,
-            marker=marker,
-            facecolors="none",
-            edgecolors="black",
-            zorder=3,
-            label=f"cheapest for {', '.join(tolerances)}: {cost.way(row)}",
-        )
-        handles.append(mark)
     ax.set(xscale="log", yscale="log")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set(xlabel="time from the scene to the answer [s]", ylabel="largest relative error [1]")
-    ax.set_title(f"what accuracy costs: {cost.question}")
+    ax.set_title(f"{cost.question}\n{fill(cost.verdict, 95)}", fontsize="small")
     light_grid(ax)
-    ax.legend(handles=handles, fontsize="small")
+    if ax.containers:
+        ax.legend(fontsize="small")
+
+
+def _plot_front(cost: AccuracyCost, ax: Axes) -> None:
+    """Plot the ways that no other one beats as steps, and what they take with the error bar."""
+    front = cost.front
+    if len(front) == 0:
+        return
+    total, error = cost.total_seconds[front], cost.error[front]
+    ax.step(
+        total, error, where="post", color="black", linewidth=2.0, alpha=0.4, label="best of all"
+    )
+    for tolerance, row in cost.cheapest.items():
+        if row is not None:
+            words = f" {power(tolerance)}: {cost.way(row)}"
+            ax.annotate(
+                words, (cost.total_seconds[row], tolerance), fontsize="x-small", va="bottom"
+            )
+    bound = (cost.compile_seconds + cost.seconds_with_bound)[front]
+    if np.isfinite(bound).any():
+        ax.hlines(error, total, bound, color="black", linewidth=0.8, linestyle=":")
+        ax.plot(bound, error, "|", color="black", label="with the error bar read")
 
 
 @plots(EffectCost, height=lambda cost: 2.0 + 0.3 * len(cost.effect))

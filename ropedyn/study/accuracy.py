@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -10,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import Question
+from ..ask import AnyQuestion
 from ..base import check
 from ..base.answer import Answer, Cost, axes
-from ..base.array import Integer, Real
+from ..base.array import Index, Integer, Real
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
@@ -22,9 +23,11 @@ from ..chain.chain import KINDS
 from ..chain.compile import MOST_ELEMENTS
 from ..scene.scene import Scene
 from .truth import CUTS, Truth
+from .verdict import verdict_of
 from .way import check_question, priced, words
 
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)  # The cheapest way is looked for within each of them.
+ROUNDING = 64 * float(np.finfo(float).eps)  # Smaller errors are equal.
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,22 +51,33 @@ class AccuracyCost(Answer):
         shapes come when they are asked for.
     lower_quartile, upper_quartile : ndarray, shape (rows,)
         Of the same [s].
+    seconds_with_bound : ndarray, shape (rows,)
+        The same as `seconds`, with the error bars of mesh and rounding read; NaN where answers have
+        none.
     compile_seconds : ndarray, shape (rows,)
         Median processor time of `Scene.compile` [s].
     error : ndarray, shape (rows,)
         True relative error, the largest of all modes or lines; 1.1e-16 where none is seen. Modes
-        are compared in order; motion over time in parts of the largest value of each response, and
-        no error of it is seen below that of the method for continuous spans. Values of which
-        continuous spans have no correct digit themselves, as a response that is 0 by symmetry, are
-        left out.
+        are compared in order, rates and multipliers with the nearest; motion over time in parts of
+        the largest value of each response, and no error of it is seen below that of the method for
+        continuous spans. Values of which continuous spans have no correct digit themselves, as a
+        response that is 0 by symmetry, are left out.
     estimated_error : ndarray, shape (rows,)
-        Estimated relative error, of mesh and rounding together, the largest too.
+        Estimated relative error, of mesh and rounding together, the largest too; infinite where
+        answers do not tell it.
     digits_lost : ndarray, shape (rows,)
         Decimal digits lost to rounding, of 15.7: those in which an assembled solver differs from
         the sweep along the same chain; of the sweep those that its own bound gives up. Of motion
-        over time those lost to the method: in which one differs from ``"auto"``, or given up.
+        over time those lost to the method: in which one differs from ``"auto"``, or given up. NaN
+        where answers tell no bound.
+    memory : ndarray, shape (rows,)
+        The most memory that compiling and asking took at once [B].
     refusal : ndarray of str, shape (rows,)
         Why there is no answer, empty where there is one; numbers of such rows are NaN.
+    parts, part : int, str
+        How many parts an answer has that share what it costs, such as 100 and "rope".
+    cost : Cost
+        Of all of it, the repetitions too: what the caller waited.
 
     Examples
     --------
@@ -87,11 +101,16 @@ class AccuracyCost(Answer):
     seconds: Real = field(metadata=axes("row", unit="s"))
     lower_quartile: Real = field(metadata=axes("row", unit="s"))
     upper_quartile: Real = field(metadata=axes("row", unit="s"))
+    seconds_with_bound: Real = field(metadata=axes("row", unit="s"))
     compile_seconds: Real = field(metadata=axes("row", unit="s"))
     error: Real = field(metadata=axes("row"))
     estimated_error: Real = field(metadata=axes("row"))
     digits_lost: Real = field(metadata=axes("row"))
+    memory: Real = field(metadata=axes("row", unit="B"))
     refusal: NDArray[np.str_] = field(metadata=axes("row"))
+    parts: int
+    part: str
+    cost: Cost
 
     @property
     def total_seconds(self) -> Real:
@@ -106,7 +125,7 @@ class AccuracyCost(Answer):
         """
         return {tolerance: self.cheapest_within(tolerance) for tolerance in TOLERANCES}
 
-    def cheapest_within(self, tolerance: float) -> int | None:
+    def cheapest_within(self, tolerance: float, *, before: float = np.inf) -> int | None:
         """Return the row that takes the least time of those whose true error is within a tolerance.
 
         Of rows whose time quartiles do not tell from the least it is the most accurate.
@@ -115,6 +134,8 @@ class AccuracyCost(Answer):
         ----------
         tolerance : float
             Relative error.
+        before : float
+            Only of rows whose time is less than this [s] by its quartiles.
 
         Returns
         -------
@@ -131,27 +152,29 @@ class AccuracyCost(Answer):
         4
         """
         within = check.number(tolerance, "tolerance", sign="positive")
-        enough = np.flatnonzero(self.error <= within)
+        soonest = self.compile_seconds + self.lower_quartile
+        latest = self.compile_seconds + self.upper_quartile
+        enough = np.flatnonzero((self.error <= within) & (latest < before))
         if len(enough) == 0:
             return None
         quickest = enough[np.argmin(self.total_seconds[enough])]
-        soonest = self.compile_seconds + self.lower_quartile
-        latest = self.compile_seconds[quickest] + self.upper_quartile[quickest]
-        tied = enough[soonest[enough] <= latest]
-        # of equal errors the quickest
-        order = np.lexsort((self.total_seconds[tied], self.error[tied]))
-        return int(tied[order[0]])
+        tied = enough[soonest[enough] <= latest[quickest]]
+        # of errors that rounding makes equal no mesh, and the quickest
+        meshed, error = self.element[tied] != "continuous", np.maximum(self.error[tied], ROUNDING)
+        return int(tied[np.lexsort((self.total_seconds[tied], meshed, error))[0]])
 
     @property
-    def cost(self) -> Cost:
-        """What all the trials took together: a pass over each, without the repetitions."""
-        asked = self.refusal == ""
-        return Cost(
-            seconds=float(self.total_seconds[asked].sum()),
-            method="trials",
-            elements=int(self.elements[asked].sum()),
-            unknowns=0,
-        )
+    def front(self) -> Index:
+        """Rows that no other one beats both in time and in error, the quickest first."""
+        order = np.lexsort((self.error, self.total_seconds))
+        order = order[self.refusal[order] == ""]
+        before = np.minimum.accumulate(np.append(np.inf, self.error[order]))[:-1]
+        return order[self.error[order] < before]
+
+    @property
+    def verdict(self) -> str:
+        """Two sentences: what to take for 1e-3, 1e-6, 1e-12, and what the cheapest would save."""
+        return verdict_of(self)
 
     def way(self, row: int) -> str:
         """Say in words how a row answers, such as ``tensed, 64, sweep``.
@@ -177,23 +200,25 @@ class AccuracyCost(Answer):
             "element": self.element,
             "elements": self.elements,
             "solver": self.solver,
-            "compile [s]": numbers(self.compile_seconds),
-            "question [s]": numbers(self.seconds),
-            "lower quartile [s]": numbers(self.lower_quartile),
-            "upper quartile [s]": numbers(self.upper_quartile),
+            "time [s]": numbers(self.total_seconds),
+            "from [s]": numbers(self.compile_seconds + self.lower_quartile),
+            "to [s]": numbers(self.compile_seconds + self.upper_quartile),
+            "with error bar [s]": numbers(self.compile_seconds + self.seconds_with_bound),
             "true error": numbers(self.error),
             "estimated error": numbers(self.estimated_error),
-            "digits lost to rounding": numbers(self.digits_lost.round(1)),
+            "digits lost": numbers(self.digits_lost.round(1)),
+            "memory [MB]": numbers((self.memory / 1e6).round(3)),
             "cheapest for": tuple(", ".join(mark) or None for mark in marks),
         }
         if any(self.refusal.tolist()):
             columns["refused"] = tuple(text or None for text in self.refusal.tolist())
-        return Table.of(f"{self.question}: relative error against {self.reference}", columns)
+        about = f"{self.question}: relative error against {self.reference}"
+        return Table.of(f"{self.verdict}\n\n{about}", columns)
 
 
 def accuracy_cost(
     scene: Scene,
-    question: Question,
+    question: AnyQuestion,
     *,
     elements: int | Sequence[int] | None = None,
     element: str | Sequence[str] = ("rigid", "tensed", "continuous"),
@@ -210,19 +235,21 @@ def accuracy_cost(
     ----------
     scene : Scene
         What is asked about.
-    question : ModesQuestion, FRFQuestion or MotionQuestion
-        Such as ``rd.ask.modes(10)``, ``rd.ask.frf(frequency, drive=("z", 0.5))`` or
+    question : question
+        Of any kind, such as ``rd.ask.modes(10)``, ``rd.ask.frf(frequency, drive=("z", 0.5))`` or
         ``rd.ask.motion(time, drive=("z", 0.5), force=rd.Step(1.0))``.
     elements : int or sequence of int, optional
-        Of chains; powers of two from 8 to 4096, assembled within about a second, where left out.
+        Of chains; powers of two from 8 to 4096, as far as slow solvers take some 0.03 s, where left
+        out.
     element : str or sequence of str
         Kinds of element; of continuous spans there is a row for each solver that takes them.
     solver : str or sequence of str, optional
         ``"sweep"`` and ``"lapack"`` where left out, for a frequency response also ``"band"``; of
         motion over time one of the methods of `Model.transient`, ``"auto"`` where left out.
     repeat : int
-        How often each is timed, in turns, warmed up; calls that take more than 0.05 s at most three
-        times. Of the times the median and the quartiles are kept, of the processor, one thread.
+        How often each is timed, in turns, warmed up; calls that take more than 0.01 s at most three
+        times, more than 0.3 s once. Of the times the median and the quartiles are kept, of the
+        processor, one thread.
     progress : None, True or callable
         True prints, a callable takes, the fraction that is done.
 
@@ -250,6 +277,7 @@ def accuracy_cost(
     >>> print(cost.error[-1] < 1e-14)  # continuous spans
     True
     """
+    start = time.perf_counter()
     check_question(scene, question)
     kinds = _words(element, "element", KINDS)
     given = question.usual if solver is None else solver
@@ -262,20 +290,24 @@ def accuracy_cost(
         raise SceneError(f"solver must have {able} for continuous spans, got {solvers}")
     truth = Truth.of(scene, question)
     ways = truth.ways(kinds, counts, solvers)
-    if not ways:
-        raise SceneError(
-            f"elements must be given where {' and '.join(solvers)} would take more than about a "
-            "second, got None"
-        )
     cuts = ", ".join(map(str, CUTS[:-1]))
-    nothing = dict.fromkeys(("error", "estimated_error", "digits_lost"), np.nan)
-    columns, times = priced([partial(truth.tried, *way) for way in ways], nothing, repeat, report)
+    nothing = dict.fromkeys(("error", "estimated_error", "digits_lost", "memory"), np.nan)
+    attempts = [partial(truth.tried, *way) for way in ways]
+    columns, times = priced(attempts, nothing, repeat, report, bounds=True)
+    unknown = ~np.isfinite(columns["estimated_error"])
+    # reading more takes no less: what is measured to be less is noise
+    bounded = np.where(unknown, np.nan, np.maximum(times.seconds, times.seconds_with_bound))
+    times = times._replace(seconds_with_bound=bounded)
+    parts, part = question.parts
     return AccuracyCost(
         question=str(question),
         reference=f"continuous spans, of these against cuts into {cuts} and {CUTS[-1]} parts",
         **{name: np.array(c) for name, c in zip(("element", "elements", "solver"), zip(*ways))},
         **times._asdict(),
         **columns,
+        parts=parts,
+        part=part,
+        cost=Cost(time.perf_counter() - start, "trials", sum(n for _, n, _ in ways), 0),
     )
 
 

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import QUESTIONS, Question
+from ..ask import AnyQuestion
 from ..base import check
+from ..base.array import Real
 from ..base.errors import RopedynError, SceneError
 from ..base.stopwatch import Times, timed
 from ..model import Model
@@ -22,7 +23,7 @@ from ..scene.scene import Scene
 class Way:
     """One way of answering a question."""
 
-    question: Question
+    question: AnyQuestion
     scene: Scene
     how: Mapping[str, Any]  # arguments of `Scene.compile`
     solver: str
@@ -31,7 +32,7 @@ class Way:
 
     @classmethod
     def of(
-        cls, question: Question, scene: Scene, how: Mapping[str, Any], solver: str | None = None
+        cls, question: AnyQuestion, scene: Scene, how: Mapping[str, Any], solver: str | None = None
     ) -> Way:
         """Compile and ask."""
         model, solver = scene.compile(**how), solver or question.solvers[0]
@@ -43,17 +44,24 @@ class Way:
         asked = partial(ask_once, self.question, self.model, self.solver)
         return partial(self.scene.compile, **self.how), asked
 
+    def bound(self) -> Real:
+        """Ask, and read the error bar: relative errors of the mesh and of rounding."""
+        answer = ask_once(self.question, self.model, self.solver)
+        rounding = self.question.rounding(answer)
+        spans = self.model.element == "continuous"
+        return rounding if spans else rounding + self.question.mesh(answer)
+
     def __str__(self) -> str:
         return words(self.model.element, len(self.model.x) - 1, self.solver)
 
 
-def ask_once(question: Question, model: Model, solver: str | None = None) -> Any:
+def ask_once(question: AnyQuestion, model: Model, solver: str | None = None) -> Any:
     """Ask a model as it is timed: in one thread, where no solver is given the first one."""
     return question.of(model, solver=solver or question.solvers[0], threads=1)
 
 
 def answered(
-    question: Question, scene: Scene, how: Mapping[str, Any], solver: str | None = None
+    question: AnyQuestion, scene: Scene, how: Mapping[str, Any], solver: str | None = None
 ) -> Way:
     """Ask a scene, and refuse a question whose answer is empty."""
     way = Way.of(question, scene, how, solver)
@@ -63,20 +71,20 @@ def answered(
 
 
 def words(element: str, elements: int, solver: str) -> str:
-    """Say a way in words; to all but motion over time continuous spans are swept."""
+    """Say a way in words; the usual solver of continuous spans is not named."""
     if element != "continuous":
         return f"{element}, {elements}, {solver}"
-    return element if solver == "sweep" else f"{element}, {solver}"
+    return element if solver in ("sweep", "auto") else f"{element}, {solver}"
 
 
 # Tries a way, and returns it with the numbers of its row.
 Attempt = Callable[[], tuple[Way, Mapping[str, Any]]]
 
 
-def check_question(scene: Scene, question: Question) -> None:
+def check_question(scene: Scene, question: AnyQuestion) -> None:
     """Refuse what is no scene, and what is no question."""
     check.instance(scene, "scene", Scene, "a Scene")
-    check.instance(question, "question", QUESTIONS, "made by ropedyn.ask")
+    check.instance(question, "question", AnyQuestion, "made by ropedyn.ask")
 
 
 def priced(
@@ -85,10 +93,14 @@ def priced(
     repeat: int,
     report: Callable[[float], Any],
     *first: Way,
+    bounds: bool = False,
 ) -> tuple[dict[str, NDArray[Any]], Times]:
-    """Try ways, with rows of nothing for refusals, and time them after those that come first."""
+    """Try ways, with rows of nothing for refusals, and time them after those that come first.
+
+    With `bounds` also with the error bar.
+    """
     rows: list[Mapping[str, Any]] = []
-    calls = [way.calls for way in first]
+    calls: list[tuple[Callable[[], Any], ...]] = [way.calls for way in first]
     for attempt in attempts:
         try:
             way, numbers = attempt()
@@ -97,7 +109,7 @@ def priced(
             calls.append(())
         else:
             rows.append({**numbers, "refusal": ""})
-            calls.append(way.calls)
+            calls.append((*way.calls, way.bound) if bounds and way.question.bounded else way.calls)
         report(len(rows) / len(attempts) / 2)
     columns = {name: np.array([row[name] for row in rows]) for name in (*nothing, "refusal")}
     return columns, timed(calls, repeat, lambda fraction: report((1 + fraction) / 2))

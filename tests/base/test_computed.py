@@ -6,6 +6,7 @@ import os
 import pickle
 import select
 import threading
+import time
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -207,3 +208,75 @@ def test_a_fork_reads_modes_whose_shapes_a_thread_computes():
     go_on.set()
     thread.join(TIMEOUT)
     assert slowed.mesh_error.tolist() == modes.mesh_error.tolist()
+
+
+# what it costs
+
+
+@dataclass(frozen=True, eq=False)
+class Priced(Answer):
+    """What has a cost, two parts and what follows from them."""
+
+    cost: rd.Cost
+    inner: Lazy[Inner] = lazy(Inner)
+    outer: Lazy[Inner] = lazy(Inner)
+
+    @computed
+    def both(self):
+        """Read both parts and take 4 s."""
+        tick(4.0)
+        return self.outer.value + self.inner.value
+
+
+NOW = [0.0]
+
+
+def tick(seconds):
+    NOW[0] += seconds
+
+
+def test_what_is_read_on_the_way_is_paid_once(monkeypatch):
+    monkeypatch.setattr("ropedyn.base.computed.time.perf_counter", lambda: NOW[0])
+
+    def made(seconds, *parts):
+        tick(seconds)
+        return Inner(np.array([float(len(parts))]))
+
+    inner = lambda: made(1.0)  # noqa: E731 - as fields are given
+    answer = Priced(
+        rd.Cost(8.0, "by hand", 0, 0), inner=inner, outer=lambda: made(2.0, answer.inner)
+    )
+    assert answer.both.tolist() == [1.0]
+    # 8 of the solution, 4 of its own, 2 of the outer part and 1 of the inner one that this read
+    assert answer.cost.seconds == 15.0
+    assert answer.both is answer.both
+    assert answer.cost.seconds == 15.0
+
+
+BEAM = rd.Scene(rd.Rope(2.0, 0.1, bending_stiffness=1.0), tension=1000.0)
+VERBS = {
+    "modes": lambda model: model.modes(8),
+    "damped modes": lambda model: model.modes(3, damped=True),
+    "frf": lambda model: model.frf(np.linspace(5.0, 200.0, 100), drive=("z", 0.5)),
+    "static": lambda model: model.static({("z", 0.5): 1.0}),
+    "transient": lambda model: model.transient(
+        [0.0, 0.01], start={("z", 1.0): 1.0}, response=("z", 1.0)
+    ),
+}
+WAITED = 3e-3  # Checks, layout and a busy machine take less in the best of five calls [s].
+
+
+@pytest.mark.parametrize("elements", [None, 16])
+@pytest.mark.parametrize("verb", VERBS)
+def test_cost_adds_up_to_what_a_caller_waits(verb, elements):
+    model = BEAM.compile(elements=elements)
+    VERBS[verb](model)
+    left = []
+    for _ in range(5):
+        start = time.perf_counter()
+        answer = VERBS[verb](model)
+        answer.table()
+        for name in ("shape", "mesh_error", "rounding_error", "sensitivity", "energy"):
+            getattr(answer, name, None)
+        left.append(time.perf_counter() - start - answer.cost.seconds)
+    assert 0 < min(left) < WAITED

@@ -110,9 +110,22 @@ def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, qu
     printed = json.loads(capsys.readouterr().out)
     scene = rd.Scene.load(scene_file)
     cost = rd.accuracy_cost(scene, question, elements=[16, 32], repeat=1)
-    assert printed["title"] == cost.table().title
+    # the verdict stands first; its times are those of another run
+    verdict, about = printed["title"].split("\n\n")
+    assert verdict.startswith("Take ")
+    assert about == cost.table().title.split("\n\n")[1]
     for column in ("element", "elements", "solver", "true error", "estimated error"):
         assert column_of(printed, column) == list(cost.table().column(column))
+
+
+def test_accuracy_of_damped_modes_begins_with_what_to_take(scene_file, capsys):
+    assert main(["accuracy", str(scene_file), "--modes", "2", "--damped", "--elements", "16"]) == 0
+    verdict, blank, about = capsys.readouterr().out.splitlines()[:3]
+    assert verdict.startswith("Take ")
+    assert (blank, about[:15]) == ("", "2 damped modes:")
+    lines = ["--damped", "--frequency", "5", "--drive", "z@0.3"]
+    assert main(["accuracy", str(scene_file), *lines]) == 2
+    assert "--damped must be given with modes" in capsys.readouterr().err
 
 
 def test_accuracy_takes_some_elements_and_solvers(scene_file, capsys):
@@ -129,7 +142,7 @@ def test_accuracy_prints_refused_rows_and_marks(scene_file, capsys):
     assert head[-2:] == ["cheapest for", "refused"]
     assert len(rows) == 2 * 2 * 2 + 1
     # three nodes move, in z and in twist
-    assert rows[0][:-1] == ["rigid", "4", "sweep", *[""] * 8]
+    assert rows[0][:-1] == ["rigid", "4", "sweep", *[""] * 9]
     assert rows[0][-1] == "number must be at most 6, the modes this model has, got 10"
     assert [row[0] for row in rows if "1e-12" in row[-2]] == ["continuous"]
 
