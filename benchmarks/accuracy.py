@@ -26,7 +26,7 @@ ROPES = {
 }
 
 
-def questions(scene: rd.Scene, frequency: np.ndarray) -> list[rd.ask.Question]:
+def questions(scene: rd.Scene, frequency: np.ndarray) -> list[rd.ask.AnyQuestion]:
     return [rd.ask.modes(10), rd.ask.frf(frequency, drive=("z", 3 * scene.rope.length / 8))]
 
 

@@ -24,6 +24,7 @@ extensions = [
 ]
 templates_path = ["_templates"]
 
+autosummary_ignore_module_all = False  # what a package takes from its files is its own
 autodoc_typehints = "none"  # docstrings say them in words
 # single backticks of docstrings link what has a page, and may be arguments and attributes too
 default_role = "py:obj"

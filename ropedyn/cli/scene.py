@@ -78,7 +78,7 @@ MODES = Command(
 )
 
 
-def _frf_question(options: argparse.Namespace) -> ask.FRFQuestion:
+def _frf_question(options: argparse.Namespace) -> ask.AnyQuestion:
     return ask.frf(options.frequency, drive=options.drive, response=options.response)
 
 
@@ -90,7 +90,7 @@ FRF = Command(
 )
 
 
-def _question(options: argparse.Namespace) -> ask.Question:
+def _question(options: argparse.Namespace) -> ask.AnyQuestion:
     if options.frequency is not None:
         if options.drive is None:
             raise SceneError("--drive must be given with --frequency, got none")

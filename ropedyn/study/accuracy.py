@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import Question
+from ..ask import AnyQuestion
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Integer, Real
@@ -193,7 +193,7 @@ class AccuracyCost(Answer):
 
 def accuracy_cost(
     scene: Scene,
-    question: Question,
+    question: AnyQuestion,
     *,
     elements: int | Sequence[int] | None = None,
     element: str | Sequence[str] = ("rigid", "tensed", "continuous"),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import Question
+from ..ask import AnyQuestion
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Flags, Integer, Real
@@ -176,7 +176,7 @@ class EffectCost(Answer):
 
 def effect_cost(
     scene: Scene,
-    question: Question,
+    question: AnyQuestion,
     *,
     elements: int | None = None,
     element: str | None = None,

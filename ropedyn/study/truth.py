@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import Question
+from ..ask import AnyQuestion
 from ..base.array import Flags, Real
 from ..base.errors import SolveError
 from ..scene.scene import Scene
@@ -27,8 +27,8 @@ class Truth:
     """What answers are measured against: continuous spans."""
 
     scene: Scene  # what is asked about
-    question: Question  # what is asked, and timed
-    same: Question  # the same for exactly as many values as the true answer has
+    question: AnyQuestion  # what is asked, and timed
+    same: AnyQuestion  # the same for exactly as many values as the true answer has
     values: NDArray[Any]  # true ones
     # which of them have a correct digit: what is 0 by symmetry is nothing but rounding
     known: Flags
@@ -37,7 +37,7 @@ class Truth:
     spans: int  # how many
 
     @staticmethod
-    def of(scene: Scene, question: Question) -> Truth:
+    def of(scene: Scene, question: AnyQuestion) -> Truth:
         """Ask continuous spans, whole and cut."""
         whole = answered(question, scene, {})
         values = question.values(whole.answer)

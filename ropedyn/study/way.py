@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import QUESTIONS, Question
+from ..ask import AnyQuestion
 from ..base import check
 from ..base.errors import RopedynError, SceneError
 from ..base.stopwatch import Times, timed
@@ -22,7 +22,7 @@ from ..scene.scene import Scene
 class Way:
     """One way of answering a question."""
 
-    question: Question
+    question: AnyQuestion
     scene: Scene
     how: Mapping[str, Any]  # arguments of `Scene.compile`
     solver: str
@@ -31,7 +31,7 @@ class Way:
 
     @classmethod
     def of(
-        cls, question: Question, scene: Scene, how: Mapping[str, Any], solver: str | None = None
+        cls, question: AnyQuestion, scene: Scene, how: Mapping[str, Any], solver: str | None = None
     ) -> Way:
         """Compile and ask."""
         model, solver = scene.compile(**how), solver or question.solvers[0]
@@ -47,13 +47,13 @@ class Way:
         return words(self.model.element, len(self.model.x) - 1, self.solver)
 
 
-def ask_once(question: Question, model: Model, solver: str | None = None) -> Any:
+def ask_once(question: AnyQuestion, model: Model, solver: str | None = None) -> Any:
     """Ask a model as it is timed: in one thread, where no solver is given the first one."""
     return question.of(model, solver=solver or question.solvers[0], threads=1)
 
 
 def answered(
-    question: Question, scene: Scene, how: Mapping[str, Any], solver: str | None = None
+    question: AnyQuestion, scene: Scene, how: Mapping[str, Any], solver: str | None = None
 ) -> Way:
     """Ask a scene, and refuse a question whose answer is empty."""
     way = Way.of(question, scene, how, solver)
@@ -73,10 +73,10 @@ def words(element: str, elements: int, solver: str) -> str:
 Attempt = Callable[[], tuple[Way, Mapping[str, Any]]]
 
 
-def check_question(scene: Scene, question: Question) -> None:
+def check_question(scene: Scene, question: AnyQuestion) -> None:
     """Refuse what is no scene, and what is no question."""
     check.instance(scene, "scene", Scene, "a Scene")
-    check.instance(question, "question", QUESTIONS, "made by ropedyn.ask")
+    check.instance(question, "question", AnyQuestion, "made by ropedyn.ask")
 
 
 def priced(

@@ -26,7 +26,9 @@ def things(package):
         if isinstance(module, types.ModuleType):
             inner = {key: value for key, value in vars(module).items() if public([key])}
             own = {
-                k: v for k, v in inner.items() if getattr(v, "__module__", "") == module.__name__
+                k: v
+                for k, v in inner.items()
+                if f"{getattr(v, '__module__', '')}.".startswith(f"{module.__name__}.")
             }
             found |= {f"{name}.{key}": value for key, value in own.items()}
     return found

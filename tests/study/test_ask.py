@@ -51,12 +51,112 @@ PAIRS = {
         lambda model, **how: model.frf([20.0], drive=[("z", 0.3), ("alpha", 0.3)], **how),
     ),
 }
+PEAKS = rd.Peaks([25.1, 49.9, 75.0], std=0.1)
+STRING = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
+PULSES = SCENE.replace(tension=rd.Tension(200.0, amplitude=20.0, frequency=36.0), damping=None)
+OTHERS = {
+    "damped": (rd.ask.modes(3, damped=True), lambda m: m.modes(3, damped=True), SCENE),
+    "count": (rd.ask.count(below=90.0), lambda m: m.count(below=90.0), SCENE),
+    "static": (rd.ask.static({("z", 0.4): 2.0}), lambda m: m.static({("z", 0.4): 2.0}), SCENE),
+    "stepped sine": (
+        rd.ask.stepped_sine([10.0, 12.0], drive=("z", 0.3), amplitude=2.0, quantity="mobility"),
+        lambda m: m.stepped_sine(
+            [10.0, 12.0], drive=("z", 0.3), amplitude=2.0, quantity="mobility"
+        ),
+        SCENE,
+    ),
+    "floquet": (rd.ask.floquet(2), lambda m: m.floquet(2), PULSES),
+    "identify": (
+        rd.ask.identify(PEAKS, "tension", ends="given"),
+        lambda m: rd.identify(m.scene, PEAKS, "tension", ends="given", **cut(m)),
+        STRING,
+    ),
+    "family": (
+        rd.ask.family(["tension"], [[150.0], [250.0]], 3),
+        lambda m: m.scene.family(["tension"], **cut(m)).modes([[150.0], [250.0]], 3),
+        SCENE,
+    ),
+}
+
+
+def cut(model):
+    chain = {"elements": len(model.x) - 1, "element": model.element}
+    return {} if model.element == "continuous" else chain
 
 
 def bits(answer):
     value = answer.frequency if isinstance(answer, rd.Modes) else answer.value
     error = answer.error if isinstance(answer, rd.History) else answer.rounding_error
     return value.shape, value.tobytes(), error.tobytes()
+
+
+NUMBERS = {
+    int: lambda answer: answer,
+    rd.DampedModes: lambda answer: answer.eigenvalue.tobytes(),
+    rd.Deflection: lambda answer: answer.displacement.tobytes(),
+    rd.Floquet: lambda answer: answer.multiplier.tobytes(),
+    rd.Fit: lambda answer: answer.value.tobytes(),
+    rd.FRF: lambda answer: answer.value.tobytes(),
+    rd.FamilyModes: lambda answer: answer.frequency.tobytes(),
+}
+
+
+@pytest.mark.filterwarnings("ignore::ropedyn.IdentifyWarning")
+@pytest.mark.parametrize("how", [{}, {"elements": 12}, {"elements": 12, "element": "rigid"}])
+@pytest.mark.parametrize("name", OTHERS)
+def test_every_kind_of_question_has_the_answer_of_the_model(name, how):
+    question, call, scene = OTHERS[name]
+    model = scene.compile(**how)
+    found, asked = question.of(pickle.loads(pickle.dumps(model))), call(model)
+    assert NUMBERS[type(found)](found) == NUMBERS[type(asked)](asked)
+    # and it is compared: an answer with itself is not apart, errors have the shape of the values
+    values = question.values(found)
+    assert (question.apart(values, values) == 0).all()
+    assert question.mesh(found).shape == question.rounding(found).shape == values.shape
+    assert question.like(found) is question
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_what_an_effect_changes_is_told_of_every_kind_of_question(name):
+    question, _, scene = OTHERS[name]
+    whole = scene.compile()
+    answer = question.of(whole)
+    same = question.change(answer, whole)
+    assert (same.beyond_error, same.lost) == (False, 0)
+    heavier = scene.replace(rope=scene.rope.replace(linear_density=0.2)).compile()
+    change = question.change(answer, heavier)
+    assert tuple(change.size) == question.measures
+    found, apart = question.values(question.of(heavier)), question.values(answer)
+    if name not in ("static", "stepped sine"):
+        largest = np.abs(question.apart(found, apart)).max()
+        assert change.size[question.measures[0]] == pytest.approx(100 * largest, rel=1e-12)
+    if name != "static":  # mass is nothing to it
+        assert all(size > 0 for size in change.size.values() if size == size)
+
+
+def test_a_load_beside_the_nodes_of_a_chain_is_not_compared_unless_there_is_one():
+    question = rd.ask.static({("z", 0.7): 2.0})
+    exact = question.values(question.of(SCENE.compile()))
+    with pytest.raises(rd.SceneError, match="load must stand on a node"):
+        question.values(question.of(SCENE.compile(elements=7)))
+    placed = question.placed(SCENE).compile(elements=256)
+    # the deflection of a chain of tensed elements is exact: condition n^2 of the sums
+    assert question.values(question.of(placed)) == pytest.approx(exact, rel=1e-11)
+
+
+def test_rates_and_multipliers_are_paired_with_the_nearest():
+    right = np.array([1.0 + 1.0j, 2.0, 3.0])
+    for question in (rd.ask.modes(3, damped=True), rd.ask.floquet(2)):
+        assert question.apart(right[[2, 0, 1]] * 1.01, right) == pytest.approx(0.01, rel=1e-12)
+
+
+def test_modes_beyond_what_is_left_are_lost():
+    question = rd.ask.family(["tension"], [[100.0], [200.0]], 3)
+    answer = question.of(SCENE.compile())
+    fewer = rd.ask.family(["tension"], [[100.0], [200.0]], 2)
+    change = dataclasses.replace(question, number=2).change(answer, SCENE.compile())
+    assert fewer.values(fewer.of(SCENE.compile())).shape == (2, 2)
+    assert (change.lost, change.beyond_error) == (2, True)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -136,6 +236,7 @@ def test_the_same_question_for_an_answer_asks_for_as_many_modes():
             rd.ask.frf([9.0, 1.0], drive=[("z", 0.5), ("alpha", 1)], quantity="mobility"),
             "mobility of 2 lines, 1 to 9 Hz, driven in z at 0.500 m and alpha at 1.000 m",
         ),
+        (rd.ask.modes(3, damped=True), "3 damped modes"),
     ],
 )
 def test_a_question_says_what_is_asked(question, text):

@@ -31,6 +31,7 @@ FURTHEST = 16  # Modes are paired with those among at most so many times as many
 OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
 OF_MOTION = ("largest [%]", "rms [%]", "peak [%]")
+OF_VALUES = ("largest [%]", "rms [%]")
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,12 @@ class AnswerChange:
     @staticmethod
     def unknown(measures: Sequence[str]) -> AnswerChange:
         """Return the change of what has no answer."""
-        return AnswerChange(dict.fromkeys(measures, np.nan), np.nan, beyond_error=False, lost=0)
+        return AnswerChange.lost_some(measures, 0)
+
+    @staticmethod
+    def lost_some(measures: Sequence[str], lost: int) -> AnswerChange:
+        """Return the change of an answer that has fewer values, which cannot be compared."""
+        return AnswerChange(dict.fromkeys(measures, np.nan), np.nan, lost != 0, max(lost, 0))
 
 
 def relative(found: NDArray[Any], right: NDArray[Any]) -> Real:
@@ -227,6 +233,22 @@ def change_of_motion(whole: History, left: History) -> AnswerChange:
         error=_of(lambda of: error.flat[of.argmax()], percent),
         beyond_error=bool(lost > 0 or (percent > error).any()),
         lost=lost,
+    )
+
+
+# --- other values -------------------------------------------------------------------------------
+
+
+def change_of_values(apart: Real, error: Real, measures: Sequence[str]) -> AnswerChange:
+    """Say how far values are apart that have these error bars, both relative, in percent."""
+    told = np.isfinite(apart)
+    percent, bars = 100 * apart[told], 100 * error[told]
+    size = (_of(np.max, percent), _of(lambda each: np.sqrt(np.mean(each**2)), percent))
+    return AnswerChange(
+        size=dict(zip(measures, size)),
+        error=_of(lambda of: bars[of.argmax()], percent),
+        beyond_error=bool((percent > bars).any()),
+        lost=0,
     )
 
 
