@@ -92,7 +92,7 @@ class Compiled(Frozen):
         return sum(self.unknowns)
 
     @computed
-    def nonlinear(self) -> str:
+    def _nonlinear(self) -> str:
         """What a part must be for a linear scene, as ``parts[0].exponent must be 1``; or empty."""
         for i, part in enumerate(self.scene.parts):
             if not isinstance(part, STRETCHES) and (must_be := part.term().nonlinear):
@@ -100,14 +100,14 @@ class Compiled(Frozen):
         return ""
 
     @computed
-    def parts(self) -> dict[tuple[str, ...], Chain]:
+    def _parts(self) -> dict[tuple[str, ...], Chain]:
         """Undamped chains of the components, spans joined that nothing parts."""
         return {c: lean(self.chain.undamped.only(c))[0] for c in self.components}
 
     @computed
-    def least(self) -> dict[tuple[str, ...], float]:
+    def _least(self) -> dict[tuple[str, ...], float]:
         """What no eigenvalue of each component is below [rad^2/s^2]; 0 where that is not told."""
-        return {c: _least_of_rod(chain) for c, chain in self.parts.items()}
+        return {c: _least_of_rod(chain) for c, chain in self._parts.items()}
 
     @property
     def mesh_order(self) -> dict[str, float]:
@@ -298,10 +298,20 @@ class Compiled(Frozen):
         return next(c for c in self.components if coordinate in c)
 
 
+def part_of(model: Compiled, component: tuple[str, ...]) -> Chain:
+    """Return the undamped chain of a component, spans joined that nothing parts."""
+    return model._parts[component]
+
+
+def least_of(model: Compiled, component: tuple[str, ...]) -> float:
+    """Return what no eigenvalue of a component is below [rad^2/s^2], 0 where that is not told."""
+    return model._least[component]
+
+
 def refuse_nonlinear(model: Compiled) -> None:
     """Refuse a scene with a part that only integration over time takes."""
-    if model.nonlinear:
-        raise SceneError(f"{model.nonlinear}: only integration over time takes others")
+    if model._nonlinear:
+        raise SceneError(f"{model._nonlinear}: only integration over time takes others")
 
 
 def _least_of_rod(chain: Chain) -> float:
@@ -320,4 +330,6 @@ def _least_of_rod(chain: Chain) -> float:
     moved = float(length @ chain.inertia[chain.element, 0]) + float(mass[chain.term].sum())
     ends = [term for term in chain.term[[0, -1]] if chain.held[term, 0] or spring[term]]
     give += sum(0.0 if chain.held[term, 0] else 1 / float(spring[term]) for term in ends)
+    if moved * give == 0:
+        return 0.0
     return (0, 1, 4)[len(ends)] / (moved * give) * (1 - BELOW)

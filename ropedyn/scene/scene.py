@@ -25,6 +25,7 @@ from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
 from .rope import Rope
 from .stations import stations_at
 from .tension import Tension
+from .without import without
 
 if TYPE_CHECKING:
     from ..family.family import Family
@@ -46,19 +47,7 @@ EFFECTS = (
 )
 """The effects that a scene can have, in their fixed order."""
 
-_PROPERTIES = {
-    "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
-    "twist": ("torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia"),
-    "stretch": ("axial_stiffness", "lay_coupling"),
-    "lay": ("lay_coupling", "lay_slope"),
-    "rotary inertia": ("rotary_inertia",),
-    "polar inertia": ("polar_inertia",),
-}
-"""What a rope never had that never had one of these effects."""
-
 _PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
-
-_WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
 
 
 def _checked_tension(tension: Any) -> float | Tension:
@@ -387,23 +376,48 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
-        gone = {name for effect in effects for name in _PROPERTIES.get(effect, ())}
-        rope = self.rope.replace(**dict.fromkeys(gone))
-        tension = _left_of_tension(self.tension, effects)
-        mean = tension.mean if isinstance(tension, Tension) else tension
-        bare = Scene(rope, tension=mean)
-        kept = tuple(d for d in self.dampings if d.kind not in effects)
-        return bare.replace(
-            tension=tension,
-            ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
-            damping=kept,
-            gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
-            parts=tuple(
-                left
-                for part in self.parts
-                if part.kind not in effects and (left := _left_of(part, bare)) is not None
-            ),
-        )
+        return without(self, effects)
+
+    def needed(self, question: Any, tolerance: float) -> tuple[str, ...]:
+        """Name the effects that an answer needs; nothing is left out of the scene by that.
+
+        Parameters
+        ----------
+        question
+            Any of ``rd.ask``.
+        tolerance : float
+            How far the answer may be off, relative: of frequencies, damping ratios, responses line
+            by line, of motion over time by the largest of each response.
+
+        Returns
+        -------
+        tuple of str
+            The smallest set of `effects` whose answer is within the tolerance of that of all of
+            them, error bars included as far as they are known; no mode or response may be lost.
+            Effects that alone change more all stay; of the others the most are left out that can be
+            at once, of equally many those that change least. Beyond 8 such effects one by one,
+            those that change least first.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If the tolerance is not a number > 0, or the question has no answer.
+        SolveError
+            If the scene with all its effects has no answer.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.01, torsional_stiffness=9.0)
+        >>> scene = rd.Scene(rope, tension=1000.0, ends=("pinned", "pinned"))
+        >>> scene.needed(rd.ask.modes(1), 1e-2), scene.needed(rd.ask.modes(1), 1e-6)
+        (('tension',), ('tension', 'bending'))
+        """
+        from ..study.needed import needed
+
+        return needed(self, question, tolerance)
 
     def compile(
         self,
@@ -562,34 +576,3 @@ NodeForce, Stop, AddedMass, LocalChange
         True
         """
         return toml.load(Scene, path)
-
-
-def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
-    """Return the tension of a scene that never had these effects."""
-    if "tension" in effects:
-        return 0.0
-    if not isinstance(tension, Tension):
-        return tension
-    if Tension.pulsating in effects:
-        tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
-    if {Tension.growing, "stretch"} & set(effects):
-        tension = dataclasses.replace(tension, stretching=False)
-    return _checked_tension(tension)
-
-
-def _left_of(part: Part | Stretch, bare: Scene) -> Part | Stretch | None:
-    """Return what is left of a part in a scene with less, None where nothing is."""
-    if isinstance(part, Stretch):
-        return part.on(changeable(bare.rope, bare.coordinates))
-    return part if set(part.stands_on) <= set(bare.coordinates) else None
-
-
-def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
-    """Return an end without what goes with coordinates or with the effect itself."""
-    if isinstance(end, str):
-        return end
-    kept: dict[str, Any] = {}
-    for name, values in end.standing.items():
-        gone = _end.STANDING[name] in effects
-        kept[name] = {c: v for c, v in values.items() if c in present and not gone}
-    return dataclasses.replace(end, **kept)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
+from ropedyn.chain.compiled import part_of
 from ropedyn.chain.lean import lean
 
 EPS = np.finfo(float).eps
@@ -42,7 +43,7 @@ def test_the_chain_that_is_solved_is_that_without_them(name):
     scene, idle = (one.compile() for one in pair(name))
     assert len(idle.x) > len(scene.x)
     for component in scene.components:
-        mine, other = (model.parts[component] for model in (idle, scene))
+        mine, other = (part_of(model, component) for model in (idle, scene))
         assert (mine.nodes, len(mine.length)) == (other.nodes, len(other.length))
         for name in ("length", "tension", "flexibility", "inertia", "mass", "stiffness", "held"):
             own = [getattr(c, name)[c.term if name in {"mass", "stiffness", "held"} else c.element]
