@@ -7,16 +7,22 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 /* with e = exp(-t), Re t >= 0: tanh t = (1 - e^2)/(1 + e^2), 1/cosh t = 2 e/(1 + e^2);
-   nothing overflows however large t is */
+   nothing overflows however large t is. Where nothing is damped theta is that of all lanes: it is
+   solved once. */
 void rd_shape_closed(const cv *theta, const lane_mask *where, struct shape_lanes *p)
 {
+    double complex last = 0, tau = 0, P1 = 0, P2 = 0;
     for (int i = 0; i < RD_LANES; i++) {
         if (!(*where)[i])
             continue;
         const double complex x = CMPLX(theta->re[i], theta->im[i]);
-        const double complex t = csqrt(x), e = cexp(-t), f = 1.0 + e * e;
-        const double complex tau = (1.0 - e * e) / (t * f);
-        const double complex P1 = (1.0 - e) * (1.0 - e) / (f * x), P2 = (1.0 - tau) / x;
+        if (x != last) {
+            const double complex t = csqrt(x), e = cexp(-t), f = 1.0 + e * e;
+            tau = (1.0 - e * e) / (t * f);
+            P1 = (1.0 - e) * (1.0 - e) / (f * x);
+            P2 = (1.0 - tau) / x;
+            last = x;
+        }
         p->P0.re[i] = p->tau.re[i] = creal(tau);
         p->P0.im[i] = p->tau.im[i] = cimag(tau);
         p->P1.re[i] = creal(P1);

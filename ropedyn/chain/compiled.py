@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.answer import Frozen
 from ..base.array import Real
+from ..base.computed import computed
 from ..base.errors import SceneError
 from ..scene.card import Card, card, card_html, card_text
 from ..scene.damping import having, separable
@@ -19,7 +20,8 @@ from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.rope import ACROSS, own_number
 from ..scene.scene import Scene
 from . import matrices
-from .chain import TRANSVERSE, Chain
+from .chain import CHANNELS, PLANE, TRANSVERSE, Chain
+from .lean import lean
 from .mesh_choice import Choice
 
 if TYPE_CHECKING:
@@ -31,6 +33,9 @@ EXACT = ("tensed", "continuous")  # Elements that can be cut anywhere.
 MOST_STEPS = 10_000_000  # A walk over continuous spans has at most so many steps.
 
 MOST_POINTS = 1_000_000  # An answer is given at so many parts of a continuous element at most.
+
+
+BELOW = 1e-9  # A bound is taken by so much.
 
 
 class Triples(NamedTuple):
@@ -99,6 +104,24 @@ class Compiled(Frozen):
     def size(self) -> int:
         """Number of unknowns: coordinates of nodes that can move."""
         return sum(self.unknowns)
+
+    @computed
+    def _nonlinear(self) -> str:
+        """What a part must be for a linear scene, as ``parts[0].exponent must be 1``; or empty."""
+        for i, part in enumerate(self.scene.parts):
+            if not isinstance(part, STRETCHES) and (must_be := part.term().nonlinear):
+                return f"parts[{i}].{must_be}"
+        return ""
+
+    @computed
+    def _parts(self) -> dict[tuple[str, ...], Chain]:
+        """Undamped chains of the components, spans joined that nothing parts."""
+        return {c: lean(self.chain.undamped.only(c))[0] for c in self.components}
+
+    @computed
+    def _least(self) -> dict[tuple[str, ...], float]:
+        """What no eigenvalue of each component is below [rad^2/s^2]; 0 where that is not told."""
+        return {c: _least_of_rod(chain) for c, chain in self._parts.items()}
 
     @property
     def mesh_order(self) -> dict[str, float]:
@@ -297,9 +320,38 @@ class Compiled(Frozen):
         return next(c for c in self.components if coordinate in c)
 
 
+def part_of(model: Compiled, component: tuple[str, ...]) -> Chain:
+    """Return the undamped chain of a component, spans joined that nothing parts."""
+    return model._parts[component]
+
+
+def least_of(model: Compiled, component: tuple[str, ...]) -> float:
+    """Return what no eigenvalue of a component is below [rad^2/s^2], 0 where that is not told."""
+    return model._least[component]
+
+
 def refuse_nonlinear(model: Compiled) -> None:
     """Refuse a scene with a part that only integration over time takes."""
-    for i, part in enumerate(model.scene.parts):
-        must_be = "" if isinstance(part, STRETCHES) else part.term().nonlinear
-        if must_be:
-            raise SceneError(f"parts[{i}].{must_be}: only integration over time takes others")
+    if model._nonlinear:
+        raise SceneError(f"{model._nonlinear}: only integration over time takes others")
+
+
+def _least_of_rod(chain: Chain) -> float:
+    """Return what no eigenvalue of a rod is below, 0 where it is not told: 1/(mass flexibility)."""
+    # of the rod without the springs and supports inside it, which is softer: L from one end, of S
+    # in all, the flexibility is L (S - L)/S, at most S/4, or at most S where the other end is free
+    coordinate, beside = PLANE[chain.coordinate[0]], (chain.attached_row, chain.hinge)
+    several = len(chain.coordinate) > 1 or any(one is not None for one in beside)
+    if coordinate == "z" or chain.inertia is None or several:
+        return 0.0
+    mass, spring = chain.mass[:, 0, 0], chain.stiffness[:, 0, 0]
+    if min(spring.min(), mass.min()) < 0:
+        return 0.0
+    length, channel = chain.length[chain.element] * np.diff(chain.first), CHANNELS[coordinate]
+    give = float(length @ chain.flexibility[chain.element, channel, channel])
+    moved = float(length @ chain.inertia[chain.element, 0]) + float(mass[chain.term].sum())
+    ends = [term for term in chain.term[[0, -1]] if chain.held[term, 0] or spring[term]]
+    give += sum(0.0 if chain.held[term, 0] else 1 / float(spring[term]) for term in ends)
+    if moved * give == 0:
+        return 0.0
+    return (0, 1, 4)[len(ends)] / (moved * give) * (1 - BELOW)

@@ -49,7 +49,7 @@ def spans_of(chain: Chain) -> Spans | None:
         return None
     if chain.attached_kind is not None or chain.damping is not None or chain.drag is not None:
         return None
-    mass, stiffness = (_diagonal(array[chain.term]) for array in (chain.mass, chain.stiffness))
+    mass, stiffness = (_diagonal(array, chain.term) for array in (chain.mass, chain.stiffness))
     inertia, hinged = chain.inertia[chain.element], _hinges(chain, bends)
     if mass is None or stiffness is None or hinged is None or (bends and inertia[:, 1].any()):
         return None
@@ -69,10 +69,12 @@ def spans_of(chain: Chain) -> Spans | None:
     return Spans(names, np.column_stack(numbers), np.hstack([mass, spring]), hinged)
 
 
-def _diagonal(array: Real) -> Real | None:
-    """Return the diagonals of matrices, None where something is beside them."""
-    diagonal = np.diagonal(array, axis1=1, axis2=2)
-    return diagonal if np.count_nonzero(array) == np.count_nonzero(diagonal) else None
+def _diagonal(array: Real, term: NDArray[np.int32]) -> Real | None:
+    """Return the diagonals of symmetric matrices of width 1 or 2, None with something beside."""
+    width = array.shape[1]
+    if width > 1 and array[term, 0, 1].any():
+        return None
+    return np.stack([array[term, k, k] for k in range(width)], axis=1)
 
 
 def _hinges(chain: Chain, bends: bool) -> NDArray[np.uint8] | None:

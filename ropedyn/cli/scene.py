@@ -133,7 +133,8 @@ ACCURACY = Command(
 def _effects(options: argparse.Namespace) -> None:
     scene = Scene.load(options.scene)
     how = {"elements": options.elements, "element": options.element}
-    show(options, effect_cost(scene, _question(options), **how))
+    cost = effect_cost(scene, _question(options), **how)
+    show(options, cost, cost.report())
 
 
 EFFECTS = Command(

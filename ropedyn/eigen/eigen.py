@@ -19,6 +19,7 @@ from ..chain.chain import plane_of
 from ..chain.compile import check_points, compile_scene
 from ..chain.compiled import Compiled
 from ..scene.scene import Scene
+from .fewest import solve_components
 from .modes import Modes, UndampedMesh, UndampedVectors
 from .spectrum import (
     SOLVERS,
@@ -47,7 +48,7 @@ def solve_modes(
 ) -> Modes:
     """Find natural frequencies and shapes; see `Model.modes`."""
     # without `strict` fewer modes than asked for are no error
-    solve = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
+    check.one_of(solver, "solver", SOLVERS)
     check_points(model, points)
     if model.element == "continuous" and solver != "sweep":
         raise SceneError(f'solver must be "sweep" for continuous spans, got {solver!r}')
@@ -55,7 +56,7 @@ def solve_modes(
     if below is not None:
         refuse_short_waves(model, limit)
     start = time.perf_counter()
-    found = [solve(model, c, number, limit, shaped=False) for c in model.components]
+    found = solve_components(model, solver, number, limit, shaped=False)
     seconds = time.perf_counter() - start
     existing = sum(len(part.eigenvalue) for part in found)
     if strict and number is not None and number > existing:
@@ -86,7 +87,7 @@ def solve_modes(
         rounding_error=error_in_hertz(eigenvalue, error),
         plane=partial(_planes, model, which, len(eigenvalue)),
         cost=_cost(model, solver, seconds, found),
-        vectors=later if found[0].shape is None else vectors_of(model, found, eigenvalue, order),
+        vectors=later if solver == "sweep" else vectors_of(model, found, eigenvalue, order),
         mesh=mesh,
         solve_shapes=partial(solve_shapes, model, solver, eigenvalue, which),
     )

@@ -15,7 +15,7 @@ from ..base.answer import Work
 from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import CHANNELS, Chain
-from ..chain.compiled import MOST_STEPS, Compiled
+from ..chain.compiled import MOST_STEPS, Compiled, least_of, part_of
 from .closed import closed_count, closed_eigenvalues
 
 LARGEST_DENSE = 8_000
@@ -64,14 +64,19 @@ def count_modes(model: Compiled, below: float) -> int:
 
 def count_component(model: Compiled, component: tuple[str, ...], limit: float) -> int:
     """Count the eigenvalues of one component below a limit [rad^2/s^2]."""
-    return _count(model.chain.undamped.only(component), limit)
+    return 0 if limit < least_of(model, component) else _count(part_of(model, component), limit)
 
 
 def _count(chain: Chain, limit: float) -> int:
     """Count the eigenvalues of a component below a limit."""
     limit = min(limit, HIGHEST)
     found = closed_count(chain, limit)
-    return int(_core.count(chain, np.array([limit]))[0]) if found is None else found
+    if found is not None:
+        return found
+    count = float(_core.count(chain, np.array([limit]))[0])
+    if math.isnan(count):
+        raise SolveError("the waves at the limit are too short to be counted")
+    return int(count)
 
 
 def merged(
@@ -108,7 +113,7 @@ def refuse_short_waves(model: Compiled, eigenvalue: float) -> None:
     if model.element != "continuous":
         return
     for component in model.components:
-        steps = pieces_of(model.chain.undamped.only(component), min(eigenvalue, HIGHEST))
+        steps = pieces_of(part_of(model, component), min(eigenvalue, HIGHEST))
         if steps > MOST_STEPS:
             raise SolveError(
                 f"below is too high: ({', '.join(component)}) has {steps} pieces shorter than its "
@@ -126,7 +131,7 @@ def _sweep(
     model: Compiled, component: tuple[str, ...], number: int | None, limit: float, *, shaped: bool
 ) -> ComponentModes:
     """Solve each span between nodes that nothing moves for itself."""
-    chain = model.chain.undamped.only(component)
+    chain = model.chain.undamped.only(component) if shaped else part_of(model, component)
     found = []
     for first, last in chain.spans:
         try:

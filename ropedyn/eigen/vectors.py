@@ -19,9 +19,10 @@ from ..chain.compiled import MOST_POINTS, Compiled
 from ..chain.port import Point, locate, ports
 from ..scene import damping
 from .damped.attached_energy import AttachedEnergy
+from .fewest import solve_components
 from .modes import Modes, UndampedVectors
 from .sensitivity import Shapes, clusters_of
-from .spectrum import SOLVERS, ComponentModes, merged, pieces_of
+from .spectrum import ComponentModes, merged, pieces_of
 
 STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
 """What stores strain energy, in the core's order."""
@@ -33,7 +34,7 @@ def later_vectors(
     model: Compiled, solver: str, number: int | None, limit: float, which: Index | None
 ) -> UndampedVectors:
     """Solve once more, with shapes."""
-    found = [SOLVERS[solver](model, c, number, limit, shaped=True) for c in model.components]
+    found = solve_components(model, solver, number, limit, shaped=True)
     eigenvalue, _, order = merged(found, number if which is None else len(which), which)
     return vectors_of(model, found, eigenvalue, order)
 
@@ -137,7 +138,7 @@ def shapes_of(
     more = number
     while True:
         more += 1
-        found = [SOLVERS[solver](model, c, more, math.inf, shaped=True) for c in model.components]
+        found = solve_components(model, solver, more, math.inf, shaped=True)
         value, error, order = merged(found, more, which)
         clusters = clusters_of(value, error)
         kept = [cluster for cluster in clusters if cluster[0] < number]
@@ -209,7 +210,7 @@ def _motion(model: Compiled, found: Sequence[ComponentModes]) -> Real:
         row = model.chain.attached_row[:, :, kept]
         moved = (row != 0).any(axis=2).any(axis=1)
         motion = np.zeros((count, len(row)))
-        if moved.any():
+        if count and moved.any():
             assert part.motion is not None
             motion[:, moved] = part.motion
         motions.append(motion)

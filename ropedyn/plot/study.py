@@ -85,14 +85,14 @@ def _plot_front(cost: AccuracyCost, ax: Axes) -> None:
 @plots(EffectCost, height=lambda cost: 2.0 + 0.3 * len(cost.effect))
 def plot_effects(cost: EffectCost, ax: Axes) -> None:
     """Plot a row for each effect: the largest change as a bar, the share of time as a point."""
-    # the largest change is on top; effects without which there is no answer are at the bottom
+    # on top what changes most for its time; at the bottom that without which there is no answer
     rows, least, most = _effect_rows(cost)
     y = np.arange(len(rows))
     ax.set(xscale="log", xlim=(least, most), yticks=y, ylim=(len(rows) - 0.5, -0.7))
     notes = (_effect_note(cost, row) for row in rows.tolist())
     ax.set_yticklabels([f"{cost.effect[row]}{note}" for row, note in zip(rows, notes)])
     name, _, unit = next(iter(cost.change)).partition(" ")
-    of = "level" if unit == "[dB]" else "frequency"
+    of = {"[dB]": "level", "[Hz]": "frequency"}.get(unit, "the answer")
     ax.set(xlabel=f"{name} change of {of} without the effect {unit}")
     ax.set_title(f"what effects change and cost: {cost.question}", fontsize="medium")
     ax.grid(True, axis="x", color="0.92")
@@ -105,10 +105,10 @@ def plot_effects(cost: EffectCost, ax: Axes) -> None:
 
 
 def _effect_rows(cost: EffectCost) -> tuple[Index, float, float]:
-    """Return effects, those that change most first, and limits of the changes to show."""
-    weight = np.where(np.isnan(cost.largest), np.inf, cost.largest)
-    weight = np.where(cost.beyond_error, weight, 0.0)
-    weight[cost.refusal != ""] = -1.0
+    """Return effects by change per time, largest first, and limits of the changes to show."""
+    weight = np.where(np.isnan(cost.per_second), np.inf, cost.per_second)
+    weight = np.where(cost.beyond_error, weight, -1.0)
+    weight[cost.refusal != ""] = -2.0
     shown = cost.largest[cost.beyond_error & np.isfinite(cost.largest) & (cost.largest > 0)]
     least, most = (shown.min(), shown.max()) if shown.size else (0.1, 1.0)
     least, most = 10 ** np.floor(np.log10(least) - 0.5), 10 ** np.ceil(np.log10(most) + 0.2)
@@ -118,7 +118,9 @@ def _effect_rows(cost: EffectCost) -> tuple[Index, float, float]:
 def _effect_note(cost: EffectCost, row: int) -> str:
     """Say what a bar cannot, on a line of its own."""
     if not cost.beyond_error[row]:
-        return f"\n{cost.verdict(row)}"
+        return f"\n{cost.matters[row]}"
+    if cost.changed[row] == "damping ratio":
+        return f"\ndamping ratio {cost.change['damping ratio [1]'][row]:.3g}"
     lost = int(cost.only_with[row])
     what = "mode" if "rms [Hz]" in cost.change else "response"
     return f"\n{lost} {what}{'s' * (lost > 1)} only with it" if lost else ""

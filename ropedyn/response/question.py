@@ -15,6 +15,7 @@ from ..base.computed import computed
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import PLANE, Chain
 from ..chain.compiled import EXACT, Compiled
+from ..chain.lean import lean
 from ..chain.port import Point, cut, is_force, locate, stops
 from ..chain.reaction import at_start
 from ..scene import damping
@@ -41,14 +42,27 @@ class Question:
     @property
     def is_damped(self) -> Flags:
         """Whether a factor of something that this component has is complex, shape (f,)."""
-        return damped_lines(self.cut[0], self.factor)
+        return damped_lines(self.walked[0], self.factor)
 
     @computed
     def cut(self) -> tuple[Chain, Real]:
         """The component's chain with nodes where points need them, and where they stand."""
+        return self._cut(self.model.chain.only(self.component), self.model.x)
+
+    @computed
+    def walked(self) -> tuple[Chain, Real]:
+        """The same without the nodes at which nothing stands and nobody asks."""
+        return self.cut if len(self.lean[1]) == len(self.model.x) else self._cut(*self.lean)
+
+    @computed
+    def lean(self) -> tuple[Chain, Real]:
+        """The component's chain without the nodes at which nothing stands, and where they are."""
+        chain, kept = lean(self.model.chain.only(self.component))
+        return chain, self.model.x[kept]
+
+    def _cut(self, chain: Chain, x: Real) -> tuple[Chain, Real]:
         model, points = self.model, [*self.drives, *self.responses]
-        chain = model.chain.only(self.component)
-        between = [p for p in dict.fromkeys(points) if locate(model.x, p[1])[1] is not None]
+        between = [p for p in dict.fromkeys(points) if locate(x, p[1])[1] is not None]
         if model.element not in EXACT:
             for point in filter(is_force, between):
                 raise SceneError(
@@ -58,16 +72,16 @@ class Question:
             between = []
         positions = [p[1] for p in between]
         if model.element == "tensed":
-            positions += stops(chain, model.x)
-        if model.element == "continuous" and any(at_start(model.x, p) for p in self.responses):
-            positions += self._short(chain)
-        return cut(chain, model.x, positions)
+            positions += stops(chain, x)
+        if model.element == "continuous" and any(at_start(x, p) for p in self.responses):
+            positions += self._short(chain, x)
+        return cut(chain, x, positions)
 
-    def _short(self, chain: Chain) -> list[float]:
+    def _short(self, chain: Chain, x: Real) -> list[float]:
         """Return where the first element is cut so that its left end is far from resonances."""
         first = chain.between(0, 1)
         pieces = _core.steps(first, self.fastest)
-        return [float(self.model.x[1]) / pieces]
+        return [float(x[1]) / pieces]
 
     @property
     def fastest(self) -> Complex:

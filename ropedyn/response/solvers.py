@@ -30,8 +30,8 @@ BOUND_SLICE = 1 << 18  # Pairs of loads times stations times frequencies, likewi
 
 def _sweep(question: Question) -> tuple[Complex, Bound]:
     """Take what is certain in closed form, and walk along the chain for the other lines."""
-    model, drives, responses = question.model, question.drives, question.responses
-    found = closed_lines(model.chain.only(question.component), question.factor, drives, responses)
+    drives, responses = question.drives, question.responses
+    found = closed_lines(question.lean[0], question.factor, drives, responses)
     if found is None:
         value = _walk(question)
     else:
@@ -44,7 +44,7 @@ def _sweep(question: Question) -> tuple[Complex, Bound]:
 
 
 def _walk(question: Question) -> Complex:
-    chain, _ = question.cut
+    chain, _ = question.walked
     steps = _core.steps(chain, question.fastest)
     if steps > max(MOST_STEPS, chain.nodes):
         raise SolveError(
@@ -56,7 +56,7 @@ def _walk(question: Question) -> Complex:
 
 def _bound(question: Question, value: Complex) -> Real:
     """Bound what rounding does to what was swept."""
-    chain, _ = question.cut
+    chain, _ = question.walked
     pushed, watched, reactions = _ports(question)
     loads = len(pushed.node) + len(watched.node)
 
@@ -73,7 +73,7 @@ def _bound(question: Question, value: Complex) -> Real:
 
 
 def _band(question: Question) -> tuple[Complex, Bound]:
-    chain, _ = question.cut
+    chain, _ = question.walked
     value, error = _unassembled(
         question, partial(_core.mixed, chain), chain.nodes, BAND_SLICE, lanes=1
     )
@@ -82,7 +82,7 @@ def _band(question: Question) -> tuple[Complex, Bound]:
 
 def _ports(question: Question) -> tuple[Ports, Ports, bool]:
     """Return those of drives and of responses, and whether forces at the left end are told."""
-    chain, x = question.cut
+    chain, x = question.walked
     component = question.component
     direct = [p for p in question.responses if not at_start(x, p)]
     reactions = len(direct) < len(question.responses)
@@ -147,7 +147,7 @@ def in_slices(
 
 def _hold(question: Question, value: NDArray[Any]) -> None:
     """Set to 0 what is held, which rounding moves by its last digits."""
-    chain, x = question.cut
+    chain, x = question.walked
 
     def stands(point: Point) -> bool:
         return not is_force(point) and is_held(chain, x, question.component, point)
@@ -163,7 +163,7 @@ def _hold(question: Question, value: NDArray[Any]) -> None:
 def _reacting(question: Question, told: NDArray[Any], *, sign: float) -> NDArray[Any]:
     """Put f_a = E f_b - Q u_a + P u_b of the first element, or its size, where it was asked for."""
     component, responses = question.component, question.responses
-    chain, x = question.cut
+    chain, x = question.walked
     w = len(component)
     of = first_left_end(chain, question.factor)
     E, Q, P = (of.E, of.Q, of.P) if sign < 0 else map(np.abs, (of.E, of.Q, of.P))
@@ -184,7 +184,7 @@ def _reacting(question: Question, told: NDArray[Any], *, sign: float) -> NDArray
 def _lapack(question: Question) -> tuple[Complex, Bound]:
     if any(map(is_force, question.responses)):
         raise SceneError('solver must be "sweep" or "band" where an internal force is asked for')
-    chain, x = question.cut
+    chain, x = question.walked
     value, rounding, motion, solved = _core.frf(
         chain,
         np.ascontiguousarray(question.factor.T),
@@ -207,7 +207,7 @@ def _local(question: Question) -> Complex:
     value = np.zeros(shape, dtype=np.complex128)
     if question.model.element in EXACT:
         return value
-    chain, x = question.cut
+    chain, x = question.walked
     bends = "beta" in question.component
     for d, pushed in enumerate(question.drives):
         which = damping.SECTION if bends or pushed[0] != "z" else damping.TENSION

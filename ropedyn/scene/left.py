@@ -6,6 +6,7 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from .end import STANDING, End
+from .gravity import Gravity
 from .parts.node import Part
 from .parts.stretch import Stretch, changeable
 from .rope import ACROSS, Rope, in_plane
@@ -25,6 +26,29 @@ PROPERTIES = {
 """What a rope never had that never had one of these effects."""
 
 SECOND_PLANE = "second plane"  # The effect that a scene moves in the plane of y too.
+
+
+WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
+
+
+def without(scene: Scene, effects: tuple[str, ...]) -> Scene:
+    """Return a scene without effects, and without what stood on coordinates that go with them."""
+    tension = of_tension(scene.tension, effects)
+    mean = tension.mean if isinstance(tension, Tension) else tension
+    planes = "z" if SECOND_PLANE in effects else scene.planes
+    bare = type(scene)(of_rope(scene.rope, effects), tension=mean, planes=planes)
+    kept = tuple(d for d in scene.dampings if d.kind not in effects)
+    return bare.replace(
+        tension=tension,
+        ends=tuple(of_end(end, bare.coordinates, effects) for end in scene.ends),
+        damping=kept,
+        gravity=None if WEIGHTLESS & set(effects) else scene.gravity,
+        parts=tuple(
+            left
+            for part in scene.parts
+            if part.kind not in effects and (left := of_part(part, bare)) is not None
+        ),
+    )
 
 
 def of_rope(rope: Rope, effects: tuple[str, ...]) -> Rope:

@@ -53,8 +53,6 @@ EFFECTS = (
 
 _PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
 
-_WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
-
 
 def _checked_tension(tension: Any) -> float | Tension:
     if not isinstance(tension, Tension):
@@ -414,22 +412,48 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
-        tension = left.of_tension(self.tension, effects)
-        mean = tension.mean if isinstance(tension, Tension) else tension
-        planes = "z" if SECOND_PLANE in effects else self.planes
-        bare = Scene(left.of_rope(self.rope, effects), tension=mean, planes=planes)
-        kept = tuple(d for d in self.dampings if d.kind not in effects)
-        return bare.replace(
-            tension=tension,
-            ends=tuple(left.of_end(end, bare.coordinates, effects) for end in self.ends),
-            damping=kept,
-            gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
-            parts=tuple(
-                kept_part
-                for part in self.parts
-                if part.kind not in effects and (kept_part := left.of_part(part, bare)) is not None
-            ),
-        )
+        return left.without(self, effects)
+
+    def needed(self, question: Any, tolerance: float) -> tuple[str, ...]:
+        """Name the effects that an answer needs; nothing is left out of the scene by that.
+
+        Parameters
+        ----------
+        question
+            Any of ``rd.ask``.
+        tolerance : float
+            How far the answer may be off, relative: of frequencies, damping ratios, responses line
+            by line, of motion over time by the largest of each response.
+
+        Returns
+        -------
+        tuple of str
+            The smallest set of `effects` whose answer is within the tolerance of that of all of
+            them, error bars included as far as they are known; no mode or response may be lost.
+            Effects that alone change more all stay; of the others the most are left out that can be
+            at once, of equally many those that change least. Beyond 8 such effects one by one,
+            those that change least first.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If the tolerance is not a number > 0, or the question has no answer.
+        SolveError
+            If the scene with all its effects has no answer.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.01, torsional_stiffness=9.0)
+        >>> scene = rd.Scene(rope, tension=1000.0, ends=("pinned", "pinned"))
+        >>> scene.needed(rd.ask.modes(1), 1e-2), scene.needed(rd.ask.modes(1), 1e-6)
+        (('tension',), ('tension', 'bending'))
+        """
+        from ..study.needed import needed
+
+        return needed(self, question, tolerance)
 
     def compile(
         self,

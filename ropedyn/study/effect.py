@@ -9,15 +9,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..ask import AnyQuestion
+from ..ask.forced import FRFQuestion, StaticQuestion, SteppedSineQuestion
+from ..ask.free import CountQuestion, ModesQuestion
+from ..ask.many import FamilyQuestion
+from ..ask.question import AnyQuestion
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Flags, Integer, Real
+from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
 from ..experiment.compare.difference import AnswerChange
 from ..scene.scene import Scene
+from ..scene.tension import Tension
+from . import effect_words as words
 from .way import Way, answered, check_question, priced
+
+LINEAR = (ModesQuestion, CountQuestion, FamilyQuestion, FRFQuestion, StaticQuestion)
+"""Questions about small motion around a mean tension."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,18 +48,25 @@ class EffectCost(Answer):
         [%]"`` and ``"rms [%]"``, of frequencies; where motion grows -growth/2 pi is the frequency.
         Each mode is compared with that of the same order among those of the same motion:
         transverse, torsional, axial, of a resonator or of a broken wire. And ``"damping ratio
-        [1]"``, the largest change of any damping ratio, which has no error bars. Of a frequency
+        [1]"``, the largest change of any damping ratio. Of a frequency
         response ``"largest [dB]"`` and ``"median [dB]"``, of the level |20 log10(without/with)| of
         all lines, and ``"peak shift [Hz]"``, from the largest peak to the nearest one without the
         effect, where that has the same number. Of motion over time ``"largest [%]"``, ``"rms [%]"``
-        of all times and ``"peak [%]"``, of the largest value, in percent of that. NaN where there
-        is nothing to compare.
+        of all times and ``"peak [%]"``, of the largest value, in percent of that. Of other
+        questions ``"largest [%]"`` and ``"rms [%]"`` of all values. NaN where there is nothing to
+        compare.
     error : ndarray, shape (rows,)
         Error bars of both answers, of mesh and rounding, where the change is largest [Hz, dB, %];
         infinite where none are known, as those of a chain that is not linear.
+    changed : ndarray of str, shape (rows,)
+        What it changes by more than the error bars that are known, such as ``"frequency, damping
+        ratio"``, ``"level"``, ``"motion"`` or ``"answer"``; empty where nothing.
     beyond_error : ndarray of bool, shape (rows,)
-        Whether the effect changes any frequency or level by more than the error bars there, or
-        modes or responses are only there with it.
+        Whether that is more than all error bars, or modes or responses are only there with it.
+    seen : ndarray of bool, shape (rows,)
+        False: no answer to such a question can tell, as modes of a tension that pulsates.
+    goes_along : ndarray of str, shape (rows,)
+        Which other effects leave with it, as lay, rotary inertia and hinges with bending.
     only_with : ndarray of int, shape (rows,)
         How many of the modes are only there with the effect; how many responses are 0 without.
     seconds_with, lower_quartile_with, upper_quartile_with : float
@@ -72,6 +88,10 @@ class EffectCost(Answer):
     >>> cost = rd.effect_cost(rd.Scene(rope, tension=100.0), rd.ask.modes(1), repeat=1)
     >>> cost.effect.tolist(), cost.largest.round(3), cost.cost.method
     (['tension', 'bending'], array([10.893,  3.044]), 'trials')
+    >>> print(cost.verdict.partition(". ")[0])
+    For 1 modes what matters is tension (10.9 Hz) and bending (3.04 Hz)
+    >>> cost.matters.tolist(), bool((cost.per_second > 0).all())
+    (['yes: frequency', 'yes: frequency'], True)
     >>> cost.share.shape, len(cost.share_quartiles), len(cost.costs)
     ((2,), 2, 2)
     """
@@ -82,7 +102,10 @@ class EffectCost(Answer):
     effect: NDArray[np.str_] = field(metadata=axes("row"))
     change: dict[str, Real] = field(metadata=axes("row", keyed=True))
     error: Real = field(metadata=axes("row"))
+    changed: NDArray[np.str_] = field(metadata=axes("row"))
     beyond_error: Flags = field(metadata=axes("row"))
+    seen: Flags = field(metadata=axes("row"))
+    goes_along: NDArray[np.str_] = field(metadata=axes("row"))
     only_with: Integer = field(metadata=axes("row"))
     seconds_with: float
     lower_quartile_with: float
@@ -132,25 +155,40 @@ class EffectCost(Answer):
             unknowns=self.unknowns_with,
         )
 
-    def verdict(self, row: int) -> str:
-        """Say in words whether a row changes the answer, such as ``none beyond rounding``.
+    @property
+    def per_second(self) -> Real:
+        """The largest change over the time that the effect takes, shape (rows,).
+
+        Of times that the quartiles do not tell apart at least what they leave open.
+        """
+        spread = self.upper_quartile_without - self.lower_quartile_without
+        least = (self.upper_quartile_with - self.lower_quartile_with + spread) / 2
+        taken = np.maximum(self.seconds_with - self.seconds_without, least)
+        return self.largest / np.maximum(taken, np.finfo(float).eps)
+
+    @property
+    def matters(self) -> NDArray[np.str_]:
+        """Whether each effect changes the answer, in words such as ``none beyond rounding``."""
+        return np.array(
+            [words.matters(self, row) for row in range(len(self.effect))], dtype=np.str_
+        )
+
+    @property
+    def verdict(self) -> str:
+        """Two sentences: which effects matter for this question, and which are paid for nothing."""
+        return words.verdict(self)
+
+    def report(self) -> str:
+        """Return the verdict, and the table under it.
 
         Examples
         --------
         >>> import ropedyn as rd
-        >>> rope = rd.Rope(1.0, 0.1, bending_stiffness=0.5)
-        >>> cost = rd.effect_cost(rd.Scene(rope, tension=100.0), rd.ask.modes(1), repeat=1)
-        >>> cost.verdict(1)
-        'yes'
+        >>> cost = rd.effect_cost(rd.Scene(rd.Rope(1.0, 0.1), tension=9.0), rd.ask.modes(1))
+        >>> cost.report().startswith(cost.verdict)
+        True
         """
-        check.count(row, "row", least=0, most=len(self.effect) - 1)
-        if self.refusal[row]:
-            return "no answer without it"
-        if self.beyond_error[row]:
-            return "yes"
-        if np.isinf(self.error[row]):
-            return "not told: its error bars are not known"
-        return f"none beyond {'' if self.way.startswith('continuous') else 'mesh and '}rounding"
+        return f"{self.verdict}\n\n{self.table()}"
 
     def table(self) -> Table:
         """Return a row for each effect that is left out, after one for the whole scene."""
@@ -158,7 +196,8 @@ class EffectCost(Answer):
         asked = self.refusal == ""
         columns: dict[str, Any] = {
             "left out": ("nothing", *self.effect.tolist()),
-            "changes the answer": (None, *map(self.verdict, range(len(self.effect)))),
+            "changes the answer": (None, *self.matters.tolist()),
+            "goes along": (None, *(text or None for text in self.goes_along.tolist())),
             **{name: (None, *numbers(change)) for name, change in self.change.items()},
             f"error bars {unit}": (None, *numbers(self.error)),
             "only with it": (None, *_where(asked, self.only_with)),
@@ -192,9 +231,10 @@ def effect_cost(
     ----------
     scene : Scene
         What is asked about.
-    question : ModesQuestion, FRFQuestion or MotionQuestion
-        Such as ``rd.ask.modes(10)``, ``rd.ask.frf(frequency, drive=("z", 0.5))`` or
-        ``rd.ask.motion(time, drive=("z", 0.5), force=rd.Step(1.0))``.
+    question
+        Any of ``rd.ask``, such as ``rd.ask.modes(10)``, ``rd.ask.modes(10, damped=True)`` or
+        ``rd.ask.static({("z", 0.5): 10.0})``. Parts that are not linear are priced by ``motion``
+        and ``stepped_sine``, a tension that pulsates by ``motion`` and ``floquet``.
     elements, element
         As in `Scene.compile`: continuous spans where left out.
     solver : str, optional
@@ -240,8 +280,9 @@ def effect_cost(
     check.one_of(solver, "solver", question.solvers)
     check.count(repeat, "repeat", most=10_000)
     report = reporter(progress)
-    whole = answered(question, scene, {"elements": elements, "element": element}, solver)
-    attempts = [partial(_without, whole, effect) for effect in scene.effects]
+    how = {"elements": elements, "element": element}
+    whole = answered(question, question.placed(scene), how, solver)
+    attempts = [partial(_without, whole, scene, effect) for effect in scene.effects]
     nothing = _numbers(AnswerChange.unknown(question.measures), 0)
     columns, times = priced(attempts, nothing, repeat, report, whole)
     middle, lower, upper = (
@@ -253,6 +294,8 @@ def effect_cost(
         way=str(whole),
         elements=len(whole.model.x) - 1,
         effect=np.array(scene.effects),
+        seen=np.array([sees(question, effect) for effect in scene.effects]),
+        goes_along=np.array([_along(scene, one) for one in scene.effects], dtype=np.str_),
         change={name: columns.pop(name) for name in question.measures},
         seconds_with=float(middle[0]),
         lower_quartile_with=float(lower[0]),
@@ -260,22 +303,44 @@ def effect_cost(
         seconds_without=middle[1:],
         lower_quartile_without=lower[1:],
         upper_quartile_without=upper[1:],
-        unknowns_with=whole.answer.cost.unknowns,
+        unknowns_with=unknowns_of(whole.answer),
         **columns,
     )
 
 
-def _without(whole: Way, effect: str) -> tuple[Way, dict[str, Any]]:
+def sees(question: AnyQuestion, effect: str) -> bool:
+    """Whether any answer to a question can tell an effect: small motion knows a mean tension."""
+    blind = isinstance(question, LINEAR) and not isinstance(question, SteppedSineQuestion)
+    return not (blind and effect in (Tension.pulsating, Tension.growing))
+
+
+def _along(scene: Scene, effect: str) -> str:
+    """Name the other effects that a scene does not have without one."""
+    try:
+        left = scene.without(effect).effects
+    except SceneError:
+        return ""
+    return ", ".join(one for one in scene.effects if one != effect and one not in left)
+
+
+def _without(whole: Way, scene: Scene, effect: str) -> tuple[Way, dict[str, Any]]:
     """Ask what is left of a scene without an effect."""
-    left = Way.of(whole.question, whole.scene.without(effect), whole.how, whole.solver)
-    change = whole.question.change(whole.answer, left.model, solver=whole.solver)
-    return left, _numbers(change, left.answer.cost.unknowns)
+    question = whole.question
+    left = Way.of(question, question.placed(scene.without(effect)), whole.how, whole.solver)
+    change = question.change(whole.answer, left.model, solver=whole.solver)
+    return left, _numbers(change, unknowns_of(left.answer))
+
+
+def unknowns_of(answer: Any) -> int:
+    """Return how many unknowns an answer had, 0 of one that does not say, as a count."""
+    return int(getattr(getattr(answer, "cost", None), "unknowns", 0))
 
 
 def _numbers(change: AnswerChange, unknowns: int) -> dict[str, Any]:
     """Return the cells of a row."""
     return change.size | {
         "error": change.error,
+        "changed": ", ".join(change.changed),
         "beyond_error": change.beyond_error,
         "only_with": change.lost,
         "unknowns_without": unknowns,

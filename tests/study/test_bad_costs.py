@@ -153,13 +153,6 @@ row(
     lambda v: effect_cost(progress=v),
     {"number": 3, "text": "yes", "nan": NAN, "list": [print]},
 )
-row(
-    "EffectCost.verdict",
-    "row",
-    EFFECTS.verdict,
-    {"none": None, "text": "0", "float": 0.0, "list": [0]},
-    {"beyond": len(EFFECTS.effect), "negative": -1, "huge": HUGE},
-)
 
 
 @pytest.mark.parametrize(("argument", "call", "wrong_types", "wrong_values"), arguments(ARGUMENTS))

@@ -176,12 +176,12 @@ def test_modes_below_a_limit_are_compared_one_by_one():
         assert answer.change[name].tolist() == other.change[name].tolist()
 
 
-def test_damping_changes_no_undamped_frequency():
+def test_damping_changes_no_undamped_frequency_but_its_damping_ratio():
     scene = rd.Scene(BEAM, damping=rd.StiffnessDamping(1e-4))
     answer = cost(scene, rd.ask.modes(3))
     *frequency, ratio = changes(answer, "stiffness damping").values()
     assert set(frequency) == {0.0}
-    assert not answer.beyond_error[row(answer, "stiffness damping")]
+    assert answer.matters[row(answer, "stiffness damping")] == "yes: damping ratio"
     # of the third mode, gamma omega/2: shares of an energy whose sum is 1 to a few eps
     highest = 2 * math.pi * scene.compile().modes(3).frequency[2]
     assert ratio == pytest.approx(1e-4 * highest / 2, rel=64 * EPS)
@@ -312,8 +312,8 @@ def test_a_change_within_the_error_of_the_mesh_is_none():
     coarse, fine = (cost(scene, rd.ask.modes(3), elements=n) for n in (8, None))
     at = row(fine, "rotary inertia")
     assert (coarse.largest[at] > 0, coarse.beyond_error[at]) == (True, False)
-    assert coarse.verdict(at) == "none beyond mesh and rounding"
-    assert (fine.beyond_error[at], fine.verdict(at)) == (True, "yes")
+    assert coarse.matters[at] == "none beyond mesh and rounding"
+    assert (fine.beyond_error[at], fine.matters[at]) == (True, "yes: frequency")
     assert fine.largest[at] > fine.error[at]
 
 
@@ -325,7 +325,7 @@ def test_a_change_within_rounding_is_none(question):
     answer = cost(scene, question)
     at = row(answer, "point mass")
     assert not answer.beyond_error[at]
-    assert answer.verdict(at) == "none beyond rounding"
+    assert answer.matters[at] == "none beyond rounding"
     assert answer.table().column("changes the answer")[at + 1] == "none beyond rounding"
 
 
@@ -350,12 +350,12 @@ def test_what_leaves_nothing_to_ask_is_a_row_with_the_reason():
     refused = answer.refusal != ""
     assert answer.effect[refused].tolist() == ["twist"]
     assert "drive[0] must be a coordinate the scene has" in answer.refusal[refused][0]
-    assert answer.verdict(row(answer, "twist")) == "no answer without it"
+    assert answer.matters[row(answer, "twist")] == "no answer without it"
     for numbers in (answer.seconds_without, answer.error, answer.share, *answer.change.values()):
         assert np.isnan(numbers[refused]).all()
     assert not answer.beyond_error[refused].any()
     table = answer.table()
-    assert table.rows[row(answer, "twist") + 1][2:-1] == (None,) * (len(table.columns) - 3)
+    assert table.rows[row(answer, "twist") + 1][3:-1] == (None,) * (len(table.columns) - 4)
 
 
 def test_a_string_without_tension_is_a_row_with_the_reason():
@@ -417,7 +417,10 @@ def made(*times, lower=None, upper=None):
             "rms [Hz]": np.ones(size),
         },
         error=np.zeros(size),
+        changed=np.array(["", "frequency", "frequency", ""])[:size],
         beyond_error=np.array([False, True, True, True])[:size],
+        seen=np.ones(size, dtype=bool),
+        goes_along=np.full(size, ""),
         only_with=np.array([0, 0, 1, 2])[:size],
         seconds_with=times[0],
         lower_quartile_with=lower[0],
@@ -476,6 +479,14 @@ def test_the_figure_has_the_largest_change_on_top():
     assert shares == [25.0, 0.0, -25.0, 50.0]
 
 
+def test_the_figure_puts_what_changes_most_for_its_time_on_top():
+    # 2 Hz for 2 s, 1 Hz for 0.1 s
+    answer = made(4.0, 4.0, 2.0, 3.9)
+    np.testing.assert_allclose(answer.per_second[1:], [1.0, 10.0], rtol=1e-12)
+    labels = [text.get_text() for text in answer.plot().get_yticklabels()]
+    assert [label.partition("\n")[0] for label in labels] == ["effect 2", "effect 1", "effect 0"]
+
+
 def test_a_level_without_end_has_a_bar_to_the_border():
     answer = made(4.0, 2.0, 4.0)
     for beyond, bars in (([True, False], 1), ([False, False], 0)):
@@ -518,7 +529,7 @@ def test_twist_that_nothing_couples_changes_no_bit_of_a_motion():
     answer = cost(rd.Scene(TWISTED, tension=300.0), TAPPED)
     for effect in ("twist", "polar inertia"):
         assert set(changes(answer, effect).values()) == {0.0}
-        assert answer.verdict(row(answer, effect)) == "none beyond rounding"
+        assert answer.matters[row(answer, effect)] == "none beyond rounding"
 
 
 def test_a_change_whose_error_bars_nobody_knows_is_not_told():
@@ -526,7 +537,8 @@ def test_a_change_whose_error_bars_nobody_knows_is_not_told():
     answer = cost(scene, TAPPED, elements=16, element="rigid")
     at = row(answer, "stop")
     assert np.isinf(answer.error[at])
-    assert answer.verdict(at) == "not told: its error bars are not known"
+    assert answer.matters[at].endswith("not all error bars are known")
+    assert "beyond" not in answer.matters[at]
 
 
 def test_a_motion_that_is_only_there_with_an_effect_is_counted():

@@ -19,6 +19,7 @@ from ...base.unit import FAMILY
 from ...chain.chain import Chain, plane_of
 from ...chain.compile import check_points, compile_scene, finer
 from ...chain.compiled import Compiled
+from ...chain.lean import lean
 from ...scene.damping import having
 from ..eigen import check_asked
 from ..free_motion import MeshOfModes, Vectors
@@ -107,7 +108,7 @@ def _find(
 ) -> DampedRates:
     """Find the rates of some components, those of the least modulus first."""
     parts = [(c, *span) for c in components for span in model.chain.only(c).spans]
-    undamped = [Undamped(model.chain.only(c).between(*span)) for c, *span in parts]
+    undamped = [Undamped(lean(model.chain.only(c).between(*span))[0]) for c, *span in parts]
     if number is None:
         return _below(model, parts, undamped, limit)
     omega = _lowest(undamped, number + 2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,9 +28,13 @@ MOTIONS = {
     "torsional": ("alpha",),
     **{kind: (name,) for kind, name in CARRIED.items()},
 }
+RATIO_MESH, RATIO_ROUNDING = 100.0, 1e-10
+"""Error of a damping ratio, relative: so much of that of the frequency, of a shape's rounding."""
+NEPER = math.log(10) / 20  # of a decibel
 FURTHEST = 16  # Modes are paired with those among at most so many times as many.
 # What is measured of a change, the largest first.
-OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", "damping ratio [1]")
+RATIO = "damping ratio [1]"
+OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", RATIO)
 OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
 OF_MOTION = ("largest [%]", "rms [%]", "peak [%]")
 OF_VALUES = ("largest [%]", "rms [%]")
@@ -43,6 +48,8 @@ class AnswerChange:
     error: float  # error bars of both answers where the change is largest, in the same unit
     beyond_error: bool  # whether any change is larger than its error bars, or something is lost
     lost: int  # modes or responses that are only there with it
+    changed: tuple[str, ...] = ()  # what changes by more than the error bars that are known
+    relative: float = math.inf  # how far the answer is off without it, with its error bars
 
     @staticmethod
     def unknown(measures: Sequence[str]) -> AnswerChange:
@@ -79,20 +86,31 @@ def change_of_modes(whole: Modes, model: Model, solver: str) -> AnswerChange:
     mine = motions(whole)
     others = _modes_alike(mine, model, solver)
     paired = [np.flatnonzero(mine == motion)[: len(one)] for motion, one in others.items()]
-    before, error, ratio = _numbers(whole)[np.concatenate(paired)].T
-    after, uncertain, left = np.concatenate(list(others.values())).T
+    before, error, ratio, blurred = _numbers(whole)[np.concatenate(paired)].T
+    after, uncertain, left, unclear = np.concatenate(list(others.values())).T
     hertz, percent = np.abs(after - before), 100 * relative(after, before)
     error = error + uncertain
     lost = len(mine) - len(after)
     measures = (np.max, lambda each: np.sqrt(np.mean(each**2)))
     size = [_of(measure, each) for each in (hertz, percent) for measure in measures]
     damping = np.abs(left - ratio)
+    ratios = damping + blurred + unclear
+    beyond = {"frequency": hertz > error, "damping ratio": damping > blurred + unclear}
+    changed = tuple(name for name, where in beyond.items() if where.any())
     return AnswerChange(
         size=dict(zip(OF_MODES, (*size, _of(np.max, damping[~np.isnan(damping)])))),
         error=_of(lambda of: error[of.argmax()], hertz),
-        beyond_error=bool(lost > 0 or (hertz > error).any()),
+        beyond_error=bool(lost > 0 or changed),
         lost=lost,
+        changed=changed,
+        relative=math.inf if lost else max(_share(hertz + error, before), _of(np.nanmax, ratios)),
     )
+
+
+def _share(change: Real, values: Real) -> float:
+    """Return the largest change relative to values, infinite where one is 0."""
+    size = np.abs(values)
+    return float(np.divide(change, size, out=np.full(size.shape, np.inf), where=size > 0).max())
 
 
 def motions(modes: Modes) -> NDArray[np.str_]:
@@ -124,7 +142,7 @@ def _modes_alike(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str,
         motion: min(int(np.sum(mine == motion)), _most(model, motion, own))
         for motion, own in _moving(energies).items()
     }
-    found = {motion: np.zeros((0, 3)) for motion in wanted}
+    found = {motion: np.zeros((0, 4)) for motion in wanted}
     number = len(mine)
     while True:
         modes = solve_modes(model, number, below=None, solver=solver, strict=False)
@@ -150,9 +168,12 @@ def _most(model: Model, motion: str, own: tuple[str, ...]) -> int:
 
 
 def _numbers(modes: Modes) -> Real:
-    """Return frequency and error [Hz] and damping ratio of each mode, shape (k, 3)."""
-    error = modes.mesh_error + modes.rounding_error
-    return np.stack([in_hertz(modes.eigenvalue), error, modes.damping_ratio], axis=1)
+    """Return frequency and error [Hz], damping ratio and error of each mode, shape (k, 4)."""
+    hertz, error, ratio = in_hertz(modes.eigenvalue), modes.mesh_error, modes.damping_ratio
+    # shapes are less right than frequencies, of which the error is quadratic in that of the shape
+    off = np.divide(error, np.abs(hertz), out=np.zeros_like(error), where=hertz != 0)
+    blurred = (RATIO_MESH * off + RATIO_ROUNDING) * np.abs(ratio)
+    return np.stack([hertz, error + modes.rounding_error, ratio, blurred], axis=1)
 
 
 # --- frequency response -----------------------------------------------------------------------
@@ -171,6 +192,8 @@ def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
         error=_of(lambda of: error.flat[of.argmax()], level),
         beyond_error=bool(gone.any() or (level > error).any()),
         lost=int(gone.sum()),
+        changed=("level",) * bool((level > error).any()),
+        relative=math.inf if gone.any() else float(np.expm1((level + error).max() * NEPER)),
     )
 
 
@@ -228,12 +251,15 @@ def change_of_motion(whole: History, left: History) -> AnswerChange:
         _of(lambda each: np.sqrt(np.mean(each**2)), percent),
         _of(np.max, 100 * of_largest(np.subtract(*peaks), stands)),
     )
+    known = 100 * of_largest(whole.error + left.error, stands)
     lost = int((before.any(axis=1) & ~after.any(axis=1)).sum())
     return AnswerChange(
         size=dict(zip(OF_MOTION, size)),
         error=_of(lambda of: error.flat[of.argmax()], percent),
         beyond_error=bool(lost > 0 or (percent > error).any()),
         lost=lost,
+        changed=("motion",) * bool((percent > known).any()),
+        relative=math.inf if lost else float((percent + known).max() / 100),
     )
 
 
@@ -244,12 +270,15 @@ def change_of_values(apart: Real, error: Real, measures: Sequence[str]) -> Answe
     """Say how far values are apart that have these error bars, both relative, in percent."""
     told = np.isfinite(apart)
     percent, bars = 100 * apart[told], 100 * error[told]
+    known = np.where(np.isinf(bars), 0.0, bars)
     size = (_of(np.max, percent), _of(lambda each: np.sqrt(np.mean(each**2)), percent))
     return AnswerChange(
         size=dict(zip(measures, size)),
         error=_of(lambda of: bars[of.argmax()], percent),
         beyond_error=bool((percent > bars).any()),
         lost=0,
+        changed=("answer",) * bool((percent > known).any()),
+        relative=_of(np.max, (percent + known) / 100),
     )
 
 
