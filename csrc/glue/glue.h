@@ -30,7 +30,7 @@ PyObject *py_raise(PyObject *module, enum rd_status status);
 PyArrayObject *py_array(PyObject *object, int type, int dimensions, const npy_intp *shape,
                         const char *name);
 
-enum { PY_CHAIN_ARRAYS = 19 };
+enum { PY_CHAIN_ARRAYS = 20 };
 
 /* a chain and the arrays it views */
 struct py_chain {

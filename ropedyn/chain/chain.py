@@ -55,6 +55,9 @@ class Chain(NamedTuple):
     is none."""
     sag: Real | None = None
     """(distinct,) weight per length over tension [1/m]; None without gravity."""
+    rise: Real | None = None
+    """(distinct,) how much more the tension is at the right end of continuous elements, which stand
+    once each then [N]; None where it is the same along all of them."""
     attached_kind: NDArray[np.int32] | None = None
     """(attached,) kinds of the structures that nodes carry, see csrc/chain/attached.h; None where
     there are none, as the rest of them."""
@@ -142,6 +145,9 @@ class Chain(NamedTuple):
     @property
     def at_rest(self) -> Chain:
         """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
+        if self.rise is not None:
+            assert self.inertia is not None
+            return self.undamped._replace(inertia=np.zeros_like(self.inertia))
         kind = self.kind if self.inertia is None else TENSED
         return self.undamped._replace(kind=kind, inertia=None)
 
@@ -197,6 +203,7 @@ class Chain(NamedTuple):
             damping=_present(squares(self.damping)),
             drag=_present(columns(self.drag)),
             sag=self.sag if {"x", "z"} <= set(coordinates) else None,
+            rise=self.rise if "z" in coordinates else None,
             attached_row=columns(self.attached_row),
         )._moving_attached
 

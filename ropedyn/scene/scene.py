@@ -9,12 +9,16 @@ from collections.abc import Iterable, Mapping
 from dataclasses import KW_ONLY
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..base import check
+from ..base.array import Real
 from ..base.computed import computed
 from ..base.errors import SceneError
 from ..base.parameter import Description, given, instance, positions
 from . import damping as _damping
 from . import end as _end
+from . import left as _left
 from . import toml
 from .damping import Damping
 from .end import End
@@ -25,6 +29,7 @@ from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
 from .rope import Rope
 from .stations import stations_at
 from .tension import Tension
+from .weight import Grade, grade, refuse_slack
 
 if TYPE_CHECKING:
     from ..family.family import Family
@@ -43,23 +48,11 @@ EFFECTS = (
     *(kind.kind for kind in _part.KINDS),
     *(kind.kind for kind in _damping.KINDS),
     Gravity.kind,
+    Gravity.grading,
 )
 """The effects that a scene can have, in their fixed order."""
 
-_PROPERTIES = {
-    "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
-    "twist": ("torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia"),
-    "stretch": ("axial_stiffness", "lay_coupling"),
-    "lay": ("lay_coupling", "lay_slope"),
-    "rotary inertia": ("rotary_inertia",),
-    "polar inertia": ("polar_inertia",),
-}
-"""What a rope never had that never had one of these effects."""
-
 _PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
-
-_WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
-
 
 def _checked_tension(tension: Any) -> float | Tension:
     if not isinstance(tension, Tension):
@@ -122,8 +115,9 @@ class Scene(Description):
 NodeForce, Stop, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
     gravity : Gravity, optional
-        Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
-        holds the rope along x; the rope has no inertia along x then.
+        The rope's own weight: of an inclined rope its change of tension, of one with axial
+        stiffness sag, which needs tension > 0 and something that holds the rope along x; the rope
+        has no inertia along x then.
 
     Raises
     ------
@@ -154,6 +148,7 @@ NodeForce, Stop, AddedMass, LocalChange
     def _agree(self) -> None:
         self._check_coordinates()
         self._check_places()
+        self._check_tension()
         # a rope that is changed must be one
         if changing := _part.stretches(self.parts):
             ends = stations_at(self.rope.length, _part.places(changing))
@@ -225,11 +220,41 @@ NodeForce, Stop, AddedMass, LocalChange
                 'there say End(beta="free", spring={"beta": stiffness})'
             )
 
+    def _check_tension(self) -> None:
+        at = self.tension.at if isinstance(self.tension, Tension) else "middle"
+        if not isinstance(at, str):
+            check.position(at, "at of the tension", self.rope.length)
+        if not self.is_graded:
+            return
+        if self.sags:
+            raise SceneError(
+                "gravity of an inclined rope with axial_stiffness both curves it and changes its "
+                "tension along it, which is not solved together: say sag=False or "
+                f"own_weight=False, got {self.gravity}"
+            )
+        if self.rope.lay_slope:
+            raise SceneError(
+                "lay_slope must be 0 or None where the tension grows along the rope, got "
+                f"{self.rope.lay_slope!r}"
+            )
+        if self.rope.bending_stiffness is None:
+            pulsating = self.tension.amplitude if isinstance(self.tension, Tension) else 0.0
+            refuse_slack(self.grade, pulsating, (self._is_bare(0), self._is_bare(1)))
+
+    def _is_bare(self, end: int) -> bool:
+        """Whether an end is free along z and nothing stands on it."""
+        term, at = _end.end_of(self.ends[end]).term(), end * self.rope.length
+        margin = check.NEAR * self.rope.length
+        beside = any(abs(x - at) <= margin for x in _part.places(_part.standing(self.parts)))
+        return not beside and "z" not in {*term.held, *term.mass, *term.stiffness, *term.damping}
+
     def _check_gravity(self) -> None:
         if self.gravity is None:
             return
-        if self.rope.axial_stiffness is None:
+        if self.gravity.sag and self.rope.axial_stiffness is None and not self.is_graded:
             raise SceneError("gravity needs axial_stiffness of the rope [N], got None")
+        if not self.sags:
+            return
         tension = self.mean_tension
         if not tension > 0:
             raise SceneError(f"tension must be > 0 where there is gravity, got {tension:g}")
@@ -267,8 +292,51 @@ NodeForce, Stop, AddedMass, LocalChange
             )
 
     @property
+    def is_graded(self) -> bool:
+        """Whether the tension grows along the rope by its own weight."""
+        return self.gravity is not None and self.gravity.along != 0
+
+    @property
+    def sags(self) -> bool:
+        """Whether the weight curves the rope."""
+        return self.gravity is not None and self.gravity.curves(self.rope)
+
+    @computed
+    def grade(self) -> Grade:
+        """The tension along the rope."""
+        tension = self.tension if isinstance(self.tension, Tension) else Tension(self.tension)
+        return grade(self.rope, tension, self.gravity, self.parts)
+
+    def tension_at(self, x: Any) -> Real:
+        """Return the tension at places along the rope [N], of a mass on its right.
+
+        Parameters
+        ----------
+        x : float or array_like
+            Places [m].
+
+        Raises
+        ------
+        SceneError
+            If one lies off the rope.
+
+        Examples
+        --------
+        >>> import math
+        >>> import ropedyn as rd
+        >>> tension, up = rd.Tension(100.0, at="start"), rd.Gravity(10.0, inclination=math.pi / 2)
+        >>> scene = rd.Scene(rd.Rope(30.0, 2.0), tension=tension, gravity=up)
+        >>> scene.tension_at([0.0, 15.0, 30.0])
+        array([100., 400., 700.])
+        """
+        places = check.numbers(np.atleast_1d(x), "x", "m")
+        for place in places:
+            check.position(float(place), "x", self.rope.length)
+        return self.grade.at(places).reshape(np.shape(x))
+
+    @property
     def mean_tension(self) -> float:
-        """The tension about which motion is small [N].
+        """The tension about which motion is small, its mean along the rope [N].
 
         Examples
         --------
@@ -277,6 +345,8 @@ NodeForce, Stop, AddedMass, LocalChange
         >>> rd.Scene(rd.Rope(1.0, 0.1), tension=tension).mean_tension
         1000.0
         """
+        if self.is_graded:
+            return self.grade.mean
         return self.tension.mean if isinstance(self.tension, Tension) else self.tension
 
     @computed
@@ -289,15 +359,7 @@ NodeForce, Stop, AddedMass, LocalChange
         >>> rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1.0)).coordinates
         ('z', 'beta')
         """
-        rope = self.rope
-        bends = rope.bending_stiffness is not None
-        present = {
-            "x": rope.axial_stiffness is not None,
-            "z": bends or self.mean_tension != 0,
-            "alpha": rope.torsional_stiffness is not None,
-            "beta": bends,
-        }
-        return tuple([c for c in check.COORDINATES if present[c]])
+        return _left.coordinates_of(self.rope, self.mean_tension)
 
     @property
     def dampings(self) -> tuple[Damping, ...]:
@@ -331,7 +393,8 @@ NodeForce, Stop, AddedMass, LocalChange
             "lay": bool(rope.lay_coupling or rope.lay_slope),
             "rotary inertia": bool(rope.rotary_inertia and rope.bending_stiffness),
             "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
-            Gravity.kind: self.gravity is not None,
+            Gravity.kind: self.sags,
+            Gravity.grading: self.is_graded,
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
 
@@ -387,23 +450,7 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
-        gone = {name for effect in effects for name in _PROPERTIES.get(effect, ())}
-        rope = self.rope.replace(**dict.fromkeys(gone))
-        tension = _left_of_tension(self.tension, effects)
-        mean = tension.mean if isinstance(tension, Tension) else tension
-        bare = Scene(rope, tension=mean)
-        kept = tuple(d for d in self.dampings if d.kind not in effects)
-        return bare.replace(
-            tension=tension,
-            ends=tuple(_thinned(end, bare.coordinates, effects) for end in self.ends),
-            damping=kept,
-            gravity=None if _WEIGHTLESS & set(effects) else self.gravity,
-            parts=tuple(
-                left
-                for part in self.parts
-                if part.kind not in effects and (left := _left_of(part, bare)) is not None
-            ),
-        )
+        return self.replace(**_left.left_of(self, effects))
 
     def compile(
         self,
@@ -562,34 +609,3 @@ NodeForce, Stop, AddedMass, LocalChange
         True
         """
         return toml.load(Scene, path)
-
-
-def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
-    """Return the tension of a scene that never had these effects."""
-    if "tension" in effects:
-        return 0.0
-    if not isinstance(tension, Tension):
-        return tension
-    if Tension.pulsating in effects:
-        tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
-    if {Tension.growing, "stretch"} & set(effects):
-        tension = dataclasses.replace(tension, stretching=False)
-    return _checked_tension(tension)
-
-
-def _left_of(part: Part | Stretch, bare: Scene) -> Part | Stretch | None:
-    """Return what is left of a part in a scene with less, None where nothing is."""
-    if isinstance(part, Stretch):
-        return part.on(changeable(bare.rope, bare.coordinates))
-    return part if set(part.stands_on) <= set(bare.coordinates) else None
-
-
-def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
-    """Return an end without what goes with coordinates or with the effect itself."""
-    if isinstance(end, str):
-        return end
-    kept: dict[str, Any] = {}
-    for name, values in end.standing.items():
-        gone = _end.STANDING[name] in effects
-        kept[name] = {c: v for c, v in values.items() if c in present and not gone}
-    return dataclasses.replace(end, **kept)

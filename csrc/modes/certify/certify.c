@@ -2,6 +2,7 @@
 #include "modes/certify/certify.h"
 
 #include "chain/inertia.h"
+#include "graded/blocks.h"
 #include "modes/certify/work.h"
 #include "modes/count/count.h"
 #include "span/span.h"
@@ -241,6 +242,8 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
             levels++;
         *steps += whole ? count : PLAIN_LEAST + 2 * levels;
         *pieces += whole ? 0 : levels + 2;
+        if (rd_is_graded(walk->chain, (size_t)walk->leg[r].element))
+            *pieces += PLAIN_LEAST + 2 * levels;
     }
     if (endless || (double)*steps < most)
         return false;

@@ -1,0 +1,104 @@
+"""What is left of a scene that never had some of its effects."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+from ..base.check import COORDINATES
+from .end import STANDING, End
+from .gravity import Gravity
+from .parts.node import Part
+from .parts.stretch import Stretch, changeable
+from .rope import Rope
+from .tension import Tension
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+PROPERTIES = {
+    "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
+    "twist": ("torsional_stiffness", "lay_coupling", "lay_slope", "polar_inertia"),
+    "stretch": ("axial_stiffness", "lay_coupling"),
+    "lay": ("lay_coupling", "lay_slope"),
+    "rotary inertia": ("rotary_inertia",),
+    "polar inertia": ("polar_inertia",),
+}
+"""What a rope never had that never had one of these effects."""
+
+_STRAIGHT = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
+
+
+def coordinates_of(rope: Rope, mean_tension: float) -> tuple[str, ...]:
+    """Return the coordinates that a rope under a tension has."""
+    bends = rope.bending_stiffness is not None
+    present = {
+        "x": rope.axial_stiffness is not None,
+        "z": bends or mean_tension != 0,
+        "alpha": rope.torsional_stiffness is not None,
+        "beta": bends,
+    }
+    return tuple([c for c in COORDINATES if present[c]])
+
+
+def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
+    """Return the arguments of a scene that never had these effects."""
+    gone = {name for effect in effects for name in PROPERTIES.get(effect, ())}
+    rope = scene.rope.replace(**dict.fromkeys(gone))
+    tension, gravity = _left_of_tension(scene.tension, effects), _left_of_gravity(scene, effects)
+    mean = tension.mean if isinstance(tension, Tension) else tension
+    if gravity is not None and gravity.along:
+        mean = scene.mean_tension
+    present = coordinates_of(rope, mean)
+    left = (_left_of(part, rope, present) for part in scene.parts if part.kind not in effects)
+    return {
+        "rope": rope,
+        "tension": tension,
+        "ends": tuple(_thinned(end, present, effects) for end in scene.ends),
+        "damping": tuple(d for d in scene.dampings if d.kind not in effects),
+        "gravity": gravity,
+        "parts": tuple(part for part in left if part is not None),
+    }
+
+
+def _left_of_gravity(scene: Scene, effects: tuple[str, ...]) -> Gravity | None:
+    """Return the gravity of a scene that never had these effects."""
+    if scene.gravity is None or "tension" in effects:
+        return None
+    sags = scene.sags and not _STRAIGHT & set(effects)
+    grows = scene.is_graded and Gravity.grading not in effects
+    left = dataclasses.replace(scene.gravity, sag=sags, own_weight=grows)
+    return left if sags or grows else None
+
+
+def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
+    """Return the tension of a scene that never had these effects."""
+    if "tension" in effects:
+        return 0.0
+    if not isinstance(tension, Tension):
+        return tension
+    if Tension.pulsating in effects:
+        tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
+    if {Tension.growing, "stretch"} & set(effects):
+        tension = dataclasses.replace(tension, stretching=False)
+    return tension
+
+
+def _left_of(
+    part: Part | Stretch, rope: Rope, present: tuple[str, ...]
+) -> Part | Stretch | None:
+    """Return what is left of a part in a scene with less, None where nothing is."""
+    if isinstance(part, Stretch):
+        return part.on(changeable(rope, present))
+    return part if set(part.stands_on) <= set(present) else None
+
+
+def _thinned(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
+    """Return an end without what goes with coordinates or with the effect itself."""
+    if isinstance(end, str):
+        return end
+    kept: dict[str, Any] = {}
+    for name, values in end.standing.items():
+        gone = STANDING[name] in effects
+        kept[name] = {c: v for c, v in values.items() if c in present and not gone}
+    return dataclasses.replace(end, **kept)
