@@ -172,9 +172,7 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
     ), nodes
 
 
-def parted(
-    chain: Chain, source: NDArray[np.int32], start: Real, stop: Real
-) -> tuple[Real, Real]:
+def parted(chain: Chain, source: NDArray[np.int32], start: Real, stop: Real) -> tuple[Real, Real]:
     """Return the mean tension, and how it grows, of parts of elements from start to stop."""
     assert chain.rise is not None
     length, own = chain.length[source], chain.rise[source]

@@ -26,8 +26,6 @@ PROPERTIES = {
 }
 """What a rope never had that never had one of these effects."""
 
-_STRAIGHT = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
-
 
 def coordinates_of(rope: Rope, mean_tension: float) -> tuple[str, ...]:
     """Return the coordinates that a rope under a tension has."""
@@ -45,7 +43,8 @@ def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
     """Return the arguments of a scene that never had these effects."""
     gone = {name for effect in effects for name in PROPERTIES.get(effect, ())}
     rope = scene.rope.replace(**dict.fromkeys(gone))
-    tension, gravity = _left_of_tension(scene.tension, effects), _left_of_gravity(scene, effects)
+    tension = _left_of_tension(scene.tension, effects)
+    gravity = _left_of_gravity(scene.gravity, rope, effects)
     mean = tension.mean if isinstance(tension, Tension) else tension
     if gravity is not None and gravity.along:
         mean = scene.mean_tension
@@ -61,14 +60,17 @@ def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
     }
 
 
-def _left_of_gravity(scene: Scene, effects: tuple[str, ...]) -> Gravity | None:
+def _left_of_gravity(
+    gravity: Gravity | None, rope: Rope, effects: tuple[str, ...]
+) -> Gravity | None:
     """Return the gravity of a scene that never had these effects."""
-    if scene.gravity is None or "tension" in effects:
+    if gravity is None or "tension" in effects:
         return None
-    sags = scene.sags and not _STRAIGHT & set(effects)
-    grows = scene.is_graded and Gravity.grading not in effects
-    left = dataclasses.replace(scene.gravity, sag=sags, own_weight=grows)
-    return left if sags or grows else None
+    if Gravity.kind in effects:
+        gravity = dataclasses.replace(gravity, sag=False)
+    if Gravity.grading in effects:
+        gravity = dataclasses.replace(gravity, own_weight=False)
+    return gravity if gravity.curves(rope) or gravity.along else None
 
 
 def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
@@ -84,9 +86,7 @@ def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> floa
     return tension
 
 
-def _left_of(
-    part: Part | Stretch, rope: Rope, present: tuple[str, ...]
-) -> Part | Stretch | None:
+def _left_of(part: Part | Stretch, rope: Rope, present: tuple[str, ...]) -> Part | Stretch | None:
     """Return what is left of a part in a scene with less, None where nothing is."""
     if isinstance(part, Stretch):
         return part.on(changeable(rope, present))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import KW_ONLY
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from . import damping as _damping
 from . import end as _end
 from . import left as _left
 from . import toml
+from .checked import checked_damping, checked_ends, checked_parts, checked_tension
 from .damping import Damping
 from .end import End
 from .gravity import Gravity
@@ -51,50 +52,6 @@ EFFECTS = (
     Gravity.grading,
 )
 """The effects that a scene can have, in their fixed order."""
-
-_PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
-
-def _checked_tension(tension: Any) -> float | Tension:
-    if not isinstance(tension, Tension):
-        return check.number(tension, "tension", "N")
-    return tension.mean if tension.is_constant else tension
-
-
-def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
-    what = 'a pair of "clamped", "pinned", "free" or End'
-    check.instance(ends, "ends", (tuple, list), what)
-    if len(ends) != 2:
-        raise SceneError(f"ends must be {what}, got {check.shown(ends)}")
-    for i, end in enumerate(ends):
-        check.instance(end, f"ends[{i}]", (str, End), "a word or an End")
-        if isinstance(end, str):
-            check.one_of(end, f"ends[{i}]", _end.NAMED)
-    return (ends[0], ends[1])
-
-
-def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
-    if damping is None or isinstance(damping, _damping.KINDS):
-        return damping
-    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
-    if isinstance(damping, (tuple, list)):
-        for i, one in enumerate(damping):
-            check.instance(one, f"damping[{i}]", _damping.KINDS, names)
-        return _sum_of(tuple(damping))
-    raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
-
-
-def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
-    """Return a sum as a scene holds it: one term is itself, none is None."""
-    return dampings if len(dampings) > 1 else (*dampings, None)[0]
-
-
-def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
-    if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
-        raise TypeError(f"parts must be a sequence of {_PART_NAMES}, got {check.shown(parts)}")
-    parts = tuple(parts)
-    for i, part in enumerate(parts):
-        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {_PART_NAMES}")
-    return parts
 
 
 class Scene(Description):
@@ -139,10 +96,10 @@ NodeForce, Stop, AddedMass, LocalChange
 
     rope: Rope = instance(Rope, "a Rope")
     _: KW_ONLY
-    tension: float | Tension = given(_checked_tension, default=0.0)
-    ends: tuple[str | End, str | End] = given(_checked_ends, default=("clamped", "clamped"))
-    damping: Damping | tuple[Damping, ...] | None = given(_checked_damping, default=None)
-    parts: tuple[Part | Stretch, ...] = given(_checked_parts, default=())
+    tension: float | Tension = given(checked_tension, default=0.0)
+    ends: tuple[str | End, str | End] = given(checked_ends, default=("clamped", "clamped"))
+    damping: Damping | tuple[Damping, ...] | None = given(checked_damping, default=None)
+    parts: tuple[Part | Stretch, ...] = given(checked_parts, default=())
     gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
 
     def _agree(self) -> None:
