@@ -47,8 +47,13 @@ def tellers(coordinates: Sequence[str], x: Real) -> list[Point]:
 def left_ends(chain: Chain) -> LeftEnd:
     """Return that of each distinct element, at rest."""
     strut = _is_strut(chain)
-    # the triple of a strut is not used, and may not exist
-    F, _, Q = _core.triples(chain._replace(tension=np.where(strut, 0.0, chain.tension)))
+    if chain.rise is None:
+        # the triple of a strut is not used, and may not exist
+        F, _, Q = _core.triples(chain._replace(tension=np.where(strut, 0.0, chain.tension)))
+    else:
+        still = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
+        each = (_core.triple(chain, e, still) for e in range(len(chain.length)))
+        F, Q = np.array([(F[0].real, Q[0].real) for F, _, Q in each]).transpose(1, 0, 2, 3)
     E, P = np.ascontiguousarray(F.transpose(0, 2, 1)), np.zeros_like(Q)
     for e in np.flatnonzero(strut):
         E[e], Q[e] = _strut(chain, int(e))

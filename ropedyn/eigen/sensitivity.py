@@ -14,13 +14,12 @@ from ..base.computed import computed
 from ..base.errors import SolveError
 from ..chain.chain import Chain
 from ..chain.rate import Places, Rate, Weights, asked, rates_of
+from .forms import SECTIONS, slopes
 
 if TYPE_CHECKING:
     from ..chain.compiled import Compiled
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
-SECTIONS = 9
-"""An element has so many slopes (section, tension, length, sag) before those of its inertia."""
 TENSION, SAG = 6, 8  # Numbers of the slopes by tension and sag among those of an element.
 ROUNDINGS, MIXED = 32, 32
 """Shapes and forces are rounded so many times, and mixed with others by so many errors."""
@@ -74,8 +73,9 @@ class Slopes:
     @classmethod
     def of(cls, chain: Chain, eigenvalue: Real, shape: Real, motion: Real) -> Slopes:
         """Ask the core."""
-        element, jump, node, place = _core.sensitivity(chain, shape, motion, eigenvalue)
-        number, foot = _core.carried_slopes(chain, shape, motion, eigenvalue)
+        element, jump, node, place = slopes(chain, shape, motion, eigenvalue)
+        nodes = chain._replace(rise=None)
+        number, foot = _core.carried_slopes(nodes, shape, motion, eigenvalue)
         element = element[..., : SECTIONS + shape.shape[2]]
         return cls(eigenvalue, element, jump, node, place, number[..., 1], number[..., 0], foot)
 

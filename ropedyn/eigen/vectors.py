@@ -20,6 +20,7 @@ from ..chain.compiled import MOST_POINTS, Compiled
 from ..chain.port import Point, locate, ports
 from ..scene import damping
 from .damped.attached_energy import AttachedEnergy
+from .forms import energy
 from .modes import Modes, UndampedVectors
 from .sensitivity import Shapes, clusters_of
 from .spectrum import SOLVERS, ComponentModes, merged, pieces_of
@@ -170,7 +171,7 @@ def vectors_of(
 ) -> UndampedVectors:
     """Return what follows from the shapes of all components, in order."""
     shape = _spread(model, found)[order]
-    strain, kinetic, dragged = _core.energy(model.chain, shape, eigenvalue)
+    strain, kinetic, dragged = energy(model.chain, shape, eigenvalue)
     motion = _motion(model, found)[order]
     carried = AttachedEnergy.real(model.chain, shape, motion, eigenvalue).of(model.chain)
     own = kinetic.argmax(axis=1)

@@ -14,19 +14,19 @@ from .rope import Rope
 class Gravity(Description):
     """Weight of the rope in the plane of z: its tension grows uphill, and between its ends it sags.
 
-    Its end at x = L is the higher one where the inclination is positive. With the weight per length
-    w = linear_density g sin(inclination) the tension is ("own weight")
+    The end at x = L is the higher one where the inclination is positive. With the weight along the
+    rope w = linear_density g sin(inclination) the tension is ("own weight")
 
-        T(s) = T_ref + integral of w from s_ref to s, and more by m g sin(inclination) above a mass m
+        T(s) = T_ref + integral of w from s_ref to s, + m g sin(inclination) above each mass m
 
-    with T_ref and s_ref of the scene's `Tension`, the middle where it is a number. All of it enters:
-    frequencies, their counts, responses and deflections are exact for such a rope. Without bending
-    stiffness the tension must not be negative anywhere; it may vanish at a free end, of a hanging
-    chain. `Model.modes` and the other answers to harmonic motion take it, and chains of elements,
-    each under the tension at its middle; what does not is refused.
+    T_ref and s_ref are those of the scene's `Tension`, the middle where that is a number. Continuous
+    spans are exact for it, elements of chains each have the tension at their middle. Without bending
+    stiffness it must not be negative anywhere; at a free end it may vanish, as of a hanging chain.
+    What does not go with it is refused.
 
-    A rope with axial stiffness is curved as well ("sag"), unless it stands upright. With the chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord
-    L, the rope hangs in a parabola of the curvature w/H. A small motion, x along it and z towards
+    A rope with axial stiffness is curved as well ("sag"), unless it stands upright. With the
+    chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord L, it
+    hangs in a parabola of the curvature w/H. A small motion, x along it and z towards
     the centre of the curve (up, against the weight), strains the rope by
 
         x' - (w/H) z = h/EA_e,  EA_e = EA L/L_e,  L_e = L (1 + (w L/H)^2/8)
@@ -44,7 +44,7 @@ class Gravity(Description):
     alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
 
     It holds for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it between.
-    The weight of what stands on the rope is left out of it; a `PointMass` keeps its inertia along x.
+    The weight of what stands on it does not curve it; a `PointMass` keeps its inertia along x.
     Where both would act, an inclined rope with axial stiffness, one of them has to be left out.
 
     Parameters

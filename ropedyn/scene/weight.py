@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +18,12 @@ from .parts.stretch import Stretch, ropes
 from .rope import Rope
 from .stations import nearest, stations_at
 from .tension import Tension
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+WEIGHING = ("linear_density", "density", "mass", "g", "inclination")
+"""Numbers that the tension changes with by weight."""
 
 ROUNDING = 16 * np.finfo(float).eps  # Of the largest tension: less is none.
 
@@ -32,6 +40,12 @@ class Grade(NamedTuple):
         """Along the rope [N]."""
         whole = np.diff(self.station) @ (self.left + self.right) / 2
         return float(whole / self.station[-1])
+
+    def less(self, other: Grade, times: float) -> Grade:
+        """Return so many times the difference from another."""
+        return Grade(
+            self.station, times * (self.left - other.left), times * (self.right - other.right)
+        )
 
     def at(self, x: Any) -> Real:
         """Return the tension at places, of a mass right of it [N]."""
@@ -72,8 +86,34 @@ def grade(
     return Grade(station, *ends)
 
 
+def grade_rate(scene: Scene, path: str) -> Grade | None:
+    """Return the derivative of the tension by a number that it is linear in, None if it is not."""
+    rope, gravity, parts = scene.rope, scene.gravity, list(scene.parts)
+    tension = scene.tension if isinstance(scene.tension, Tension) else Tension(scene.tension)
+    of, _, name = path.rpartition(".")
+    owner: Any = parts[int(of[6:-1])] if of.startswith("parts") else gravity if of else rope
+    if path == "tension":
+        return Grade(scene.grade.station, *np.ones((2, len(scene.grade.left))))
+    if of.startswith("ends") or name not in WEIGHING:
+        return None
+    assert gravity is not None
+    if name == "inclination":
+        turned = 1 / math.tan(gravity.inclination)
+        return scene.grade.less(Grade(scene.grade.station, tension.mean, tension.mean), turned)
+    value = getattr(owner, name)
+    step = value or 1.0
+    more = dataclasses.replace(owner, **{name: value + step})
+    if owner is rope:
+        rope = more
+    elif owner is gravity:
+        gravity = more
+    else:
+        parts[int(of[6:-1])] = more
+    return grade(rope, tension, gravity, parts).less(scene.grade, 1 / step)
+
+
 def refuse_slack(along: Grade, pulsating: float, free: tuple[bool, bool]) -> None:
-    """Refuse a string under compression, and without tension but at a free end with nothing on it."""
+    """Refuse a slack string, and one without tension but at a free end with nothing on it."""
     least = np.minimum(along.left, along.right) - pulsating
     worst = int(least.argmin())
     place = along.station[worst + int(along.right[worst] < along.left[worst])]

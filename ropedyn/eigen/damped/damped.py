@@ -21,6 +21,7 @@ from ...chain.chain import Chain
 from ...chain.compile import check_points, compile_scene, finer
 from ...chain.compiled import Compiled
 from ...scene.damping import having
+from .. import forms
 from ..eigen import check_asked
 from ..free_motion import MeshOfModes, Vectors
 from ..spectrum import lowest
@@ -234,8 +235,8 @@ def _shapes(chain: Chain, part: Damped, wanted: Index) -> tuple[Complex, Complex
 def _energy(chain: Chain, shape: Complex, value: Complex) -> tuple[Real, Real]:
     """Return strain and kinetic energy over a period, twice."""
     eigenvalue = -np.square(value).real
-    real = _core.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
-    imag = _core.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
+    real = forms.energy(chain.undamped, np.ascontiguousarray(shape.real), eigenvalue)
+    imag = forms.energy(chain.undamped, np.ascontiguousarray(shape.imag), eigenvalue)
     return real[0] + imag[0], real[1] + imag[1]
 
 
