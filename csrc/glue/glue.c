@@ -160,7 +160,8 @@ static int check_rise(const struct rd_chain *chain)
     }
     for (size_t k = 0; chain->rise && k + 1 < chain->stretches; k++)
         if (chain->rise[chain->element[k]] != 0 &&
-            (rd_stretch_nodes(chain, k) > 1 || (k > 0 && chain->element[k - 1] == chain->element[k]))) {
+            (rd_stretch_nodes(chain, k) > 1 ||
+             (k > 0 && chain->element[k - 1] == chain->element[k]))) {
             PyErr_SetString(PyExc_ValueError, "an element whose tension grows stands alone");
             return -1;
         }
@@ -323,10 +324,10 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
         PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
-                          item + 4, item + 5, item + 6, item + 7, item + 8, item + 9, item + 10,
-                          item + 11, item + 12, item + 13, item + 14, item + 15, item + 16,
-                          item + 17, item + 18, item + 19))
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOOOOOOOOOO", &kind, item, item + 1, item + 2,
+                          item + 3, item + 4, item + 5, item + 6, item + 7, item + 8, item + 9,
+                          item + 10, item + 11, item + 12, item + 13, item + 14, item + 15,
+                          item + 16, item + 17, item + 18, item + 19))
         return -1;
     npy_intp entries[AXES] = {-1, -1, -1, -1, -1, -1, -1, 2, 3, 4};
     if (take_arrays(item, parsed, entries) < 0)

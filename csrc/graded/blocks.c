@@ -7,8 +7,9 @@
 #include <math.h>
 
 /* Interpolation between so many nodes leaves NEGLIGIBLE of a function whose nearest singularity is
-   where the tension vanishes; that far from it a beam knows of none: its boundary layers and waves
-   have the length (B/|T'|)^1/3 there (Airy). Calibrated by tests/chain/test_graded.py. */
+   where the tension vanishes: less than rounding, so that counts and quotients of the same waves agree
+   whatever blocks they go by. Nearer than AIRY (B/|T'|)^1/3 a beam knows of no singularity: so long
+   are its boundary layers and waves there. */
 static const double NEGLIGIBLE = 1e-16, RATIO = 2, AIRY = 2;
 
 /* a first piece of a string: its tension changes by so much, for its series */
@@ -44,7 +45,7 @@ static struct field field_of(const struct rd_chain *chain, size_t e, const struc
         field.airy = AIRY / cbrt(fabs(along) * S);
     while (!field.bends && field.slack > 0 &&
            field.slack * field.span.load[0] > SLACK * x->tension * fabs(along))
-            field.slack /= 2;
+        field.slack /= 2;
     return field;
 }
 
@@ -81,7 +82,8 @@ static struct rd_block block_of(const struct field *field, double tension, doubl
     if (block.vanishes)
         return block;
     struct rd_span span = field->span;
-    span.tension = x->tension * (field->bends ? fmax(fabs(tension), fabs(far)) : fmin(tension, far));
+    span.tension =
+        x->tension * (field->bends ? fmax(fabs(tension), fabs(far)) : fmin(tension, far));
     const double radians = length * rd_span_wavenumber(&span);
     block.nodes = nodes_of(field, tension, far, length);
     block.halvings = rd_span_halvings(radians, 1);

@@ -14,7 +14,6 @@ struct rd_family {
     const struct rd_block *block;
     size_t width;
     bool apart; /* the pieces as they are */
-    double tail; /* last two coefficients of the polynomials beside their largest values, the most */
     cv at[RD_NODES_MOST][RD_GRADED_TRIPLE];
 };
 

@@ -27,10 +27,3 @@ void rd_nodes_weigh(int n, const double *node, double x, double *weight)
     for (int j = 0; j < n; j++)
         weight[j] /= sum;
 }
-
-void rd_nodes_tail(int n, double last[2][RD_NODES_MOST])
-{
-    for (int k = 0; k < 2; k++)
-        for (int j = 0; j < n; j++)
-            last[k][j] = 2.0 / n * cos((n - 1 - k) * (2 * j + 1) * PI / (2 * n));
-}

@@ -10,7 +10,4 @@ void rd_nodes(int n, double *node);
 /* what the values at the nodes count for at x (barycentric formula, Berrut and Trefethen 2004) */
 void rd_nodes_weigh(int n, const double *node, double x, double *weight);
 
-/* what they count for in the last two of the coefficients of Chebyshev's polynomials */
-void rd_nodes_tail(int n, double last[2][RD_NODES_MOST]);
-
 #endif

@@ -317,8 +317,8 @@ void K_(family_fill)(const struct rd_field *field, const struct rd_block *block,
         if (!family->apart && left < 30 && 1 << left <= block->nodes) {
             count = 1 << left;
             for (int i = 0; i < count; i++)
-                piece(block->nodes, ldexp(1, -left), (size_t)i,
-                      (const cv(*)[RD_GRADED_TRIPLE])P, Q[i]);
+                piece(block->nodes, ldexp(1, -left), (size_t)i, (const cv(*)[RD_GRADED_TRIPLE])P,
+                      Q[i]);
             memcpy(P, Q, sizeof other);
             family->apart = 1;
         }

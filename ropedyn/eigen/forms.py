@@ -42,7 +42,10 @@ def slopes(
     if chain.rise is None:
         return _core.sensitivity(chain, shape, motion, eigenvalue)
     modes, nodes, width = shape.shape
-    element, jump = np.zeros((modes, nodes - 1, SECTIONS + width)), np.zeros((modes, nodes - 1, width))
+    element, jump = (
+        np.zeros((modes, nodes - 1, SECTIONS + width)),
+        np.zeros((modes, nodes - 1, width)),
+    )
     node, place = np.zeros((modes, nodes, width, width)), np.zeros((modes, nodes, 2))
     for part, at in _parts(chain):
         own = np.ascontiguousarray(shape[:, :, at])

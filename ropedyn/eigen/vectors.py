@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
 from ..base.array import Index, Real
 from ..base.errors import SolveError
 from ..base.unit import FAMILY

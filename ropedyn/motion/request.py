@@ -178,7 +178,7 @@ def why_direct(model: Compiled) -> str:
         if part in standing([part]) and part.term().laws:
             return f"parts[{i}] is not linear"
     tension = model.scene.tension
-    if isinstance(tension, Tension):
+    if isinstance(tension, Tension) and not tension.is_constant:
         return "the tension pulsates" if tension.pulsates else "the tension is stretching"
     return ""
 

@@ -6,6 +6,7 @@ import dataclasses
 from typing import TYPE_CHECKING, Any
 
 from ..base.check import COORDINATES
+from .checked import checked_tension
 from .end import STANDING, End
 from .gravity import Gravity
 from .parts.node import Part
@@ -83,7 +84,7 @@ def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> floa
         tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
     if {Tension.growing, "stretch"} & set(effects):
         tension = dataclasses.replace(tension, stretching=False)
-    return tension
+    return checked_tension(tension)
 
 
 def _left_of(part: Part | Stretch, rope: Rope, present: tuple[str, ...]) -> Part | Stretch | None:

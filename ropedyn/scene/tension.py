@@ -92,8 +92,8 @@ class Tension(Description):
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is a number."""
-        return not self.pulsates and not self.stretching and self.at == "middle"
+        """Whether it varies neither in time nor with the motion."""
+        return not self.pulsates and not self.stretching
 
     def place(self, length: float) -> float:
         """Return where on a rope of a length it is the mean [m].

@@ -16,7 +16,7 @@ struct rd_step {
     int32_t level;
     int32_t leg;
     int32_t block; /* of a leg whose tension grows (graded/blocks.h), counted from 1; 0: of none */
-    _Bool plain; /* a piece in closed form, no doubling (modes/walk/plain.h) */
+    _Bool plain;   /* a piece in closed form, no doubling (modes/walk/plain.h) */
 };
 
 /* What an iteration works in. */

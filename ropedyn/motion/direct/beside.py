@@ -39,7 +39,7 @@ def plain_lumps(model: Compiled, component: tuple[str, ...], chain: Chain) -> tu
     apart = (
         chain.kind == RIGID
         and "beta" in component
-        and (share[TENSION] != rate or model.scene.mean_tension < 0)
+        and (share[TENSION] != rate or (chain.tension < 0).any())
     )
     scene, stiffness = model.scene, 0.0
     if "z" in component and isinstance(scene.tension, Tension) and scene.tension.stretching:
