@@ -116,6 +116,8 @@ class Compiled(Frozen):
     def _bending_order(self) -> float:
         if self.element != "tensed":
             return 2.0 if self.element == "rigid" else 0.0
+        if self.scene.is_graded:  # of which each element has the mean
+            return 2.0
         turns, hinge = bool(self.scene.rope.rotary_inertia), self.chain.hinge
         held = self.chain.held[:, self.coordinates.index("z")] != 0
         if hinge is not None and (hinge.any(axis=1) & ~held).any():
