@@ -15,7 +15,8 @@ from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..chain.compile import lumped
 from ..chain.rate import DENSITIES, ENTRIES, Places, inertia_rate
-from .sensitivity import SAG, SECTIONS, ModePairs, Shapes, Slopes
+from .forms import SECTIONS
+from .sensitivity import SAG, ModePairs, Shapes, Slopes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

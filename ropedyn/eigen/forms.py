@@ -11,6 +11,8 @@ from ..base.array import Real
 from ..base.check import COORDINATES
 from ..chain.chain import Chain, components
 
+STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")  # That store energy.
+
 SECTIONS = 9
 """An element has so many slopes (section, tension, length, sag) before those of its inertia."""
 
@@ -26,13 +28,13 @@ def energy(chain: Chain, shape: Real, eigenvalue: Real) -> tuple[Real, Real, Rea
     """Return twice the energies of shapes, see `_core.energy`."""
     if chain.rise is None:
         return _core.energy(chain, shape, eigenvalue)
-    kinetic, told = np.zeros((len(shape), shape.shape[2])), []
+    strain, kinetic = np.zeros((len(shape), len(STRAINS))), np.zeros((len(shape), shape.shape[2]))
+    dragged = np.zeros(len(shape))
     for part, at in _parts(chain):
-        strain, kinetic[:, at], dragged = _core.energy(
-            part, np.ascontiguousarray(shape[:, :, at]), eigenvalue
-        )
-        told.append((strain, dragged))
-    return sum(s for s, _ in told), kinetic, sum(d for _, d in told)
+        own = np.ascontiguousarray(shape[:, :, at])
+        stored, kinetic[:, at], lost = _core.energy(part, own, eigenvalue)
+        strain, dragged = strain + stored, dragged + lost
+    return strain, kinetic, dragged
 
 
 def slopes(

@@ -19,13 +19,11 @@ from ..chain.compiled import MOST_POINTS, Compiled
 from ..chain.port import Point, locate, ports
 from ..scene import damping
 from .damped.attached_energy import AttachedEnergy
-from .forms import energy
+from .forms import STRAINS, energy
 from .modes import Modes, UndampedVectors
 from .sensitivity import Shapes, clusters_of
 from .spectrum import SOLVERS, ComponentModes, merged, pieces_of
 
-STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
-"""What stores strain energy, in the core's order."""
 UNSEEN = 1e-8
 """Less than this part of the largest component at all points is rounding at nodes of a mode."""
 

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 WEIGHING = ("linear_density", "density", "mass", "g", "inclination")
 """Numbers that the tension changes with by weight."""
 
+LEAST = 1e-6
+"""Of the largest tension: a string with less of it is not told from a slack one to 1e-11."""
+
 ROUNDING = 16 * np.finfo(float).eps  # Of the largest tension: less is none.
 
 
@@ -98,8 +101,9 @@ def grade_rate(scene: Scene, path: str) -> Grade | None:
         return None
     assert gravity is not None
     if name == "inclination":
+        level = np.full((2, len(scene.grade.left)), tension.mean)
         turned = 1 / math.tan(gravity.inclination)
-        return scene.grade.less(Grade(scene.grade.station, tension.mean, tension.mean), turned)
+        return scene.grade.less(Grade(scene.grade.station, *level), turned)
     value = getattr(owner, name)
     step = value or 1.0
     more = dataclasses.replace(owner, **{name: value + step})
@@ -130,4 +134,10 @@ def refuse_slack(along: Grade, pulsating: float, free: tuple[bool, bool]) -> Non
         raise SceneError(
             "tension must be > 0 along a rope without bending_stiffness but at a free end with "
             f"nothing on it [N], got 0 at {place:g} m"
+        )
+    ends = np.concatenate([along.left, along.right])
+    if ends[ends > 0].min() < LEAST * ends.max():
+        raise SceneError(
+            f"tension must be 0 at a free end or at least {LEAST:g} of its largest all along a rope "
+            f"without bending_stiffness [N], got {ends[ends > 0].min():g} and {ends.max():g}"
         )

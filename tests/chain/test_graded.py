@@ -270,6 +270,10 @@ SLACK = {
         },
         "with nothing on it [N], got 0 at 0 m",
     ),
+    "too little": (
+        {"tension": rd.Tension(1e-5, at="start")},
+        "tension must be 0 at a free end or at least 1e-06 of its largest",
+    ),
     "both effects": (
         {
             "rope": rd.Rope(10.0, 3.0, axial_stiffness=1e6),
