@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 SUPPORT = ROOT / "tests" / "support"
-ROPE = ["ropedyn/chain", "csrc/base", "csrc/element", "csrc/chain", "csrc/span"]
+ROPE = ["ropedyn/chain", "csrc/base", "csrc/element", "csrc/chain", "csrc/span", "csrc/graded"]
 """What every answer of a scene rests on."""
 FOLDERS = {
     "chain": [*ROPE, "csrc/closed", "csrc/sweep", "csrc/modes", "csrc/assembled"],

@@ -48,6 +48,10 @@ struct rd_chain {
                                                           [N s/m^2, N s] */
     const double *sag;         /* (distinct) or NULL      weight per length over tension, which is
                                                           > 0, of x and z [1/m] */
+    const double *rise; /* (distinct) or NULL      how much more the tension is at the right end
+                                                          of a continuous element of a string or a
+                                                          beam, which is linear between [N]; elements that
+                                                          have any stand once in the chain */
     const int32_t *attached_kind; /* (attached)           enum rd_attached_kind */
     const int32_t
         *attached_term;         /* (attached)           node term that carries it, increasing; of a

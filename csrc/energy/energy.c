@@ -1,6 +1,8 @@
 /* Energy of shapes by what stores it, and what drags on them. */
 #include "energy/energy.h"
 
+#include "graded/blocks.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -22,6 +24,9 @@ static void add_elements(const struct rd_chain *chain, size_t k, const cv *slope
             energy->strain[c == d ? of[c] : RD_STRAIN_LAY] -=
                 S[c * RD_CHANNELS + d] * slope[rd_property_of(c, d)].re;
     energy->strain[RD_STRAIN_TENSION] += chain->tension[e] * slope[RD_OF_TENSION].re;
+    if (rd_is_graded(chain, e))
+        energy->strain[RD_STRAIN_TENSION] +=
+            chain->rise[e] / chain->length[e] * slope[RD_OF_SAG].re;
     for (size_t i = 0; chain->inertia && i < w; i++)
         energy->kinetic[i] += chain->inertia[e * w + i] * slope[RD_OF_INERTIA + i].re;
     for (size_t i = 0; chain->drag && i < w; i++)

@@ -11,7 +11,7 @@ enum rd_property {
     RD_OF_SECTION, /* S: aa, tt, bb, then at, ab, tb [1/N, 1/(N m^2), 1/(N m)] */
     RD_OF_TENSION = 6,
     RD_OF_LENGTH, /* of each element of the stretch */
-    RD_OF_SAG,    /* [1/m] */
+    RD_OF_SAG,    /* [1/m]; of an element whose tension grows by the slope of that [N/m] */
     RD_OF_INERTIA,
     RD_PROPERTIES = RD_OF_INERTIA + RD_WIDTH_MAX
 };

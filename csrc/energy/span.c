@@ -1,6 +1,9 @@
 /* How the form of continuous elements changes with their numbers. */
 #include "energy/span.h"
 
+#include "base/complex_step.h"
+#include "graded/family.h"
+
 #include "span/span.h"
 #include "sweep/kernel/transfer.h"
 
@@ -587,6 +590,98 @@ void rd_wave_slopes_scatter(const struct rd_wave_slopes *slopes, const double *h
     scatter(slopes, hinge, spring, moved);
 }
 
+/* ---- tension that grows along the element ---- */
+
+/* the triple of the element with its numbers as they are, and where they have an imaginary step how it
+   changes with them as imaginary parts; lines are real */
+static enum rd_status graded_triple(const struct rd_wave_slopes *slopes,
+                                    const struct rd_lines *lines, const struct rate_matrix *rate,
+                                    double more, double steeper, struct triple *t)
+{
+    const struct rd_chain *chain = slopes->chain;
+    const size_t e = slopes->element, w = chain->width;
+    const struct rd_field field = {
+        .width = w,
+        .rate = rate,
+        .tension = chain->tension[e],
+        .pull = lines->tension,
+        .more = more,
+        .steeper = steeper,
+    };
+    struct rd_sizes sizes = {0};
+    for (int lane = 0; lane < RD_LANES; lane++) {
+        sizes.section = fmax(sizes.section, 1 / fabs(lines->section.re[lane]));
+        sizes.tension = fmax(sizes.tension, fabs(lines->tension.re[lane]));
+        sizes.inertia = fmax(sizes.inertia, fabs(lines->inertia.re[lane]));
+        sizes.dashpot = fmax(sizes.dashpot, fabs(lines->dashpot.re[lane]));
+    }
+    sizes.section = 1 / sizes.section;
+    struct rd_block block[RD_BLOCKS_MOST];
+    const size_t blocks = rd_blocks_of(chain, e, &sizes, false, block);
+    cv packed[RD_GRADED_TRIPLE];
+    rd_family_whole(&field, blocks, block, packed);
+    for (size_t i = 0, p = w * w; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            t->D[i * w + j] = packed[i * w + j];
+            if (j < i)
+                continue;
+            t->G[i * w + j] = t->G[j * w + i] = packed[p];
+            t->Q[i * w + j] = t->Q[j * w + i] = packed[w * (w + 1) / 2 + p++];
+        }
+    return blocks > 0 ? RD_OK : RD_SHORT_WAVES;
+}
+
+/* dPi/dp = -2 dP/dp = u_a^T Q' u_a - 2 f_b^T F' u_a - f_b^T G' f_b */
+static void add_number(struct rd_wave_slopes *slopes, size_t property, cv factor,
+                       const struct triple *t)
+{
+    const size_t w = slopes->chain->width, n = 2 * w, k = slopes->forms++;
+    cv *form = slopes->form[k].form;
+    slopes->number[slopes->numbers++] =
+        (struct rd_wave_number){.property = property, .form = k, .factor = factor};
+    for (size_t i = 0; i < w; i++)
+        for (size_t j = 0; j < w; j++) {
+            const lanes D = t->D[i * w + j].im / RD_COMPLEX_STEP;
+            const lanes G = t->G[i * w + j].im / RD_COMPLEX_STEP;
+            form[i * n + j] = (cv){t->Q[i * w + j].im / RD_COMPLEX_STEP, (lanes){0}};
+            form[(w + i) * n + j] = form[j * n + w + i] = (cv){-D, (lanes){0}};
+            form[(w + i) * n + w + j] = (cv){-G, (lanes){0}};
+        }
+}
+
+static enum rd_status fill_graded(struct rd_wave_slopes *slopes, const struct rd_lines *lines)
+{
+    const struct rd_chain *chain = slopes->chain;
+    const size_t w = chain->width;
+    const double h = RD_COMPLEX_STEP;
+    const cv one = c_real(1);
+    const bool bends = slopes->rate.z >= 0;
+    struct rate_matrix rate = slopes->rate;
+    struct triple t;
+    enum rd_status status = RD_OK;
+    slopes->forms = slopes->numbers = 0;
+    if (bends) {
+        rate.S[w - 1][w - 1].im += h;
+        status = graded_triple(slopes, lines, &rate, 0, 0, &t);
+        add_number(slopes, rd_property_of(RD_BENDING, RD_BENDING), one, &t);
+    }
+    for (size_t i = 0; i < w && status == RD_OK; i++) {
+        rate = slopes->rate;
+        rate.q[i].im += h;
+        status = graded_triple(slopes, lines, &rate, 0, 0, &t);
+        add_number(slopes, RD_OF_INERTIA + i, one, &t);
+    }
+    if (status == RD_OK)
+        status = graded_triple(slopes, lines, &slopes->rate, h, 0, &t);
+    add_number(slopes, RD_OF_TENSION, c_inverse(lines->tension), &t);
+    if (status == RD_OK)
+        status = graded_triple(slopes, lines, &slopes->rate, 0, h, &t);
+    add_number(slopes, RD_OF_SAG, one, &t);
+    for (size_t i = 0; i < w * w; i++)
+        t.D[i].im = t.G[i].im = t.Q[i].im = (lanes){0};
+    return status != RD_OK ? status : keep(slopes, &t) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+}
+
 /* pieces of one radian by their ends */
 enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
                                  const struct rd_lines *lines, bool forces,
@@ -597,6 +692,8 @@ enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
     slopes->chain = chain;
     slopes->element = e;
     rd_rate_fill(chain, e, lines->section, tension, lines->inertia, lines->dashpot, &slopes->rate);
+    if (rd_is_graded(chain, e))
+        return fill_graded(slopes, lines);
     begin_all(slopes);
     const double radians = rd_transfer_radians(chain, e, &slopes->rate);
     const int halvings = rd_span_halvings(radians, 1) + FINER;

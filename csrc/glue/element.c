@@ -136,7 +136,6 @@ static void continuous(const struct rd_chain *chain, size_t e, size_t count,
 {
     const size_t block = chain->width * chain->width;
     for (size_t i = 0; i < count; i += RD_LANES) {
-        struct rate_matrix rate;
         struct rd_transfer transfer;
         cv part[RD_PARTS];
         for (size_t k = 0; k < RD_LANES; k++)
@@ -145,9 +144,7 @@ static void continuous(const struct rd_chain *chain, size_t e, size_t count,
                 part[p].re[k] = creal(x);
                 part[p].im[k] = cimag(x);
             }
-        rd_rate_fill(chain, e, part[RD_ELASTIC], part[RD_STRING], part[RD_MASS], part[RD_DASHPOTS],
-                     &rate);
-        rd_transfer_fill(chain, e, &rate, &transfer);
+        rd_transfer_fill(chain, e, part, &transfer);
         for (size_t k = 0; k < RD_LANES && i + k < count; k++) {
             memcpy(triple[0] + (i + k) * block, transfer.F[k], block * sizeof **triple);
             memcpy(triple[1] + (i + k) * block, transfer.G[k], block * sizeof **triple);

@@ -4,6 +4,7 @@
 #include "base/fast.h"
 #include "chain/attached.h"
 
+#include <math.h>
 #include <stdint.h>
 
 static const char *text_of(enum rd_status status)
@@ -100,6 +101,7 @@ enum field {
     DAMPING,
     DRAG,
     SAG,
+    RISE,
     ATTACHED_KIND,
     ATTACHED_TERM,
     ATTACHED_ROW,
@@ -129,11 +131,42 @@ static const struct {
     [DAMPING] = {"damping", NPY_DOUBLE, 3, {TERMS, WIDTH, WIDTH}},
     [DRAG] = {"drag", NPY_DOUBLE, 2, {DISTINCT, WIDTH}},
     [SAG] = {"sag", NPY_DOUBLE, 1, {DISTINCT}},
+    [RISE] = {"rise", NPY_DOUBLE, 1, {DISTINCT}},
     [ATTACHED_KIND] = {"attached_kind", NPY_INT32, 1, {ATTACHED}},
     [ATTACHED_TERM] = {"attached_term", NPY_INT32, 1, {ATTACHED}},
     [ATTACHED_ROW] = {"attached_row", NPY_DOUBLE, 3, {ATTACHED, TWO, WIDTH}},
     [ATTACHED_VALUE] = {"attached_value", NPY_DOUBLE, 2, {ATTACHED, FOUR}},
 };
+
+/* tension that grows is that of continuous strings, not under compression, and beams */
+static int check_rise(const struct rd_chain *chain)
+{
+    const size_t w = chain->width, z = rd_coordinate_find(w, chain->coordinate, RD_Z);
+    const bool bends = w == 2 && z == 0 && chain->coordinate[1] == RD_BETA;
+    for (size_t k = 0; chain->rise && k < chain->distinct; k++) {
+        const double least = chain->tension[k] - fabs(chain->rise[k]) / 2;
+        if (chain->rise[k] == 0)
+            continue;
+        if (!(chain->inertia && (bends || (w == 1 && z == 0)))) {
+            PyErr_SetString(PyExc_ValueError,
+                            "rise needs continuous elements of the coordinates z, or z and beta");
+            return -1;
+        }
+        if (!isfinite(chain->rise[k]) || (!bends && !(least >= 0))) {
+            PyErr_Format(PyExc_ValueError, "rise[%zd] must leave a string tension >= 0",
+                         (Py_ssize_t)k);
+            return -1;
+        }
+    }
+    for (size_t k = 0; chain->rise && k + 1 < chain->stretches; k++)
+        if (chain->rise[chain->element[k]] != 0 &&
+            (rd_stretch_nodes(chain, k) > 1 ||
+             (k > 0 && chain->element[k - 1] == chain->element[k]))) {
+            PyErr_SetString(PyExc_ValueError, "an element whose tension grows stands alone");
+            return -1;
+        }
+    return 0;
+}
 
 /* what the core asserts of the numbers */
 static int check_values(const struct rd_chain *chain)
@@ -164,7 +197,7 @@ static int check_values(const struct rd_chain *chain)
             return -1;
         }
     }
-    return 0;
+    return check_rise(chain);
 }
 
 /* stretches follow each other, the last node alone */
@@ -291,10 +324,10 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
         PyErr_SetString(PyExc_TypeError, "chain must be a tuple");
         return -1;
     }
-    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOOOOOOOOO", &kind, item, item + 1, item + 2, item + 3,
-                          item + 4, item + 5, item + 6, item + 7, item + 8, item + 9, item + 10,
-                          item + 11, item + 12, item + 13, item + 14, item + 15, item + 16,
-                          item + 17, item + 18))
+    if (!PyArg_ParseTuple(object, "iOOOOOOOOOOOOOOOOOOOO", &kind, item, item + 1, item + 2,
+                          item + 3, item + 4, item + 5, item + 6, item + 7, item + 8, item + 9,
+                          item + 10, item + 11, item + 12, item + 13, item + 14, item + 15,
+                          item + 16, item + 17, item + 18, item + 19))
         return -1;
     npy_intp entries[AXES] = {-1, -1, -1, -1, -1, -1, -1, 2, 3, 4};
     if (take_arrays(item, parsed, entries) < 0)
@@ -321,6 +354,7 @@ int py_chain_view(PyObject *object, struct py_chain *parsed)
         .damping = data_of(parsed, DAMPING),
         .drag = data_of(parsed, DRAG),
         .sag = data_of(parsed, SAG),
+        .rise = data_of(parsed, RISE),
         .attached_kind = data_of(parsed, ATTACHED_KIND),
         .attached_term = data_of(parsed, ATTACHED_TERM),
         .attached_row = data_of(parsed, ATTACHED_ROW),

@@ -45,7 +45,7 @@ void *py_keep(struct py_kept *kept, PyObject *object, int type, int dimensions,
 npy_intp py_kept_length(const struct py_kept *kept, int axis);
 void py_kept_release(struct py_kept *kept);
 
-enum { PY_CHAIN_ARRAYS = 19 };
+enum { PY_CHAIN_ARRAYS = 20 };
 
 /* a chain and the arrays it views */
 struct py_chain {

@@ -36,7 +36,7 @@ static int is_coupled(const double *S)
 
 _Bool rd_span_is_plain(const struct rd_chain *chain, size_t e)
 {
-    return chain->inertia && !chain->sag &&
+    return chain->inertia && !chain->sag && !(chain->rise && chain->rise[e] != 0) &&
            !is_coupled(chain->flexibility + e * RD_CHANNELS * RD_CHANNELS);
 }
 

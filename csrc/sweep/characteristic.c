@@ -5,6 +5,7 @@
    whatever the damping and wherever s lies; what that takes out of the determinant is accumulated. */
 #include "sweep/characteristic.h"
 
+#include "graded/family.h"
 #include "span/span.h"
 #include "sweep/foot.h"
 
@@ -414,12 +415,43 @@ static void walk(struct rd_characteristic *c, size_t node, size_t end)
     }
 }
 
+/* an element whose tension grows along it, by the pieces of its blocks */
+static enum rd_status cross_graded(struct rd_characteristic *c, const struct rd_run *run)
+{
+    const struct rd_chain *chain = c->chain;
+    const size_t e = (size_t)run->element;
+    const struct rd_sizes sizes = rd_sweep_sizes(&c->bound);
+    struct rd_block block[RD_BLOCKS_MOST];
+    struct rd_family family;
+    struct rate_matrix rate;
+    const struct rd_field field = {
+        .width = chain->width,
+        .rate = &rate,
+        .tension = chain->tension[e],
+        .pull = c->block.pull,
+    };
+    cv triple[PACKED];
+    const size_t blocks = rd_blocks_of(chain, e, &sizes, false, block);
+    c->kernel->make_rate(chain, &c->block, e, &rate);
+    leave(c, term_at(c, run->first));
+    for (size_t k = 0; k < blocks; k++) {
+        rd_family_fill(&field, block + k, &family);
+        for (size_t i = 0; i < block[k].pieces; i++) {
+            rd_family_piece(&family, i, triple);
+            step(c, triple);
+        }
+    }
+    return blocks > 0 ? RD_OK : RD_SHORT_WAVES;
+}
+
 /* A run by pieces that are joined by doubling: on the way up those that the binary digits of their
    number leave over. */
 static enum rd_status cross_run(struct rd_characteristic *c, const struct rd_run *run)
 {
     const struct rd_chain *chain = c->chain;
     const size_t count = run->last - run->first, e = (size_t)run->element;
+    if (rd_is_graded(chain, e))
+        return cross_graded(c, run);
     const struct sweep_pieces all =
         rd_sweep_pieces(chain, run, count, rd_sweep_waves(chain, run, &c->bound));
     if (all.level == 0 && !chain->inertia) {

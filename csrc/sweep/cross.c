@@ -1,5 +1,6 @@
 /* Across the chain: runs by pieces, the rest element by element. */
 #include "sweep/cross.h"
+#include "graded/family.h"
 #include "span/span.h"
 #include "sweep/plan.h"
 
@@ -133,11 +134,46 @@ static void cross_plain(struct sweep *s, int32_t element, int way, size_t node, 
     s->radians = l_select(whole->radians > s->radians, whole->radians, s->radians);
 }
 
+/* Across an element whose tension grows, by the pieces of its blocks, which are others the other way. */
+static void cross_graded(struct sweep *s, size_t e, int way, size_t node)
+{
+    struct rd_block block[RD_BLOCKS_MOST];
+    struct rd_family family;
+    struct rate_matrix rate;
+    const struct rd_field field = {
+        .width = s->chain->width,
+        .rate = &rate,
+        .tension = s->chain->tension[e],
+        .pull = s->block.pull,
+    };
+    const struct rd_sizes sizes = rd_sweep_sizes(s->extent);
+    const size_t blocks = rd_blocks_of(s->chain, e, &sizes, way, block);
+    s->kernel->make_rate(s->chain, &s->block, e, &rate);
+    s->tabled.levels = s->whole.count = 0;
+    for (size_t k = 0; k < blocks; k++) {
+        rd_family_fill(&field, block + k, &family);
+        for (size_t i = 0; i < block[k].pieces; i++) {
+            rd_family_piece(&family, i, s->triple);
+            s->kernel->make_coefficients(s->triple, s->table);
+            if (k + i == 0)
+                first_piece(s, way, s->table, node);
+            else
+                s->kernel->walk_pieces(&s->walk[way], s->table, RD_NO_TERM, 1, &s->state);
+        }
+        s->steps += (double)block[k].pieces * (double)block[k].pieces;
+    }
+    open_behind(s, way, way ? node - 1 : node + 1);
+}
+
 /* Across count elements of a run: the largest pieces first, then the binary digits of the rest. */
 static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t node, size_t count)
 {
     if (rd_span_is_plain(s->chain, (size_t)run->element)) {
         cross_plain(s, run->element, way, node, count);
+        return;
+    }
+    if (rd_is_graded(s->chain, (size_t)run->element)) {
+        cross_graded(s, (size_t)run->element, way, node);
         return;
     }
     struct sweep_pieces all =

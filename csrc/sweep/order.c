@@ -62,6 +62,27 @@ static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
     return count;
 }
 
+/* the same of an element whose tension grows along it: by the same pieces of the same blocks */
+static size_t alike_graded(const struct rd_chain *chain, size_t e,
+                           const struct sweep_extent *extent, size_t count)
+{
+    struct rd_block first[RD_BLOCKS_MOST], own[RD_BLOCKS_MOST];
+    struct rd_sizes sizes = rd_sweep_sizes(extent);
+    const size_t blocks = rd_blocks_of(chain, e, &sizes, false, first);
+    if (blocks == 0)
+        return 0;
+    for (size_t i = 1; i < count; i++) {
+        sizes = rd_sweep_sizes(extent + i);
+        if (rd_blocks_of(chain, e, &sizes, false, own) != blocks)
+            return i;
+        for (size_t k = 0; k < blocks; k++)
+            if (own[k].length != first[k].length || own[k].halvings != first[k].halvings ||
+                own[k].pieces != first[k].pieces)
+                return i;
+    }
+    return count;
+}
+
 size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *runs,
                            const struct rd_factors *factors, const size_t *order, size_t first,
                            size_t *index, struct sweep_extent *extent)
@@ -74,6 +95,10 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
         const struct rd_run *run = runs->run + r;
         if (rd_span_is_plain(chain, (size_t)run->element))
             continue;
+        if (rd_is_graded(chain, (size_t)run->element)) {
+            used = alike_graded(chain, (size_t)run->element, extent, used);
+            continue;
+        }
         const bool known =
             r > 0 && chain->inertia && is_same_rope(chain, run[-1].element, run->element);
         for (size_t lane = 0; lane < used && !known; lane++)

@@ -106,6 +106,16 @@ struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i)
     };
 }
 
+struct rd_sizes rd_sweep_sizes(const struct sweep_extent *extent)
+{
+    return (struct rd_sizes){
+        .section = 1.0 / extent->section,
+        .tension = extent->tension,
+        .inertia = extent->inertia,
+        .dashpot = extent->dashpot,
+    };
+}
+
 /* what follows from the scales and the factors of all lanes */
 static RD_CLONES void fill(const struct rd_chain *chain, const struct factors *of,
                            struct sweep_block *block, struct sweep_way *way)
@@ -203,7 +213,7 @@ static double run_wavenumber(const struct rd_chain *chain, const struct rd_run *
     const int bends = chain->coordinate[w - 1] == RD_BETA;
     double n[RD_WIDTH_MAX] = {0}, most = 0.0;
     const double turn = load_of(chain, run, x, n);
-    const double T = chain->tension[e] * x->tension;
+    const double T = rd_blocks_least(chain, e) * x->tension;
     for (size_t i = 0; i < w; i++) {
         const int32_t c = chain->coordinate[i];
         const double s = S[4 * (size_t)rd_channel_of(c)] * x->section;
@@ -275,10 +285,27 @@ static struct rd_run run_of(const struct rd_chain *chain, size_t k)
                            .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
 }
 
+/* a block's pieces and the joints that make them */
+static size_t graded_steps(const struct rd_chain *chain, size_t e,
+                           const struct sweep_extent *extent)
+{
+    struct rd_block block[RD_BLOCKS_MOST];
+    const struct rd_sizes sizes = rd_sweep_sizes(extent);
+    const size_t blocks = rd_blocks_of(chain, e, &sizes, false, block);
+    size_t steps = 0;
+    for (size_t k = 0; k < blocks; k++)
+        steps += block[k].pieces + 2 * (size_t)block[k].doublings;
+    return steps;
+}
+
 size_t rd_sweep_steps(const struct rd_chain *chain, const struct sweep_extent *extent)
 {
     size_t steps = 1;
     for (size_t k = 0; k + 1 < chain->stretches; k++) {
+        if (rd_is_graded(chain, (size_t)chain->element[k])) {
+            steps += graded_steps(chain, (size_t)chain->element[k], extent);
+            continue;
+        }
         const struct rd_run run = {.element = chain->element[k],
                                    .term = chain->inertia ? RD_NO_TERM : chain->term[k]};
         const struct sweep_pieces pieces = rd_sweep_pieces(chain, &run, rd_stretch_nodes(chain, k),

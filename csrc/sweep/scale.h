@@ -3,6 +3,7 @@
 #define RD_SWEEP_SCALE_H
 
 #include "chain/runs.h"
+#include "graded/blocks.h"
 #include "sweep/kernel/kernel.h"
 
 /* The five complex factors of each frequency, real and imaginary part side by side. */
@@ -22,6 +23,8 @@ struct sweep_extent {
 };
 
 struct sweep_extent rd_sweep_extent(const struct rd_factors *factors, size_t i);
+
+struct rd_sizes rd_sweep_sizes(const struct sweep_extent *extent);
 
 /* the largest of each of `count` extents, whose waves are no longer than any of theirs */
 struct sweep_extent rd_sweep_most(const struct sweep_extent *extent, size_t count);

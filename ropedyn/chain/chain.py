@@ -85,6 +85,9 @@ class Chain(NamedTuple):
     is none."""
     sag: Real | None = None
     """(distinct,) weight per length over tension [1/m]; None without gravity."""
+    rise: Real | None = None
+    """(distinct,) how much more the tension is at the right end of continuous elements, which stand
+    once each then [N]; None where it is the same along all of them."""
     attached_kind: NDArray[np.int32] | None = None
     """(attached,) kinds of the structures that nodes carry, see csrc/chain/attached.h; None where
     there are none, as the rest of them."""
@@ -197,6 +200,9 @@ class Chain(NamedTuple):
     @property
     def at_rest(self) -> Chain:
         """The chain at no speed, without inertia, where continuous elements are tensed exactly."""
+        if self.rise is not None:
+            assert self.inertia is not None
+            return self.undamped._replace(inertia=np.zeros_like(self.inertia))
         kind = self.kind if self.inertia is None else TENSED
         return self.undamped._replace(kind=kind, inertia=None)
 
@@ -264,18 +270,26 @@ class Chain(NamedTuple):
                 rows[:, own] = _core.shape(plane.chain, left, s)[own.searchsorted(at)]
         return rows
 
+    @property
+    def parted(self) -> list[tuple[Chain, list[int]]]:
+        """Its components with their coordinates, where tension grows; the core takes each alone."""
+        names = self._names
+        groups = [tuple(names)] if self.rise is None else components(self, names)
+        return [(self.only(group), [names.index(c) for c in group]) for group in groups]
+
     def energy(self, shape: Real, eigenvalue: Real) -> tuple[Real, Real, Real]:
         """Return strain, kinetic and dragged energy of shapes, twice; see `_core.energy`."""
-        parts = []
+        if self.rise is None and not self.is_spatial:
+            return _core.energy(self, shape, eigenvalue)
+        strain, kinetic, dragged = [], np.zeros((len(shape), shape.shape[2])), []
         for plane in self.planes:
-            own = np.ascontiguousarray(shape[..., plane.kept])
-            parts.append(_core.energy(plane.chain, own, eigenvalue))
-        if len(parts) == 1:
-            return parts[0]
-        kinetic = np.zeros((len(shape), shape.shape[2]))
-        for plane, part in zip(self.planes, parts):
-            kinetic[:, plane.kept] = part[1]
-        return parts[0][0] + parts[1][0], kinetic, parts[0][2] + parts[1][2]
+            within = np.arange(shape.shape[2])[plane.kept]
+            for part, at in plane.chain.parted:
+                own = np.ascontiguousarray(shape[..., within[at]])
+                stored, kinetic[:, within[at]], lost = _core.energy(part, own, eigenvalue)
+                strain.append(stored)
+                dragged.append(lost)
+        return np.sum(strain, axis=0), kinetic, np.sum(dragged, axis=0)
 
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""
@@ -308,6 +322,7 @@ class Chain(NamedTuple):
             damping=_present(squares(self.damping)),
             drag=_present(columns(self.drag)),
             sag=self.sag if {"x", "z"} <= set(coordinates) else None,
+            rise=self.rise if "z" in coordinates else None,
             attached_row=columns(self.attached_row),
         )._moving_attached
 
@@ -339,6 +354,14 @@ class Chain(NamedTuple):
             attached_row=self.attached_row[these],
             attached_value=self.attached_value[these],
         )
+
+
+def graded_triples(chain: Chain) -> tuple[Real, Real, Real]:
+    """Return F, G and Q at rest of the elements of a component whose tension grows along them."""
+    still = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
+    each = [_core.triple(chain, e, still) for e in range(len(chain.length))]
+    F, G, Q = (np.array([one[k][0].real for one in each]) for k in range(3))
+    return F, G, Q
 
 
 def _present(array: Real | None) -> Real | None:

@@ -91,6 +91,8 @@ def divided(scene: Scene, element: str, stations: Real, counts: Index) -> Compil
     if element == "continuous":
         _check_layers(scene, local)
     division = Division(*_core.divide(stations, counts, rope, ROUNDING * float(spans.sum())))
+    if scene.is_graded:
+        division = _apart(division, stations)
     elements = _elements(scene, local, rope[division.span])
     chain = _chain(scene, kind, stations, division, elements)
     groups = components(chain, scene.coordinates)
@@ -144,7 +146,8 @@ def _check_layers(scene: Scene, local: Sequence[Rope]) -> None:
     bending = [B for rope in local for name in names if (B := own_number(rope, name)) is not None]
     if not bending:
         return
-    radians = scene.rope.length * np.sqrt(abs(scene.mean_tension)) / np.sqrt(min(bending))
+    most = max(np.abs(scene.grade.left).max(), np.abs(scene.grade.right).max())
+    radians = scene.rope.length * np.sqrt(most) / np.sqrt(min(bending))
     if not radians <= MOST_RADIANS:
         raise SceneError(
             f"bending_stiffness must leave L sqrt(T/B) at most {MOST_RADIANS:g} in continuous "
@@ -204,7 +207,8 @@ def _elements(scene: Scene, local: Sequence[Rope], rope: Index) -> Elements:
     flexibility = np.array([section(one, channels_of(scene)) for one in local])
     inertia = np.array([inertia_of(scene, one) for one in local])
     sag = None
-    if scene.gravity is not None:
+    if scene.sags:
+        assert scene.gravity is not None
         # a rope that hangs is longer than its chord along x
         flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
         curvature = [scene.gravity.curvature(one, scene.mean_tension) for one in local]
@@ -217,6 +221,7 @@ def _chain(
 ) -> Chain:
     """Return the chain of these elements, with what stands at the stations."""
     length, inertia, width = division.length, elements.inertia, len(scene.coordinates)
+    tension, rise = _tensions(scene, division, kind)
     along = np.empty((len(length), width))
     along[:] = drag(scene.dampings) * dragged(scene)
     size = (len(stations) + len(division.within), width, width)
@@ -230,7 +235,7 @@ def _chain(
         kind=kind,
         coordinate=np.array([NUMBERS[c] for c in scene.coordinates], dtype=np.int32),
         length=length,
-        tension=np.full(len(length), scene.mean_tension),
+        tension=tension,
         flexibility=elements.flexibility,
         first=division.first,
         element=division.element,
@@ -243,8 +248,33 @@ def _chain(
         damping=damping if damping.any() else None,
         drag=along if along.any() and not is_lumped else None,
         sag=elements.sag,
+        rise=rise,
     )
     return _with_attached(scene, stations, terms, chain)
+
+
+def _tensions(scene: Scene, division: Division, kind: int) -> tuple[Real, Real | None]:
+    """Return the mean tension of elements, and how it grows along continuous ones."""
+    if not scene.is_graded:
+        return np.full(len(division.length), scene.mean_tension), None
+    left, right = scene.grade.parted(division.x)
+    return (left + right) / 2, right - left if kind == CONTINUOUS else None
+
+
+def _apart(division: Division, stations: Real) -> Division:
+    """Return the division with every element a distinct one."""
+    sizes = np.diff(np.append(division.first, len(division.x)))
+    each = division.element.repeat(sizes[:-1])
+    return Division(
+        length=division.length[each],
+        span=division.span[each],
+        which=division.x.searchsorted(stations[:-1]).astype(np.int32),
+        within=np.unique(each, return_index=True)[1][division.within],
+        first=np.arange(len(division.x), dtype=np.int32),
+        element=np.arange(len(each), dtype=np.int32),
+        term=division.term.repeat(sizes),
+        x=division.x,
+    )
 
 
 def _with_attached(
@@ -365,13 +395,13 @@ def inertia_of(scene: Scene, rope: Rope) -> Real:
 
 def has_inertia(scene: Scene) -> Flags:
     """Say on which coordinates the rope's own inertia acts, shape (width,)."""
-    still = () if scene.gravity is None else ("x",)
+    still = ("x",) if scene.sags else ()
     return np.array([c not in still for c in scene.coordinates])
 
 
 def dragged(scene: Scene) -> Real:
     """Return 1 for each coordinate that damping along the rope acts on, else 0, shape (width,)."""
-    along = ("x", "y", "z") if scene.gravity is None else ("y", "z")
+    along = ("y", "z") if scene.sags else ("x", "y", "z")
     return np.array([float(c in along) for c in scene.coordinates])
 
 

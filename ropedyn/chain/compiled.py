@@ -20,7 +20,7 @@ from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.rope import ACROSS, own_number
 from ..scene.scene import Scene
 from . import matrices
-from .chain import CHANNELS, PLANE, TRANSVERSE, Chain
+from .chain import CHANNELS, PLANE, TRANSVERSE, Chain, graded_triples
 from .lean import lean
 from .mesh_choice import Choice
 
@@ -155,6 +155,8 @@ class Compiled(Frozen):
     def _bending_order(self, across: str, turning: str) -> float:
         if self.element != "tensed":
             return 2.0 if self.element == "rigid" else 0.0
+        if self.scene.is_graded:  # of which each element has the mean
+            return 2.0
         name = "rotary_inertia" if turning == "beta" else ACROSS["rotary_inertia"]
         turns, hinge = bool(own_number(self.scene.rope, name)), self.chain.hinge
         held = self.chain.held[:, self.coordinates.index(across)] != 0
@@ -199,9 +201,16 @@ class Compiled(Frozen):
         >>> model.triples.G.round(6), model.triples.element
         (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
         """
+        is_graded = self.chain.rise is not None
+        if is_graded and len(self.components) > 1:
+            raise SceneError(
+                "components must be one for triples where the tension grows along continuous "
+                f"spans, got {self.components}"
+            )
         found = np.zeros((3, len(self.chain.length), *2 * (len(self.coordinates),)))
         for plane in self.chain.planes:
-            for whole, own in zip(found, _core.triples(plane.chain.at_rest)):
+            rest = plane.chain.at_rest
+            for whole, own in zip(found, (graded_triples if is_graded else _core.triples)(rest)):
                 whole[:, *plane.square] = own
         F, G, Q = found
         return Triples(F, G, Q, self.chain.element_of)

@@ -13,7 +13,7 @@ from .chain import Chain
 
 def lean(chain: Chain) -> tuple[Chain, Index]:
     """Join spans that nothing parts; return the chain and which nodes are left."""
-    joined = _joined(chain)
+    joined = _joined(chain) if chain.rise is None else np.zeros(1, dtype=np.bool_)
     if not joined.any():
         return chain, np.arange(chain.nodes)
     begin = np.flatnonzero(np.append(True, ~joined))

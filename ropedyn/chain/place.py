@@ -35,7 +35,23 @@ def points(
                 wires=wires if forces else None,
             )
         )
+    if not forces:
+        for point in found:
+            refuse_slack(model, point, name)
     return tuple(found), several
+
+
+def refuse_slack(model: Compiled, point: Point, name: str) -> None:
+    """Refuse a force where a string has no tension: it would have no bounds to move within."""
+    along, coordinates = model.scene.grade, model.coordinates
+    if point[0] != "z" or "beta" in coordinates or model.chain.rise is None:
+        return
+    for at, tension in ((0.0, along.left[0]), (model.scene.rope.length, along.right[-1])):
+        if tension == 0 and abs(point[1] - at) <= check.NEAR * model.scene.rope.length:
+            raise SceneError(
+                f"{name} must not be where a rope without bending_stiffness has no tension, got "
+                f"{point}"
+            )
 
 
 def _end(model: Compiled, given: Any, name: str) -> Any:

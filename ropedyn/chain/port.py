@@ -149,9 +149,14 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
     width = chain.mass.shape[1]
     none = np.zeros((1, width, width))
     closed = np.zeros((1, width))
+    start, stop = nodes[first[pieces]], nodes[first[pieces] + 1]
+    tension, rise = chain.tension[source], None
+    if chain.rise is not None:
+        begin = x[np.searchsorted(x, start, side="right") - 1]
+        tension, rise = parted(chain, source, start - begin, stop - begin)
     return chain._replace(
-        length=np.concatenate([chain.length, nodes[first[pieces] + 1] - nodes[first[pieces]]]),
-        tension=np.concatenate([chain.tension, chain.tension[source]]),
+        length=np.concatenate([chain.length, stop - start]),
+        tension=np.concatenate([chain.tension, tension]),
         flexibility=np.concatenate([chain.flexibility, chain.flexibility[source]]),
         first=first.astype(np.int32),
         element=element[:-1].astype(np.int32),
@@ -164,7 +169,17 @@ def cut(chain: Chain, x: Real, positions: Iterable[float]) -> tuple[Chain, Real]
         damping=None if chain.damping is None else np.concatenate([chain.damping, none]),
         drag=_repeated(chain.drag, source),
         sag=_repeated(chain.sag, source),
+        rise=rise if chain.rise is None else np.concatenate([chain.rise, rise]),
     ), nodes
+
+
+def parted(chain: Chain, source: NDArray[np.int32], start: Real, stop: Real) -> tuple[Real, Real]:
+    """Return the mean tension, and how it grows, of parts of elements from start to stop."""
+    assert chain.rise is not None
+    length, own = chain.length[source], chain.rise[source]
+    left = chain.tension[source] - own / 2 + own * (start / length)
+    right = chain.tension[source] + own / 2 - own * ((length - stop) / length)
+    return (left + right) / 2, right - left
 
 
 def _repeated(array: Real | None, source: NDArray[np.int32]) -> Real | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -30,6 +31,7 @@ from ..scene.parts.stretch import (
 from ..scene.rope import ACROSS, Rope, own_number
 from ..scene.scene import Scene
 from ..scene.stations import nearest
+from ..scene.weight import Grade, grade_rate
 from .chain import CONTINUOUS
 from .compile import (
     INERTIA,
@@ -65,6 +67,8 @@ STIFFNESS = {
 
 SECTION = STIFFNESS.keys() | {"lay_slope", ACROSS["bending_stiffness"]}
 """Properties of a rope that its section depends on."""
+
+TENSION, SAG = 6, 8  # Numbers of the weights by tension, and by sag or the slope of the tension.
 
 GRAVITY = ("g", "inclination")  # Numbers of gravity.
 
@@ -207,7 +211,7 @@ class Places:
     def pull(self) -> float:
         """Curvature of the rope that hangs per linear density, g cos(inclination)/T [m/kg]."""
         scene = self.model.scene
-        if scene.gravity is None:
+        if scene.gravity is None or not scene.sags:
             return 0.0
         return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
 
@@ -229,7 +233,7 @@ class Places:
     def longer(self, flexibility: Real) -> Real:
         """Return sections of a rope that hangs, longer than its chord along x."""
         scene = self.model.scene
-        if scene.gravity is not None:
+        if scene.gravity is not None and scene.sags:
             flexibility[:, 0, 0] *= scene.gravity.lengthening(scene.rope, scene.mean_tension)
         return flexibility
 
@@ -241,6 +245,7 @@ class Rate:
         spans, width = len(places.counts), len(places.model.coordinates)
         self.rope: dict[str, Real] = {}
         self.pull = self.chord = 0.0
+        self.grade: Grade | None = None  # of a tension that grows along the rope
         self.tension, self.length = np.zeros(spans), np.zeros(spans)
         self.mass = np.zeros((spans + 1, width))
         self.stiffness, self.hinge = np.zeros_like(self.mass), np.zeros_like(self.mass)
@@ -266,7 +271,7 @@ class Rate:
         rows = places.model.chain.attached_row
         larger = self.moves if rows is None else self.size[:, None, None] / 2 * rows
         return Weights(
-            element=element[span],
+            element=self._graded(places, element[span]),
             place=np.column_stack([place, np.zeros_like(place)]),
             moving=inertia[span],
             jump=np.where(inside[:-1, None], 0.0, self.hinge[station[:-1]]),
@@ -280,6 +285,16 @@ class Rate:
             moves=self.moves,
             damped=self.damped,
         )
+
+    def _graded(self, places: Places, element: Real) -> Real:
+        """Put the derivatives of a tension that grows in place of those of one that does not."""
+        if self.grade is None:
+            return element
+        chain = places.model.chain
+        left, right = self.grade.parted(places.model.x)
+        element[:, TENSION] = (left + right) / 2
+        element[:, SAG] = 0.0 if chain.rise is None else (right - left) / chain.length
+        return element
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
@@ -323,21 +338,13 @@ class Rate:
 def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
     """Return the numbers of a scene that answers have derivatives by, with their paths."""
     model = places.model
-    rope = model.scene.rope
     found: dict[str, Callable[[], Rate]] = {}
-    if model.scene.gravity is not None:
+    if model.scene.sags or model.scene.is_graded:
         found |= {f"gravity.{name}": partial(_of_gravity, places, name) for name in GRAVITY}
     if "z" in model.coordinates and not (model.element == "difference" and _bends(model)):
         found["tension"] = partial(_of_tension, places)
     acting = _acting(model)
-    for name in (*STIFFNESS, "lay_slope", *DENSITIES):
-        if name in ACROSS.values() or getattr(rope, name) is None:
-            continue
-        names = [name, ACROSS[name]] if name in ACROSS else [name]
-        is_pair = isinstance(getattr(rope, name), tuple)
-        for k, each in enumerate([[one] for one in names] if is_pair else [names]):
-            if own := [one for one in each if one in acting]:
-                found[f"{name}[{k}]" if is_pair else name] = partial(_of_rope, places, own)
+    found |= _of_properties(places, acting)
     found["length"] = partial(_of_length, places)
     for i, part in enumerate(model.scene.parts):
         for name, of in _of_numbers(places, i, acting).items():
@@ -348,7 +355,38 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
         for kind, values in end_of(end).standing.items():
             for c in (c for c in values if c in model.coordinates):
                 found[f"ends[{i}].{kind}.{c}"] = partial(_of_end, places, i, kind, c)
+    if model.scene.is_graded:
+        moving = re.compile(r"length|parts\[\d+\]\.(x|start|stop)")
+        fixed = {path: of for path, of in found.items() if not moving.fullmatch(path)}
+        return {path: partial(_of_graded, places, path, of) for path, of in fixed.items()}
     return found
+
+
+def _of_properties(places: Places, acting: set[str]) -> dict[str, Callable[[], Rate]]:
+    """Return those of the rope."""
+    rope, found = places.model.scene.rope, {}
+    for name in (*STIFFNESS, "lay_slope", *DENSITIES):
+        if name in ACROSS.values() or getattr(rope, name) is None:
+            continue
+        names = [name, ACROSS[name]] if name in ACROSS else [name]
+        is_pair = isinstance(getattr(rope, name), tuple)
+        for k, each in enumerate([[one] for one in names] if is_pair else [names]):
+            if own := [one for one in each if one in acting]:
+                found[f"{name}[{k}]" if is_pair else name] = partial(_of_rope, places, own)
+    return found
+
+
+def _of_graded(places: Places, path: str, of: Callable[[], Rate]) -> Rate:
+    """Return that of a number, and of the tension that grows with it."""
+    rate, along = of(), places.model.scene.grade
+    rate.grade = grade_rate(places.model.scene, path)
+    if rate.grade is not None:
+        ends = ((along.left[0], rate.grade.left[0]), (along.right[-1], rate.grade.right[-1]))
+        if any(T == 0 and change != 0 for T, change in ends) and not _bends(places.model):
+            raise SceneError(
+                f"tension must not vanish at an end for a derivative by {path!r}: it has none there"
+            )
+    return rate
 
 
 def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _Any]:
@@ -405,7 +443,7 @@ def _of_gravity(places: Places, name: str) -> Rate:
     assert gravity is not None
     turned = math.cos(gravity.inclination), -gravity.g * math.sin(gravity.inclination)
     rate = Rate(places)
-    rate.pull = turned[GRAVITY.index(name)] / tension
+    rate.pull = turned[GRAVITY.index(name)] / tension if places.pull else 0.0
     return rate
 
 

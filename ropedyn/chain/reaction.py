@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Flags, Real
 from ..base.unit import FORCE
-from .chain import CHANNELS, KINDS, PLANE, Chain
+from .chain import CHANNELS, KINDS, PLANE, Chain, graded_triples
 from .port import Point, is_force, locate
 
 BENDING = CHANNELS["beta"]
@@ -46,8 +46,11 @@ def tellers(coordinates: Sequence[str], x: Real) -> list[Point]:
 def left_ends(chain: Chain) -> LeftEnd:
     """Return that of each distinct element, at rest."""
     strut = _is_strut(chain)
-    # the triple of a strut is not used, and may not exist
-    F, _, Q = _core.triples(chain._replace(tension=np.where(strut, 0.0, chain.tension)))
+    if chain.rise is None:
+        # the triple of a strut is not used, and may not exist
+        F, _, Q = _core.triples(chain._replace(tension=np.where(strut, 0.0, chain.tension)))
+    else:
+        F, _, Q = graded_triples(chain)
     E, P = np.ascontiguousarray(F.transpose(0, 2, 1)), np.zeros_like(Q)
     for e in np.flatnonzero(strut):
         E[e], Q[e] = _strut(chain, int(e))

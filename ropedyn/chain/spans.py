@@ -47,7 +47,12 @@ def spans_of(chain: Chain) -> Spans | None:
     bends = names == ("z", "beta")
     if not (bends or len(names) == 1) or chain.inertia is None or chain.sag is not None:
         return None
-    if chain.attached_kind is not None or chain.damping is not None or chain.drag is not None:
+    if (
+        chain.rise is not None
+        or chain.attached_kind is not None
+        or chain.damping is not None
+        or chain.drag is not None
+    ):
         return None
     mass, stiffness = (_diagonal(array, chain.term) for array in (chain.mass, chain.stiffness))
     inertia, hinged = chain.inertia[chain.element], _hinges(chain, bends)

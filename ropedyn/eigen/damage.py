@@ -177,7 +177,7 @@ def _forms(model: Compiled, pairs: ModePairs) -> dict[str, Real]:
         own = places.inertia[span] * rate
         if own.any():
             forms[name] = -slopes.eigenvalue[:, None] * _moving(model, slopes, own)
-    if model.scene.gravity is not None:
+    if model.scene.sags:
         # what is lighter sags less
         sag = places.linear_density * places.pull
         forms["linear_density"] += slopes.element[..., SAG] * sag[span]

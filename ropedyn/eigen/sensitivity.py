@@ -15,15 +15,15 @@ from ..base.computed import computed
 from ..base.errors import SolveError
 from ..chain.chain import Chain
 from ..chain.rate import Places, Rate, Weights, asked, rates_of
+from .forms import SECTIONS, slopes
 
 if TYPE_CHECKING:
     from ..chain.compiled import Compiled
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
-SECTIONS = 9
-"""An element has so many slopes (section, tension, length, sag) before those of its inertia; in
-both planes one more, of the section across."""
-BENDING, TENSION, SAG, ACROSS = 2, 6, 8, 9  # Numbers of some among those of an element.
+BENDING, TENSION, SAG, ACROSS = 2, 6, 8, 9
+"""Numbers of some slopes among those of an element; in both planes one more, of the section across,
+stands before those of its inertia."""
 ROUNDINGS, MIXED = 32, 32
 """Shapes and forces are rounded so many times, and mixed with others by so many errors."""
 NOTHING = 1e-12
@@ -82,8 +82,9 @@ class Slopes:
                 np.ascontiguousarray(of)
                 for of in (shape[..., plane.kept], motion[:, plane.carried])
             )
-            element, jump, node, place = _core.sensitivity(plane.chain, u, y, eigenvalue)
-            number, foot = _core.carried_slopes(plane.chain, u, y, eigenvalue)
+            element, jump, node, place = slopes(plane.chain, u, y, eigenvalue)
+            nodes = plane.chain._replace(rise=None)
+            number, foot = _core.carried_slopes(nodes, u, y, eigenvalue)
             element = element[..., : SECTIONS + u.shape[2]]
             heavier, stiffer = number[..., 0], number[..., 1]
             parts.append(cls(eigenvalue, element, jump, node, place, stiffer, heavier, foot))

@@ -20,12 +20,11 @@ from ..chain.port import Point, locate, ports
 from ..scene import damping
 from .damped.attached_energy import AttachedEnergy
 from .fewest import solve_components
+from .forms import STRAINS
 from .modes import Modes, UndampedVectors
 from .sensitivity import Shapes, clusters_of
 from .spectrum import ComponentModes, merged, pieces_of
 
-STRAINS = ("bending", "twist", "stretch", "lay", "tension", "spring")
-"""What stores strain energy, in the core's order."""
 UNSEEN = 1e-8
 """Less than this part of the largest component at all points is rounding at nodes of a mode."""
 

@@ -177,7 +177,7 @@ def why_direct(model: Compiled) -> str:
     for one in scene_laws(model.scene):
         return f"{one.name} is not linear"
     tension = model.scene.tension
-    if isinstance(tension, Tension):
+    if isinstance(tension, Tension) and not tension.is_constant:
         return "the tension pulsates" if tension.pulsates else "the tension is stretching"
     return ""
 

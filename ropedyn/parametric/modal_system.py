@@ -103,7 +103,8 @@ def _refuse(model: Compiled) -> None:
         raise SceneError("rope must move transversely for a tension that pulsates to act on it")
     if scene.gravity is not None:
         raise SceneError(
-            "gravity must be None where the tension pulsates: the sag would pulsate with it, got "
+            "gravity must be None where the tension pulsates: the sag would pulsate with it, and "
+            "tension that grows along the rope is not all of it, got "
             f"{scene.gravity}"
         )
     if model.element == "difference" and "beta" in model.coordinates:

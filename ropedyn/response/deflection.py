@@ -21,6 +21,7 @@ from ..base.unit import FORCE, FORCE_UNIT, UNIT
 from ..chain.chain import Chain
 from ..chain.compile import check_points, finer
 from ..chain.compiled import EXACT, Compiled
+from ..chain.place import refuse_slack
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
 from .critical import critical_loads, exceeds, refuse_critical
@@ -302,6 +303,7 @@ def checked_loads(model: Compiled, load: Any, name: str = "load") -> dict[Point,
     loads: dict[Point, float] = {}
     for key, value in load.items():
         point = check.point(key, f"{name} point", model.coordinates, model.scene.rope.length)
+        refuse_slack(model, point, name)
         unit = FORCE_UNIT[point[0]]
         loads[point] = loads.get(point, 0.0) + check.number(value, f"{name}[{key}]", unit)
     return loads

@@ -300,6 +300,11 @@ class FrequencyRates:
 
     def receptance(self, path: str, *, bounded: bool) -> tuple[Complex, Real]:
         """Return d(receptance)/dp and, if asked for, a bound of its error."""
+        if self.model.chain.rise is not None:
+            raise SceneError(
+                "elements must be given for derivatives of a response where the tension grows "
+                "along the rope, such as compile(elements=64)"
+            )
         weights = asked(self.paths, path)().weights(self.places)
         own = [self._unit(*self._dampings[path])] if path in self._dampings else []
         value, error = np.zeros_like(self.value), np.zeros(self.value.shape)

@@ -123,7 +123,7 @@ def _hold(model: Compiled, coordinate: str) -> tuple[float, float]:
 
 def _softness(chain: Chain) -> Real:
     """Return the flexibilities of the elements on each coordinate, added up, shape (width,)."""
-    G = _core.triples(chain.at_rest)[1]
+    G = _core.triples(chain._replace(rise=None).at_rest)[1]
     sum_ = np.abs(np.einsum("eii->ei", G)[chain.element_of]).sum(axis=0)
     return np.where(np.isfinite(sum_) & (sum_ > 0), sum_, 1.0)
 

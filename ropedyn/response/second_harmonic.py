@@ -198,8 +198,8 @@ def _refuse(model: Compiled, solver: str, decay: float) -> None:
     refuse_uneven(scene.parts, "where harmonic is 2")
     if scene.gravity is not None:
         raise SceneError(
-            "gravity must be None where harmonic is 2, got one: along a sag the slopes alone do "
-            "not tell what stretches"
+            "gravity must be None where harmonic is 2, got one: along a sag, or where the tension "
+            "grows, the slopes alone do not tell what stretches"
         )
     for one in damping.having(scene.dampings, "ratio"):
         raise SceneError(

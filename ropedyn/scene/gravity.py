@@ -1,4 +1,4 @@
-"""Gravity: a rope that hangs is curved, and what moves across a curve stretches it."""
+"""Gravity: the tension of a rope grows uphill, and one that hangs is curved."""
 
 from __future__ import annotations
 
@@ -7,15 +7,26 @@ from dataclasses import KW_ONLY
 from typing import ClassVar
 
 from ..base.errors import SceneError
-from ..base.parameter import Description, number
+from ..base.parameter import Description, flag, number
 from .rope import Rope
 
 
 class Gravity(Description):
-    """Weight of the rope in the plane of z, and with it the sag between its ends.
+    """Weight of the rope in the plane of z: its tension grows uphill, and between its ends it sags.
 
-    With the chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord
-    L, the rope hangs in a parabola of the curvature w/H. A small motion, x along it and z towards
+    The end at x = L is the higher one where the inclination is positive. With the weight along the
+    rope w = linear_density g sin(inclination) the tension is ("own weight")
+
+        T(s) = T_ref + integral of w from s_ref to s, + m g sin(inclination) above each mass m
+
+    with T_ref and s_ref of the scene's `Tension`, the middle where that is a number. Continuous
+    spans are exact for it, elements of chains each have the tension at their middle. Without
+    bending stiffness it must not be negative anywhere; at a free end it may vanish, as of a hanging
+    chain. What does not go with it is refused.
+
+    A rope with axial stiffness is curved as well ("sag"), unless it stands upright. With the
+    chordwise tension H (the scene's), w = linear_density g cos(inclination) and the chord L, it
+    hangs in a parabola of the curvature w/H. A small motion, x along it and z towards
     the centre of the curve (up, against the weight), strains the rope by
 
         x' - (w/H) z = h/EA_e,  EA_e = EA L/L_e,  L_e = L (1 + (w L/H)^2/8)
@@ -33,22 +44,24 @@ class Gravity(Description):
     alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
 
     It holds for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it between.
-    Along an inclined rope the weight's own change of tension is left out, and so is the weight of
-    what stands on the rope; a `PointMass` keeps its inertia along x.
+    The weight of what stands on it does not curve it; a `PointMass` keeps its inertia along x.
+    Where both would act, an inclined rope with axial stiffness, one of them has to be left out.
 
     Parameters
     ----------
     g : float
         Acceleration [m/s^2]; negative: the rope hangs towards positive z.
     inclination : float
-        Of the chord to the horizontal [rad], between -pi/2 and pi/2.
+        Of the chord to the horizontal [rad], from -pi/2 to pi/2.
+    sag, own_weight : bool
+        Whether the weight curves the rope, and whether it changes the tension along it.
 
     Raises
     ------
     TypeError
         If something is not a number.
     SceneError
-        If something is not finite or the inclination is not within a right angle.
+        If something is not finite or the inclination is beyond a right angle.
 
     References
     ----------
@@ -69,17 +82,45 @@ class Gravity(Description):
     array([0.3536, 0.7071])
     """
 
-    kind: ClassVar[str] = "sag"
+    kind: ClassVar[str] = "sag"  # name of the effect
+    grading: ClassVar[str] = "own weight"  # name of the effect
 
     g: float = number("m/s^2", default=9.81)
     _: KW_ONLY
     inclination: float = number("rad", default=0.0)
+    sag: bool = flag(default=True)
+    own_weight: bool = flag(default=True)
 
     def _agree(self) -> None:
-        if not abs(self.inclination) < math.pi / 2:
+        if not abs(self.inclination) <= math.pi / 2:
             raise SceneError(
                 f"inclination must lie between -pi/2 and pi/2 [rad], got {self.inclination!r}"
             )
+
+    @property
+    def along(self) -> float:
+        """What it pulls by along the rope, per mass, from its end at L to that at 0 [m/s^2].
+
+        Examples
+        --------
+        >>> import math
+        >>> import ropedyn as rd
+        >>> rd.Gravity(inclination=math.pi / 2).along
+        9.81
+        """
+        return self.g * math.sin(self.inclination) if self.own_weight else 0.0
+
+    def curves(self, rope: Rope) -> bool:
+        """Say whether it curves a rope: one with axial stiffness that does not stand upright.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Gravity().curves(rd.Rope(100.0, 2.0))
+        False
+        """
+        upright = abs(self.inclination) == math.pi / 2
+        return self.sag and not upright and rope.axial_stiffness is not None
 
     def curvature(self, rope: Rope, tension: float) -> float:
         """Return w/H [1/m] of a rope under a chordwise tension [N].

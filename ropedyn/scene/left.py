@@ -1,10 +1,13 @@
-"""What is left of the things of a scene that never had some effects."""
+"""What is left of a scene that never had some of its effects."""
 
 from __future__ import annotations
 
 import dataclasses
 from typing import TYPE_CHECKING, Any
 
+from ..base.check import COORDINATES
+from ..base.unit import ROLE
+from .checked import checked_tension
 from .end import STANDING, End
 from .gravity import Gravity
 from .parts.node import Part
@@ -28,30 +31,42 @@ PROPERTIES = {
 SECOND_PLANE = "second plane"  # The effect that a scene moves in the plane of y too.
 
 
-WEIGHTLESS = {"tension", "stretch", Gravity.kind}  # Without one of these effects there is no sag.
+def coordinates_of(rope: Rope, mean_tension: float, planes: str) -> tuple[str, ...]:
+    """Return the coordinates that a rope under a tension has."""
+    bends = rope.bending_stiffness is not None
+    present = {
+        "x": rope.axial_stiffness is not None,
+        "z": bends or mean_tension != 0,
+        "alpha": rope.torsional_stiffness is not None,
+        "beta": bends,
+    }
+    if planes == "both":
+        present |= {c: present[role] for c, role in ROLE.items()}
+    return tuple([c for c in COORDINATES if present.get(c, False)])
 
 
-def without(scene: Scene, effects: tuple[str, ...]) -> Scene:
-    """Return a scene without effects, and without what stood on coordinates that go with them."""
-    tension = of_tension(scene.tension, effects)
-    mean = tension.mean if isinstance(tension, Tension) else tension
+def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
+    """Return the arguments of a scene that never had these effects."""
+    rope, tension = _rope(scene.rope, effects), _tension(scene.tension, effects)
+    gravity = _gravity(scene.gravity, rope, effects)
     planes = "z" if SECOND_PLANE in effects else scene.planes
-    bare = type(scene)(of_rope(scene.rope, effects), tension=mean, planes=planes)
-    kept = tuple(d for d in scene.dampings if d.kind not in effects)
-    return bare.replace(
-        tension=tension,
-        ends=tuple(of_end(end, bare.coordinates, effects) for end in scene.ends),
-        damping=kept,
-        gravity=None if WEIGHTLESS & set(effects) else scene.gravity,
-        parts=tuple(
-            left
-            for part in scene.parts
-            if part.kind not in effects and (left := of_part(part, bare)) is not None
-        ),
-    )
+    mean = tension.mean if isinstance(tension, Tension) else tension
+    if gravity is not None and gravity.along:
+        mean = scene.mean_tension
+    present = coordinates_of(rope, mean, planes)
+    left = (_part(part, rope, present) for part in scene.parts if part.kind not in effects)
+    return {
+        "rope": rope,
+        "tension": tension,
+        "ends": tuple(_end(end, present, effects) for end in scene.ends),
+        "damping": tuple(d for d in scene.dampings if d.kind not in effects),
+        "gravity": gravity,
+        "parts": tuple(part for part in left if part is not None),
+        "planes": planes,
+    }
 
 
-def of_rope(rope: Rope, effects: tuple[str, ...]) -> Rope:
+def _rope(rope: Rope, effects: tuple[str, ...]) -> Rope:
     """Return the rope without properties that go with these effects."""
     kept: dict[str, Any] = {}
     if SECOND_PLANE in effects:
@@ -60,7 +75,18 @@ def of_rope(rope: Rope, effects: tuple[str, ...]) -> Rope:
     return rope.replace(**(kept | dict.fromkeys(gone)))
 
 
-def of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
+def _gravity(gravity: Gravity | None, rope: Rope, effects: tuple[str, ...]) -> Gravity | None:
+    """Return the gravity of a scene that never had these effects."""
+    if gravity is None or "tension" in effects:
+        return None
+    if Gravity.kind in effects:
+        gravity = dataclasses.replace(gravity, sag=False)
+    if Gravity.grading in effects:
+        gravity = dataclasses.replace(gravity, own_weight=False)
+    return gravity if gravity.curves(rope) or gravity.along else None
+
+
+def _tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:
     """Return the tension of a scene that never had these effects."""
     if "tension" in effects:
         return 0.0
@@ -70,17 +96,17 @@ def of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Te
         tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
     if {Tension.growing, "stretch"} & set(effects):
         tension = dataclasses.replace(tension, stretching=False)
-    return tension.mean if tension.is_constant else tension
+    return checked_tension(tension)
 
 
-def of_part(part: Part | Stretch, bare: Scene) -> Part | Stretch | None:
+def _part(part: Part | Stretch, rope: Rope, present: tuple[str, ...]) -> Part | Stretch | None:
     """Return what is left of a part in a scene with less, None where nothing is."""
     if isinstance(part, Stretch):
-        return part.on(changeable(bare.rope, bare.coordinates))
-    return part if set(part.stands_on) <= set(bare.coordinates) else None
+        return part.on(changeable(rope, present))
+    return part if set(part.stands_on) <= set(present) else None
 
 
-def of_end(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
+def _end(end: str | End, present: tuple[str, ...], effects: tuple[str, ...]) -> str | End:
     """Return an end without what goes with coordinates or with the effect itself."""
     if isinstance(end, str):
         return end

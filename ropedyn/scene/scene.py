@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import KW_ONLY
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..base import check
+from ..base.array import Real
 from ..base.computed import computed
-from ..base.errors import SceneError
-from ..base.parameter import Description, given, instance, one_of, positions
-from ..base.unit import ROLE
+from ..base.parameter import Description, given, instance, one_of
 from . import damping as _damping
 from . import end as _end
 from . import left, toml
+from .agree import agree
 from .card import card, card_html, card_text
+from .checked import checked_damping, checked_ends, checked_parts, checked_tension
 from .damping import Damping
 from .end import End
 from .gravity import Gravity
 from .left import SECOND_PLANE
 from .parts import part as _part
-from .parts.broken_wire import BrokenWire
 from .parts.node import Part
-from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
-from .rope import ACROSS, Rope
-from .stations import stations_at
+from .parts.stretch import Stretch
+from .rope import Rope
 from .tension import Tension
+from .weight import Grade, grade
 
 if TYPE_CHECKING:
     from ..family.family import Family
@@ -47,54 +48,10 @@ EFFECTS = (
     *(kind.kind for kind in _part.KINDS),
     *(kind.kind for kind in _damping.KINDS),
     Gravity.kind,
+    Gravity.grading,
     SECOND_PLANE,
 )
 """The effects that a scene can have, in their fixed order."""
-
-_PART_NAMES = ", ".join(kind.__name__ for kind in _part.KINDS)
-
-
-def _checked_tension(tension: Any) -> float | Tension:
-    if not isinstance(tension, Tension):
-        return check.number(tension, "tension", "N")
-    return tension.mean if tension.is_constant else tension
-
-
-def _checked_ends(ends: Any) -> tuple[str | End, str | End]:
-    what = 'a pair of "clamped", "pinned", "free" or End'
-    check.instance(ends, "ends", (tuple, list), what)
-    if len(ends) != 2:
-        raise SceneError(f"ends must be {what}, got {check.shown(ends)}")
-    for i, end in enumerate(ends):
-        check.instance(end, f"ends[{i}]", (str, End), "a word or an End")
-        if isinstance(end, str):
-            check.one_of(end, f"ends[{i}]", _end.NAMED)
-    return (ends[0], ends[1])
-
-
-def _checked_damping(damping: Any) -> Damping | tuple[Damping, ...] | None:
-    if damping is None or isinstance(damping, _damping.KINDS):
-        return damping
-    names = " or ".join(kind.__name__ for kind in _damping.KINDS)
-    if isinstance(damping, (tuple, list)):
-        for i, one in enumerate(damping):
-            check.instance(one, f"damping[{i}]", _damping.KINDS, names)
-        return _sum_of(tuple(damping))
-    raise TypeError(f"damping must be {names}, a tuple of them or None, got {check.shown(damping)}")
-
-
-def _sum_of(dampings: tuple[Damping, ...]) -> Damping | tuple[Damping, ...] | None:
-    """Return a sum as a scene holds it: one term is itself, none is None."""
-    return dampings if len(dampings) > 1 else (*dampings, None)[0]
-
-
-def _checked_parts(parts: Any) -> tuple[Part | Stretch, ...]:
-    if isinstance(parts, (str, bytes, Mapping)) or not isinstance(parts, Iterable):
-        raise TypeError(f"parts must be a sequence of {_PART_NAMES}, got {check.shown(parts)}")
-    parts = tuple(parts)
-    for i, part in enumerate(parts):
-        check.instance(part, f"parts[{i}]", _part.KINDS, f"one of {_PART_NAMES}")
-    return parts
 
 
 class Scene(Description):
@@ -114,9 +71,9 @@ class Scene(Description):
 NodeForce, Stop, AddedMass, LocalChange
         What stands on the rope, and what changes it over a stretch.
     gravity : Gravity, optional
-        Sag under the rope's own weight. Needs tension > 0 and axial_stiffness, and something that
-        holds the rope along x; the rope has no inertia along x then. It acts in the plane of z; in
-        that of y the rope is a straight one.
+        The rope's own weight: of an inclined rope its change of tension, of one with axial
+        stiffness sag, which needs tension > 0 and something that holds the rope along x; the rope
+        has no inertia along x then. Sag acts in the plane of z; in that of y the rope is straight.
     planes : {"z", "both"}
         Whether the rope moves across in one plane, or in that of y too, with the coordinates y and
         gamma = dy/dx; nothing ties the planes to each other.
@@ -141,10 +98,10 @@ NodeForce, Stop, AddedMass, LocalChange
 
     rope: Rope = instance(Rope, "a Rope")
     _: KW_ONLY
-    tension: float | Tension = given(_checked_tension, default=0.0)
-    ends: tuple[str | End, str | End] = given(_checked_ends, default=("clamped", "clamped"))
-    damping: Damping | tuple[Damping, ...] | None = given(_checked_damping, default=None)
-    parts: tuple[Part | Stretch, ...] = given(_checked_parts, default=())
+    tension: float | Tension = given(checked_tension, default=0.0)
+    ends: tuple[str | End, str | End] = given(checked_ends, default=("clamped", "clamped"))
+    damping: Damping | tuple[Damping, ...] | None = given(checked_damping, default=None)
+    parts: tuple[Part | Stretch, ...] = given(checked_parts, default=())
     gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
     planes: str = one_of(("z", "both"), default="z")
 
@@ -155,139 +112,54 @@ NodeForce, Stop, AddedMass, LocalChange
         return card_html("Scene of a rope", card(self))
 
     def _agree(self) -> None:
-        self._check_coordinates()
-        self._check_planes()
-        self._check_places()
-        # a rope that is changed must be one
-        if changing := _part.stretches(self.parts):
-            ends = stations_at(self.rope.length, _part.places(changing))
-            ropes(self.rope, changing, ends)
-        self._check_gravity()
-        self._check_stretching()
+        agree(self)
 
-    def _check_coordinates(self) -> None:
-        bends = self.rope.bending_stiffness is not None
-        least = self.mean_tension
-        if isinstance(self.tension, Tension):
-            least -= self.tension.amplitude
-        if least < 0 and not bends:
-            raise SceneError(
-                f"tension must be >= 0 for a rope without bending_stiffness [N], got {least:g}"
-            )
-        if not self.coordinates:
-            raise SceneError(
-                "rope must have a stiffness or the scene a tension: tension is 0 and "
-                "bending_stiffness, torsional_stiffness and axial_stiffness are None"
-            )
+    @property
+    def is_graded(self) -> bool:
+        """Whether the tension grows along the rope by its own weight."""
+        return self.gravity is not None and self.gravity.along != 0
 
-    def _check_planes(self) -> None:
-        for name in ACROSS if self.planes == "z" else ():
-            self._refuse_pair(f"rope.{name}", getattr(self.rope, name))
-        for i, part in enumerate(self.parts if self.planes == "both" else ()):
-            if isinstance(part, BrokenWire):
-                raise SceneError(
-                    f'planes must be "z" where there is a broken wire, as parts[{i}]: its tip is '
-                    'known in one plane, got "both"'
-                )
+    @property
+    def sags(self) -> bool:
+        """Whether the weight curves the rope."""
+        return self.gravity is not None and self.gravity.curves(self.rope)
 
-    def _refuse_pair(self, name: str, value: Any) -> None:
-        if self.planes == "z" and isinstance(value, tuple):
-            raise SceneError(f'{name} must be one number where planes is "z", got {value!r}')
+    @computed
+    def grade(self) -> Grade:
+        """The tension along the rope."""
+        tension = self.tension if isinstance(self.tension, Tension) else Tension(self.tension)
+        return grade(self.rope, tension, self.gravity, self.parts)
 
-    def _check_places(self) -> None:
-        for i, part in enumerate(self.parts):
-            for name in positions(part):
-                check.position(getattr(part, name), f"parts[{i}].{name}", self.rope.length)
-            if isinstance(part, Stretch):
-                self._check_stretch(i, part)
-                continue
-            for coordinate in part.stands_on:
-                if coordinate not in self.coordinates:
-                    chosen = hasattr(part, "coordinate")
-                    name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
-                    raise check.absent(f"{name} must be one", self.coordinates, coordinate)
-            if isinstance(part, _part.Hinge):
-                self._check_hinge(i, part.x)
-        for i, end in enumerate(self.ends):
-            for name, values in _end.end_of(end).standing.items():
-                for coordinate in values:
-                    if coordinate not in self.coordinates:
-                        must = f"ends[{i}].{name} must stand on coordinates"
-                        raise check.absent(must, self.coordinates, coordinate)
+    def tension_at(self, x: Any) -> Real:
+        """Return the tension at places along the rope [N], of a mass on its right.
 
-    def _check_stretch(self, i: int, part: Stretch) -> None:
-        least = check.NEAR * self.rope.length
-        if not part.stop - part.start > least:
-            raise SceneError(
-                f"parts[{i}].stop must lie more than {least:g} m beyond start, {part.start!r} m, "
-                f"got {part.stop!r}"
-            )
-        for name, what in part.acts_on.items():
-            factor = getattr(part, name)
-            self._refuse_pair(f"parts[{i}].{name}", factor)
-            if factor != 1 and what not in changeable(self.rope, self.coordinates):
-                raise SceneError(
-                    f"parts[{i}].{name} must be 1 where the scene has no {what} "
-                    f"({', '.join(self.coordinates)}), got {factor!r}"
-                )
+        Parameters
+        ----------
+        x : float or array_like
+            Places [m].
 
-    def _check_hinge(self, i: int, x: float) -> None:
-        margin = check.NEAR * self.rope.length
-        if not margin < x < self.rope.length - margin:
-            raise SceneError(
-                f"parts[{i}].x must lie between the ends of the rope for a hinge, got {x!r} m: "
-                'there say End(beta="free", spring={"beta": stiffness})'
-            )
+        Raises
+        ------
+        SceneError
+            If one lies off the rope.
 
-    def _check_gravity(self) -> None:
-        if self.gravity is None:
-            return
-        if self.rope.axial_stiffness is None:
-            raise SceneError("gravity needs axial_stiffness of the rope [N], got None")
-        tension = self.mean_tension
-        if not tension > 0:
-            raise SceneError(f"tension must be > 0 where there is gravity, got {tension:g}")
-        lengthening = self.gravity.lengthening(self.rope, tension)
-        if not math.isfinite(lengthening):
-            raise SceneError(
-                "gravity must be small enough for 1 + (w L/H)^2/8 to be a number, got "
-                f"g = {self.gravity.g!r} m/s^2 with the tension {tension!r} N"
-            )
-        terms = [_end.end_of(end).term() for end in self.ends]
-        terms += [part.term() for part in _part.standing(self.parts)]
-        if not any("x" in (*term.held, *term.stiffness) for term in terms):
-            raise SceneError(
-                "ends must hold x where there is gravity, or a Support or Spring: the rope has no "
-                f"inertia along x, got ends {check.shown(self.ends)}"
-            )
-
-    def _check_stretching(self) -> None:
-        if not isinstance(self.tension, Tension) or not self.tension.stretching:
-            return
-        if self.planes == "both":
-            raise SceneError(
-                'planes must be "z" where the tension is stretching, got "both": motion in one '
-                "plane would strain the rope in the other"
-            )
-        refuse_uneven(self.parts, "where the tension is stretching")
-        if self.rope.axial_stiffness is None:
-            raise SceneError(
-                "tension must not be stretching without axial_stiffness of the rope [N], got None"
-            )
-        if self.gravity is not None:
-            raise SceneError(
-                "tension must not be stretching where there is gravity: along a sag it is not the "
-                "integral of the slope alone"
-            )
-        if not all("x" in _end.end_of(end).term().held for end in self.ends):
-            raise SceneError(
-                "ends must hold x where the tension is stretching, "
-                f"got ends {check.shown(self.ends)}"
-            )
+        Examples
+        --------
+        >>> import math
+        >>> import ropedyn as rd
+        >>> tension, up = rd.Tension(100.0, at="start"), rd.Gravity(10.0, inclination=math.pi / 2)
+        >>> scene = rd.Scene(rd.Rope(30.0, 2.0), tension=tension, gravity=up)
+        >>> scene.tension_at([0.0, 15.0, 30.0])
+        array([100., 400., 700.])
+        """
+        places = check.numbers(np.atleast_1d(x), "x", "m")
+        for place in places:
+            check.position(float(place), "x", self.rope.length)
+        return self.grade.at(places).reshape(np.shape(x))
 
     @property
     def mean_tension(self) -> float:
-        """The tension about which motion is small [N].
+        """The tension about which motion is small, its mean along the rope [N].
 
         Examples
         --------
@@ -296,6 +168,8 @@ NodeForce, Stop, AddedMass, LocalChange
         >>> rd.Scene(rd.Rope(1.0, 0.1), tension=tension).mean_tension
         1000.0
         """
+        if self.is_graded:
+            return self.grade.mean
         return self.tension.mean if isinstance(self.tension, Tension) else self.tension
 
     @computed
@@ -310,17 +184,7 @@ NodeForce, Stop, AddedMass, LocalChange
         >>> rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1.0)).coordinates
         ('z', 'beta')
         """
-        rope = self.rope
-        bends = rope.bending_stiffness is not None
-        present = {
-            "x": rope.axial_stiffness is not None,
-            "z": bends or self.mean_tension != 0,
-            "alpha": rope.torsional_stiffness is not None,
-            "beta": bends,
-        }
-        if self.planes == "both":
-            present |= {c: present[role] for c, role in ROLE.items()}
-        return tuple([c for c in check.COORDINATES if present.get(c, False)])
+        return left.coordinates_of(self.rope, self.mean_tension, self.planes)
 
     @property
     def dampings(self) -> tuple[Damping, ...]:
@@ -355,7 +219,8 @@ NodeForce, Stop, AddedMass, LocalChange
             "rotary inertia": bool(rope.bending_stiffness)
             and rope.rotary_inertia not in (None, 0.0, (0.0, 0.0)),
             "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
-            Gravity.kind: self.gravity is not None,
+            Gravity.kind: self.sags,
+            Gravity.grading: self.is_graded,
             SECOND_PLANE: self.planes == "both",
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
@@ -412,7 +277,7 @@ NodeForce, Stop, AddedMass, LocalChange
         """
         for effect in effects:
             check.one_of(effect, "effect", EFFECTS)
-        return left.without(self, effects)
+        return self.replace(**left.left_of(self, effects))
 
     def needed(self, question: Any, tolerance: float) -> tuple[str, ...]:
         """Name the effects that an answer needs; nothing is left out of the scene by that.

@@ -1,15 +1,25 @@
-"""Tension that pulsates in time, or grows with the amplitude."""
+"""Tension: where it is known, how it pulsates in time or grows with the amplitude."""
 
 from __future__ import annotations
 
 from dataclasses import KW_ONLY
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
-from ..base.parameter import Description, flag, number
+from ..base.parameter import Description, flag, given, number
+
+AT = ("middle", "start", "end")
+"""Words for the places where the mean is known."""
+
+
+def _checked_at(at: Any) -> str | float:
+    if isinstance(at, str):
+        return check.one_of(at, "at", AT)
+    return check.number(at, "at", "m", sign="nonnegative")
 
 
 class Tension(Description):
@@ -28,6 +38,9 @@ class Tension(Description):
     ----------
     mean : float
         [N]; negative is compression.
+    at : {"middle", "start", "end"} or float
+        Where along the rope it is the mean [m]; elsewhere the rope's weight has changed it: see
+        `Gravity`. Without that it says nothing.
     amplitude : float
         Of the pulsation [N].
     frequency : float
@@ -62,6 +75,7 @@ class Tension(Description):
 
     mean: float = number("N")
     _: KW_ONLY
+    at: str | float = given(_checked_at, default="middle")
     amplitude: float = number("N", sign="nonnegative", default=0.0)
     frequency: float = number("Hz", sign="nonnegative", default=0.0)
     phase: float = number("rad", default=0.0)
@@ -78,8 +92,20 @@ class Tension(Description):
 
     @property
     def is_constant(self) -> bool:
-        """Whether it is a number."""
+        """Whether it varies neither in time nor with the motion."""
         return not self.pulsates and not self.stretching
+
+    def place(self, length: float) -> float:
+        """Return where on a rope of a length it is the mean [m].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Tension(1000.0, at="end").place(30.0)
+        30.0
+        """
+        of = {"start": 0.0, "middle": 0.5 * length, "end": length}
+        return of[self.at] if isinstance(self.at, str) else self.at
 
     def pulsation(self, time: Real) -> Real:
         """Return what pulsation adds to the mean [N], as `time` [s].

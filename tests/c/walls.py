@@ -11,6 +11,7 @@ FLOORS = [
     "element",
     "chain",
     "span",
+    "graded",
     "sweep/kernel",
     "sweep",
     "damped",

@@ -26,7 +26,9 @@ def hanging(parameter, *, axial=None, inclination=0.0, **more):
     axial = axial or parameter * TENSION / slope2
     g = math.sqrt(slope2 / (1 - slope2 / 8)) * TENSION / (DENSITY * LENGTH)
     rope = rd.Rope(LENGTH, DENSITY, axial_stiffness=axial, **more.pop("rope", {}))
-    gravity = rd.Gravity(g / math.cos(inclination), inclination=inclination)
+    gravity = rd.Gravity(
+        g / math.cos(inclination), inclination=inclination, own_weight=inclination == 0
+    )
     return rd.Scene(rope, tension=TENSION, gravity=gravity, **more)
 
 
@@ -507,8 +509,8 @@ FREE = rd.End(x="free")
 REFUSED = {
     "g": (lambda: rd.Gravity(math.nan), "g must be a finite number [m/s^2], got nan"),
     "inclination": (
-        lambda: rd.Gravity(inclination=math.pi / 2),
-        "inclination must lie between -pi/2 and pi/2 [rad], got 1.57",
+        lambda: rd.Gravity(inclination=1.6),
+        "inclination must lie between -pi/2 and pi/2 [rad], got 1.6",
     ),
     "no axial stiffness": (
         lambda: rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, gravity=rd.Gravity()),

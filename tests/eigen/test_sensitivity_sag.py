@@ -55,7 +55,7 @@ PATHS = {
 def test_hanging_string_changes_as_its_characteristic_equation(axial, claim):
     given = {"T": TENSION, "mu": DENSITY, "L": LENGTH, "EA": axial, "g": 800.0, "i": 0.4}
     rope = rd.Rope(LENGTH, DENSITY, axial_stiffness=axial)
-    gravity = rd.Gravity(given["g"], inclination=given["i"])
+    gravity = rd.Gravity(given["g"], inclination=given["i"], own_weight=False)
     modes = rd.Scene(rope, tension=TENSION, gravity=gravity).compile().modes(5)
     residual = [
         abs(symmetric(2 * mpmath.pi * mpf(f), **{k: mpf(v) for k, v in given.items()}))
@@ -71,7 +71,9 @@ def test_hanging_string_changes_as_its_characteristic_equation(axial, claim):
 
 def test_antisymmetric_modes_do_not_feel_the_sag():
     rope = rd.Rope(LENGTH, DENSITY, axial_stiffness=1e4)
-    scene = rd.Scene(rope, tension=TENSION, gravity=rd.Gravity(300.0, inclination=0.4))
+    scene = rd.Scene(
+        rope, tension=TENSION, gravity=rd.Gravity(300.0, inclination=0.4, own_weight=False)
+    )
     modes = scene.compile().modes(4)
     twice = 2 * np.sqrt(TENSION / DENSITY) / (2 * LENGTH)
     second = int(np.abs(modes.frequency - twice).argmin())
@@ -96,7 +98,7 @@ HANGING = rd.Scene(
         lay_slope=0.05,
     ),
     tension=100.0,
-    gravity=rd.Gravity(60.0, inclination=0.3),
+    gravity=rd.Gravity(60.0, inclination=0.3, own_weight=False),
     parts=[
         rd.LocalChange(0.2, 0.6, bending=0.7, torsion=1.3, density=1.4),
         rd.AddedMass(0.5, 0.9, 0.03, polar_inertia=1e-6),

@@ -171,7 +171,7 @@ FULL = EVERYTHING.replace(
 HANGING = rd.Scene(
     rd.Rope(100.0, 2.0, axial_stiffness=2e7, bending_stiffness=1e4),
     tension=1e4,
-    gravity=rd.Gravity(inclination=0.3),
+    gravity=rd.Gravity(inclination=0.3, own_weight=False),
     damping=(rd.LossFactor(0.02), rd.RayleighDamping(0.1, 1e-3)),
     parts=[rd.LocalChange(30.0, 50.0, density=1.5)],
 )

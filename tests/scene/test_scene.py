@@ -61,7 +61,7 @@ DAMPINGS = {
     )
 }
 STIFFNESS, RAYLEIGH = DAMPINGS["stiffness damping"], DAMPINGS["rayleigh damping"]
-GRAVITY = rd.Gravity(9.81, inclination=0.1)
+GRAVITY = rd.Gravity(9.81, inclination=0.1, own_weight=False)
 
 
 def end(gone=(), **changes):

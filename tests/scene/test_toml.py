@@ -164,12 +164,17 @@ def every_effect_but_a_law():
             rd.AddedMass(0.1, 0.7, 0.02, polar_inertia=1e-6),
             rd.LocalChange(0.5, 0.9, bending=0.5, torsion=0.7, density=0.9),
         ],
-        gravity=rd.Gravity(1.62, inclination=-0.2),
+        gravity=rd.Gravity(1.62, inclination=-0.2, own_weight=False),
     )
     # a rope that sags cannot stretch with the amplitude
     stretching = rd.Scene(rope, tension=rd.Tension(1.0, stretching=True))
+    upright = rd.Scene(
+        rd.Rope(1.0, 0.1),
+        tension=rd.Tension(7.0, at="end"),
+        gravity=rd.Gravity(inclination=-math.pi / 2),
+    )
     plain = {"rope": rope.replace(bending_stiffness=(1.0, 2.0)), "parts": (), "planes": "both"}
-    return sagging, stretching, sagging.replace(**plain)
+    return sagging, stretching, upright, sagging.replace(**plain)
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e != rd.NodeForce.kind])

@@ -2,6 +2,7 @@
 #include "modes/certify/certify.h"
 
 #include "chain/inertia.h"
+#include "graded/blocks.h"
 #include "modes/certify/work.h"
 #include "modes/count/count.h"
 #include "span/span.h"
@@ -225,6 +226,7 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
     const bool endless = rd_inertia_is_endless(walk->chain);
     size_t finer = 0; /* levels below a piece of the rope at rest */
     double most = 0;  /* first pieces of the rope at rest */
+    bool graded = false;
     for (size_t n = wanted; n > 0; n /= 2)
         finer += LEVELS_PER_DOUBLING;
     *steps = 16 * (wanted + 4);
@@ -241,7 +243,10 @@ bool rd_certify_size(const struct rd_walk *walk, size_t wanted, size_t *steps, s
             levels++;
         *steps += whole ? count : PLAIN_LEAST + 2 * levels;
         *pieces += whole ? 0 : levels + 2;
+        graded |= rd_is_graded(walk->chain, (size_t)walk->leg[r].element);
     }
+    if (graded) /* each step is a piece of its own */
+        *pieces += *steps;
     if (endless || (double)*steps < most)
         return false;
     *steps = (size_t)most;

@@ -4,6 +4,7 @@
 #include "chain/attached.h"
 
 #include "base/lapack.h"
+#include "graded/blocks.h"
 
 #include <math.h>
 #include <string.h>
@@ -77,6 +78,8 @@ static void levers(const struct rd_chain *chain, int32_t element, double *D, dou
     if (z < w)
         D[z * w + beta] = chain->length[element];
     Q[beta * w + beta] = chain->tension[element];
+    if (rd_is_graded(chain, (size_t)element))
+        Q[beta * w + beta] = fabs(chain->tension[element]) + fabs(chain->rise[element]);
 }
 
 /* DT = D T */

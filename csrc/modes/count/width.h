@@ -3,6 +3,7 @@
 
 #include "modes/count/count.h"
 #include "modes/count/whole.h"
+#include "modes/walk/graded.h"
 #include "modes/walk/piece.h"
 #include "modes/walk/wave.h"
 
@@ -176,6 +177,36 @@ RD_INLINE _Bool leg_walk_whole(struct wave *wave, const struct rd_walk *walk,
     return 0;
 }
 
+/* the same of a leg whose tension grows, by pieces of its blocks */
+RD_INLINE _Bool leg_walk_graded(struct wave *wave, const struct rd_walk *walk,
+                                const struct rd_leg *leg, lanes lambda, const lanes *z,
+                                const lanes *inverse, lanes *own)
+{
+    struct rd_block block[RD_BLOCKS_MOST];
+    struct rd_family family;
+    struct piece piece;
+    struct step step;
+    lanes first[W][W], inner[W][W];
+    const size_t blocks = graded_blocks(walk, leg, lambda, block);
+    term_scale(walk, leg->first, leg->before, lambda, z, first);
+    term_scale(walk, leg->term, leg->element, lambda, z, inner);
+    for (size_t k = 0; k < blocks; k++) {
+        graded_fill(walk, leg, lambda, block + k, &family);
+        for (size_t i = 0; i < block[k].pieces; i++) {
+            const _Bool start = k == 0 && i == 0;
+            graded_load(&family, i, &piece, NULL);
+            step_fill(&piece, 1, z, inverse, &step);
+            walk_node(wave, walk, start ? leg->first : leg->term, start ? first : inner, &step,
+                      start && leg == walk->leg);
+            if (start)
+                walk_feet(wave, walk, leg->first, lambda, z, own);
+            step_transfer(wave, &step, 0);
+            step_comply(wave, &step);
+        }
+    }
+    return blocks > 0;
+}
+
 /* A leg of equal elements, by pieces of 2^k of them, the largest first; false where they are too
    many. own: eigenvalues of structures with their feet held, added. */
 RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
@@ -210,6 +241,15 @@ RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const st
         }
     }
     return 1;
+}
+
+RD_INLINE _Bool leg_cross(struct wave *wave, const struct rd_walk *walk, const struct rd_leg *leg,
+                          lanes lambda, const lanes *z, const lanes *inverse, lanes *own)
+{
+    if (leg_is_graded(walk, leg))
+        return leg_walk_graded(wave, walk, leg, lambda, z, inverse, own);
+    return leg_walk_whole(wave, walk, leg, lambda, z, own) ||
+           leg_walk(wave, walk, leg, lambda, z, inverse, own);
 }
 
 /* left end: U = 0 where held; U = 1 and the angle -pi/2 where free */
@@ -259,8 +299,7 @@ static RD_CLONES void count_lanes(const struct rd_walk *walk, const double *lamb
     start(&wave, walk);
     for (size_t r = 0; r < walk->legs; r++)
         if (is_asked_to_stop(walk, r) ||
-            (!leg_walk_whole(&wave, walk, walk->leg + r, lambda, z, &own) &&
-             !leg_walk(&wave, walk, walk->leg + r, lambda, z, inverse, &own))) {
+            !leg_cross(&wave, walk, walk->leg + r, lambda, z, inverse, &own)) {
             for (int k = 0; k < RD_LANES; k++)
                 counts[k] = NAN;
             return;

@@ -15,7 +15,8 @@ struct rd_step {
     int32_t before; /* element on its left, -1: none */
     int32_t level;
     int32_t leg;
-    _Bool plain; /* a piece in closed form, no doubling (modes/walk/plain.h) */
+    int32_t block; /* of a leg whose tension grows (graded/blocks.h), counted from 1; 0: of none */
+    _Bool plain;   /* a piece in closed form, no doubling (modes/walk/plain.h) */
 };
 
 /* What an iteration works in. */
@@ -36,6 +37,7 @@ struct rd_refine {
     double *square;         /* (RD_SQUARES, n, n) for inner products of all n vectors */
     lanes *next;            /* (attached) while an iteration makes it */
     double z[RD_WIDTH_MAX]; /* scales of the coordinates */
+    double most;            /* largest |lambda| of the present plan */
 };
 
 /* Stationary value of the mixed form at the vectors x = (u, f):

@@ -193,6 +193,12 @@ void WIDTH(shape)(struct rd_refine *r, const double *lambdas, int lane, double *
             leg = step->leg;
             continue;
         }
+        if (step->block > 0) {
+            if (step->leg != leg && step->term != RD_NO_TERM)
+                memcpy(node, ua, sizeof ua);
+            leg = step->leg;
+            continue;
+        }
         /* the first step of a leg is its largest piece, the last of its levels */
         if (step->leg != leg && step->piece >= 0)
             joint_fill(r, step, lambda, lane, joint);

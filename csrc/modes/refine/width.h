@@ -17,9 +17,16 @@
 #include "modes/refine/foot.h"
 #include "modes/refine/quotient.h"
 #include "modes/refine/shape.h"
+#include "modes/walk/graded.h"
 
 #include <math.h>
 #include <string.h>
+
+/* the lambda that pieces were planned for */
+RD_INLINE lanes planned(const struct rd_refine *r)
+{
+    return l_fill(r->most);
+}
 
 RD_INLINE const uint8_t *held_at(const struct rd_refine *r, int32_t term)
 {
@@ -39,6 +46,25 @@ RD_INLINE void plain_change(const struct rd_refine *r, const struct rd_leg *leg,
     plain_load(&rate, other, level + 2, level + 3);
 }
 
+/* the pieces of a leg whose tension grows, from step m on, as its plan has them; returns the last */
+static size_t graded_change(const struct rd_refine *r, size_t m, lanes lambda)
+{
+    const struct rd_leg *leg = r->walk->leg + r->step[m].leg;
+    struct rd_block block[RD_BLOCKS_MOST];
+    struct rd_family family;
+    int32_t made = 0;
+    graded_blocks(r->walk, leg, planned(r), block);
+    for (; m < r->steps && r->step[m].leg == (int32_t)(leg - r->walk->leg); m++) {
+        const struct rd_step *step = r->step + m;
+        struct piece *piece = (struct piece *)(r->piece + (size_t)step->piece * 6 * W * W);
+        if (step->block != made)
+            graded_fill(r->walk, leg, lambda, block + step->block - 1, &family);
+        made = step->block;
+        graded_load(&family, step->at, piece, piece + 1);
+    }
+    return m - 1;
+}
+
 /* all pieces with their d/dlambda */
 RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
 {
@@ -48,6 +74,11 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
         const struct rd_step *step = r->step + m;
         if (step->piece <= done)
             continue;
+        if (step->block > 0) {
+            m = graded_change(r, m, lambda);
+            done = r->step[m].piece;
+            continue;
+        }
         done = step->piece;
         const struct rd_leg *leg = r->walk->leg + step->leg;
         if (step->plain) {
@@ -264,6 +295,30 @@ static enum rd_status plan_plain(struct rd_refine *r, int32_t index, int32_t *pi
     return RD_OK;
 }
 
+/* Steps of a leg whose tension grows: the pieces of its blocks. */
+static enum rd_status plan_graded(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
+{
+    const struct rd_leg *leg = r->walk->leg + index;
+    struct rd_block block[RD_BLOCKS_MOST];
+    const size_t blocks = graded_blocks(r->walk, leg, lambda, block);
+    for (size_t k = 0; k < blocks; k++)
+        for (size_t i = 0; i < block[k].pieces; i++) {
+            const _Bool start = k == 0 && i == 0;
+            if ((size_t)*pieces == r->pieces || r->steps == r->capacity)
+                return RD_NO_MEMORY;
+            r->step[r->steps++] = (struct rd_step){
+                .at = i,
+                .piece = (*pieces)++,
+                .element = leg->element,
+                .term = start ? leg->first : leg->term,
+                .before = start ? leg->before : leg->element,
+                .leg = index,
+                .block = (int32_t)k + 1,
+            };
+        }
+    return blocks > 0 ? RD_OK : RD_SHORT_WAVES;
+}
+
 /* Steps of a leg: single elements where it is short, pieces of 2^k otherwise. Equal spans side by
    side share their pieces. */
 static enum rd_status plan_leg(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
@@ -271,6 +326,8 @@ static enum rd_status plan_leg(struct rd_refine *r, int32_t index, lanes lambda,
     const struct rd_leg *leg = r->walk->leg + index;
     if (leg_is_plain_at(r->walk, leg, lambda))
         return plan_plain(r, index, pieces);
+    if (leg_is_graded(r->walk, leg))
+        return plan_graded(r, index, lambda, pieces);
     const _Bool joined = leg->count >= 4 || leg_is_continuous(r->walk, leg);
     struct piece level[LEVELS];
     const int halvings = leg_halvings(r->walk, leg, lambda);
@@ -311,6 +368,7 @@ enum rd_status WIDTH(plan)(struct rd_refine *r, const double *lambdas)
     for (int k = 0; k < RD_LANES; k++)
         most = fmax(most, fabs(lambdas[k]));
     rd_walk_scale(r->walk, most, r->z);
+    r->most = most;
     r->steps = 0;
     enum rd_status status = RD_OK;
     for (size_t i = 0; i < r->walk->legs && status == RD_OK; i++)

@@ -123,6 +123,8 @@ struct sweep_kernel {
     void (*make_element)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *triple);
     void (*make_slice)(const struct rd_chain *, const struct sweep_block *, size_t e, int halvings,
                        int terms, cv *triple);
+    void (*make_rate)(const struct rd_chain *, const struct sweep_block *, size_t e,
+                      struct rate_matrix *);
     void (*make_span)(const struct rate_matrix *, double length, int halvings, int terms,
                       cv *triple);
     void (*make_whole)(const struct rd_chain *, const struct sweep_block *, size_t e, double length,

@@ -37,6 +37,12 @@ RD_INLINE void K_(rate)(const struct rd_chain *chain, const struct sweep_block *
         rate->q[W - 1] = c_add(rate->q[W - 1], c_scale(b->pull, chain->tension[e]));
 }
 
+static void K_(make_rate)(const struct rd_chain *chain, const struct sweep_block *b, size_t e,
+                          struct rate_matrix *rate)
+{
+    K_(rate)(chain, b, e, rate);
+}
+
 RD_INLINE void K_(slice)(const struct rate_matrix *rate, double l, int terms, cv *triple)
 {
     cv D[W][W], G[W][W], Q[W][W];

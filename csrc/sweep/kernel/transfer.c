@@ -1,6 +1,7 @@
 /* The triples of a whole continuous element, at several lambda or sections side by side. */
 #include "sweep/kernel/transfer.h"
 
+#include "graded/family.h"
 #include "span/span.h"
 #include "sweep/kernel/kernel.h"
 
@@ -64,15 +65,42 @@ void rd_transfer_slice(size_t width, const struct rate_matrix *rate, double l, i
         }
 }
 
-void rd_transfer_fill(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate,
+/* one whose tension grows along it, from the pieces of its blocks */
+static void graded(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate,
+                   const cv *part, cv *triple)
+{
+    const struct rd_field field = {
+        .width = chain->width,
+        .rate = rate,
+        .tension = chain->tension[e],
+        .pull = part[RD_STRING],
+    };
+    const struct rd_sizes sizes = {
+        .section = 1 / largest(c_inverse(part[RD_ELASTIC])),
+        .tension = largest(part[RD_STRING]),
+        .inertia = largest(part[RD_MASS]),
+        .dashpot = largest(part[RD_DASHPOTS]),
+    };
+    struct rd_block block[RD_BLOCKS_MOST];
+    rd_family_whole(&field, rd_blocks_of(chain, e, &sizes, false, block), block, triple);
+}
+
+void rd_transfer_fill(const struct rd_chain *chain, size_t e, const cv *part,
                       struct rd_transfer *transfer)
 {
     const size_t w = chain->width, full = w * w, sym = w * (w + 1) / 2;
-    const double radians = rd_transfer_radians(chain, e, rate);
-    const int halvings = rd_span_halvings(radians, 1);
+    struct rate_matrix rate;
     cv triple[PACKED];
-    kernels[w - 1]->make_span(rate, chain->length[e], halvings,
-                              rd_span_terms(ldexp(radians, -halvings)), triple);
+    rd_rate_fill(chain, e, part[RD_ELASTIC], part[RD_STRING], part[RD_MASS], part[RD_DASHPOTS],
+                 &rate);
+    if (rd_is_graded(chain, e)) {
+        graded(chain, e, &rate, part, triple);
+    } else {
+        const double radians = rd_transfer_radians(chain, e, &rate);
+        const int halvings = rd_span_halvings(radians, 1);
+        kernels[w - 1]->make_span(&rate, chain->length[e], halvings,
+                                  rd_span_terms(ldexp(radians, -halvings)), triple);
+    }
     for (int lane = 0; lane < RD_LANES; lane++)
         for (size_t i = 0, p = 0; i < w; i++)
             for (size_t j = 0; j < w; j++) {

@@ -13,9 +13,9 @@ struct rd_transfer {
     double _Complex Q[RD_LANES][RD_WIDTH_MAX * RD_WIDTH_MAX];
 };
 
-/* Joined from halves; the element must be shorter than its first resonance as a cantilever, which
+/* At the factors part (RD_PARTS). Joined from halves; the element must be shorter than its first resonance as a cantilever, which
    the joints would meet. */
-void rd_transfer_fill(const struct rd_chain *chain, size_t e, const struct rate_matrix *rate,
+void rd_transfer_fill(const struct rd_chain *chain, size_t e, const cv *part,
                       struct rd_transfer *transfer);
 
 /* A bound of the radians that waves, evanescent ones included, have along a whole element. */

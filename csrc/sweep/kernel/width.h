@@ -51,6 +51,7 @@ RD_INLINE int K_(at)(int i, int j)
 
 const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_element = K_(make_element),
+    .make_rate = K_(make_rate),
     .make_slice = K_(make_slice),
     .make_span = K_(make_span),
     .make_whole = K_(make_whole),

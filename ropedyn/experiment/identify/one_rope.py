@@ -16,7 +16,7 @@ from ...base.computed import changed, computed
 from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
-from ...scene.path import with_values
+from ...scene.path import value_at, with_values
 from ...scene.scene import Scene
 from ..compare.slips import slips_of_peaks
 from ..fitting.natural import is_moved, shift_by_damping
@@ -297,7 +297,7 @@ class RopeTask:
         """Say what the search of orders took the guess of the tension for."""
         if not self._weighs_guess():
             return ()
-        guess, factor = self.scene.mean_tension, np.exp(SPREAD)
+        guess, factor = value_at(self.scene, TENSION), np.exp(SPREAD)
         return (
             f"of orders: tension {guess:.4g} N within a factor of {factor:.2g} in two of three",
         )
@@ -306,7 +306,8 @@ class RopeTask:
         """Name a tension that is far from its guess."""
         if not self._weighs_guess():
             return ()
-        times = float(told.value[self.how.paths.index(TENSION)]) / self.scene.mean_tension
+        times = float(told.value[self.how.paths.index(TENSION)])
+        times /= value_at(self.scene, TENSION)
         if 1 / FAR < times < FAR:
             return ()
         return (

@@ -40,7 +40,7 @@ def plain_lumps(model: Compiled, component: tuple[str, ...], chain: Chain) -> tu
     apart = (
         chain.kind == RIGID
         and "beta" in names
-        and (share[TENSION] != rate or model.scene.mean_tension < 0)
+        and (share[TENSION] != rate or (chain.tension < 0).any())
     )
     scene, stiffness = model.scene, 0.0
     if "z" in names and isinstance(scene.tension, Tension) and scene.tension.stretching:

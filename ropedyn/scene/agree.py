@@ -1,0 +1,195 @@
+"""What must agree in a scene: places, coordinates, tension, weight."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from ..base import check
+from ..base.errors import SceneError
+from ..base.parameter import positions
+from . import end as _end
+from .parts import part as _part
+from .parts.broken_wire import BrokenWire
+from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
+from .rope import ACROSS
+from .stations import stations_at
+from .tension import Tension
+from .weight import refuse_slack
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+
+def agree(scene: Scene) -> None:
+    """Refuse what has no meaning together."""
+    _check_coordinates(scene)
+    _check_planes(scene)
+    _check_places(scene)
+    _check_tension(scene)
+    # a rope that is changed must be one
+    if changing := _part.stretches(scene.parts):
+        ends = stations_at(scene.rope.length, _part.places(changing))
+        ropes(scene.rope, changing, ends)
+    _check_gravity(scene)
+    _check_stretching(scene)
+
+
+def _check_coordinates(scene: Scene) -> None:
+    bends = scene.rope.bending_stiffness is not None
+    least = scene.mean_tension
+    if isinstance(scene.tension, Tension):
+        least -= scene.tension.amplitude
+    if least < 0 and not bends:
+        raise SceneError(
+            f"tension must be >= 0 for a rope without bending_stiffness [N], got {least:g}"
+        )
+    if not scene.coordinates:
+        raise SceneError(
+            "rope must have a stiffness or the scene a tension: tension is 0 and "
+            "bending_stiffness, torsional_stiffness and axial_stiffness are None"
+        )
+
+
+def _check_planes(scene: Scene) -> None:
+    for name in ACROSS if scene.planes == "z" else ():
+        _refuse_pair(scene, f"rope.{name}", getattr(scene.rope, name))
+    for i, part in enumerate(scene.parts if scene.planes == "both" else ()):
+        if isinstance(part, BrokenWire):
+            raise SceneError(
+                f'planes must be "z" where there is a broken wire, as parts[{i}]: its tip is '
+                'known in one plane, got "both"'
+            )
+
+
+def _refuse_pair(scene: Scene, name: str, value: Any) -> None:
+    if scene.planes == "z" and isinstance(value, tuple):
+        raise SceneError(f'{name} must be one number where planes is "z", got {value!r}')
+
+
+def _check_places(scene: Scene) -> None:
+    for i, part in enumerate(scene.parts):
+        for name in positions(part):
+            check.position(getattr(part, name), f"parts[{i}].{name}", scene.rope.length)
+        if isinstance(part, Stretch):
+            _check_stretch(scene, i, part)
+            continue
+        for coordinate in part.stands_on:
+            if coordinate not in scene.coordinates:
+                chosen = hasattr(part, "coordinate")
+                name = f"parts[{i}].coordinate" if chosen else f"coordinate of a {part.kind}"
+                raise check.absent(f"{name} must be one", scene.coordinates, coordinate)
+        if isinstance(part, _part.Hinge):
+            _check_hinge(scene, i, part.x)
+    for i, end in enumerate(scene.ends):
+        for name, values in _end.end_of(end).standing.items():
+            for coordinate in values:
+                if coordinate not in scene.coordinates:
+                    must = f"ends[{i}].{name} must stand on coordinates"
+                    raise check.absent(must, scene.coordinates, coordinate)
+
+
+def _check_stretch(scene: Scene, i: int, part: Stretch) -> None:
+    least = check.NEAR * scene.rope.length
+    if not part.stop - part.start > least:
+        raise SceneError(
+            f"parts[{i}].stop must lie more than {least:g} m beyond start, {part.start!r} m, "
+            f"got {part.stop!r}"
+        )
+    for name, what in part.acts_on.items():
+        factor = getattr(part, name)
+        _refuse_pair(scene, f"parts[{i}].{name}", factor)
+        if factor != 1 and what not in changeable(scene.rope, scene.coordinates):
+            raise SceneError(
+                f"parts[{i}].{name} must be 1 where the scene has no {what} "
+                f"({', '.join(scene.coordinates)}), got {factor!r}"
+            )
+
+
+def _check_hinge(scene: Scene, i: int, x: float) -> None:
+    margin = check.NEAR * scene.rope.length
+    if not margin < x < scene.rope.length - margin:
+        raise SceneError(
+            f"parts[{i}].x must lie between the ends of the rope for a hinge, got {x!r} m: "
+            'there say End(beta="free", spring={"beta": stiffness})'
+        )
+
+
+def _check_tension(scene: Scene) -> None:
+    at = scene.tension.at if isinstance(scene.tension, Tension) else "middle"
+    if not isinstance(at, str):
+        check.position(at, "at of the tension", scene.rope.length)
+    if not scene.is_graded:
+        return
+    if scene.sags:
+        raise SceneError(
+            "gravity of an inclined rope with axial_stiffness both curves it and changes its "
+            "tension along it, which is not solved together: say sag=False or "
+            f"own_weight=False, got {scene.gravity}"
+        )
+    if scene.rope.lay_slope:
+        raise SceneError(
+            "lay_slope must be 0 or None where the tension grows along the rope, got "
+            f"{scene.rope.lay_slope!r}"
+        )
+    if scene.rope.bending_stiffness is None:
+        pulsating = scene.tension.amplitude if isinstance(scene.tension, Tension) else 0.0
+        refuse_slack(scene.grade, pulsating, (_is_bare(scene, 0), _is_bare(scene, 1)))
+
+
+def _is_bare(scene: Scene, end: int) -> bool:
+    """Whether an end is free along z and nothing stands on it."""
+    term, at = _end.end_of(scene.ends[end]).term(), end * scene.rope.length
+    margin = check.NEAR * scene.rope.length
+    beside = any(abs(x - at) <= margin for x in _part.places(_part.standing(scene.parts)))
+    stands = {*term.held, *term.mass, *term.stiffness, *term.damping}
+    return not beside and stands.isdisjoint(("y", "z"))
+
+
+def _check_gravity(scene: Scene) -> None:
+    if scene.gravity is None:
+        return
+    if scene.gravity.sag and scene.rope.axial_stiffness is None and not scene.is_graded:
+        raise SceneError("gravity needs axial_stiffness of the rope [N], got None")
+    if not scene.sags:
+        return
+    tension = scene.mean_tension
+    if not tension > 0:
+        raise SceneError(f"tension must be > 0 where there is gravity, got {tension:g}")
+    lengthening = scene.gravity.lengthening(scene.rope, tension)
+    if not math.isfinite(lengthening):
+        raise SceneError(
+            "gravity must be small enough for 1 + (w L/H)^2/8 to be a number, got "
+            f"g = {scene.gravity.g!r} m/s^2 with the tension {tension!r} N"
+        )
+    terms = [_end.end_of(end).term() for end in scene.ends]
+    terms += [part.term() for part in _part.standing(scene.parts)]
+    if not any("x" in (*term.held, *term.stiffness) for term in terms):
+        raise SceneError(
+            "ends must hold x where there is gravity, or a Support or Spring: the rope has no "
+            f"inertia along x, got ends {check.shown(scene.ends)}"
+        )
+
+
+def _check_stretching(scene: Scene) -> None:
+    if not isinstance(scene.tension, Tension) or not scene.tension.stretching:
+        return
+    if scene.planes == "both":
+        raise SceneError(
+            'planes must be "z" where the tension is stretching, got "both": motion in one '
+            "plane would strain the rope in the other"
+        )
+    refuse_uneven(scene.parts, "where the tension is stretching")
+    if scene.rope.axial_stiffness is None:
+        raise SceneError(
+            "tension must not be stretching without axial_stiffness of the rope [N], got None"
+        )
+    if scene.gravity is not None:
+        raise SceneError(
+            "tension must not be stretching where there is gravity: along a sag it is not the "
+            "integral of the slope alone"
+        )
+    if not all("x" in _end.end_of(end).term().held for end in scene.ends):
+        raise SceneError(
+            f"ends must hold x where the tension is stretching, got ends {check.shown(scene.ends)}"
+        )

@@ -1,0 +1,143 @@
+"""The tension along a rope that its own weight pulls along."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..base.array import Real
+from ..base.errors import SceneError
+from .gravity import Gravity
+from .parts.node import Part
+from .parts.part import places, standing, stretches
+from .parts.stretch import Stretch, ropes
+from .rope import Rope
+from .stations import nearest, stations_at
+from .tension import Tension
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+WEIGHING = ("linear_density", "density", "mass", "g", "inclination")
+"""Numbers that the tension changes with by weight."""
+
+LEAST = 1e-6
+"""Of the largest tension: a string with less of it is not told from a slack one to 1e-11."""
+
+ROUNDING = 16 * np.finfo(float).eps  # Of the largest tension: less is none.
+
+
+class Grade(NamedTuple):
+    """Tension between stations, linear in each span; it is larger above a mass than below."""
+
+    station: Real  # (spans + 1,) [m]
+    left: Real  # (spans,) at the left end of each [N]
+    right: Real  # (spans,)
+
+    @property
+    def mean(self) -> float:
+        """Along the rope [N]."""
+        whole = np.diff(self.station) @ (self.left + self.right) / 2
+        return float(whole / self.station[-1])
+
+    def less(self, other: Grade, times: float) -> Grade:
+        """Return so many times the difference from another."""
+        return Grade(
+            self.station, times * (self.left - other.left), times * (self.right - other.right)
+        )
+
+    def at(self, x: Any) -> Real:
+        """Return the tension at places, of a mass right of it [N]."""
+        span = np.searchsorted(self.station, x, side="right") - 1
+        span = np.clip(span, 0, len(self.left) - 1)
+        share = (x - self.station[span]) / np.diff(self.station)[span]
+        return np.asarray(self.left[span] * (1 - share) + self.right[span] * share)
+
+    def parted(self, x: Real) -> tuple[Real, Real]:
+        """Return the tension at both ends of what lies between places, stations among them."""
+        span = np.searchsorted(self.station, (x[1:] + x[:-1]) / 2, side="right") - 1
+        length = np.diff(self.station)[span]
+        from_left = (x[:-1] - self.station[span]) / length
+        from_right = (self.station[span + 1] - x[1:]) / length
+        rise = self.right[span] - self.left[span]
+        return self.left[span] + from_left * rise, self.right[span] - from_right * rise
+
+
+def grade(
+    rope: Rope, tension: Tension, gravity: Gravity | None, parts: Sequence[Part | Stretch]
+) -> Grade:
+    """Return the tension along a rope, see `Gravity`."""
+    station = stations_at(rope.length, places(parts))
+    spans = len(station) - 1
+    along = 0.0 if gravity is None else gravity.along
+    if along == 0.0:
+        return Grade(station, *np.full((2, spans), tension.mean))
+    local, which = ropes(rope, stretches(parts), station)
+    density = np.array([one.linear_density for one in local])[which]
+    stands, mass = standing(parts), np.zeros(spans + 1)
+    np.add.at(mass, nearest(station, places(stands)), [getattr(p, "mass", 0.0) for p in stands])
+    rise = along * density * np.diff(station)
+    left = np.cumsum(along * mass[:-1] + np.append(0.0, rise[:-1]))
+    own = Grade(station, left, left + rise)
+    missing = tension.mean - own.at(tension.place(rope.length))
+    least = ROUNDING * np.abs([left + missing, left + rise + missing]).max()
+    ends = (np.where(np.abs(T) <= least, 0.0, T) for T in (left + missing, left + rise + missing))
+    return Grade(station, *ends)
+
+
+def grade_rate(scene: Scene, path: str) -> Grade | None:
+    """Return the derivative of the tension by a number that it is linear in, None if it is not."""
+    rope, gravity, parts = scene.rope, scene.gravity, list(scene.parts)
+    tension = scene.tension if isinstance(scene.tension, Tension) else Tension(scene.tension)
+    of, _, name = path.rpartition(".")
+    owner: Any = parts[int(of[6:-1])] if of.startswith("parts") else gravity if of else rope
+    if path == "tension":
+        return Grade(scene.grade.station, *np.ones((2, len(scene.grade.left))))
+    if of.startswith("ends") or name not in WEIGHING:
+        return None
+    assert gravity is not None
+    if name == "inclination":
+        level = np.full((2, len(scene.grade.left)), tension.mean)
+        turned = 1 / math.tan(gravity.inclination)
+        return scene.grade.less(Grade(scene.grade.station, *level), turned)
+    value = getattr(owner, name)
+    step = value or 1.0
+    more = dataclasses.replace(owner, **{name: value + step})
+    if owner is rope:
+        rope = more
+    elif owner is gravity:
+        gravity = more
+    else:
+        parts[int(of[6:-1])] = more
+    return grade(rope, tension, gravity, parts).less(scene.grade, 1 / step)
+
+
+def refuse_slack(along: Grade, pulsating: float, free: tuple[bool, bool]) -> None:
+    """Refuse a slack string, and one without tension but at a free end with nothing on it."""
+    least = np.minimum(along.left, along.right) - pulsating
+    worst = int(least.argmin())
+    place = along.station[worst + int(along.right[worst] < along.left[worst])]
+    if least[worst] < 0:
+        raise SceneError(
+            "tension must be >= 0 all along a rope without bending_stiffness [N], got "
+            f"{least[worst]:g} at {place:g} m: it is slack there"
+        )
+    loose = (along.left[0] == 0 and free[0], along.right[-1] == 0 and free[1])
+    slack = np.minimum(along.left, along.right) == 0
+    slack[0] &= not loose[0]
+    slack[-1] &= not loose[1]
+    if slack.any():
+        raise SceneError(
+            "tension must be > 0 along a rope without bending_stiffness but at a free end with "
+            f"nothing on it [N], got 0 at {place:g} m"
+        )
+    ends = np.concatenate([along.left, along.right])
+    if ends[ends > 0].min() < LEAST * ends.max():
+        raise SceneError(
+            f"tension must be 0 at a free end or at least {LEAST:g} of its largest all along a "
+            f"rope without bending_stiffness [N], got {ends[ends > 0].min():g} and {ends.max():g}"
+        )
