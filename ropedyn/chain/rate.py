@@ -364,7 +364,8 @@ def rates_of(places: Places) -> dict[str, Callable[[], Rate]]:
 
 def _of_properties(places: Places, acting: set[str]) -> dict[str, Callable[[], Rate]]:
     """Return those of the rope."""
-    rope, found = places.model.scene.rope, {}
+    rope = places.model.scene.rope
+    found: dict[str, Callable[[], Rate]] = {}
     for name in (*STIFFNESS, "lay_slope", *DENSITIES):
         if name in ACROSS.values() or getattr(rope, name) is None:
             continue

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..base.check import COORDINATES
 from .end import End
+from .rope import own_number
 from .tension import Tension
 
 if TYPE_CHECKING:
@@ -24,12 +25,16 @@ Card = dict[str, str]
 def card(scene: Scene) -> Card:
     """Say what a scene is, with the string frequency of its mean tension, f = sqrt(T/mu)/(2 L)."""
     rope, tension = scene.rope, scene.mean_tension
-    density, length, bending = rope.linear_density, rope.length, rope.bending_stiffness
+    density, length = rope.linear_density, rope.length
+    bending = own_number(rope, "bending_stiffness")
     told = {
         "length": f"{length:g} m",
         "mass": f"{density * length:.4g} kg ({density:g} kg/m)",
         "tension": str(scene.tension) if isinstance(scene.tension, Tension) else f"{tension:g} N",
     }
+    if scene.is_graded:
+        low, high = scene.tension_at([0.0, length])
+        told["tension"] = f"{low:g} N at the start, {high:g} N at the end"
     if tension > 0:
         speed = math.sqrt(tension / density)
         told["string"] = f"waves of {speed:.4g} m/s, first frequency {speed / length / 2:.4g} Hz"

@@ -61,7 +61,7 @@ def document(scene: Any) -> dict[str, Any]:
         "rope": _plain(scene.rope),
     }
     if scene.planes != "z":
-        document["planes"] = scene.planes
+        found["planes"] = scene.planes
     if scene.gravity is not None:
         found["gravity"] = _plain(scene.gravity)
     if scene.dampings:

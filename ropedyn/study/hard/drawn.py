@@ -19,7 +19,7 @@ from ...scene.damping import StiffnessDamping
 from ...scene.end import End
 from ...scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
 from ...scene.parts.resonator import Resonator
-from ...scene.rope import Rope
+from ...scene.rope import Rope, own_number
 from ...scene.scene import Scene
 
 MODES, LINES, CUTS = 6, 4, 2
@@ -200,7 +200,7 @@ def _rope(random: Random) -> Rope:
 
 def _tension(random: Random, rope: Rope) -> float:
     """Draw none, T L^2/B up to 1e10, or compression up to 30 times Euler's load."""
-    bending = rope.bending_stiffness
+    bending = own_number(rope, "bending_stiffness")
     if bending is None:
         return _log(random, 1e-6, 1e6)
     kind = random.random()
