@@ -17,7 +17,7 @@ from ..experiment.identify.identify import identify as identified
 from ..family.family import MOST_MODES
 from ..family.modes import FamilyModes
 from ..model import Model
-from .question import AnyQuestion, relative_to
+from .question import AnyQuestion
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +51,7 @@ class IdentifyQuestion(AnyQuestion):
     unknown: Any
     ends: str | None = field(default=None, kw_only=True)
     bounded: ClassVar[bool] = False
+    each: ClassVar[float] = 1e-3
 
     def __post_init__(self) -> None:
         peaks = self.peaks if isinstance(self.peaks, Peaks) else Peaks(self.peaks)
@@ -72,10 +73,6 @@ class IdentifyQuestion(AnyQuestion):
     def values(self, answer: Fit) -> Real:
         """Return the numbers."""
         return np.array(answer.value)
-
-    def work(self, model: Model, solver: str) -> float:
-        """Return the seconds, by their order, that a fit takes: n."""
-        return 1e-3 * model.size
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,10 +127,6 @@ class FamilyQuestion(AnyQuestion):
     def values(self, answer: FamilyModes) -> Real:
         """Return the frequencies of each rope [Hz]."""
         return answer.frequency
-
-    def rounding(self, answer: FamilyModes) -> Real:
-        """Return the estimated relative error that rounding causes; 0 for rigid-body motion."""
-        return relative_to(answer.frequency, answer.rounding_error)
 
     @property
     def parts(self) -> tuple[int, str]:

@@ -260,7 +260,7 @@ def effect_cost(
         seconds_without=middle[1:],
         lower_quartile_without=lower[1:],
         upper_quartile_without=upper[1:],
-        unknowns_with=whole.answer.cost.unknowns,
+        unknowns_with=whole.unknowns,
         **columns,
     )
 
@@ -269,7 +269,7 @@ def _without(whole: Way, effect: str) -> tuple[Way, dict[str, Any]]:
     """Ask what is left of a scene without an effect."""
     left = Way.of(whole.question, whole.scene.without(effect), whole.how, whole.solver)
     change = whole.question.change(whole.answer, left.model, solver=whole.solver)
-    return left, _numbers(change, left.answer.cost.unknowns)
+    return left, _numbers(change, left.unknowns)
 
 
 def _numbers(change: AnswerChange, unknowns: int) -> dict[str, Any]:

@@ -137,6 +137,15 @@ def test_what_an_effect_changes_is_told_of_every_kind_of_question(name):
         assert all(size > 0 for size in change.size.values() if size == size)
 
 
+@pytest.mark.parametrize("name", ["damped", "count", "static", "family"])
+def test_effects_are_priced_for_every_kind_of_question(name):
+    question, _, _ = OTHERS[name]
+    price = rd.effect_cost(SCENE, question, repeat=1)
+    assert tuple(price.change) == question.measures
+    mass = price.effect.tolist().index("point mass")
+    assert price.beyond_error[mass] == (name not in ("static", "count"))
+
+
 def test_a_load_beside_the_nodes_of_a_chain_is_not_compared_unless_there_is_one():
     question = rd.ask.static({("z", 0.7): 2.0})
     exact = question.values(question.of(SCENE.compile()))
