@@ -55,7 +55,10 @@ class IdentifyQuestion(AnyQuestion):
 
     def __post_init__(self) -> None:
         peaks = self.peaks if isinstance(self.peaks, Peaks) else Peaks(self.peaks)
+        check.instance(self.unknown, "unknown", (str, list, tuple), "a path or a list of paths")
         unknown = (self.unknown,) if isinstance(self.unknown, str) else tuple(self.unknown)
+        if self.ends is not None:
+            check.one_of(self.ends, "ends", ("unknown", "given"))
         object.__setattr__(self, "peaks", peaks)
         object.__setattr__(self, "unknown", unknown)
 
@@ -107,12 +110,15 @@ class FamilyQuestion(AnyQuestion):
     number: int
 
     def __post_init__(self) -> None:
-        paths, rows = tuple(self.paths), np.array(self.rows, dtype=np.float64)
+        check.instance(self.paths, "paths", (list, tuple), "a list of paths")
+        paths, rows = tuple(self.paths), np.array(self.rows)
+        if rows.dtype.kind not in "iuf":
+            raise TypeError(f"rows must be numbers, got {check.shown(self.rows)}")
         if rows.ndim != 2 or rows.shape[1] != len(paths) or len(rows) == 0:
             expected = f"shape (m, {len(paths)}), a column for each path"
             raise SceneError(f"rows must have {expected}, got shape {rows.shape}")
         object.__setattr__(self, "paths", paths)
-        object.__setattr__(self, "rows", rows)
+        object.__setattr__(self, "rows", rows.astype(np.float64))
         check.count(self.number, "number", most=MOST_MODES)
         super().__post_init__()
 

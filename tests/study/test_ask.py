@@ -276,3 +276,34 @@ def test_a_question_of_motion_is_asked_by_the_method_that_is_named():
     model = scene.compile(elements=12, element="rigid")
     for method in ("modal", "direct"):
         assert question.of(model, solver=method).cost.method == method
+
+
+AT = ("z", 0.3)
+REFUSED = {
+    "number": (rd.ask.modes, [1.5, "3"], [0, -1]),
+    "damped": (lambda v: rd.ask.modes(1, damped=v), [1, "yes", None], []),
+    "below": (lambda v: rd.ask.count(below=v), ["1", None], [0.0, -1.0, float("nan")]),
+    "modes": (rd.ask.floquet, [1.5, None], [0, 10**6]),
+    "load": (rd.ask.static, [None, 1.0, [AT]], [{}, {AT: float("inf")}]),
+    "amplitude": (
+        lambda v: rd.ask.stepped_sine([1.0], drive=AT, amplitude=v),
+        ["1", None],
+        [0.0, -1.0],
+    ),
+    "unknown": (lambda v: rd.ask.identify([1.0], v), [None, 5], []),
+    "ends": (lambda v: rd.ask.identify([1.0], "tension", ends=v), [5], ["free"]),
+    "paths": (lambda v: rd.ask.family(v, [[1.0]], 1), [None, "tension"], []),
+    "rows": (lambda v: rd.ask.family(["tension"], v, 1), [None, "1"], [[1.0], [], [[1.0, 2.0]]]),
+}
+CASES = [
+    (name, call, value, kind)
+    for name, (call, types, values) in REFUSED.items()
+    for kind, given in ((TypeError, types), (rd.SceneError, values))
+    for value in given
+]
+
+
+@pytest.mark.parametrize(("name", "call", "value", "kind"), CASES)
+def test_what_has_no_meaning_is_refused_when_a_question_is_made(name, call, value, kind):
+    with pytest.raises(kind, match=name):
+        call(value)
