@@ -55,7 +55,7 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes) -> None:
     ax.xaxis.set_major_formatter(lambda seconds, _: duration(seconds))
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set(xlabel="time from the scene to the answer", ylabel="largest relative error [1]")
-    ax.set_title(f"{cost.question}\n{fill(cost.verdict, 95)}", fontsize="small")
+    ax.set_title(f"{cost.question}\n{fill(cost.verdict, 84)}", fontsize="small")
     light_grid(ax)
     if ax.containers:
         ax.legend(fontsize="small")
