@@ -191,6 +191,7 @@ class StaticQuestion(AnyQuestion):
     usual: ClassVar[tuple[str, ...]] = ("sweep", "lapack")
     of_spans: ClassVar[tuple[str, ...]] = ("sweep",)
     bounded: ClassVar[bool] = False
+    each: ClassVar[float] = 1e-5
 
     def __post_init__(self) -> None:
         what = 'a mapping such as {("z", 0.5): 10.0}'
@@ -227,7 +228,3 @@ class StaticQuestion(AnyQuestion):
         """Return the scene with nodes under the loads: masses of 0 kg."""
         inside = sorted({x for _, x in self.load if 0 < x < scene.rope.length})
         return scene.replace(parts=(*scene.parts, *(PointMass(x, 0.0) for x in inside)))
-
-    def work(self, model: Model, solver: str) -> float:
-        """Return the seconds, by their order, that the slowest solver takes: n."""
-        return 1e-5 * model.size

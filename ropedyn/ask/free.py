@@ -18,7 +18,7 @@ from ..eigen.spectrum import SOLVERS
 from ..experiment.compare.difference import OF_MODES, AnswerChange, change_of_modes, relative
 from ..model import Model
 from ..parametric.floquet import MOST_MODES, Floquet
-from .question import AnyQuestion, nearest, relative_to
+from .question import AnyQuestion, nearest
 
 
 @dataclass(frozen=True)
@@ -99,14 +99,6 @@ class ModesQuestion(AnyQuestion):
         if isinstance(answer, DampedModes):
             return answer.eigenvalue / (2 * math.pi)
         return np.where(answer.growth > 0, -answer.growth / (2 * math.pi), answer.frequency)
-
-    def mesh(self, answer: Modes | DampedModes) -> Real:
-        """Return the relative error that the mesh causes; 0 for rigid-body motion."""
-        return relative_to(self.values(answer), answer.mesh_error)
-
-    def rounding(self, answer: Modes | DampedModes) -> Real:
-        """Return the estimated relative error that rounding causes; 0 for rigid-body motion."""
-        return relative_to(self.values(answer), answer.rounding_error)
 
     def apart(self, found: NDArray[Any], right: NDArray[Any]) -> Real:
         """Return how far values are from right ones, relative to these."""
@@ -201,6 +193,7 @@ class FloquetQuestion(AnyQuestion):
     """
 
     modes: int = 4
+    each: ClassVar[float] = 1e-4
 
     def __post_init__(self) -> None:
         check.count(self.modes, "modes", most=MOST_MODES)
@@ -216,14 +209,6 @@ class FloquetQuestion(AnyQuestion):
         """Return the multipliers."""
         return answer.multiplier
 
-    def rounding(self, answer: Floquet) -> Real:
-        """Return the estimated relative error of the multipliers."""
-        return relative_to(answer.multiplier, answer.rounding_error)
-
     def apart(self, found: NDArray[Any], right: NDArray[Any]) -> Real:
         """Return how far the nearest multipliers are from right ones, relative to these."""
         return relative(nearest(found, right), right)
-
-    def work(self, model: Model, solver: str) -> float:
-        """Return the seconds, by their order, that the modes take: n."""
-        return 1e-4 * model.size

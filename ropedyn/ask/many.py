@@ -17,7 +17,7 @@ from ..experiment.identify.identify import identify as identified
 from ..family.family import MOST_MODES
 from ..family.modes import FamilyModes
 from ..model import Model
-from .question import AnyQuestion, relative_to
+from .question import AnyQuestion
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +51,14 @@ class IdentifyQuestion(AnyQuestion):
     unknown: Any
     ends: str | None = field(default=None, kw_only=True)
     bounded: ClassVar[bool] = False
+    each: ClassVar[float] = 1e-3
 
     def __post_init__(self) -> None:
         peaks = self.peaks if isinstance(self.peaks, Peaks) else Peaks(self.peaks)
+        check.instance(self.unknown, "unknown", (str, list, tuple), "a path or a list of paths")
         unknown = (self.unknown,) if isinstance(self.unknown, str) else tuple(self.unknown)
+        if self.ends is not None:
+            check.one_of(self.ends, "ends", ("unknown", "given"))
         object.__setattr__(self, "peaks", peaks)
         object.__setattr__(self, "unknown", unknown)
 
@@ -72,10 +76,6 @@ class IdentifyQuestion(AnyQuestion):
     def values(self, answer: Fit) -> Real:
         """Return the numbers."""
         return np.array(answer.value)
-
-    def work(self, model: Model, solver: str) -> float:
-        """Return the seconds, by their order, that a fit takes: n."""
-        return 1e-3 * model.size
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,12 +110,15 @@ class FamilyQuestion(AnyQuestion):
     number: int
 
     def __post_init__(self) -> None:
-        paths, rows = tuple(self.paths), np.array(self.rows, dtype=np.float64)
+        check.instance(self.paths, "paths", (list, tuple), "a list of paths")
+        paths, rows = tuple(self.paths), np.array(self.rows)
+        if rows.dtype.kind not in "iuf":
+            raise TypeError(f"rows must be numbers, got {check.shown(self.rows)}")
         if rows.ndim != 2 or rows.shape[1] != len(paths) or len(rows) == 0:
             expected = f"shape (m, {len(paths)}), a column for each path"
             raise SceneError(f"rows must have {expected}, got shape {rows.shape}")
         object.__setattr__(self, "paths", paths)
-        object.__setattr__(self, "rows", rows)
+        object.__setattr__(self, "rows", rows.astype(np.float64))
         check.count(self.number, "number", most=MOST_MODES)
         super().__post_init__()
 
@@ -130,10 +133,6 @@ class FamilyQuestion(AnyQuestion):
     def values(self, answer: FamilyModes) -> Real:
         """Return the frequencies of each rope [Hz]."""
         return answer.frequency
-
-    def rounding(self, answer: FamilyModes) -> Real:
-        """Return the estimated relative error that rounding causes; 0 for rigid-body motion."""
-        return relative_to(answer.frequency, answer.rounding_error)
 
     @property
     def parts(self) -> tuple[int, str]:

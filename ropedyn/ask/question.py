@@ -46,6 +46,7 @@ class AnyQuestion(Frozen):
     usual: ClassVar[tuple[str, ...]] = ("auto",)  # named; of these, what is tried
     of_spans: ClassVar[tuple[str, ...]] = ("auto",)  # of these, what takes continuous spans
     bounded: ClassVar[bool] = True  # whether answers have a bound of their rounding errors
+    each: ClassVar[float] = 0.0  # what the slowest way takes for each unknown, by its order [s]
 
     def of(self, model: Model, *, solver: str = "auto", threads: int | None = None) -> Any:
         """Ask a model."""
@@ -57,11 +58,11 @@ class AnyQuestion(Frozen):
 
     def rounding(self, answer: Any) -> Real:
         """Return the relative error that rounding causes, infinite where no bound is known."""
-        return np.full(self.values(answer).shape, np.inf)
+        return relative_to(self.values(answer), answer.rounding_error if self.bounded else np.inf)
 
     def mesh(self, answer: Any) -> Real:
         """Return the relative error that the mesh causes, infinite where no bound is known."""
-        return np.full(self.values(answer).shape, np.inf)
+        return relative_to(self.values(answer), getattr(answer, "mesh_error", np.inf))
 
     def unseen(self, answer: Any) -> Real:
         """Return the relative error that the same spans in other cuts do not show: none."""
@@ -97,13 +98,14 @@ class AnyQuestion(Frozen):
 
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order, that the slowest way takes."""
-        return 0.0
+        return self.each * model.size
 
 
-def relative_to(values: NDArray[Any], error: Real) -> Real:
-    """Return errors relative to values; 0 of a value that is 0, as of rigid-body motion."""
+def relative_to(values: NDArray[Any], error: Real | float) -> Real:
+    """Return errors relative to values; of a value that is 0, as of rigid motion, 0 if finite."""
     size = np.abs(values)
-    return np.divide(error, size, out=np.zeros(size.shape), where=size > 0)
+    at_zero = np.where(np.isinf(error), np.inf, np.zeros(size.shape))
+    return np.divide(error, size, out=at_zero, where=size > 0)
 
 
 def nearest(found: NDArray[Any], right: NDArray[Any]) -> NDArray[Any]:

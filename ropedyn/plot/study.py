@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.array import Index
-from ..base.unit import power
+from ..base.unit import duration, power
 from ..study.accuracy import AccuracyCost
 from ..study.effect import EffectCost
 from ..study.hard.hard_cases import HardCases
@@ -53,9 +53,10 @@ def plot_accuracy(cost: AccuracyCost, ax: Axes) -> None:
         ax.axhline(tolerance, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
     ax.set(xscale="log", yscale="log")
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter(lambda seconds, _: duration(seconds))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.set(xlabel="time from the scene to the answer [s]", ylabel="largest relative error [1]")
-    ax.set_title(f"{cost.question}\n{fill(cost.verdict, 95)}", fontsize="small")
+    ax.set(xlabel="time from the scene to the answer", ylabel="largest relative error [1]")
+    ax.set_title(f"{cost.question}\n{fill(cost.verdict, 84)}", fontsize="small")
     light_grid(ax)
     if ax.containers:
         ax.legend(fontsize="small")

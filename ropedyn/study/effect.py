@@ -303,7 +303,7 @@ def effect_cost(
         seconds_without=middle[1:],
         lower_quartile_without=lower[1:],
         upper_quartile_without=upper[1:],
-        unknowns_with=unknowns_of(whole.answer),
+        unknowns_with=whole.unknowns,
         **columns,
     )
 
@@ -328,12 +328,7 @@ def _without(whole: Way, scene: Scene, effect: str) -> tuple[Way, dict[str, Any]
     question = whole.question
     left = Way.of(question, question.placed(scene.without(effect)), whole.how, whole.solver)
     change = question.change(whole.answer, left.model, solver=whole.solver)
-    return left, _numbers(change, unknowns_of(left.answer))
-
-
-def unknowns_of(answer: Any) -> int:
-    """Return how many unknowns an answer had, 0 of one that does not say, as a count."""
-    return int(getattr(getattr(answer, "cost", None), "unknowns", 0))
+    return left, _numbers(change, left.unknowns)
 
 
 def _numbers(change: AnswerChange, unknowns: int) -> dict[str, Any]:

@@ -44,6 +44,12 @@ class Way:
         asked = partial(ask_once, self.question, self.model, self.solver)
         return partial(self.scene.compile, **self.how), asked
 
+    @property
+    def unknowns(self) -> int:
+        """Of what was solved; a count, which is a number, does not say it."""
+        cost = getattr(self.answer, "cost", None)
+        return self.model.size if cost is None else int(cost.unknowns)
+
     def bound(self) -> Real:
         """Ask, and read the error bar: relative errors of the mesh and of rounding."""
         answer = ask_once(self.question, self.model, self.solver)

@@ -37,7 +37,7 @@ def answers(model):
         "peaks": (rd.Peaks([20.0]), "frequency [Hz]", ""),
         "accuracy": (
             rd.accuracy_cost(model.scene, rd.ask.modes(2), elements=8, repeat=1),
-            "time from the scene to the answer [s]",
+            "time from the scene to the answer",
             "largest relative error [1]",
         ),
         "effects": (

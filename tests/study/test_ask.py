@@ -137,6 +137,15 @@ def test_what_an_effect_changes_is_told_of_every_kind_of_question(name):
         assert all(size > 0 for size in change.size.values() if size == size)
 
 
+@pytest.mark.parametrize("name", ["damped", "count", "static", "family"])
+def test_effects_are_priced_for_every_kind_of_question(name):
+    question, _, _ = OTHERS[name]
+    price = rd.effect_cost(SCENE, question, repeat=1)
+    assert tuple(price.change) == question.measures
+    mass = price.effect.tolist().index("point mass")
+    assert price.beyond_error[mass] == (name not in ("static", "count"))
+
+
 def test_a_load_beside_the_nodes_of_a_chain_is_not_compared_unless_there_is_one():
     question = rd.ask.static({("z", 0.7): 2.0})
     exact = question.values(question.of(SCENE.compile()))
@@ -267,3 +276,34 @@ def test_a_question_of_motion_is_asked_by_the_method_that_is_named():
     model = scene.compile(elements=12, element="rigid")
     for method in ("modal", "direct"):
         assert question.of(model, solver=method).cost.method == method
+
+
+AT = ("z", 0.3)
+REFUSED = {
+    "number": (rd.ask.modes, [1.5, "3"], [0, -1]),
+    "damped": (lambda v: rd.ask.modes(1, damped=v), [1, "yes", None], []),
+    "below": (lambda v: rd.ask.count(below=v), ["1", None], [0.0, -1.0, float("nan")]),
+    "modes": (rd.ask.floquet, [1.5, None], [0, 10**6]),
+    "load": (rd.ask.static, [None, 1.0, [AT]], [{}, {AT: float("inf")}]),
+    "amplitude": (
+        lambda v: rd.ask.stepped_sine([1.0], drive=AT, amplitude=v),
+        ["1", None],
+        [0.0, -1.0],
+    ),
+    "unknown": (lambda v: rd.ask.identify([1.0], v), [None, 5], []),
+    "ends": (lambda v: rd.ask.identify([1.0], "tension", ends=v), [5], ["free"]),
+    "paths": (lambda v: rd.ask.family(v, [[1.0]], 1), [None, "tension"], []),
+    "rows": (lambda v: rd.ask.family(["tension"], v, 1), [None, "1"], [[1.0], [], [[1.0, 2.0]]]),
+}
+CASES = [
+    (name, call, value, kind)
+    for name, (call, types, values) in REFUSED.items()
+    for kind, given in ((TypeError, types), (rd.SceneError, values))
+    for value in given
+]
+
+
+@pytest.mark.parametrize(("name", "call", "value", "kind"), CASES)
+def test_what_has_no_meaning_is_refused_when_a_question_is_made(name, call, value, kind):
+    with pytest.raises(kind, match=name):
+        call(value)
