@@ -23,7 +23,7 @@ from ropedyn.study.hard.drawn import CHECKS, Drawn, attack, drawn_scene
 ROOT = Path(__file__).parent.parent.parent
 CASES = {case.name: case for case in shipped()}
 LISTED = {one.name: one for one in hard_list.LIST}
-SAMPLE, SEED, MANY, MANY_SEED = 40, 21, 1000, 31415
+SAMPLE, SEED, MANY, MANY_SEED = 40, 21, 1000, 27182
 """Scenes and seeds of the small sample and of the large one: neither was tuned on."""
 
 

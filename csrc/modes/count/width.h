@@ -59,7 +59,7 @@ RD_INLINE void node(struct wave *wave, const lanes V[W][W])
 
 /* Of a rope that hangs nothing follows x: F is first a shear of x, which turns by less than pi, and
    then what leaves x alone. */
-RD_INLINE void hanging_transfer(struct wave *wave, const struct step *step)
+RD_INLINE void hanging_transfer(struct wave *wave, const struct step *step, const _Bool *bends)
 {
     lanes shear[W][W], rest[W][W];
     for (int i = 0; i < W; i++)
@@ -68,15 +68,19 @@ RD_INLINE void hanging_transfer(struct wave *wave, const struct step *step)
             rest[i][j] = i == 0 ? l_fill(0) : step->D[i][j];
         }
     transfer(wave, shear);
-    transfer_in_parts(wave, rest);
+    transfer_in_parts(wave, rest, bends);
 }
 
-RD_INLINE void step_transfer(struct wave *wave, const struct step *step, _Bool hangs)
+RD_INLINE void step_transfer(struct wave *wave, const struct step *step,
+                             const struct rd_chain *chain)
 {
-    if (step->tilts && W > 2 && hangs)
-        hanging_transfer(wave, step);
+    _Bool bends[W];
+    for (int i = 0; i < W; i++)
+        bends[i] = rd_channel_of(chain->coordinate[i]) == RD_BENDING;
+    if (step->tilts && W > 2 && chain->sag != NULL)
+        hanging_transfer(wave, step, bends);
     else if (step->tilts && W > 2)
-        transfer_in_parts(wave, step->D);
+        transfer_in_parts(wave, step->D, bends);
     else if (step->tilts)
         transfer(wave, step->D);
 }
@@ -236,7 +240,7 @@ RD_INLINE _Bool leg_walk(struct wave *wave, const struct rd_walk *walk, const st
             if (W > 2 && walk->strut[leg->element] && (size_t)leg->element < walk->chain->distinct)
                 strut_transfer(wave, walk->chain, leg->element, &step, z, inverse);
             else
-                step_transfer(wave, &step, walk->chain->sag != NULL);
+                step_transfer(wave, &step, walk->chain);
             step_comply(wave, &step);
         }
     }
