@@ -477,7 +477,7 @@ static enum rd_status cross_run(struct rd_characteristic *c, const struct rd_run
         }
         if (k == all.level)
             break;
-        c->kernel->join(chain, c->way, run->term, one, one, two);
+        c->kernel->join[0](chain, c->way, run->term, one, one, two);
         cv *swap = one;
         one = two;
         two = swap;

@@ -76,7 +76,7 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
         if (k + 1 == levels || rest >> k & 1)
             s->kernel->make_coefficients(one, s->table + k * s->coefs);
         if (k + 1 < levels)
-            s->kernel->join(s->chain, &s->way[way], run->term, one, one, two);
+            s->kernel->join[s->undamped](s->chain, &s->way[way], run->term, one, one, two);
         cv *swap = one;
         one = two;
         two = swap;
@@ -101,7 +101,7 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
         return;
     s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
     if (s->planar && s->state.rows == 0)
-        s->kernel->walk_plain(&s->walk[way], node, count, &s->state);
+        s->kernel->walk_plain[s->undamped](&s->walk[way], node, count, &s->state);
     else
         s->kernel->walk(&s->walk[way], node, count, &s->state);
     s->state.absorbed = 0;

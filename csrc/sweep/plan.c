@@ -48,7 +48,7 @@ static bool has_minors(const struct rd_chain *chain, const struct sweep_kernel *
     for (size_t e = 0; e < chain->distinct; e++)
         if (sweep_is_strut(chain, e))
             return false;
-    return kernel->walk_plain && !chain->sag &&
+    return kernel->walk_plain[0] && !chain->sag &&
            (chain->width == 2 || chain->coordinate[chain->width - 1] == RD_BETA);
 }
 
@@ -103,7 +103,7 @@ static void coefficients_take(struct sweep *s, struct rd_workspace *workspace)
     if (chain->distinct > DISTINCT_MOST || chain->inertia)
         return;
     s->coefficients = take_lanes(workspace, chain->distinct * s->coefs, sizeof *s->coefficients);
-    if (s->kernel->walk_plain)
+    if (s->kernel->walk_plain[0])
         s->plain = take_lanes(workspace, chain->distinct * RD_PLAIN, sizeof *s->plain);
 }
 

@@ -33,6 +33,7 @@ struct sweep {
     int minors;     /* without rows a walk may go by them */
     double shear;   /* largest (S_cb/S_bb)^2 of a width of 3 */
     int planar;     /* this block's does */
+    int undamped;   /* and with real numbers */
     struct taps carry, meet;
     size_t *rank;            /* (carried) */
     size_t records;          /* different nodes where parts meet */

@@ -1,6 +1,8 @@
 /* The characteristic receptances that scale a sweep, and how long its pieces may be. */
 #include "sweep/scale.h"
 
+#include "closed/lane_trig.h"
+
 #include "span/span.h"
 
 #include <math.h>
@@ -116,6 +118,15 @@ struct rd_sizes rd_sweep_sizes(const struct sweep_extent *extent)
     };
 }
 
+/* whether structures that nodes carry are damped */
+static int is_lossy(const struct rd_chain *chain)
+{
+    int any = 0;
+    for (size_t k = 0; k < chain->attached; k++)
+        any |= chain->attached_value[(k + 1) * RD_ATTACHED_VALUES - 1] != 0.0;
+    return any;
+}
+
 /* what follows from the scales and the factors of all lanes */
 static RD_CLONES void fill(const struct rd_chain *chain, const struct factors *of,
                            struct sweep_block *block, struct sweep_way *way)
@@ -141,9 +152,10 @@ static RD_CLONES void fill(const struct rd_chain *chain, const struct factors *o
     block->dashpot = of->dashpot;
     if (block->bends && chain->kind != RD_CONTINUOUS)
         shape_prepare(c_mul(of->tension, soft), &block->series);
-    block->real = 1;
-    for (size_t lane = 0; lane < RD_LANES; lane++)
-        block->real = block->real && of->spring.im[lane] == 0.0 && of->inertia.im[lane] == 0.0;
+    block->real = !some((of->spring.im != 0.0) | (of->inertia.im != 0.0));
+    const lane_mask real = (of->section.im == 0.0) & (of->tension.im == 0.0) &
+                           (of->spring.im == 0.0) & (of->inertia.im == 0.0);
+    block->undamped = rd_chain_is_dragged(chain) || is_lossy(chain) ? (lane_mask){0} : real;
     block->pull = times(of->tension, last * last);
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++) {

@@ -33,8 +33,9 @@ static enum rd_status begin_block(struct sweep *s, const struct rd_factors *fact
     rd_sweep_scale(s->chain, &s->runs, factors, s->index, s->extent, &s->block, s->way);
     rd_sweep_feet(s->chain, &s->block, s->foot);
     s->planar = is_planar(s, 0);
+    s->undamped = s->block.undamped[0] != 0;
     for (size_t lane = 1; lane < s->used; lane++)
-        if (is_planar(s, lane) != s->planar)
+        if (is_planar(s, lane) != s->planar || (s->block.undamped[lane] != 0) != s->undamped)
             s->used = lane;
     s->most = rd_sweep_most(s->extent, s->used);
     s->tabled.levels = 0;

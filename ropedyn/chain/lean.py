@@ -16,43 +16,33 @@ def lean(chain: Chain) -> tuple[Chain, Index]:
     joined = _joined(chain) if chain.rise is None else np.zeros(1, dtype=np.bool_)
     if not joined.any():
         return chain, np.arange(chain.nodes)
-    begin = np.flatnonzero(np.append(True, ~joined))
-    end = np.append(begin[1:], len(chain.element))
-    several = end - begin > 1
-    count = np.where(several, 1, np.diff(chain.first)[begin])
-    length = np.add.reduceat(chain.length[chain.element] * np.diff(chain.first), begin)
-    # an element of its own for each span that was joined
-    own = np.append(chain.element[begin[~several]], chain.element[begin[several]])
-    used, which = np.unique(own[: int((~several).sum())], return_inverse=True)
-    source = np.append(used, own[int((~several).sum()) :])
-    element = np.empty(len(begin), dtype=np.int32)
-    element[~several] = which
-    element[several] = len(used) + np.arange(int(several.sum()))
-    kept = np.ones(chain.nodes, dtype=np.bool_)
-    for first, last in zip(chain.first[begin[several]], chain.first[end[several]]):
-        kept[first + 1 : last] = False
-    chain, term = _terms(chain, np.append(chain.term[begin], chain.term[-1]))
-    changed: dict[str, Any] = {name: array[source] for name, array in _along(chain).items()}
+    begin, nodes = np.flatnonzero(np.append(True, ~joined)), np.diff(chain.first)
+    size, several = np.add.reduceat(nodes, begin), np.diff(begin, append=len(nodes)) > 1
+    section, whole = (
+        chain.element[begin],
+        np.add.reduceat(chain.length[chain.element] * nodes, begin),
+    )
+    length = np.where(several, whole, chain.length[section])
+    _, source, element = np.unique(
+        np.stack([section, length]), axis=1, return_index=True, return_inverse=True
+    )
+    term = np.append(chain.term[begin], chain.term[-1])
+    changed: dict[str, Any] = {n: array[section[source]] for n, array in _along(chain).items()}
+    if chain.attached_term is None:
+        # structures name the terms that carry them by number; else only those stay that stand
+        stand, term = np.unique(term, return_inverse=True)
+        names = ("mass", "stiffness", "held", "damping", "hinge")
+        given = {n: getattr(chain, n) for n in names}
+        changed |= {n: array[stand] for n, array in given.items() if array is not None}
     found = chain._replace(
-        length=np.append(chain.length[used], length[several]),
-        first=np.append(0, np.cumsum(count)).astype(np.int32),
-        element=element,
-        term=term,
+        length=length[source],
+        first=np.append(0, np.cumsum(np.where(several, 1, size))).astype(np.int32),
+        element=element.ravel().astype(np.int32),
+        term=term.astype(np.int32),
         **changed,
     )
-    return found, np.flatnonzero(kept)
-
-
-def _terms(chain: Chain, term: NDArray[np.int32]) -> tuple[Chain, NDArray[np.int32]]:
-    """Keep those node terms that stand somewhere; structures name theirs by number."""
-    if chain.attached_term is not None:
-        return chain, term
-    kept, which = np.unique(term, return_inverse=True)
-    names = ("mass", "stiffness", "held", "damping", "hinge")
-    own: dict[str, Any] = {
-        n: getattr(chain, n)[kept] for n in names if getattr(chain, n) is not None
-    }
-    return chain._replace(**own), which.astype(np.int32)
+    starts = np.isin(np.arange(chain.nodes - 1), chain.first[begin])
+    return found, np.flatnonzero(np.append(~np.repeat(several, size) | starts, True))
 
 
 def _along(chain: Chain) -> dict[str, NDArray[Any]]:
@@ -64,7 +54,7 @@ def _along(chain: Chain) -> dict[str, NDArray[Any]]:
 def _joined(chain: Chain) -> Flags:
     """Return between which stretches nothing stands and nothing changes, shape (stretches - 2,)."""
     if chain.inertia is None or len(chain.first) < 3:
-        return np.zeros(max(len(chain.first) - 2, 0), dtype=np.bool_)
+        return np.zeros(len(chain.first) - 2, dtype=np.bool_)
     stands: NDArray[np.bool_] = np.any(chain.held, axis=1)
     for array in (chain.mass, chain.stiffness, chain.damping, chain.hinge):
         if array is not None:
@@ -72,9 +62,7 @@ def _joined(chain: Chain) -> Flags:
     if chain.attached_term is not None:
         stands[chain.attached_term] = True
     bare: NDArray[np.bool_] = ~stands[chain.term[1:-1]]
-    if bare.any():
-        left, right = chain.element[:-1], chain.element[1:]
-        for array in _along(chain).values():
-            same = array[left] == array[right]
-            bare &= same.reshape(len(same), -1).all(axis=1)
+    for array in _along(chain).values() if bare.any() else ():
+        same = array[chain.element[:-1]] == array[chain.element[1:]]
+        bare &= same.reshape(len(same), -1).all(axis=1)
     return bare

@@ -48,13 +48,12 @@ class EffectCost(Answer):
         [%]"`` and ``"rms [%]"``, of frequencies; where motion grows -growth/2 pi is the frequency.
         Each mode is compared with that of the same order among those of the same motion:
         transverse, torsional, axial, of a resonator or of a broken wire. And ``"damping ratio
-        [1]"``, the largest change of any damping ratio. Of a frequency
-        response ``"largest [dB]"`` and ``"median [dB]"``, of the level |20 log10(without/with)| of
-        all lines, and ``"peak shift [Hz]"``, from the largest peak to the nearest one without the
-        effect, where that has the same number. Of motion over time ``"largest [%]"``, ``"rms [%]"``
-        of all times and ``"peak [%]"``, of the largest value, in percent of that. Of other
-        questions ``"largest [%]"`` and ``"rms [%]"`` of all values. NaN where there is nothing to
-        compare.
+        [1]"``, of any. Of a frequency response ``"largest [dB]"`` and ``"median [dB]"``, of the
+        level |20 log10(without/with)| of all lines, and ``"peak shift [Hz]"``, from the largest
+        peak to the nearest one without the effect, where that has the same number. Of motion over
+        time ``"largest [%]"``, ``"rms [%]"`` of all times and ``"peak [%]"``, of the largest value,
+        in percent of that. Else ``"largest [%]"`` and ``"rms [%]"`` of all values. NaN where there
+        is nothing to compare.
     error : ndarray, shape (rows,)
         Error bars of both answers, of mesh and rounding, where the change is largest [Hz, dB, %];
         infinite where none are known, as those of a chain that is not linear.

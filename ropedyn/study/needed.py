@@ -23,22 +23,17 @@ def needed(scene: Scene, question: AnyQuestion, tolerance: float) -> tuple[str, 
     alone = {effect: _apart(whole, scene, [effect]) for effect in scene.effects}
     idle = [effect for effect in alone if alone[effect] <= tolerance]
     idle.sort(key=lambda effect: alone[effect])
-    out = (_most if len(idle) <= MOST else _in_turn)(whole, scene, idle, tolerance)
+    out = _left_out(whole, scene, idle, tolerance)
     return scene.without(*out).effects
 
 
-def _most(whole: Way, scene: Scene, idle: list[str], tolerance: float) -> tuple[str, ...]:
-    """Leave out what leaves the fewest effects, of as many those that change least."""
-    for count in range(len(idle), 1, -1):
+def _left_out(whole: Way, scene: Scene, idle: list[str], tolerance: float) -> tuple[str, ...]:
+    """Return what leaves the fewest effects, of as many those that change least."""
+    for count in range(len(idle) if len(idle) <= MOST else 0, 0, -1):
         found = {some: _apart(whole, scene, some) for some in combinations(idle, count)}
         within = [some for some in found if found[some] <= tolerance]
         if within:
             return min(within, key=lambda some: (len(scene.without(*some).effects), found[some]))
-    return tuple(idle[:1])
-
-
-def _in_turn(whole: Way, scene: Scene, idle: list[str], tolerance: float) -> tuple[str, ...]:
-    """Leave out one after the other as long as the answer stays within the tolerance."""
     out: tuple[str, ...] = ()
     for effect in idle:
         if _apart(whole, scene, (*out, effect)) <= tolerance:

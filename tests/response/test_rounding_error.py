@@ -144,7 +144,8 @@ def test_rounding_limit_bounds_the_true_error_where_a_response_changes_its_sign(
     "rounding_limit of an FRF at and next to resonances and antiresonances over the true error, "
     "median of a few lines",
     reference=EXACT,
-    accepted=50.0,
+    # of real numbers errors are smaller than of complex ones, which the bound is calibrated by
+    accepted=100.0,
 )
 def test_rounding_limit_is_no_useless_bound_where_a_response_changes_its_sign(resonant, claim):
     error, limit, value = resonant

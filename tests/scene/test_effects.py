@@ -4,7 +4,7 @@ import shutil
 
 import numpy as np
 import pytest
-from executed import build, lines_of
+from executed import build, counts_of
 
 import ropedyn as rd
 
@@ -69,6 +69,14 @@ def ask(scene):
         model.count(below=90.0)
         model.frf([7.0, 90.0], drive=("z", 0.33), response=[("z", 0.33), ("M_beta", 0.6)])
         model.static({("z", 0.33): 1.0})
+
+
+def ask_of_lines(scene):
+    """Ask spans what needs no shapes."""
+    model = scene.compile()
+    model.modes(4)
+    model.count(below=90.0)
+    model.frf([7.0, 90.0], drive=("z", 0.33))
 
 
 def arrays(chain):
@@ -144,13 +152,24 @@ MECHANISMS = {
 spans and nodes, springs at nodes, sections, complex factors."""
 
 
-@pytest.mark.long
-@pytest.mark.skipif(shutil.which("gcov") is None, reason="needs gcov")
-def test_code_of_an_effect_runs_only_where_a_scene_has_it(tmp_path):
-    objects = build(tmp_path)
+def with_gcov(test):
+    """Mark a test that counts lines."""
+    return pytest.mark.long(pytest.mark.skipif(not shutil.which("gcov"), reason="needs gcov")(test))
+
+
+@pytest.fixture(scope="module")
+def counted(tmp_path_factory):
+    """What counts the lines of the core that scenes execute."""
+    folder = tmp_path_factory.mktemp("counted")
+    objects = build(folder)
+    return lambda scenes, ask="ask": counts_of(scenes, folder, objects, ask)
+
+
+@with_gcov
+def test_code_of_an_effect_runs_only_where_a_scene_has_it(counted):
     scenes = {"BARE": "BARE"} | {e: f"with_only({e!r})" for e in ALONE}
     scenes |= {f"no {name}": f"full().without{e!r}" for name, e in MECHANISMS.items()}
-    lines = dict(zip(scenes, lines_of(scenes.values(), tmp_path, objects)))
+    lines = {name: set(of) for name, of in zip(scenes, counted(scenes.values()))}
     for name, served in MECHANISMS.items():
         # what no scene runs that has another effect alone
         needed = {need for effect in served for need in NEEDED.get(effect, ())}
@@ -160,3 +179,45 @@ def test_code_of_an_effect_runs_only_where_a_scene_has_it(tmp_path):
         assert own, name
         # nor may one run it that has all other effects
         assert not own & lines[f"no {name}"], name
+
+
+IDLE = "parts=[*BARE.parts, rd.PointMass(0.37, 0.0), rd.LocalChange(0.7, 0.8)]"
+COMPILING = ("chain/division.c", "element/section.c", "glue/")
+"""Where stations are counted and arrays taken over, which stay."""
+
+
+@with_gcov
+def test_what_an_effect_left_behind_is_executed_as_often_as_without_it(counted):
+    # every effect alone, given and what is left of all, and what stands there and does nothing
+    never = {effect: f"with_only({effect!r})" for effect in ALONE}
+    gone = {
+        effect: f"full().without(*set(ALONE) - { {effect, *NEEDED.get(effect, ())}!r})"
+        for effect in ALONE
+    }
+    scenes = [*never.values(), *gone.values()]
+    found = counted(scenes)
+    for k, effect in enumerate(ALONE):
+        one, other = (
+            {line: count for line, count in found[at].items() if "watch" not in line[0]}
+            for at in (k, len(ALONE) + k)
+        )
+        # how often a Ctrl-C is looked for depends on the time
+        assert one == other, effect
+
+
+@with_gcov
+def test_what_does_nothing_is_solved_as_often_as_what_is_not_there(counted):
+    bare, idle = counted(["BARE", f"BARE.replace({IDLE})"], "ask_of_lines")
+    assert len(bare) > 500
+    for line in bare.keys() | idle.keys():
+        if not any(name in line[0] for name in COMPILING):
+            assert bare[line] == idle[line], line
+
+
+@pytest.mark.parametrize("effect", ALONE)
+def test_coordinates_are_those_without_what_is_absent(effect):
+    left = full().without(*set(ALONE) - {effect, *NEEDED.get(effect, ())})
+    assert left.coordinates == with_only(effect).coordinates
+    idle = left.replace(parts=[*left.parts, rd.PointMass(0.37, 0.0), rd.LocalChange(0.7, 0.8)])
+    assert idle.coordinates == left.coordinates
+    assert idle.compile().components == left.compile().components

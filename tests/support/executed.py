@@ -7,6 +7,7 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -26,7 +27,7 @@ import test_effects
 
 def ask(scene, counts):
     os.environ["GCOV_PREFIX"] = counts
-    test_effects.ask(eval(scene, vars(test_effects)))
+    test_effects.{ask}(eval(scene, vars(test_effects)))
     sys.exit()  # which writes the counts
 
 for scene, counts in {asked!r}:
@@ -65,14 +66,14 @@ def build(folder):
     return objects
 
 
-def lines_of(scenes, folder, objects):
-    """Run `test_effects.ask` of scenes, expressions there; return the lines that each executed."""
+def counts_of(scenes, folder, objects, ask="ask"):
+    """Run `test_effects.ask` of scenes, expressions there; return how often each ran which line."""
     places = [Path(tempfile.mkdtemp(dir=folder)) for _ in scenes]
     asked = [(scene, str(place)) for scene, place in zip(scenes, places)]
     workers = os.cpu_count()
 
     def run(some):
-        code = ASK.format(package=str(folder), tests=TESTS, asked=some)
+        code = ASK.format(package=str(folder), tests=TESTS, asked=some, ask=ask)
         aside = {"GCOV_PREFIX": tempfile.mkdtemp(dir=folder), "OPENBLAS_NUM_THREADS": "1"}
         subprocess.run([sys.executable, "-c", code], env=os.environ | aside, check=True)
 
@@ -82,18 +83,21 @@ def lines_of(scenes, folder, objects):
 
 
 def _counted(counts, folder, objects):
-    """The lines (file, number) of the core that the counts in a folder say were executed."""
+    """How often each line (file, number) of the core was executed, those that were."""
     place = counts / objects.relative_to("/")
     for notes in objects.glob("*.gcno"):
         shutil.copy(notes, place)
     files = [str(f) for f in sorted(place.glob("*.gcda"))]
     command = ["gcov", "--json-format", "--stdout", *files]
     report = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
-    return {
-        (source["file"], line["line_number"])
+    found = Counter()
+    for key, count in (
+        ((source["file"], line["line_number"]), line["count"])
         for unit in report.stdout.splitlines()
         for source in json.loads(unit)["files"]
         if source["file"].startswith("csrc/")
         for line in source["lines"]
         if line["count"] > 0
-    }
+    ):
+        found[key] += count
+    return found

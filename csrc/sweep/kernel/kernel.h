@@ -38,6 +38,7 @@ struct sweep_block {
     cv spring, inertia;         /* factors of node stiffness and mass */
     cv dashpot;                 /* of node damping, 0 where the chain has none */
     int real;                   /* spring and inertia are */
+    lane_mask undamped;         /* nothing takes energy away */
 };
 
 /* What depends on the direction of the walk as well: backward all is seen with u -> D u. */
@@ -132,9 +133,11 @@ struct sweep_kernel {
     void (*make_coefficients)(const cv *triple, cv *coef);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
     void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);
-    void (*walk_plain)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
-    void (*join)(const struct rd_chain *, const struct sweep_way *, int32_t term, const cv *one,
-                 const cv *two, cv *joined);
+    /* these of complex numbers, and of real ones where nothing is damped */
+    void (*walk_plain[2])(const struct sweep_walk *, size_t node, size_t count,
+                          struct sweep_state *);
+    void (*join[2])(const struct rd_chain *, const struct sweep_way *, int32_t term, const cv *one,
+                    const cv *two, cv *joined);
     void (*walk)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
     void (*walk_pieces)(const struct sweep_walk *, const cv *piece, int32_t term, size_t count,
                         struct sweep_state *);

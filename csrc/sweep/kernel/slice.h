@@ -66,16 +66,31 @@ static RD_CLONES void K_(make_slice)(const struct rd_chain *chain, const struct 
     K_(slice)(&rate, ldexp(chain->length[e], -halvings), terms, triple);
 }
 
+RD_INLINE int K_(is_real)(const cv *x, int count)
+{
+    lanes im = {0};
+    KEEP for (int i = 0; i < count; i++)
+        im += l_abs(x[i].im);
+    double sum = 0.0;
+    for (int k = 0; k < RD_LANES; k++)
+        sum += im[k];
+    return sum == 0.0;
+}
+
 /* a whole span, joined from 2^halvings slices */
 static RD_CLONES void K_(make_span)(const struct rate_matrix *rate, double l, int halvings,
                                     int terms, cv *triple)
 {
     cv half[FULL + 2 * SYM];
     K_(slice)(rate, ldexp(l, -halvings), terms, triple);
+    const int undamped = K_(is_real)(triple, FULL + 2 * SYM);
     for (int k = 0; k < halvings; k++) {
         KEEP for (int i = 0; i < FULL + 2 * SYM; i++)
             half[i] = triple[i];
-        K_(join)(NULL, NULL, -1, half, half, triple);
+        if (undamped)
+            NAME(real_join, RD_WIDTH)(NULL, NULL, -1, half, half, triple);
+        else
+            K_(join)(NULL, NULL, -1, half, half, triple);
     }
 }
 

@@ -1,22 +1,6 @@
 /* One step of the walk: across an element and the node before it.
    Included by sweep/kernel/width.h, once per width. */
 
-/* N = spring stiffness + inertia mass + dashpot damping, scaled, seen in the direction of the walk */
-RD_INLINE void K_(node_term)(const struct rd_chain *chain, const struct sweep_way *way, size_t t,
-                             cv *N)
-{
-    const double *k = chain->stiffness + t * FULL, *m = chain->mass + t * FULL;
-    UNROLL for (int i = 0; i < W; i++)
-        UNROLL for (int j = i; j < W; j++)
-            N[at(i, j)] = c_add(c_scale(way->spring[at(i, j)], k[i * W + j]),
-                                c_scale(way->inertia[at(i, j)], m[i * W + j]));
-    const double *d = chain->damping ? chain->damping + t * FULL : NULL;
-    if (d)
-        KEEP for (int i = 0; i < W; i++)
-            KEEP for (int j = i; j < W; j++)
-                N[at(i, j)] = c_add(N[at(i, j)], c_scale(way->dashpot[at(i, j)], d[i * W + j]));
-}
-
 /* m = W U + i I, its adjugate and 1/det */
 RD_INLINE cv K_(resolve)(const cv *w, const cv *U, cv *adj)
 {

@@ -29,13 +29,24 @@ RD_INLINE int K_(at)(int i, int j)
 }
 #define at K_(at)
 
+#define RD_REAL 1
+#include "sweep/kernel/number.h"
+
 #include "sweep/kernel/small_matrix.h"
+
+#include "sweep/kernel/join.h"
+
+#undef RD_REAL
+#define RD_REAL 0
+#include "sweep/kernel/number.h"
+
+#include "sweep/kernel/small_matrix.h"
+
+#include "sweep/kernel/join.h"
 
 #include "sweep/kernel/element.h"
 
 #include "sweep/kernel/step.h"
-
-#include "sweep/kernel/join.h"
 
 #include "sweep/kernel/slice.h"
 
@@ -46,6 +57,12 @@ RD_INLINE int K_(at)(int i, int j)
 #include "sweep/kernel/meet.h"
 
 #if RD_WIDTH == 2 || RD_WIDTH == 3
+#include "sweep/kernel/plane.h"
+
+#undef RD_REAL
+#define RD_REAL 1
+#include "sweep/kernel/number.h"
+
 #include "sweep/kernel/plane.h"
 #endif
 
@@ -59,9 +76,9 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_single = K_(make_single),
 #if RD_WIDTH == 2 || RD_WIDTH == 3
     .make_plain = K_(make_plain),
-    .walk_plain = K_(walk_plain),
+    .walk_plain = {K_(walk_plain), NAME(real_walk_plain, RD_WIDTH)},
 #endif
-    .join = K_(join),
+    .join = {K_(join), NAME(real_join, RD_WIDTH)},
     .walk = K_(walk),
     .walk_pieces = K_(walk_pieces),
     .absorb = K_(absorb),
