@@ -52,9 +52,10 @@ def page(rows: list[list[str]]) -> str:
     head = ["rope", "model", "one plane", "both", "ratio", "one, shapes", "both, shapes", "ratio"]
     return f"""# Two planes
 
-{report.machine()}. Medians of processor time in us of calls in turn: the ten lowest modes, certified, of
-scenes that are alike in both planes, so that every frequency is double, and of one plane of them; then
-the same with shapes.
+{report.machine()}.
+Medians of processor time in us of calls in turn: the ten lowest modes, certified, of scenes that
+are alike in both planes, so that every frequency is double, and of one plane of them; then the same
+with shapes.
 
 {report.table(head, rows)}
 """
