@@ -241,16 +241,13 @@ class Chain(NamedTuple):
 
     def energy(self, shape: Real, eigenvalue: Real) -> tuple[Real, Real, Real]:
         """Return strain, kinetic and dragged energy of shapes, twice; see `_core.energy`."""
-        parts = []
+        kinetic, others = np.zeros((len(shape), shape.shape[2])), []
         for plane in self.planes:
             own = np.ascontiguousarray(shape[..., plane.kept])
-            parts.append(_core.energy(plane.chain, own, eigenvalue))
-        if len(parts) == 1:
-            return parts[0]
-        kinetic = np.zeros((len(shape), shape.shape[2]))
-        for plane, part in zip(self.planes, parts):
-            kinetic[:, plane.kept] = part[1]
-        return parts[0][0] + parts[1][0], kinetic, parts[0][2] + parts[1][2]
+            strain, kinetic[:, plane.kept], dragged = _core.energy(plane.chain, own, eigenvalue)
+            others.append((strain, dragged))
+        strain, dragged = (sum(of[1:], start=of[0]) for of in zip(*others))
+        return strain, kinetic, dragged
 
     def only(self, coordinates: Sequence[str]) -> Chain:
         """Return the chain of some of the coordinates."""

@@ -78,10 +78,8 @@ class Slopes:
         """Ask the core."""
         parts = []
         for plane in chain.planes:
-            u, y = (
-                np.ascontiguousarray(of)
-                for of in (shape[..., plane.kept], motion[:, plane.carried])
-            )
+            u = np.ascontiguousarray(shape[..., plane.kept])
+            y = np.ascontiguousarray(motion[:, plane.carried])
             element, jump, node, place = _core.sensitivity(plane.chain, u, y, eigenvalue)
             number, foot = _core.carried_slopes(plane.chain, u, y, eigenvalue)
             element = element[..., : SECTIONS + u.shape[2]]
