@@ -13,6 +13,8 @@ from typing import Any, ClassVar, NamedTuple, dataclass_transform
 
 from . import check
 
+Pair = float | tuple[float, float]  # A number, or one for the plane of z and one for that of y.
+
 
 class Parameter(NamedTuple):
     """What is declared of a field."""
@@ -30,9 +32,8 @@ class Parameter(NamedTuple):
 
     def unit_on(self, coordinate: object) -> str:
         """Return the unit on a coordinate."""
-        return (
-            self.turning if self.turning and coordinate in ("alpha", "beta", "gamma") else self.unit
-        )
+        turns = self.turning and coordinate in ("alpha", "beta", "gamma")
+        return self.turning if turns else self.unit
 
 
 def _declared(parameter: Parameter, default: Any, **metadata: Any) -> Any:
@@ -65,7 +66,7 @@ def number(
 def pair(unit: str = "", *, sign: str = "any", default: Any = MISSING) -> Any:
     """Declare a number, or one for the plane of z and one for that of y."""
 
-    def checked(value: Any, name: str, thing: Any) -> float | tuple[float, float] | None:
+    def checked(value: Any, name: str, thing: Any) -> Pair | None:
         if value is None and default is None:
             return None
         if not isinstance(value, (tuple, list)):

@@ -78,10 +78,8 @@ class Slopes:
         """Ask the core."""
         parts = []
         for plane in chain.planes:
-            u, y = (
-                np.ascontiguousarray(of)
-                for of in (shape[..., plane.kept], motion[:, plane.carried])
-            )
+            u = np.ascontiguousarray(shape[..., plane.kept])
+            y = np.ascontiguousarray(motion[:, plane.carried])
             element, jump, node, place = slopes(plane.chain, u, y, eigenvalue)
             nodes = plane.chain._replace(rise=None)
             number, foot = _core.carried_slopes(nodes, u, y, eigenvalue)

@@ -82,16 +82,13 @@ def _count(chain: Chain, limit: float) -> int:
 def merged(
     found: Sequence[ComponentModes], number: int | None, which: Index | None = None
 ) -> tuple[Real, Real, Index]:
-    """Return eigenvalues and errors of all components in order, and that order.
-
-    Modes solved before have the components `which`; so they have again, however close they are.
-    """
+    """Return eigenvalues and errors of all components, and their order: by size, or as before."""
     eigenvalue = np.concatenate([part.eigenvalue for part in found])
     error = np.concatenate([part.error for part in found])
     # what rounding cannot tell from 0 is rigid-body motion
     eigenvalue = np.where(np.abs(eigenvalue) <= error, 0.0, eigenvalue)
     order = np.argsort(eigenvalue, kind="stable")
-    if which is not None:
+    if which is not None:  # the components that modes have had, however close they are
         order = _in_turn([len(part.eigenvalue) for part in found], which, order)
     order = order[:number]
     return eigenvalue[order], error[order], order

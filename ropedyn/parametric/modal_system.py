@@ -81,10 +81,8 @@ def _together(parts: Sequence[ModalSystem], number: int | None) -> ModalSystem:
     from scipy.linalg import block_diag
 
     value = np.concatenate([part.eigenvalue for part in parts])
-    geometric, damping = (
-        block_diag(*matrices)
-        for matrices in zip(*((part.geometric, part.damping) for part in parts))
-    )
+    geometric = block_diag(*(part.geometric for part in parts))
+    damping = block_diag(*(part.damping for part in parts))
     return ModalSystem(value, geometric, damping).only(np.argsort(value, kind="stable")[:number])
 
 

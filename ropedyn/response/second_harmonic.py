@@ -269,7 +269,7 @@ def _scales(model: Compiled, fastest: float) -> tuple[float, float]:
         turns = turns + 2 * omega * np.sqrt(inertia["alpha"] * S[:, 1, 1])
     thin = np.full(len(S), np.inf)
     across = np.zeros(len(S))
-    for z, beta in _planes(model):
+    for z, beta in (plane for plane in TRANSVERSE if plane[0] in names):
         if beta in names:
             bends = S[:, CHANNELS[beta], CHANNELS[beta]]
             root = np.sqrt(chain.tension**2 + 4 * inertia[z] * omega**2 / bends)
@@ -319,7 +319,7 @@ def _integrated(
 def _fields(model: Compiled, f: Real, loads: Sequence[Point], rule: Rule) -> FieldsAlong:
     """Return the fields of unit loads, dislocations and motions of ends."""
     shape = (len(loads), len(rule.x), len(f))
-    planes = _planes(model)
+    planes = [plane for plane in TRANSVERSE if plane[0] in model.coordinates]
     tension, slope = np.zeros(shape, np.complex128), np.zeros((len(planes), *shape), np.complex128)
     rounding = np.zeros((len(loads), len(f)))
     factor = np.ascontiguousarray(damping.factors(model.scene.dampings, 2 * np.pi * f).T)
@@ -344,11 +344,6 @@ def _fields(model: Compiled, f: Real, loads: Sequence[Point], rule: Rule) -> Fie
                 own[here] = told[:, at, 1, component.index(z)] / pull
         rounding[here] = _rounding(fields, factor, at)
     return FieldsAlong(tension, slope, rounding)
-
-
-def _planes(model: Compiled) -> list[tuple[str, str]]:
-    """Return what moves across and turns, in each plane there is."""
-    return [plane for plane in TRANSVERSE if plane[0] in model.coordinates]
 
 
 def _cut(model: Compiled, component: tuple[str, ...], positions: Real) -> Compiled:

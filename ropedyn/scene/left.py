@@ -12,7 +12,7 @@ from .end import STANDING, End
 from .gravity import Gravity
 from .parts.node import Part
 from .parts.stretch import Stretch, changeable
-from .rope import ACROSS, Rope, in_plane
+from .rope import ACROSS, Rope, own_number
 from .tension import Tension
 
 if TYPE_CHECKING:
@@ -68,9 +68,8 @@ def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
 
 def _rope(rope: Rope, effects: tuple[str, ...]) -> Rope:
     """Return the rope without properties that go with these effects."""
-    kept: dict[str, Any] = {}
-    if SECOND_PLANE in effects:
-        kept = {name: in_plane(getattr(rope, name), 0) for name in ACROSS}
+    pairs = [name for name in ACROSS if isinstance(getattr(rope, name), tuple)]
+    kept = {name: own_number(rope, name) for name in pairs if SECOND_PLANE in effects}
     gone = {name for effect in effects for name in PROPERTIES.get(effect, ())}
     return rope.replace(**(kept | dict.fromkeys(gone)))
 

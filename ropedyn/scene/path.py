@@ -24,7 +24,7 @@ _PATH = re.compile(
     rf"|ends\[(?P<end>[01])\]\.(?P<kind>{'|'.join(STANDING)}))\.(?P<name>[^.]+)"
 )
 
-_ENTRY = re.compile(r"(.*)\[([01])\]")  # one number of a pair, for the plane of z or of y
+_ENTRY = re.compile(r"(.*?)(?:\[([01])\])?")  # a number, or one of a pair for the planes of z and y
 
 
 class _Place(NamedTuple):
@@ -43,11 +43,9 @@ def _place(path: str) -> _Place:
     if path == "tension":
         return _Place("tension", "mean")
     found = _PATH.fullmatch(path)
-    name = path.rsplit(".", 1)[-1] if found is None else found["name"]
-    one_of_pair = _ENTRY.fullmatch(name)
-    if one_of_pair:
-        name = one_of_pair[1]
-    entry = int(one_of_pair[2]) if one_of_pair else None
+    own = _ENTRY.fullmatch(path.rsplit(".", 1)[-1] if found is None else found["name"])
+    assert own is not None
+    name, entry = own[1], None if own[2] is None else int(own[2])
     if found is None:
         return _Place("rope", name, entry=entry)
     if found["end"]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base import check
 from ..base.errors import SceneError
-from ..base.parameter import Description, number, pair
+from ..base.parameter import Description, Pair, number, pair
 from .bench.bending_test import BendingTest
 from .bench.given import given_tests
 from .bench.torsion_test import TorsionTest
@@ -30,11 +30,8 @@ def in_plane(value: Any, plane: int) -> Any:
 
 def own_number(rope: Rope, name: str) -> float | None:
     """Return a property of the plane of z, or of that of y by its name in `ACROSS`."""
-    if name in _ACROSS_OF:
-        found: float | tuple[float, float] | None = getattr(rope, _ACROSS_OF[name])
-        return found[1] if isinstance(found, tuple) else found
-    found = getattr(rope, name)
-    return found[0] if isinstance(found, tuple) else found
+    found: float | None = in_plane(getattr(rope, _ACROSS_OF.get(name, name)), name in _ACROSS_OF)
+    return found
 
 
 class Rope(Description):
@@ -47,8 +44,8 @@ class Rope(Description):
     linear_density : float
         Mass per length [kg/m].
     bending_stiffness : float or pair of float, optional
-        B [N m^2]: gives bending and with it the coordinates z and beta. A pair is that of the
-        plane of z and that of the plane of y, of a scene in both.
+        B [N m^2]: gives bending and with it the coordinates z and beta. A pair is of the planes of
+        z and of y, where the scene has both.
     torsional_stiffness : float, optional
         C [N m^2]: gives twist, the coordinate alpha.
     axial_stiffness : float, optional
@@ -64,8 +61,7 @@ class Rope(Description):
         across the tip of a cantilever of length l twists it by
         H/(1 + H^2) (1/C - 1/B) F l^2/2.
     rotary_inertia : float or pair of float, optional
-        Inertia of bending rotation per length [kg m], in both planes as `bending_stiffness`; 0 is
-        none.
+        Inertia of bending rotation per length [kg m], a pair as above; 0 is none.
     polar_inertia : float, optional
         Inertia of twist per length [kg m]; 0 is none.
 
@@ -103,16 +99,12 @@ class Rope(Description):
     length: float = number("m", sign="positive")
     linear_density: float = number("kg/m", sign="positive")
     _: KW_ONLY
-    bending_stiffness: float | tuple[float, float] | None = pair(
-        "N m^2", sign="positive", default=None
-    )
+    bending_stiffness: Pair | None = pair("N m^2", sign="positive", default=None)
     torsional_stiffness: float | None = number("N m^2", sign="positive", default=None)
     axial_stiffness: float | None = number("N", sign="positive", default=None)
     lay_coupling: float | None = number("N m", default=None)
     lay_slope: float | None = number(default=None)
-    rotary_inertia: float | tuple[float, float] | None = pair(
-        "kg m", sign="nonnegative", default=None
-    )
+    rotary_inertia: Pair | None = pair("kg m", sign="nonnegative", default=None)
     polar_inertia: float | None = number("kg m", sign="nonnegative", default=None)
 
     def _agree(self) -> None:

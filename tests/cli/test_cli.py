@@ -74,6 +74,20 @@ def test_frf_prints_every_line_as_csv(scene_file, capsys):
     assert printed.tolist() == np.abs(frf.value[0]).tolist()
 
 
+def test_frf_takes_the_second_plane(tmp_path, capsys):
+    rope = rd.Rope(2.0, 0.1, bending_stiffness=(2.0, 1.0))
+    scene = rd.Scene(rope, tension=1000.0, planes="both")
+    scene.save(tmp_path / "both.toml")
+    arguments = ["--frequency", "1:100:5", "--drive", "y@0.3", "--response", "gamma@0.6", "--csv"]
+    assert main(["frf", str(tmp_path / "both.toml"), *arguments]) == 0
+    rows = capsys.readouterr().out.splitlines()
+    assert rows[0].startswith("frequency [Hz],|gamma at 0.600 m [rad/N]|,phase")
+    printed = np.array([float(row.split(",")[1]) for row in rows[1:]])
+    lines = np.linspace(1, 100, 5)
+    frf = scene.compile().frf(lines, drive=("y", 0.3), response=("gamma", 0.6))
+    assert printed.tolist() == np.abs(frf.value[0]).tolist()
+
+
 def test_compare_pairs_the_peaks(scene_file, capsys):
     assert main(["compare", str(scene_file), "--peaks", "20,41", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]

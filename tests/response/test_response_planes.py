@@ -80,8 +80,8 @@ def test_derivatives_of_responses_in_the_plane_of_y_are_those_of_it_alone():
 def test_static_loads_bend_each_plane_alone(elements):
     scene = rd.Scene(ROPE, tension=200.0, ends=(rd.End(gamma="free"), "clamped"), planes="both")
     model = scene.compile(**elements)
-    found = model.static({("y", 0.5): 10.0, ("z", 0.2): 3.0})
-    for name, load in (("y", {("z", 0.5): 10.0}), ("z", {("z", 0.2): 3.0})):
+    found = model.static({("y", 0.5): 10.0, ("z", 0.5): 3.0})
+    for name, load in (("y", {("z", 0.5): 10.0}), ("z", {("z", 0.5): 3.0})):
         right = plane(scene, name).compile(**elements).static(load)
         own = [model.coordinates.index(c) for c in {"y": ("y", "gamma"), "z": ("z", "beta")}[name]]
         np.testing.assert_allclose(found.displacement[:, own], right.displacement, rtol=1e-12)

@@ -12,7 +12,7 @@ import numpy as np
 from ...base import check
 from ...base.array import Index, Real
 from ...base.errors import SceneError
-from ...base.parameter import Description, number, pair, position
+from ...base.parameter import Description, Pair, number, pair, position
 from ..rope import ACROSS, Rope, in_plane, own_number
 from ..stations import nearest
 
@@ -187,7 +187,7 @@ class LocalChange(_Between):
     }
 
     _: KW_ONLY
-    bending: float | tuple[float, float] = pair(sign="positive", default=1.0)
+    bending: Pair = pair(sign="positive", default=1.0)
     torsion: float = number(sign="positive", default=1.0)
     axial: float = number(sign="positive", default=1.0)
     lay: float = number(sign="positive", default=1.0)
@@ -382,12 +382,10 @@ def numbers_of(part: Stretch) -> dict[str, tuple[str, ...]]:
 
 def stretch_rate(rope: Rope, change: Real, part: Stretch, names: Iterable[str]) -> dict[str, Real]:
     """Return how fast properties of changed ropes grow with a number of one of the stretches."""
-    rates = {}
-    for name in names:
-        at = RopeChange._fields.index(name)
+    rates: dict[str, Real] = {}
+    for at in map(RopeChange._fields.index, names):
         if at >= FACTORS.stop:
-            rates[name] = np.ones(len(change))
-            continue
-        others = change[:, at] / part.change()[at]
-        rates |= {of: others * (own_number(rope, of) or 0.0) for of in changed_by(name)}
+            return {RopeChange._fields[at]: np.ones(len(change))}
+        others, own = change[:, at] / part.change()[at], changed_by(RopeChange._fields[at])
+        rates |= {of: others * (own_number(rope, of) or 0.0) for of in own}
     return rates
