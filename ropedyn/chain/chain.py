@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
 from ..base.array import Flags, Index, Real
 from ..base.check import COORDINATES
 
@@ -236,14 +235,6 @@ class Chain(NamedTuple):
             attached_row=self.attached_row[these],
             attached_value=self.attached_value[these],
         )
-
-
-def graded_triples(chain: Chain) -> tuple[Real, Real, Real]:
-    """Return F, G and Q at rest of the elements of a component whose tension grows along them."""
-    still = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
-    each = [_core.triple(chain, e, still) for e in range(len(chain.length))]
-    F, G, Q = (np.array([one[k][0].real for one in each]) for k in range(3))
-    return F, G, Q
 
 
 def _present(array: Real | None) -> Real | None:

@@ -17,7 +17,7 @@ from ..scene.damping import having, separable
 from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.scene import Scene
 from . import matrices
-from .chain import Chain, graded_triples
+from .chain import Chain
 from .mesh_choice import Choice
 
 if TYPE_CHECKING:
@@ -160,14 +160,9 @@ class Compiled(Frozen):
         >>> model.triples.G.round(6), model.triples.element
         (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
         """
-        if self.chain.rise is None:
-            return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
-        if len(self.components) > 1:
-            raise SceneError(
-                "components must be one for triples where the tension grows along continuous "
-                f"spans, got {self.components}"
-            )
-        return Triples(*graded_triples(self.chain.at_rest), self.chain.element_of)
+        if self.chain.rise is not None:
+            raise SceneError("elements must be given for triples where the tension grows")
+        return Triples(*_core.triples(self.chain.at_rest), self.chain.element_of)
 
     @property
     def node_terms(self) -> NodeTerms:

@@ -13,6 +13,7 @@ from .parts.node import Part
 from .parts.stretch import Stretch, changeable
 from .rope import Rope
 from .tension import Tension
+from .weight import curves, pulls
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -47,7 +48,7 @@ def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
     tension = _left_of_tension(scene.tension, effects)
     gravity = _left_of_gravity(scene.gravity, rope, effects)
     mean = tension.mean if isinstance(tension, Tension) else tension
-    if gravity is not None and gravity.along:
+    if pulls(gravity):
         mean = scene.mean_tension
     present = coordinates_of(rope, mean)
     left = (_left_of(part, rope, present) for part in scene.parts if part.kind not in effects)
@@ -71,7 +72,7 @@ def _left_of_gravity(
         gravity = dataclasses.replace(gravity, sag=False)
     if Gravity.grading in effects:
         gravity = dataclasses.replace(gravity, own_weight=False)
-    return gravity if gravity.curves(rope) or gravity.along else None
+    return gravity if curves(gravity, rope) or pulls(gravity) else None
 
 
 def _left_of_tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:

@@ -30,7 +30,7 @@ from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
 from .rope import Rope
 from .stations import stations_at
 from .tension import Tension
-from .weight import Grade, grade, refuse_slack
+from .weight import Grade, curves, grade, pulls, refuse_slack
 
 if TYPE_CHECKING:
     from ..family.family import Family
@@ -251,12 +251,12 @@ NodeForce, Stop, AddedMass, LocalChange
     @property
     def is_graded(self) -> bool:
         """Whether the tension grows along the rope by its own weight."""
-        return self.gravity is not None and self.gravity.along != 0
+        return pulls(self.gravity) != 0
 
     @property
     def sags(self) -> bool:
         """Whether the weight curves the rope."""
-        return self.gravity is not None and self.gravity.curves(self.rope)
+        return curves(self.gravity, self.rope)
 
     @computed
     def grade(self) -> Grade:
