@@ -435,14 +435,14 @@ MALFORMED |= {
         r"tension\[0\] must be > 0 with sag",
     ),
 }
-SPAN = rd.Scene(ROPE, tension=100.0).compile().chain
+BARE = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile().chain
 MALFORMED |= {
     "rise of a chain": (
         CHAIN._replace(rise=np.full(len(CHAIN.length), 1.0)),
         ValueError,
         "rise needs continuous elements",
     ),
-    "rise of nan": (SPAN._replace(rise=np.array([math.nan])), ValueError, r"rise\[0\]"),
+    "rise of nan": (BARE._replace(rise=np.array([math.nan])), ValueError, r"rise\[0\]"),
 }
 MALFORMED["hinge of nan"] = (put("hinge", math.nan, at=0), ValueError, r"hinge\[0, 0\]")
 MALFORMED |= {
