@@ -90,7 +90,7 @@ static struct rd_block block_of(const struct field *field, double tension, doubl
     while (!field->bends &&
            ldexp(fabs(far - tension), -block.halvings) > STEEP * fmin(tension, far))
         block.halvings++;
-    block.terms = rd_span_terms(ldexp(radians, -block.halvings));
+    block.terms = rd_span_terms(1); /* for all frequencies that go by these pieces */
     const double waves = length * propagating(field, fmin(tension, far), x);
     while (block.doublings < block.halvings &&
            ldexp(waves, block.doublings + 1 - block.halvings) <= RADIANS)

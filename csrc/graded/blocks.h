@@ -22,7 +22,7 @@ struct rd_block {
     double slope;   /* [N/m] */
     int nodes;      /* of the polynomials */
     int halvings, doublings;
-    int terms; /* of the series of a first piece */
+    int terms; /* of the series of a first piece of up to one radian */
     size_t pieces;
     bool vanishes; /* string of no tension at one end: a piece by its own series */
 };

@@ -356,14 +356,6 @@ class Chain(NamedTuple):
         )
 
 
-def graded_triples(chain: Chain) -> tuple[Real, Real, Real]:
-    """Return F, G and Q at rest of the elements of a component whose tension grows along them."""
-    still = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
-    each = [_core.triple(chain, e, still) for e in range(len(chain.length))]
-    F, G, Q = (np.array([one[k][0].real for one in each]) for k in range(3))
-    return F, G, Q
-
-
 def _present(array: Real | None) -> Real | None:
     """Return an array that has something in it, else None."""
     return array if array is not None and array.any() else None

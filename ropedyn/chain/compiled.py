@@ -20,7 +20,7 @@ from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.rope import ACROSS, own_number
 from ..scene.scene import Scene
 from . import matrices
-from .chain import CHANNELS, PLANE, TRANSVERSE, Chain, graded_triples
+from .chain import CHANNELS, PLANE, TRANSVERSE, Chain
 from .lean import lean
 from .mesh_choice import Choice
 
@@ -201,16 +201,11 @@ class Compiled(Frozen):
         >>> model.triples.G.round(6), model.triples.element
         (array([[[0.0025]]]), array([0, 0, 0, 0], dtype=int32))
         """
-        is_graded = self.chain.rise is not None
-        if is_graded and len(self.components) > 1:
-            raise SceneError(
-                "components must be one for triples where the tension grows along continuous "
-                f"spans, got {self.components}"
-            )
+        if self.chain.rise is not None:
+            raise SceneError("elements must be given for triples where the tension grows")
         found = np.zeros((3, len(self.chain.length), *2 * (len(self.coordinates),)))
         for plane in self.chain.planes:
-            rest = plane.chain.at_rest
-            for whole, own in zip(found, (graded_triples if is_graded else _core.triples)(rest)):
+            for whole, own in zip(found, _core.triples(plane.chain.at_rest)):
                 whole[:, *plane.square] = own
         F, G, Q = found
         return Triples(F, G, Q, self.chain.element_of)

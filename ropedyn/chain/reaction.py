@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..base.array import Complex, Flags, Real
 from ..base.unit import FORCE
-from .chain import CHANNELS, KINDS, PLANE, Chain, graded_triples
+from .chain import CHANNELS, KINDS, PLANE, Chain
 from .port import Point, is_force, locate
 
 BENDING = CHANNELS["beta"]
@@ -50,7 +50,9 @@ def left_ends(chain: Chain) -> LeftEnd:
         # the triple of a strut is not used, and may not exist
         F, _, Q = _core.triples(chain._replace(tension=np.where(strut, 0.0, chain.tension)))
     else:
-        F, _, Q = graded_triples(chain)
+        still = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
+        each = [_core.triple(chain, e, still) for e in range(len(chain.length))]
+        F, Q = (np.array([one[k][0].real for one in each]) for k in (0, 2))
     E, P = np.ascontiguousarray(F.transpose(0, 2, 1)), np.zeros_like(Q)
     for e in np.flatnonzero(strut):
         E[e], Q[e] = _strut(chain, int(e))

@@ -97,31 +97,6 @@ class Gravity(Description):
                 f"inclination must lie between -pi/2 and pi/2 [rad], got {self.inclination!r}"
             )
 
-    @property
-    def along(self) -> float:
-        """What it pulls by along the rope, per mass, from its end at L to that at 0 [m/s^2].
-
-        Examples
-        --------
-        >>> import math
-        >>> import ropedyn as rd
-        >>> rd.Gravity(inclination=math.pi / 2).along
-        9.81
-        """
-        return self.g * math.sin(self.inclination) if self.own_weight else 0.0
-
-    def curves(self, rope: Rope) -> bool:
-        """Say whether it curves a rope: one with axial stiffness that does not stand upright.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Gravity().curves(rd.Rope(100.0, 2.0))
-        False
-        """
-        upright = abs(self.inclination) == math.pi / 2
-        return self.sag and not upright and rope.axial_stiffness is not None
-
     def curvature(self, rope: Rope, tension: float) -> float:
         """Return w/H [1/m] of a rope under a chordwise tension [N].
 

@@ -14,6 +14,7 @@ from .parts.node import Part
 from .parts.stretch import Stretch, changeable
 from .rope import ACROSS, Rope, own_number
 from .tension import Tension
+from .weight import curves, pulls
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -51,7 +52,7 @@ def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
     gravity = _gravity(scene.gravity, rope, effects)
     planes = "z" if SECOND_PLANE in effects else scene.planes
     mean = tension.mean if isinstance(tension, Tension) else tension
-    if gravity is not None and gravity.along:
+    if pulls(gravity):
         mean = scene.mean_tension
     present = coordinates_of(rope, mean, planes)
     left = (_part(part, rope, present) for part in scene.parts if part.kind not in effects)
@@ -82,7 +83,7 @@ def _gravity(gravity: Gravity | None, rope: Rope, effects: tuple[str, ...]) -> G
         gravity = dataclasses.replace(gravity, sag=False)
     if Gravity.grading in effects:
         gravity = dataclasses.replace(gravity, own_weight=False)
-    return gravity if gravity.curves(rope) or gravity.along else None
+    return gravity if curves(gravity, rope) or pulls(gravity) else None
 
 
 def _tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:

@@ -29,7 +29,7 @@ from .parts.node import Part
 from .parts.stretch import Stretch
 from .rope import Rope
 from .tension import Tension
-from .weight import Grade, grade
+from .weight import Grade, curves, grade, pulls
 
 if TYPE_CHECKING:
     from ..family.family import Family
@@ -117,12 +117,12 @@ NodeForce, Stop, AddedMass, LocalChange
     @property
     def is_graded(self) -> bool:
         """Whether the tension grows along the rope by its own weight."""
-        return self.gravity is not None and self.gravity.along != 0
+        return pulls(self.gravity) != 0
 
     @property
     def sags(self) -> bool:
         """Whether the weight curves the rope."""
-        return self.gravity is not None and self.gravity.curves(self.rope)
+        return curves(self.gravity, self.rope)
 
     @computed
     def grade(self) -> Grade:

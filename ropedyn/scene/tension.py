@@ -95,18 +95,6 @@ class Tension(Description):
         """Whether it varies neither in time nor with the motion."""
         return not self.pulsates and not self.stretching
 
-    def place(self, length: float) -> float:
-        """Return where on a rope of a length it is the mean [m].
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> rd.Tension(1000.0, at="end").place(30.0)
-        30.0
-        """
-        of = {"start": 0.0, "middle": 0.5 * length, "end": length}
-        return of[self.at] if isinstance(self.at, str) else self.at
-
     def pulsation(self, time: Real) -> Real:
         """Return what pulsation adds to the mean [N], as `time` [s].
 

@@ -31,6 +31,26 @@ LEAST = 1e-6
 ROUNDING = 16 * np.finfo(float).eps  # Of the largest tension: less is none.
 
 
+def pulls(gravity: Gravity | None) -> float:
+    """Return what the weight pulls by along the rope, per mass, from its end at L [m/s^2]."""
+    if gravity is None or not gravity.own_weight:
+        return 0.0
+    return gravity.g * math.sin(gravity.inclination)
+
+
+def curves(gravity: Gravity | None, rope: Rope) -> bool:
+    """Say whether the weight curves a rope, if it can stretch and does not stand upright."""
+    if gravity is None or not gravity.sag or rope.axial_stiffness is None:
+        return False
+    return abs(gravity.inclination) != math.pi / 2
+
+
+def place_of(tension: Tension, length: float) -> float:
+    """Return where along a rope a tension is its mean [m]."""
+    of = {"start": 0.0, "middle": 0.5 * length, "end": length}
+    return of[tension.at] if isinstance(tension.at, str) else tension.at
+
+
 class Grade(NamedTuple):
     """Tension between stations, linear in each span; it is larger above a mass than below."""
 
@@ -73,7 +93,7 @@ def grade(
     """Return the tension along a rope, see `Gravity`."""
     station = stations_at(rope.length, places(parts))
     spans = len(station) - 1
-    along = 0.0 if gravity is None else gravity.along
+    along = pulls(gravity)
     if along == 0.0:
         return Grade(station, *np.full((2, spans), tension.mean))
     local, which = ropes(rope, stretches(parts), station)
@@ -83,10 +103,9 @@ def grade(
     rise = along * density * np.diff(station)
     left = np.cumsum(along * mass[:-1] + np.append(0.0, rise[:-1]))
     own = Grade(station, left, left + rise)
-    missing = tension.mean - own.at(tension.place(rope.length))
-    least = ROUNDING * np.abs([left + missing, left + rise + missing]).max()
-    ends = (np.where(np.abs(T) <= least, 0.0, T) for T in (left + missing, left + rise + missing))
-    return Grade(station, *ends)
+    missing = tension.mean - own.at(place_of(tension, rope.length))
+    ends = np.stack([left, left + rise]) + missing
+    return Grade(station, *np.where(np.abs(ends) <= ROUNDING * np.abs(ends).max(), 0.0, ends))
 
 
 def grade_rate(scene: Scene, path: str) -> Grade | None:

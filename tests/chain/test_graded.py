@@ -137,6 +137,17 @@ def test_string_responds_as_bessel_functions_do(f):
     assert (error <= answer.rounding_error[:, 0]).all()
 
 
+def test_lines_beside_each_other_do_not_touch():
+    # one block of frequencies, whose pieces are the same and whose waves are not
+    scene = CHAINS["foot"][0]
+    model = scene.compile(elements=41, element="continuous")
+    f = np.array([0.0, 0.01, 0.1, 1.0, 10.0, 13.0])
+    ask = {"drive": ("z", 20.0), "response": [("z", 30.0), ("beta", 41.0)]}
+    together = model.frf(f, **ask).value
+    alone = np.concatenate([model.frf([one], **ask).value for one in f], axis=1)
+    np.testing.assert_array_equal(together, alone)
+
+
 def test_string_is_deflected_by_a_logarithm():
     scene, _ = EXACT["hoist"]
     answer = scene.compile().static({("z", 250.0): 10.0})

@@ -318,9 +318,9 @@ MALFORMED = {
     "none": (None, TypeError, "chain must be a tuple"),
     "list": (list(CHAIN), TypeError, "chain must be a tuple"),
     "model": (MODEL, TypeError, "chain must be a tuple"),
-    "empty": ((), TypeError, "20 arguments"),
-    "one less": (tuple(CHAIN)[:-1], TypeError, "20 arguments"),
-    "one more": ((*CHAIN, 1), TypeError, "20 arguments"),
+    "empty": ((), TypeError, "21 arguments"),
+    "one less": (tuple(CHAIN)[:-1], TypeError, "21 arguments"),
+    "one more": ((*CHAIN, 1), TypeError, "21 arguments"),
     "kind of text": (CHAIN._replace(kind="rigid"), TypeError, ""),
     "kind of a float": (CHAIN._replace(kind=1.0), TypeError, ""),
     "kind too large": (CHAIN._replace(kind=2**40), OverflowError, ""),
@@ -434,6 +434,15 @@ MALFORMED |= {
         ValueError,
         r"tension\[0\] must be > 0 with sag",
     ),
+}
+BARE = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile().chain
+MALFORMED |= {
+    "rise of a chain": (
+        CHAIN._replace(rise=np.full(len(CHAIN.length), 1.0)),
+        ValueError,
+        "rise needs continuous elements",
+    ),
+    "rise of nan": (BARE._replace(rise=np.array([math.nan])), ValueError, r"rise\[0\]"),
 }
 MALFORMED["hinge of nan"] = (put("hinge", math.nan, at=0), ValueError, r"hinge\[0, 0\]")
 MALFORMED |= {

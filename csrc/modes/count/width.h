@@ -182,9 +182,9 @@ RD_INLINE _Bool leg_walk_whole(struct wave *wave, const struct rd_walk *walk,
 }
 
 /* the same of a leg whose tension grows, by pieces of its blocks */
-RD_INLINE _Bool leg_walk_graded(struct wave *wave, const struct rd_walk *walk,
-                                const struct rd_leg *leg, lanes lambda, const lanes *z,
-                                const lanes *inverse, lanes *own)
+static RD_CLONES _Bool leg_walk_graded(struct wave *wave, const struct rd_walk *walk,
+                                       const struct rd_leg *leg, lanes lambda, const lanes *z,
+                                       const lanes *inverse, lanes *own)
 {
     struct rd_block block[RD_BLOCKS_MOST];
     struct rd_family family;
