@@ -283,7 +283,9 @@ RD_INLINE void transfer_by_blocks(struct wave *wave, const lanes D[W][W], const 
     const lanes a = 1 + D[first][first], d = 1 + D[last][last];
     const lanes b = first == last ? l_fill(0) : D[first][last];
     const lanes c = first == last ? l_fill(0) : D[last][first];
-    const lanes over = 1 / (first == last ? a : a * d - b * c);
+    const lanes det = first == last ? a : a * d - b * c;
+    const lane_mask apart = det > 1e-3;
+    const lanes over = 1 / det;
     inverse[first][last] = -b * over;
     inverse[last][first] = -c * over;
     inverse[first][first] = first == last ? over : d * over;
@@ -302,6 +304,14 @@ RD_INLINE void transfer_by_blocks(struct wave *wave, const lanes D[W][W], const 
         for (int j = 0; j < W; j++)
             for (int k = 0; k < W && bends[i] && bends[j]; k++)
                 rest[i][j] -= left[i][k] * (bends[k] ? l_fill(0) : D[k][j]);
+    /* far beyond all eigenvalues A may be singular: F as it is */
+    for (int i = 0; i < W; i++)
+        for (int j = 0; j < W; j++) {
+            right[i][j] = l_select(apart, right[i][j], l_fill(0));
+            own[i][j] = l_select(apart, own[i][j], l_fill(0));
+            rest[i][j] = l_select(apart, rest[i][j], D[i][j]);
+            left[i][j] = l_select(apart, left[i][j], l_fill(0));
+        }
     transfer(wave, right);
     transfer(wave, own);
     transfer(wave, rest);
