@@ -108,7 +108,7 @@ static void element_is_its_halves_joined(void)
         rd_family_join(all.chain.width, two, one);
         for (size_t i = 0; i < (S[k] > 0 ? 10 : 3); i++)
             CHECK_ABS(one[i].re[0], a[i], 1e-12 * (fabs(a[i]) + 1e-3),
-                       "2e-14 of the largest entries is measured");
+                      "2e-14 of the largest entries is measured");
     }
 }
 
@@ -126,7 +126,7 @@ static void imaginary_parts_are_slopes(void)
     whole(&more, 0.05, false, 0, c, NULL);
     for (int i = 0; i < RD_GRADED_TRIPLE; i++)
         CHECK_ABS(slope[i], (c[i] - b[i]) / (2 * h), 1e-6 * (fabs(slope[i]) + 1e-3),
-                   "of second order in the step, 1e-6");
+                  "of second order in the step, 1e-6");
 }
 
 /* at its nodes a polynomial has its values, and one of their degree has them everywhere */
