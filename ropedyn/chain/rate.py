@@ -215,14 +215,9 @@ class Places:
             return 0.0
         return scene.gravity.g * math.cos(scene.gravity.inclination) / scene.mean_tension
 
-    @property
-    def flexibility(self) -> Real:
-        """Zeros for the section of each span."""
-        return np.zeros((len(self.ropes), *2 * (channels_of(self.model.scene),)))
-
     def sections(self, name: str) -> Real:
         """Return the derivative of the section flexibility of each span."""
-        rate = self.flexibility
+        rate = np.zeros((len(self.ropes), *self.model.chain.flexibility.shape[1:]))
         if name == ACROSS["bending_stiffness"]:
             soft = [section(rope, 4)[3, 3] for rope in self.ropes]
             rate[:, 3, 3] = -np.square(soft)
@@ -298,7 +293,7 @@ class Rate:
 
     def _flexibility(self, places: Places) -> Real:
         """Return the derivative of the section flexibility of each span."""
-        flexibility = places.flexibility
+        flexibility = np.zeros((len(places.counts), *places.model.chain.flexibility.shape[1:]))
         for name in self.rope.keys() & SECTION:
             flexibility += self.rope[name][:, None, None] * places.sections(name)
         flexibility[:, 0, 0] += self._lengthening(places) * places.stretch

@@ -16,8 +16,7 @@ from ..base.table import Table
 from ..chain.compile import lumped
 from ..chain.rate import DENSITIES, ENTRIES, Places, inertia_rate
 from ..scene.rope import ACROSS, own_number
-from .sensitivity import ACROSS as BY_ACROSS
-from .sensitivity import SAG, ModePairs, Shapes, Slopes
+from .sensitivity import BY_ACROSS, SAG, ModePairs, Shapes, Slopes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

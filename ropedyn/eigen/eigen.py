@@ -64,19 +64,17 @@ def solve_modes(
             f"number must be at most {existing}, the modes this model has, got {number}"
         )
     eigenvalue, error, order = merged(found, number)
-    which = _which(found, order) if len(found) > 1 else None
-    later: Callable[[], UndampedVectors]
-    later = partial(later_vectors, model, solver, number, limit, which)
+    which = _which(found, order)
+    later: Callable[[], UndampedVectors] = partial(later_vectors, model, solver, which, limit)
     frequency = np.sqrt(np.maximum(eigenvalue, 0.0)) / (2 * math.pi)
     mesh: Callable[[], UndampedMesh]
     x: Real | Callable[[], Real] = model.x
     if model.element == "continuous":
         mesh = partial(no_mesh, frequency)
         x = partial(places_within, model, eigenvalue, points)
-        later = partial(later_within, model, number, limit, eigenvalue, points, which=which)
+        later = partial(later_within, model, which, limit, eigenvalue, points)
     else:
-        own = _which(found, order)
-        mesh = partial(mesh_of_modes, model.scene, model.components, own, eigenvalue)
+        mesh = partial(mesh_of_modes, model.scene, model.components, which, eigenvalue)
     return Modes(
         coordinates=model.coordinates,
         certified=all(part.certified for part in found),
@@ -85,7 +83,7 @@ def solve_modes(
         eigenvalue=eigenvalue,
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
         rounding_error=error_in_hertz(eigenvalue, error),
-        plane=partial(_planes, model, which, len(eigenvalue)),
+        plane=partial(_planes, model, which),
         cost=_cost(model, solver, seconds, found),
         vectors=later if solver == "sweep" else vectors_of(model, found, eigenvalue, order),
         mesh=mesh,
@@ -95,13 +93,14 @@ def solve_modes(
 
 def _which(found: Sequence[ComponentModes], order: Index) -> Index:
     """Return the component of each mode."""
+    if len(found) == 1:
+        return np.zeros(len(order), dtype=np.intp)
     return np.repeat(np.arange(len(found)), [len(part.eigenvalue) for part in found])[order]
 
 
-def _planes(model: Compiled, which: Index | None, number: int) -> NDArray[np.str_]:
+def _planes(model: Compiled, which: Index) -> NDArray[np.str_]:
     """Return the plane of each mode: that of the coordinates that move with it."""
-    words = np.array([plane_of(component) for component in model.components])
-    plane = words[np.zeros(number, dtype=np.intp) if which is None else which]
+    plane = np.array([plane_of(component) for component in model.components])[which]
     plane.setflags(write=False)
     return plane
 

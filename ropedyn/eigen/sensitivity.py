@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..chain.compiled import Compiled
 
 _Arrays = TypeVar("_Arrays", Weights, "Slopes")
-BENDING, TENSION, SAG, ACROSS = 2, 6, 8, 9
+BENDING, TENSION, SAG, BY_ACROSS = 2, 6, 8, 9
 """Numbers of some slopes among those of an element; in both planes one more, of the section across,
 stands before those of its inertia."""
 ROUNDINGS, MIXED = 32, 32
@@ -92,19 +92,19 @@ class Slopes:
     def _in_space(cls, parts: Sequence[Slopes], chain: Chain, shape: Real, motion: Real) -> Slopes:
         """Return those of both planes together; bending across has a slope of its own."""
         (m, s, _), width, carried = parts[0].element.shape, shape.shape[2], motion.shape[1]
-        element, jump = np.zeros((m, s, ACROSS + 1 + width)), np.zeros((m, s, width))
+        element, jump = np.zeros((m, s, BY_ACROSS + 1 + width)), np.zeros((m, s, width))
         node, place = np.zeros((m, s + 1, width, width)), parts[0].place + parts[1].place
         stiffer, heavier = np.zeros((2, m, carried))
         foot = np.zeros((m, carried, 2, width))
         for part, plane in zip(parts, chain.planes):
             own, rows = np.arange(width)[plane.kept], np.arange(carried)[plane.carried]
-            element[..., TENSION:ACROSS] += part.element[..., TENSION:SECTIONS]
-            element[..., ACROSS + 1 + own] = part.element[..., SECTIONS:]
+            element[..., TENSION:BY_ACROSS] += part.element[..., TENSION:SECTIONS]
+            element[..., BY_ACROSS + 1 + own] = part.element[..., SECTIONS:]
             jump[..., own], node[..., own[:, None], own] = part.jump, part.node
             stiffer[:, rows], heavier[:, rows] = part.stiffer, part.heavier
             foot[:, rows[:, None, None], np.arange(2)[:, None], own] = part.foot
         element[..., :TENSION] = parts[0].element[..., :TENSION]
-        element[..., ACROSS] = parts[1].element[..., BENDING]
+        element[..., BY_ACROSS] = parts[1].element[..., BENDING]
         value = parts[0].eigenvalue
         return cls(value, element, jump, node, place, stiffer, heavier, foot)
 

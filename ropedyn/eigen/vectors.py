@@ -29,12 +29,11 @@ UNSEEN = 1e-8
 """Less than this part of the largest component at all points is rounding at nodes of a mode."""
 
 
-def later_vectors(
-    model: Compiled, solver: str, number: int | None, limit: float, which: Index | None
-) -> UndampedVectors:
-    """Solve once more, with shapes."""
+def later_vectors(model: Compiled, solver: str, which: Index, limit: float) -> UndampedVectors:
+    """Solve once more, with shapes; a finite limit tells how many modes there are of each kind."""
+    number = len(which) if math.isinf(limit) else None
     found = solve_components(model, solver, number, limit, shaped=True)
-    eigenvalue, _, order = merged(found, number if which is None else len(which), which)
+    eigenvalue, _, order = merged(found, len(which), which)
     return vectors_of(model, found, eigenvalue, order)
 
 
@@ -72,13 +71,7 @@ def places_within(model: Compiled, eigenvalue: Real, points: int | None) -> Real
 
 
 def later_within(
-    model: Compiled,
-    number: int | None,
-    limit: float,
-    eigenvalue: Real,
-    points: int | None,
-    *,
-    which: Index | None,
+    model: Compiled, which: Index, limit: float, eigenvalue: Real, points: int | None
 ) -> UndampedVectors:
     """Solve continuous spans once more, with shapes inside them."""
     # energies want elements below their own resonance, and a mode may have its nodes at all points,
@@ -87,7 +80,7 @@ def later_within(
     least = points_for(model, eigenvalue)
     points = points or least
     more = -(-least // points)
-    vectors = later_vectors(finer(model, points * more), "sweep", number, limit, which)
+    vectors = later_vectors(finer(model, points * more), "sweep", which, limit)
     own = np.stack([vectors.energy[c] for c in model.coordinates]).argmax(axis=0)
     size = largest(vectors.shape[:, ::more], own)
     size = np.where(np.abs(size) < UNSEEN, 1.0, size)
@@ -118,7 +111,7 @@ def _cut(model: Compiled, highest: float, points: int | None) -> tuple[Compiled,
 
 
 def solve_shapes(
-    model: Compiled, solver: str, eigenvalue: Real, which: Index | None, points: int | None = None
+    model: Compiled, solver: str, eigenvalue: Real, which: Index, points: int | None = None
 ) -> Shapes:
     """Solve as many modes as there are eigenvalues, with the shapes that sensitivities need."""
     # modes that coincide with the last one belong to them. Of eigenvalues of continuous spans the
@@ -127,14 +120,12 @@ def solve_shapes(
     edges = np.arange(len(model.x))
     if model.element == "continuous":
         model, edges = _cut(model, float(eigenvalue.max(initial=0.0)), points)
-    return shapes_of(model, solver, len(eigenvalue), edges, which)
+    return shapes_of(model, solver, which, edges)
 
 
-def shapes_of(
-    model: Compiled, solver: str, number: int, edges: Index, which: Index | None
-) -> Shapes:
+def shapes_of(model: Compiled, solver: str, which: Index, edges: Index) -> Shapes:
     """Solve for so many modes, and those that coincide with the last one, with their shapes."""
-    more = number
+    number = more = len(which)
     while True:
         more += 1
         found = solve_components(model, solver, more, math.inf, shaped=True)
@@ -164,7 +155,7 @@ def shapes_at(modes: Modes, points: Sequence[Point]) -> Real:
     if model.element == "continuous" and inside:
         x = np.unique(np.concatenate([model.x, inside]))
         model = divided(model.scene, "continuous", x, np.ones(len(x) - 1, dtype=np.intp))
-        shapes = shapes_of(model, "sweep", number, np.arange(len(x)), shapes.which[:number])
+        shapes = shapes_of(model, "sweep", shapes.which[:number], np.arange(len(x)))
     shape = shapes.shape[:number]
     shape = shape / np.abs(shape).max(axis=(1, 2), keepdims=True)
     node, row, _ = ports(model.chain, model.x, model.coordinates, points)
