@@ -19,6 +19,7 @@ from .experiment.identify.identify import identify
 from .experiment.identify.response_fit import ResponseFit
 from .experiment.plan.plan import Plan
 from .experiment.plan.planning import plan_measurement
+from .experiment.plan.wire_shifts import WireShifts, broken_wire_shifts
 from .experiment.track.track import Track
 from .experiment.track.tracking import track
 from .family.family import Family
@@ -143,8 +144,10 @@ __all__ = [
     "Track",
     "ViscousDamping",
     "Wire",
+    "WireShifts",
     "accuracy_cost",
     "ask",
+    "broken_wire_shifts",
     "compare",
     "effect_cost",
     "hard_cases",

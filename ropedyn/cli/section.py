@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import argparse
 
+from ..base.errors import SceneError
+from ..experiment.plan.wire_shifts import broken_wire_shifts
 from ..scene.construction.catalogue import CORES, NAMES
 from ..scene.construction.construction import Construction
 from ..scene.construction.standard import ROPE_LAYS, STRAND_LAYS
 from ..scene.construction.stiffness import TORSIONS
-from .options import Command, option, show, switch
+from ..scene.rope import Rope
+from ..scene.scene import Scene
+from .options import Command, OptionGroup, option, refuse, show, switch
+from .text import whole_numbers
 
 
 def _section(options: argparse.Namespace) -> None:
@@ -22,8 +27,27 @@ def _section(options: argparse.Namespace) -> None:
         scaled=not options.unscaled,
     )
     section = construction.section(options.torsion, radial_stiffness=options.radial_stiffness)
-    show(options, section)
+    if options.broken is None:
+        refuse(options, BREAK[1:], "--broken")
+        return show(options, section)
+    if options.length is None:
+        raise SceneError("--length must be given with --broken, got none")
+    rope = Rope.from_construction(options.length, section)
+    given = {name: getattr(options, name) for name in ("friction", "modes", "std")}
+    asked = {name: value for name, value in given.items() if value is not None}
+    scene = Scene(rope, tension=options.tension or 0.0)
+    show(options, broken_wire_shifts(scene, options.broken, **{"friction": FRICTION, **asked}))
 
+
+FRICTION = 0.2  # Between wires, where none is given.
+BREAK = (
+    option("--broken", "wires broken at one place, such as 1,2,4: shifts instead", whole_numbers),
+    option("--length", "of the rope, which is clamped [m]", type=float),
+    option("--tension", "of the rope (0) [N]", type=float),
+    option("--friction", f"between wires ({FRICTION})", type=float),
+    option("--modes", "the lowest so many (5)", type=int),
+    option("--std", "standard deviation of a measured frequency [Hz]", type=float),
+)
 
 SECTION = Command(
     "section",
@@ -43,6 +67,7 @@ SECTION = Command(
         ),
         option("--radial-stiffness", "of the core; radii are kept without it [N]", type=float),
         switch("--unscaled", "area and mass of touching circles, not of tables"),
+        OptionGroup(BREAK, "what broken wires change of frequencies, over where they are"),
     ),
     elements=(),
     subject=(option("name", "of the construction", choices=NAMES, metavar="NAME"),),

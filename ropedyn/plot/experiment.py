@@ -13,6 +13,7 @@ from ..experiment.compare.compare import Comparison
 from ..experiment.identify.fit import Fit
 from ..experiment.identify.fits import Fits
 from ..experiment.identify.response_fit import ResponseFit
+from ..experiment.plan.wire_shifts import WireShifts
 from ..experiment.track.track import Track
 from ..scene.bench.static_test import StaticTest
 from ..scene.path import unit_of
@@ -269,3 +270,19 @@ def plot_static_test(test: StaticTest, ax: Axes) -> None:
     ax.set(xlabel=test.load_label, ylabel=test.reading_label, title=test.title)
     light_grid(ax)
     ax.legend(fontsize="small")
+
+
+@plots(WireShifts)
+def plot_wire_shifts(shifts: WireShifts, ax: Axes) -> None:
+    """Plot relative shifts over places, and above the lines what measurements tell."""
+    styles = ("-", "--", ":", "-.")
+    for k, (f, family) in enumerate(zip(shifts.frequency, shifts.family)):
+        for i, n in enumerate(shifts.n):
+            name = f"{f:.1f} Hz, {family}" if i == 0 else f"{n} broken" if k == 0 else None
+            share = 100 * np.abs(shifts.shift[i, k]) / f
+            style = styles[i % len(styles)]
+            ax.semilogy(shifts.x, share, style, color=f"C{k}", label=name)
+        ax.axhline(100 * shifts.least[k] / f, color=f"C{k}", linewidth=0.8, alpha=0.6)
+    ax.set(xlabel="position along the rope [m]", ylabel="shift of frequency, amount [%]")
+    ax.legend(fontsize="small", ncols=2)
+    light_grid(ax)

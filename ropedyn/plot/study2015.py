@@ -12,6 +12,7 @@ from .. import study2015
 from ..base.atomic import replacing
 from ..base.unit import NAME, UNIT
 from ..model import Model
+from ..study.printed import DRIVE, ELEMENTS, MASSES
 from .figure import new_figure
 
 FREQUENCY = np.linspace(1.0, 450.0, 1797)  # Lines of the amplitude-frequency characteristics [Hz].
@@ -20,7 +21,7 @@ FREQUENCY = np.linspace(1.0, 450.0, 1797)  # Lines of the amplitude-frequency ch
 def draw(folder: Path) -> list[Path]:
     """Draw every figure into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    model = study2015.scene().compile(elements=study2015.ELEMENTS, element="difference")
+    model = study2015.scene().compile(elements=ELEMENTS, element="difference")
     figures = {
         "figure-09-twist.png": characteristics(model, "alpha"),
         "figure-10-transverse.png": characteristics(model, "z"),
@@ -35,11 +36,11 @@ def draw(folder: Path) -> list[Path]:
 
 def characteristics(model: Model, coordinate: str) -> Figure:
     """Draw the amplitude of one coordinate at all seven masses (the study's figures 9 and 10)."""
-    response = [(coordinate, x) for x in study2015.MASSES]
-    frf = model.frf(FREQUENCY, drive=study2015.DRIVE, response=response)
+    response = [(coordinate, x) for x in MASSES]
+    frf = model.frf(FREQUENCY, drive=DRIVE, response=response)
     figure, (ax,) = new_figure(1, height=5.0)
     for k, curve in enumerate(np.abs(frf.value)):
-        ax.semilogy(frf.frequency, curve, label=f"mass {k + 1}, x = {study2015.MASSES[k]:.3f} m")
+        ax.semilogy(frf.frequency, curve, label=f"mass {k + 1}, x = {MASSES[k]:.3f} m")
     _mark(ax)
     ax.set(xlabel="frequency [Hz]", xlim=(FREQUENCY[0], FREQUENCY[-1]))
     ax.set_ylabel(f"{NAME[coordinate]} per force [{UNIT[coordinate]}/N]")
@@ -84,7 +85,7 @@ def peaks(model: Model) -> Figure:
             beam.modes(3),
         ),
     ):
-        curve = np.abs(one.frf(FREQUENCY, drive=study2015.DRIVE).value[0])
+        curve = np.abs(one.frf(FREQUENCY, drive=DRIVE).value[0])
         listed = ", ".join(f"{f:.1f}" for f in modes.frequency)
         ax.semilogy(FREQUENCY, curve, label=f"{name}: {listed} Hz")
     _mark(ax)

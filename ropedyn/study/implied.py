@@ -62,19 +62,18 @@ class Implied:
             [
                 _width(fit, interval),
                 _density(fit),
-                self._rod(*interval["bending_stiffness"]),
+                self._rod(),
                 self._torsion(fit, float(np.asarray(self.peaks.frequency)[2])),
             ]
         )
 
-    def _rod(self, low: float, high: float) -> str:
-        def place(bending: float) -> str:
-            return "inside" if low <= bending <= high else "outside"
-
-        rod, stated = self.rod_stiffness, self.bending_stiffness
+    def _rod(self) -> str:
+        rod, stated, rows = self.rod_stiffness, self.bending_stiffness, self.table().rows
+        inside = dict.fromkeys(rope for rope, *_, low, high in rows if low <= stated <= high)
         return (
-            f"A solid steel rod has {rod:.2f} N m^2, {place(rod)} the interval; the study's "
-            f"{stated:.1f} N m^2, {stated / rod:.0f} times as much, is {place(stated)}."
+            f"A solid steel rod has {rod:.2f} N m^2, and no rope has more; the study's "
+            f"{stated:.1f} N m^2, {stated / rod:.0f} times as much, is inside the intervals of "
+            f"{', '.join(inside) or 'no reading'}{' alone' if inside else ''}."
         )
 
     def _torsion(self, fit: Fit, third: float) -> str:

@@ -434,11 +434,9 @@ class Section(Answer):
         length = check.number(length, "length", "m", sign="positive")
         n = check.count(n, "n", most=MOST_FREQUENCIES)
         check.instance(lay, "lay", bool, "True or False")
-        x, y = self.axial_stiffness / self.mass, self.torsional_stiffness / self.polar_inertia
-        D2 = self.lay_coupling**2 / (self.mass * self.polar_inertia) if lay else 0.0
-        # the product of both squares over the larger: nothing cancels
-        fast = (x + y + np.hypot(x - y, 2 * np.sqrt(D2))) / 2
-        speed = np.sqrt((x * y - D2) / fast) if lay else np.sqrt(y)
+        EA, D, C = self.axial_stiffness, self.lay_coupling, self.torsional_stiffness
+        alone = np.sqrt(C / self.polar_inertia)
+        speed = torsional_speed(EA, D, C, self.mass, self.polar_inertia) if lay else alone
         return np.asarray(np.arange(1, n + 1) * speed / (2 * length))
 
     def _grip(self, tension: float, friction: float, lateral: float) -> Grip:
@@ -490,6 +488,14 @@ class Section(Answer):
         names = [f"{name.replace('_', ' ')} [{unit}]" for name, unit in ROWS.items()]
         columns = {"quantity": tuple(names), "value": tuple(getattr(self, name) for name in ROWS)}
         return Table.of(f"section, {WORDS[self.torsion]}", columns)
+
+
+def torsional_speed(EA: Any, D: Any, C: Any, mass: float, polar: float) -> Any:
+    """Return the speed of the slower family of coupled waves of twist and stretch [m/s]."""
+    x, y, coupling = EA / mass, C / polar, D * D / (mass * polar)
+    # the product of both squares over the larger: nothing cancels
+    fast = (x + y + np.hypot(x - y, 2 * np.sqrt(coupling))) / 2
+    return np.sqrt((x * y - coupling) / fast)
 
 
 def _curvatures(value: ArrayLike, name: str, *, sign: str) -> Real:
