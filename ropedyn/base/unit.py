@@ -27,8 +27,7 @@ FAMILY |= {c: FAMILY[role] for c, role in ROLE.items()}
 
 def own_coordinate(family: str, plane: str) -> str:
     """Return the coordinate that a family of modes in a plane has the most kinetic energy of."""
-    across = plane == "y"
-    return next(c for c, name in FAMILY.items() if name == family and (c in ROLE) == across)
+    return next(c for c, name in FAMILY.items() if name == family and (c in ROLE) == (plane == "y"))
 
 
 QUANTITIES = {"receptance": 0, "mobility": 1, "accelerance": 2}

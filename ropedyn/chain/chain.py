@@ -27,8 +27,7 @@ PLANE = ("x", "z", "alpha", "beta")  # Coordinates of a chain in one plane, in t
 NUMBERS = {c: PLANE.index(ROLE.get(c, c)) for c in UNIT}  # Of each coordinate in its plane.
 
 CHANNELS = {"x": 0, "y": 3, "z": 2, "alpha": 1, "beta": 2, "gamma": 3}
-"""Channel of the section that carries a coordinate's force: axial, torsion, bending, the same in
-the plane of y."""
+"""Channel of the section (axial, torsion, bending, that in y) that carries a coordinate's force."""
 
 
 def roles(coordinates: Sequence[str]) -> tuple[str, ...]:

@@ -173,11 +173,6 @@ def section(rope: Rope, channels: int = 3) -> Real:
     return both
 
 
-def channels_of(scene: Scene) -> int:
-    """Return how many channels the sections of a scene have."""
-    return 4 if "y" in scene.coordinates else 3
-
-
 class Division(NamedTuple):
     """Equal elements between stations, as the core tells them; see csrc/chain/division.h.
 
@@ -204,7 +199,7 @@ class Elements(NamedTuple):
 
 def _elements(scene: Scene, local: Sequence[Rope], rope: Index) -> Elements:
     """Return what elements of so many different ropes are made of, by which of them each is of."""
-    flexibility = np.array([section(one, channels_of(scene)) for one in local])
+    flexibility = np.array([section(one, 3 + ("y" in scene.coordinates)) for one in local])
     inertia = np.array([inertia_of(scene, one) for one in local])
     sag = None
     if scene.sags:

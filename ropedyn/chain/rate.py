@@ -36,7 +36,6 @@ from .chain import CONTINUOUS
 from .compile import (
     INERTIA,
     carried_by,
-    channels_of,
     dragged,
     halves,
     has_inertia,
@@ -400,7 +399,7 @@ def asked(rates: Mapping[str, Callable[[], _Any]], path: str) -> Callable[[], _A
 def _acting(model: Compiled) -> set[str]:
     """Return the properties that a rope may have and this model's depends on."""
     stiffness = {name for name in SECTION if own_number(model.scene.rope, name) is not None}
-    if channels_of(model.scene) == 3:
+    if not model.chain.is_spatial:
         stiffness -= {ACROSS["bending_stiffness"]}
     return stiffness | {c for c in DENSITIES if inertia_rate(model.scene, c).any()}
 
