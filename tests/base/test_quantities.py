@@ -420,7 +420,7 @@ def test_units_of_a_drive_are_those_of_its_coordinate():
 EVERYTHING = rd.Scene(
     described(rd.Rope),
     tension=described(rd.Tension),
-    gravity=described(rd.Gravity),
+    gravity=dataclasses.replace(described(rd.Gravity), own_weight=False),
     ends=(
         rd.End(
             x="free",
