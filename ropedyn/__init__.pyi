@@ -35,6 +35,7 @@ from .response.deflection import Deflection
 from .response.frf import FRF
 from .response.second_harmonic import SecondHarmonic
 from .scene.bench.bending_test import BendingTest
+from .scene.bench.prior import Prior
 from .scene.bench.torsion_test import TorsionTest
 from .scene.construction.construction import Construction, Layer
 from .scene.construction.section import Section
@@ -55,7 +56,6 @@ from .scene.parts.law import NodeForce, Stop
 from .scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
 from .scene.parts.resonator import Resonator
 from .scene.parts.stretch import AddedMass, LocalChange
-from .scene.prior import Prior
 from .scene.rope import Rope
 from .scene.scene import Scene
 from .scene.tension import Tension

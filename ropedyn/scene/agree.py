@@ -18,10 +18,10 @@ from .tension import Tension
 from .weight import refuse_slack
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .described import Described
 
 
-def agree(scene: Scene) -> None:
+def agree(scene: Described) -> None:
     """Refuse what has no meaning together."""
     _check_coordinates(scene)
     _check_planes(scene)
@@ -35,7 +35,7 @@ def agree(scene: Scene) -> None:
     _check_stretching(scene)
 
 
-def _check_coordinates(scene: Scene) -> None:
+def _check_coordinates(scene: Described) -> None:
     bends = scene.rope.bending_stiffness is not None
     least = scene.mean_tension
     if isinstance(scene.tension, Tension):
@@ -51,7 +51,7 @@ def _check_coordinates(scene: Scene) -> None:
         )
 
 
-def _check_planes(scene: Scene) -> None:
+def _check_planes(scene: Described) -> None:
     for name in ACROSS if scene.planes == "z" else ():
         _refuse_pair(scene, f"rope.{name}", getattr(scene.rope, name))
     for i, part in enumerate(scene.parts if scene.planes == "both" else ()):
@@ -62,12 +62,12 @@ def _check_planes(scene: Scene) -> None:
             )
 
 
-def _refuse_pair(scene: Scene, name: str, value: Any) -> None:
+def _refuse_pair(scene: Described, name: str, value: Any) -> None:
     if scene.planes == "z" and isinstance(value, tuple):
         raise SceneError(f'{name} must be one number where planes is "z", got {value!r}')
 
 
-def _check_places(scene: Scene) -> None:
+def _check_places(scene: Described) -> None:
     for i, part in enumerate(scene.parts):
         for name in positions(part):
             check.position(getattr(part, name), f"parts[{i}].{name}", scene.rope.length)
@@ -89,7 +89,7 @@ def _check_places(scene: Scene) -> None:
                     raise check.absent(must, scene.coordinates, coordinate)
 
 
-def _check_stretch(scene: Scene, i: int, part: Stretch) -> None:
+def _check_stretch(scene: Described, i: int, part: Stretch) -> None:
     least = check.NEAR * scene.rope.length
     if not part.stop - part.start > least:
         raise SceneError(
@@ -106,7 +106,7 @@ def _check_stretch(scene: Scene, i: int, part: Stretch) -> None:
             )
 
 
-def _check_hinge(scene: Scene, i: int, x: float) -> None:
+def _check_hinge(scene: Described, i: int, x: float) -> None:
     margin = check.NEAR * scene.rope.length
     if not margin < x < scene.rope.length - margin:
         raise SceneError(
@@ -115,7 +115,7 @@ def _check_hinge(scene: Scene, i: int, x: float) -> None:
         )
 
 
-def _check_tension(scene: Scene) -> None:
+def _check_tension(scene: Described) -> None:
     at = scene.tension.at if isinstance(scene.tension, Tension) else "middle"
     if not isinstance(at, str):
         check.position(at, "at of the tension", scene.rope.length)
@@ -137,7 +137,7 @@ def _check_tension(scene: Scene) -> None:
         refuse_slack(scene.grade, pulsating, (_is_bare(scene, 0), _is_bare(scene, 1)))
 
 
-def _is_bare(scene: Scene, end: int) -> bool:
+def _is_bare(scene: Described, end: int) -> bool:
     """Whether an end is free along z and nothing stands on it."""
     term, at = _end.end_of(scene.ends[end]).term(), end * scene.rope.length
     margin = check.NEAR * scene.rope.length
@@ -146,7 +146,7 @@ def _is_bare(scene: Scene, end: int) -> bool:
     return not beside and stands.isdisjoint(("y", "z"))
 
 
-def _check_gravity(scene: Scene) -> None:
+def _check_gravity(scene: Described) -> None:
     if scene.gravity is None:
         return
     if scene.gravity.sag and scene.rope.axial_stiffness is None and not scene.is_graded:
@@ -171,7 +171,7 @@ def _check_gravity(scene: Scene) -> None:
         )
 
 
-def _check_stretching(scene: Scene) -> None:
+def _check_stretching(scene: Described) -> None:
     if not isinstance(scene.tension, Tension) or not scene.tension.stretching:
         return
     if scene.planes == "both":

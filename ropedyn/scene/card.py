@@ -15,14 +15,14 @@ from .rope import own_number
 from .tension import Tension
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .described import Described
 
 WIDTH = 80  # Characters of a line.
 Card = dict[str, str]
 """Names and what is said of them."""
 
 
-def card(scene: Scene) -> Card:
+def card(scene: Described) -> Card:
     """Say what a scene is, with the string frequency of its mean tension, f = sqrt(T/mu)/(2 L)."""
     rope, tension = scene.rope, scene.mean_tension
     density, length = rope.linear_density, rope.length

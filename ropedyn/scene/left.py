@@ -17,7 +17,7 @@ from .tension import Tension
 from .weight import curves, pulls
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .described import Described
 
 PROPERTIES = {
     "bending": ("bending_stiffness", "lay_slope", "rotary_inertia"),
@@ -46,7 +46,7 @@ def coordinates_of(rope: Rope, mean_tension: float, planes: str) -> tuple[str, .
     return tuple([c for c in COORDINATES if present.get(c, False)])
 
 
-def left_of(scene: Scene, effects: tuple[str, ...]) -> dict[str, Any]:
+def left_of(scene: Described, effects: tuple[str, ...]) -> dict[str, Any]:
     """Return the arguments of a scene that never had these effects."""
     rope, tension = _rope(scene.rope, effects), _tension(scene.tension, effects)
     gravity = _gravity(scene.gravity, rope, effects)

@@ -20,7 +20,7 @@ from .stations import nearest, stations_at
 from .tension import Tension
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .described import Described
 
 WEIGHING = ("linear_density", "density", "mass", "g", "inclination")
 """Numbers that the tension changes with by weight."""
@@ -108,7 +108,7 @@ def grade(
     return Grade(station, *np.where(np.abs(ends) <= ROUNDING * np.abs(ends).max(), 0.0, ends))
 
 
-def grade_rate(scene: Scene, path: str) -> Grade | None:
+def grade_rate(scene: Described, path: str) -> Grade | None:
     """Return the derivative of the tension by a number that it is linear in, None if it is not."""
     rope, gravity, parts = scene.rope, scene.gravity, list(scene.parts)
     tension = scene.tension if isinstance(scene.tension, Tension) else Tension(scene.tension)

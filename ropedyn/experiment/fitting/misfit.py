@@ -13,7 +13,7 @@ from ...base.errors import RopedynError, SceneError, SolveError
 from ...curves.measured import Measured
 from ...model import Model
 from ...response.frf import FRF
-from ...scene.prior import LOG_NORMAL, Prior
+from ...scene.bench.prior import LOG_NORMAL, Prior
 from .natural_frequencies import NaturalFrequencies
 from .unknown import CALIBRATION, Unknowns
 

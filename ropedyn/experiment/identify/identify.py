@@ -23,8 +23,8 @@ from ...curves.record.record import Record
 from ...curves.resonance import Resonances
 from ...family.rows import Shared
 from ...response.question import workers_of
+from ...scene.bench.prior import Prior
 from ...scene.path import with_values
-from ...scene.prior import Prior
 from ...scene.scene import Scene
 from ..compare.slips import slips
 from ..fitting.misfit import PriorMisfit, Response

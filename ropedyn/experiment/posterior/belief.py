@@ -10,8 +10,8 @@ import numpy as np
 
 from ...base.array import Flags, Real
 from ...base.errors import SceneError
+from ...scene.bench.prior import Prior
 from ...scene.path import unit_of, value_at
-from ...scene.prior import Prior
 from ...scene.scene import Scene
 
 WEAK = 1.2

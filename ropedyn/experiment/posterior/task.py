@@ -11,7 +11,7 @@ from ...base import check
 from ...base.array import Flags, Integer, Real
 from ...base.errors import SceneError
 from ...family.template import SPRING
-from ...scene.prior import Prior
+from ...scene.bench.prior import Prior
 from ...scene.scene import Scene
 from ..fitting.unknown import Unknowns
 

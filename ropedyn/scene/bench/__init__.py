@@ -1,1 +1,1 @@
-"""Bench tests of a piece of rope: bending and torsion."""
+"""Bench tests of a piece of rope, and what is known before a measurement."""

@@ -16,6 +16,7 @@ from ...eigen.modes import Modes
 from ...eigen.spectrum import in_hertz
 from ...model import Model
 from ...scene.damping import StiffnessDamping
+from ...scene.described import Described
 from ...scene.end import End
 from ...scene.parts.part import Dashpot, Hinge, PointMass, Spring, Support
 from ...scene.parts.resonator import Resonator
@@ -38,7 +39,8 @@ def attack(seed: int, number: int) -> list[str] | None:
     if not all(modes.certified for modes in drawn.modes):
         return None
     wrong = [text for check in CHECKS for text in check(drawn)]
-    return [f"scene {number} of seed {seed}: {text}: {scene!r}" for text in wrong]
+    told = Described.__repr__(scene)  # every number of it
+    return [f"scene {number} of seed {seed}: {text}: {told}" for text in wrong]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..base import check
-from ..base.array import Flags, Real
-from ..base.errors import SceneError
+from ...base import check
+from ...base.array import Flags, Real
+from ...base.errors import SceneError
 
 STRAIGHT = 1e-8  # Below this relative std a logarithm is a straight line.
 EPS = 1e-14  # Eigenvalues of correlations that are no larger are rounding of 0.

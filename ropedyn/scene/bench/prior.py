@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base import check
-from ..base.array import Real
-from ..base.computed import computed
-from ..base.errors import SceneError
-from ..base.parameter import Description, depending, given
-from ..base.table import Table
-from .bench.bending_test import BendingTest
-from .bench.given import given_tests
-from .bench.static_test import StaticTest
-from .bench.torsion_test import TorsionTest
+from ...base import check
+from ...base.array import Real
+from ...base.computed import computed
+from ...base.errors import SceneError
+from ...base.parameter import Description, depending, given
+from ...base.table import Table
+from ..path import signs_of, unit_of
+from .bending_test import BendingTest
+from .given import given_tests
 from .joint_normal import EPS, JointNormal
-from .path import signs_of, unit_of
+from .static_test import StaticTest
+from .torsion_test import TorsionTest
 
 NORMAL, LOG_NORMAL = DISTRIBUTIONS = ("normal", "log-normal")
 
