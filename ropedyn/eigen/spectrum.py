@@ -101,7 +101,9 @@ def _in_turn(counts: Sequence[int], which: Index, order: Index) -> Index:
         rank[which == k] = np.arange(np.count_nonzero(which == k))
     if (rank >= np.take(counts, which)).any():
         return order  # one that a limit parts
-    first = (np.cumsum(counts) - counts)[which] + rank
+    own = np.repeat(np.arange(len(counts)), counts)[order]
+    rising = order[np.argsort(own, kind="stable")]  # the modes of each component, one after another
+    first = rising[(np.cumsum(counts) - counts)[which] + rank]
     return np.concatenate([first, order[~np.isin(order, first)]])
 
 
