@@ -430,7 +430,11 @@ def test_numerical_damping_takes_only_what_steps_do_not_resolve():
 def test_what_has_no_steps_is_refused_by_name(scene, words):
     with pytest.raises(rd.SceneError, match=words):
         scene.compile(elements=2).transient(
-            [0.0, 0.1], start=PLUCK, response=("z", 0.5), method="direct"
+            [0.0, 0.1],
+            force=rd.Sine(1.0, 5.0),
+            drive=("z", 0.5),
+            response=("z", 0.5),
+            method="direct",
         )
 
 

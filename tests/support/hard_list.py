@@ -427,7 +427,7 @@ def static_middle(scene):
     return (mpmath.tan(u) / u - 1) / (4 * P)
 
 
-for side, digits in ((1e-6, 8), (1e-12, 2)):
+for side, digits in ((1e-6, 9), (1e-12, 2)):
 
     @case(
         f"deflection {short(side)} below the critical load",
