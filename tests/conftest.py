@@ -114,6 +114,11 @@ def slow(*values):
     return [pytest.param(value, marks=pytest.mark.slow) for value in values]
 
 
+def long(*values):
+    """Return parameters that are left to the tests that take long."""
+    return [pytest.param(value, marks=pytest.mark.long) for value in values]
+
+
 def reference(name):
     """Read tests/reference/<name>.json; each file names its source."""
     return json.loads((Path(__file__).parent / "reference" / f"{name}.json").read_text())

@@ -142,6 +142,7 @@ def test_what_is_whole_is_read(kind, tmp_path):
         assert tried(path, readers) >= 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_damaged_file_is_read_or_refused_by_name(kind, tmp_path, capfd):
     read, refused = read_all(kind, 1000, 1, tmp_path, capfd)

@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+from conftest import long
 
 import ropedyn as rd
 from ropedyn.experiment.plan.placement import CandidatePlaces, best_placement
@@ -65,7 +66,7 @@ def test_visibility_is_the_product_of_shapes_over_its_largest():
 
 
 @pytest.mark.parametrize("scene", [STRING, ROPE], ids=["string", "rope"])
-@pytest.mark.parametrize("modes", [3, 5, 8])
+@pytest.mark.parametrize("modes", [3, *long(5, 8)])
 def test_a_planned_measurement_shows_every_mode_as_a_peak(scene, modes):
     plan = rd.plan_measurement(scene, modes)
     assert shown(measured(scene, plan), plan).all()

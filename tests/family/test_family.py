@@ -10,6 +10,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 
 import numpy as np
 import pytest
+from conftest import long
 from exact_span_count import exact_span_count
 from general_path import general_path
 
@@ -476,7 +477,7 @@ def test_progress_is_told_and_may_stop_it():
 
 
 @pytest.mark.parametrize("elements", [None, 64], ids=["closed form", "row by row"])
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("threads", [2, *long(1)])
 def test_it_stops_for_control_c(threads, elements):
     code = f"""
 import ropedyn as rd, numpy as np

@@ -252,6 +252,7 @@ def test_what_steps_alone_know_is_refused(asked):
     assert model.transient([0.0, 0.1], **PUSH, **asked).cost.method == "direct"
 
 
+@pytest.mark.long
 def test_chaos_says_until_when_it_is_known():
     """Two stiff stops without damping: rounding is the motion after a while."""
     stops = (rd.Stop(0.5, 1e7, gap=1e-4), rd.Stop(0.5, 1e7, gap=1e-4, side=-1))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import long
 
 import ropedyn as rd
 from ropedyn.motion.phases.components import why_not_events
@@ -26,7 +27,7 @@ def scene(*parts, damping=STIFF):
     return rd.Scene(ROPE, tension=2830.0, damping=damping, parts=parts)
 
 
-@pytest.mark.parametrize("element", ["continuous", "tensed"])
+@pytest.mark.parametrize("element", ["continuous", *long("tensed")])
 @pytest.mark.parametrize("kind", KINDS)
 def test_laws_beside_stiffness_damping_are_answered(kind, element):
     elements = None if element == "continuous" else 20
@@ -38,6 +39,7 @@ def test_laws_beside_stiffness_damping_are_answered(kind, element):
     assert (np.abs(history.value - sharper.value) <= history.error + sharper.error).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_rigid_chains_move_as_by_steps_along_them(kind):
     model = scene(KINDS[kind]).compile(elements=20, element="rigid")
@@ -219,6 +221,7 @@ def compare(seed):
     return found.error[:, known], off, np.abs(found.value).max()
 
 
+@pytest.mark.long
 def test_errors_cover_the_distance_to_exact_phases():
     # of the first three both refuse the second, after five seconds
     for said, off, most in map(compare, (81_000, 81_002)):

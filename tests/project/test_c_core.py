@@ -13,6 +13,7 @@ RUN = Path(__file__).parent.parent / "c" / "run"
 WALLS = RUN.parent / "walls.py"
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
 def test_c_tests_pass():
     environment = os.environ | {"PYTHON": sys.executable}

@@ -267,6 +267,7 @@ def check_against_differences(scene, kind, drive, response, every):
     return compared
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("what", ASKED)
 def test_derivative_is_that_of_every_kind_of_question(what, kind):
