@@ -10,6 +10,7 @@ from typing import Any, Literal, overload
 from numpy.typing import ArrayLike
 
 from .base import check
+from .base.computed import waited
 from .base.progress import Progress
 from .chain.compiled import Compiled, refuse_nonlinear
 from .chain.port import Point
@@ -83,6 +84,7 @@ class Model(Compiled):
         damped: Literal[True],
     ) -> DampedModes: ...
 
+    @waited
     def modes(
         self,
         number: int | None = None,
@@ -184,6 +186,7 @@ class Model(Compiled):
         refuse_nonlinear(self)
         return count_modes(self, below)
 
+    @waited
     def frf(
         self,
         frequency: ArrayLike,
@@ -259,6 +262,7 @@ class Model(Compiled):
         ask = partial(solver_of(harmonic), self, frequency, drive=drive, response=response)
         return ask(quantity=quantity, solver=solver, threads=threads, decay=decay)
 
+    @waited
     def static(
         self,
         load: Mapping[Point, float],
@@ -309,6 +313,7 @@ class Model(Compiled):
         refuse_nonlinear(self)
         return solve_static(self, load, solver=solver, points=points, unstable=unstable)
 
+    @waited
     def transient(
         self,
         time: ArrayLike,
@@ -405,26 +410,14 @@ class Model(Compiled):
         >>> print(history.value[0].round(3) + 0.0)
         [ 0.01 -0.01]
         """
-        run = Run.of(
-            self,
-            time,
-            drive=drive,
-            force=force,
-            response=response,
-            quantity=quantity,
-            start=start,
-            velocity=velocity,
-            method=method,
-            modes=modes,
-            step=step,
-            tolerance=tolerance,
-            spectral_radius=spectral_radius,
-            snapshots=snapshots,
-            progress=progress,
-            partial=partial,
-        )
+        asked: Any = {"drive": drive, "force": force, "response": response, "quantity": quantity}
+        asked |= {"start": start, "velocity": velocity, "snapshots": snapshots}
+        asked |= {"method": method, "modes": modes, "step": step, "tolerance": tolerance}
+        asked |= {"spectral_radius": spectral_radius, "partial": partial, "progress": progress}
+        run = Run.of(self, time, **asked)
         return turned(run, follow_motion)
 
+    @waited
     def floquet(self, modes: int | None = 4) -> Floquet:
         """Find how free motion grows or decays under the tension that pulsates.
 
@@ -466,6 +459,7 @@ class Model(Compiled):
         refuse_nonlinear(self)
         return solve_floquet(self, modes)
 
+    @waited
     def stability_map(
         self,
         frequency: ArrayLike,
@@ -524,7 +518,8 @@ class Model(Compiled):
         self, frequency: ArrayLike, *, branches: Literal[True], **asked: Any
     ) -> Branches: ...
 
-    def stepped_sine(  # type: ignore[misc]  # which names asked may have is said here alone
+    @waited  # type: ignore[misc]  # which names asked may have is said here alone
+    def stepped_sine(
         self,
         frequency: ArrayLike,
         *,

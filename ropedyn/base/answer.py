@@ -16,6 +16,7 @@ import numpy as np
 
 from . import check, extra
 from .atomic import write_bytes
+from .computed import paid_for
 from .drawing import draw
 from .errors import SceneError, SolveError
 from .reading import reading
@@ -40,10 +41,6 @@ class Cost:
 
     Attributes
     ----------
-    seconds : float
-        Wall time of the solution, and of what has been computed since because it was read, as
-        `mesh_error`, shapes and what tables show: what a caller waits but for checks and layout,
-        some 0.1 ms. What follows counts the solution alone.
     method : str
         The solver.
     elements, unknowns : int
@@ -58,6 +55,9 @@ class Cost:
     redone : float
         Share of the answer that was solved twice: modes that counts did not confirm at first.
         0 of responses: one sweep is careful enough for all of them.
+    seconds : float
+        What a caller has waited: from the question, checks included, to its answer, and for what
+        has been computed since because it was read, as `mesh_error`, shapes and tables.
 
     Examples
     --------
@@ -68,13 +68,13 @@ class Cost:
     ('sweep', 8, 7)
     """
 
-    seconds: float
     method: str
     elements: int
     unknowns: int
     sweeps: int = 0
     factorisations: int = 0
     redone: float = 0.0
+    seconds: float = 0.0
 
 
 class Work(NamedTuple):
@@ -148,6 +148,8 @@ class Answer(Frozen):
         # a dataclass writes one of its own where the class has none
         if "__repr__" not in vars(cls):
             cls.__repr__ = Answer.__repr__  # type: ignore[method-assign]
+        if "table" in vars(cls):
+            cls.table = paid_for(cls.table)  # type: ignore[assignment,method-assign]
 
     def table(self) -> Table:
         """Return the answer as a table.

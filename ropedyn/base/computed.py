@@ -6,10 +6,11 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
-from typing import Any, Generic, Self, TypeVar, cast, overload
+from functools import cached_property, wraps
+from typing import Any, Generic, ParamSpec, Self, TypeVar, cast, overload
 
 Value = TypeVar("Value")
+Given = ParamSpec("Given")
 
 
 class Reader(Generic[Value]):
@@ -47,6 +48,41 @@ def paid(thing: object) -> Iterator[None]:
         # what has been read on the way counted itself, and is part of the time
         seconds = before + time.perf_counter() - start
         kept["cost"] = replace(kept["cost"], seconds=seconds)
+
+
+def paid_for(method: Callable[[Any], Value]) -> Callable[[Any], Value]:
+    """Count each call of a method as part of what its thing cost."""
+
+    @wraps(method)
+    def counted(thing: Any) -> Value:
+        with paid(thing):
+            return method(thing)
+
+    return counted
+
+
+def waited(call: Callable[Given, Value]) -> Callable[Given, Value]:
+    """Let what a call returns, or its exception carries, cost what the caller has waited for it."""
+
+    @wraps(call)
+    def answered(*given: Given.args, **options: Given.kwargs) -> Value:
+        start = time.perf_counter()
+        try:
+            answer = call(*given, **options)
+        except BaseException as stop:
+            for carried in vars(stop).values():
+                _costs(carried, start)
+            raise
+        _costs(answer, start)
+        return answer
+
+    return answered
+
+
+def _costs(answer: object, start: float) -> None:
+    kept = getattr(answer, "__dict__", {})
+    if "cost" in kept:
+        kept["cost"] = replace(kept["cost"], seconds=time.perf_counter() - start)
 
 
 class Lazy(Reader[Value]):

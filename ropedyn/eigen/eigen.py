@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
@@ -55,9 +54,7 @@ def solve_modes(
     limit = check_asked(number, below)
     if below is not None:
         refuse_short_waves(model, limit)
-    start = time.perf_counter()
     found = solve_components(model, solver, number, limit, shaped=False)
-    seconds = time.perf_counter() - start
     existing = sum(len(part.eigenvalue) for part in found)
     if strict and number is not None and number > existing:
         raise SolveError(
@@ -84,7 +81,7 @@ def solve_modes(
         growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
         rounding_error=error_in_hertz(eigenvalue, error),
         plane=partial(_planes, model, which),
-        cost=_cost(model, solver, seconds, found),
+        cost=_cost(model, solver, found),
         vectors=later if solver == "sweep" else vectors_of(model, found, eigenvalue, order),
         mesh=mesh,
         solve_shapes=partial(solve_shapes, model, solver, eigenvalue, which),
@@ -114,12 +111,10 @@ def check_asked(number: int | None, below: float | None) -> float:
     return math.inf if below is None else eigenvalue_of(below)
 
 
-def _cost(model: Compiled, solver: str, seconds: float, found: Sequence[ComponentModes]) -> Cost:
+def _cost(model: Compiled, solver: str, found: Sequence[ComponentModes]) -> Cost:
     work = Work.of(part.work for part in found)
     share = work.redone / max(sum(len(part.eigenvalue) for part in found), 1)
-    return Cost(
-        seconds, solver, len(model.x) - 1, model.size, work.sweeps, work.factorisations, share
-    )
+    return Cost(solver, len(model.x) - 1, model.size, work.sweeps, work.factorisations, share)
 
 
 def no_mesh(frequency: Real) -> UndampedMesh:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike
 from ..base import check
 from ..base.answer import Cost
 from ..base.array import Integer, Real
-from ..base.computed import computed
+from ..base.computed import computed, waited
 from ..base.errors import SceneError
 from ..base.progress import Progress
 from ..base.unit import QUANTITIES
@@ -90,6 +89,7 @@ class Family:
         """
         return bool(self._closed)
 
+    @waited
     def modes(
         self,
         values: ArrayLike,
@@ -156,7 +156,6 @@ class Family:
         blank.append(np.zeros(len(rows), dtype=bool))
         if derivative:
             blank.append(np.full((*shape, p), np.nan))
-        start = time.perf_counter()
         stages = self._stages(
             blank,
             partial(closed_modes, self._closed, number, derivative),
@@ -168,7 +167,7 @@ class Family:
         return FamilyModes(
             paths=self.paths,
             reasons=reasons,
-            cost=_cost(time.perf_counter() - start, answered, len(rows)),
+            cost=_cost(answered, len(rows)),
             frequency=frequency,
             eigenvalue=eigenvalue,
             growth=np.sqrt(np.maximum(-eigenvalue, 0.0)),
@@ -225,6 +224,7 @@ class Family:
         Shared(rows, workers_of(threads), executor, progress).fill(blank, stages)
         return blank[0]
 
+    @waited
     def frf(
         self,
         values: ArrayLike,
@@ -274,7 +274,6 @@ class Family:
         check.one_of(quantity, "quantity", QUANTITIES)
         shape = (len(rows), *((len(drives),) if several else ()), len(watched), len(f))
         blank = [np.full(shape, np.nan + 0j), np.full(shape, np.nan)]
-        start = time.perf_counter()
         swept = asked_of_rows(model, f, drives, watched, quantity, several=several)
         stages = self._stages(
             blank,
@@ -283,7 +282,7 @@ class Family:
         )
         shared = Shared(rows, workers_of(threads), executor, progress)
         reasons, answered = shared.fill(blank, stages)
-        cost = _cost(time.perf_counter() - start, answered, len(rows))
+        cost = _cost(answered, len(rows))
         return FamilyFRF(self.paths, reasons, cost, quantity, f, *blank)
 
     def scene_of(self, values: ArrayLike) -> Scene:
@@ -341,9 +340,9 @@ class Family:
         return rows
 
 
-def _cost(seconds: float, answered: Sequence[int], rows: int) -> Cost:
+def _cost(answered: Sequence[int], rows: int) -> Cost:
     closed = answered[0] if len(answered) > 1 else 0
-    return Cost(seconds, f"{closed} of {rows} rows in closed form", elements=0, unknowns=0)
+    return Cost(f"{closed} of {rows} rows in closed form", elements=0, unknowns=0)
 
 
 def compile_family(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time as clock
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -45,10 +44,8 @@ OCTAVES = 12.0  # which span so many octaves down from the fastest that times re
 
 def solve_linear(run: Run) -> History:
     """Return the motion of a linear model within the tolerance; see `Model.transient`."""
-    start = clock.perf_counter()
     moved = within_tolerance(run)
     x, snapshot = snapshots_of(run)
-    seconds = clock.perf_counter() - start
     kept, model = run.kept, run.model
     mesh_error: Real | Callable[[], Real] = partial(mesh_error_of, kept, moved.value)
     if model.element == "continuous":
@@ -58,7 +55,7 @@ def solve_linear(run: Run) -> History:
         value=moved.value,
         x=x,
         snapshot=snapshot,
-        cost=Cost(seconds, moved.method, len(model.x) - 1, moved.modes, sweeps=2 * moved.lines),
+        cost=Cost(moved.method, len(model.x) - 1, moved.modes, sweeps=2 * moved.lines),
         error=moved.error,
         mesh_error=mesh_error,
         balance=partial(balance, kept, fastest(kept)),

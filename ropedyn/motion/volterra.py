@@ -12,7 +12,6 @@ half as long tell the error.
 from __future__ import annotations
 
 import math
-import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -175,18 +174,16 @@ class Unsettled(SolveError):
 
 def integrate(run: Run) -> History:
     """Find the motion under laws of points; see `Model.transient`."""
-    start = clock.perf_counter()
     tolerance = TOLERANCE if run.tolerance is None else run.tolerance
     stepped, moved = _agreed(run, tolerance)
     x, snapshot = snapshots_of(stepped.pushed().but(tolerance=tolerance))
-    seconds = clock.perf_counter() - start
     kept, elements = run.kept, len(run.model.x) - 1
     return History(
         **kept.told,
         value=moved.value,
         x=x,
         snapshot=snapshot,
-        cost=Cost(seconds, "volterra", elements, moved.modes, stepped.count),
+        cost=Cost("volterra", elements, moved.modes, stepped.count),
         error=moved.error,
         mesh_error=partial(against_spans, kept, moved.value, integrate),
         balance=partial(balance, kept),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -125,7 +124,6 @@ def solve_floquet(model: Compiled, modes: int | None) -> Floquet:
             "tension must pulsate, such as Tension(1000.0, amplitude=100.0, frequency=50.0), got "
             f"{tension!r}"
         )
-    start = time.perf_counter()
     system = modal_system(model, checked_modes(model, modes))
     count = len(system.eigenvalue)
     share = np.zeros((2 * count, count))
@@ -155,7 +153,6 @@ def solve_floquet(model: Compiled, modes: int | None) -> Floquet:
         rounding_error=np.concatenate(error)[order],
         participation=share[order],
         cost=Cost(
-            time.perf_counter() - start,
             f"Hill's matrix, {harmonics} harmonics; composition of order 10, {steps} steps",
             len(model.x) - 1,
             2 * count,

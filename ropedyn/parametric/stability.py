@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -160,7 +159,6 @@ def solve_stability(
             f"{mean!r} N, got {most!r}"
         )
     report = reporter(progress)
-    start = time.perf_counter()
     system = modal_system(model, checked_modes(model, modes))
     each = exponent(system, f, np.broadcast_to(a, (len(f), len(a))), report=report)
     return StabilityMap(
@@ -171,7 +169,6 @@ def solve_stability(
         geometric=system.geometric,
         damping=system.damping,
         cost=Cost(
-            time.perf_counter() - start,
             "composition of order 10",
             len(model.x) - 1,
             2 * len(system.eigenvalue),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, field
 from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
@@ -12,6 +11,7 @@ import numpy as np
 
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Index, Real
+from ..base.computed import waited
 from ..base.table import Table
 from .decay import damped
 from .krein import NEUTRAL, Regions, Unstable, undamped
@@ -127,9 +127,9 @@ class Boundary(Answer):
         return Table.of(f"where stability changes at {self.amplitude:g} N, {verdict}", columns)
 
 
+@waited
 def boundary(system: ModalSystem, low: float, high: float, amplitude: float) -> Boundary:
     """Return where stability changes between two frequencies at an amplitude."""
-    start = time.perf_counter()
     first, last = 1 / high, 1 / low
     found = [_found(system.only(block), first, last, amplitude) for block in system.blocks]
     edge = [
@@ -148,7 +148,6 @@ def boundary(system: ModalSystem, low: float, high: float, amplitude: float) -> 
         highest_order=max(highest, *(n for _, n in edge), 0),
         proved=all(each.proved for each in found),
         cost=Cost(
-            time.perf_counter() - start,
             "Hill's matrix and Krein's count",
             0,
             2 * len(system.eigenvalue),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -61,12 +60,10 @@ def solve_harmonic(
     is_modal = bool(damping.having(model.scene.dampings, "ratio"))
     if is_modal:
         refuse_other_damping(model, drives, responses)
-    start = time.perf_counter()
     whole = Question(model, model.coordinates, f, factor, list(drives), asked, workers, decay)
     got = by_components(whole, partial(modal_sum if is_modal else line_by_line, solver=solve))
     value = tip.gather(model, responses, factor, got.value)
     _refuse_overflow(f, value)
-    seconds = time.perf_counter() - start
     power = (1j * omega) ** QUANTITIES[quantity]
     drive = slice(None) if several else 0
     value = (value * power if QUANTITIES[quantity] else value)[drive]
@@ -88,7 +85,6 @@ def solve_harmonic(
         frequency=f,
         value=value,
         cost=Cost(
-            seconds,
             solver,
             len(model.x) - 1,
             got.unknowns,

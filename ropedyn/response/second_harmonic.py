@@ -12,7 +12,6 @@ pieces that follow waves and boundary layers.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -154,7 +153,6 @@ def solve_second(
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     responses = _responses(model, response)
     order = QUANTITIES[check.one_of(quantity, "quantity", QUANTITIES)]
-    start = time.perf_counter()
     rule = _rule(model, f.max(), [*drives, *responses])
     value, rounding = _integrated(model, f, drives, responses, rule)
     top = f[[int(f.argmax())]]
@@ -162,7 +160,6 @@ def solve_second(
     again, _ = _integrated(model, top, drives, responses, rule.halved)
     size = np.abs(value)
     error = np.where(size > 0, rounding + _apart(once, again), 0.0)
-    seconds = time.perf_counter() - start
     value *= (4j * np.pi * f) ** order
     if not several:
         value, error = value[0], error[0]
@@ -173,7 +170,7 @@ def solve_second(
         frequency=f,
         value=value,
         rounding=RoundingOfResponse.of_relative(value, error),
-        cost=Cost(seconds, solver, len(model.x) - 1, model.size, sweeps=4 * len(f)),
+        cost=Cost(solver, len(model.x) - 1, model.size, sweeps=4 * len(f)),
         mesh=MeshOfResponse(np.zeros(value.shape)),
     )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,6 +14,7 @@ from ..ask import AnyQuestion
 from ..base import check
 from ..base.answer import Answer, Cost, axes
 from ..base.array import Index, Integer, Real
+from ..base.computed import waited
 from ..base.errors import SceneError
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
@@ -218,6 +218,7 @@ class AccuracyCost(Answer):
         return Table.of(f"{self.verdict}\n\n{about}", columns)
 
 
+@waited
 def accuracy_cost(
     scene: Scene,
     question: AnyQuestion,
@@ -279,7 +280,6 @@ def accuracy_cost(
     >>> print(cost.error[-1] < 1e-14)  # continuous spans
     True
     """
-    start = time.perf_counter()
     check_question(scene, question)
     kinds = _words(element, "element", KINDS)
     given = question.usual if solver is None else solver
@@ -309,7 +309,7 @@ def accuracy_cost(
         **columns,
         parts=parts,
         part=part,
-        cost=Cost(time.perf_counter() - start, "trials", sum(n for _, n, _ in ways), 0),
+        cost=Cost("trials", sum(n for _, n, _ in ways), 0),
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
@@ -16,6 +15,7 @@ import numpy as np
 from ..base import check
 from ..base.answer import Answer, Cost
 from ..base.array import Real
+from ..base.computed import waited
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
 from .outcome import Errand, Failure, Outcome, outcome_of
@@ -125,6 +125,7 @@ class Sweep(Sequence[Result | None], Generic[Result]):
         return self.table().to_dataframe()
 
 
+@waited
 def sweep(
     function: Callable[[One], Result],
     scenes: Iterable[One],
@@ -190,7 +191,6 @@ def sweep(
     _check_executor(executor, function)
     report = reporter(progress)
     found: dict[int, Outcome] = {}
-    start = time.perf_counter()
     here = ((k, outcome_of(function, scene)) for k, scene in enumerate(given))
     outcomes = here if executor is None else _sent(function, given, executor)
     try:
@@ -199,9 +199,9 @@ def sweep(
                 found[k] = outcome
                 report(len(found) / len(given))
     except BaseException as stop:
-        vars(stop)["sweep"] = _gathered(found, len(given), executor, time.perf_counter() - start)
+        vars(stop)["sweep"] = _gathered(found, len(given), executor)
         raise
-    return _gathered(found, len(given), executor, time.perf_counter() - start)
+    return _gathered(found, len(given), executor)
 
 
 def _listed(scenes: Iterable[One]) -> list[One]:
@@ -303,9 +303,7 @@ def _received(future: Future[list[Outcome]], sent: int) -> list[Outcome]:
         return sent * [Outcome(None, Failure(error), np.nan)]
 
 
-def _gathered(
-    found: Mapping[int, Outcome], count: int, executor: Executor | None, seconds: float
-) -> Sweep[Any]:
+def _gathered(found: Mapping[int, Outcome], count: int, executor: Executor | None) -> Sweep[Any]:
     blank = Outcome(None, None, np.nan)
     outcomes = [found.get(k, blank) for k in range(count)]
     costs = [getattr(outcome.result, "cost", None) for outcome in outcomes]
@@ -315,7 +313,6 @@ def _gathered(
         {k: one.failure.error for k, one in enumerate(outcomes) if one.failure is not None},
         np.array([outcome.seconds for outcome in outcomes]),
         Cost(
-            seconds,
             "one after the other" if executor is None else type(executor).__name__,
             elements=sum(cost.elements for cost in known),
             unknowns=sum(cost.unknowns for cost in known),

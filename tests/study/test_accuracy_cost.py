@@ -304,7 +304,7 @@ def made(error, seconds):
         refusal=np.array(["" if e == e else "no" for e in error]),
         parts=1,
         part="",
-        cost=rd.Cost(1.0, "trials", 0, 0),
+        cost=rd.Cost("trials", 0, 0, seconds=1.0),
     )
 
 

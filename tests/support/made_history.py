@@ -21,7 +21,7 @@ def made(time, value, *, force=None, response=None, quantity="displacement", **c
         "snapshot_time": time[:2],
         "x": nodes,
         "snapshot": np.stack([np.outer(nodes, [1.0, 0.1]), np.outer(nodes**2, [1.0, 0.1])]),
-        "cost": rd.Cost(0.5, "modal", 2, 3),
+        "cost": rd.Cost("modal", 2, 3, seconds=0.5),
         "balance": Balance({"kinetic": np.ones(len(time))}),
         "error": np.zeros(value.shape),
         "mesh_error": np.zeros(value.shape),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -79,9 +78,7 @@ def solve_damped(
     limit = math.sqrt(check_asked(number, below))
     if having(model.scene.dampings, "ratio"):
         return solve_modal(model, number, below=below, points=points)
-    start = time.perf_counter()
     answer = _find(model, model.components, number, limit)
-    seconds = time.perf_counter() - start
     value = answer.value
     x, finest = model.x, 1
     mesh: MeshOfModes | Callable[[], MeshOfModes] = partial(_mesh, model, answer)
@@ -97,7 +94,7 @@ def solve_damped(
         eigenvalue=value,
         rounding_error=answer.error / (2 * math.pi),
         plane=np.array([plane_of(answer.parts[k][0]) for k in answer.which], dtype=np.str_),
-        cost=Cost(seconds, solver, len(model.x) - 1, model.size, answer.sweeps),
+        cost=Cost(solver, len(model.x) - 1, model.size, answer.sweeps),
         vectors=partial(_vectors, model, answer, finest),
         mesh=mesh,
     )

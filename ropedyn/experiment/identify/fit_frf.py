@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from functools import partial
 
 import numpy as np
@@ -34,7 +33,6 @@ FAINT = 1e-12  # A kind of noise that has less than this part is none.
 
 def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
     """Fit logarithms, in which peaks at wrong places are decades off, then lines over noise."""
-    started = time.perf_counter()
     measured = response.measured
     lines, together = int((measured.value != 0).sum()), alike(_long(measured))
     _refuse_few(response.unknowns, lines, known)
@@ -56,7 +54,7 @@ def fit_response(response: Response, known: PriorMisfit | None) -> ResponseFit:
         u, before = solution.u[0], u
         if (np.abs(u - before) <= SETTLED * solution.uncertainty.std[0]).all():
             break
-    return _answer(response, solution, std, evaluations, time.perf_counter() - started)
+    return _answer(response, solution, std, evaluations)
 
 
 def _refuse_few(unknowns: Unknowns, lines: int, known: PriorMisfit | None) -> None:
@@ -77,9 +75,7 @@ def _refuse_unseen(misfit: LogMisfit, u: Real, known: PriorMisfit | None) -> Non
         )
 
 
-def _answer(
-    response: Response, solution: Solution, std: Real, evaluations: int, seconds: float
-) -> ResponseFit:
+def _answer(response: Response, solution: Solution, std: Real, evaluations: int) -> ResponseFit:
     measured = response.measured
     value, _ = response(solution.u[0])
     sought, freedom = len(solution.unknowns), float(solution.record["freedom"][0])
@@ -91,9 +87,7 @@ def _answer(
         correlation=solution.uncertainty.correlation[0],
         freedom=None if np.isnan(freedom) else freedom,
         chi_square=float(solution.off[0] / solution.noise[0] ** 2),
-        cost=Cost(
-            seconds, "least squares", response.elements or 0, sought, factorisations=evaluations
-        ),
+        cost=Cost("least squares", response.elements or 0, sought, factorisations=evaluations),
         bounds=partial(kept_bounds, known.interval),
         known=known,
         drive=measured.drive,

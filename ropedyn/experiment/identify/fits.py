@@ -256,7 +256,7 @@ def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
     off = solution.record["residual"][:, : solution.peaks] * relative
     rms[at] = np.sqrt(np.sum(off**2, axis=1) / (ropes["orders"][at] > 0).sum(axis=1))
     evaluations = int(solution.record["evaluations"].sum())
-    seconds, elements = n * found.seconds, how.elements or 0
+    elements = how.elements or 0
     batch = SideBySide(found, measured)
     status = np.full(n, "refused", dtype=object)
     status[at] = "trusted"
@@ -268,7 +268,7 @@ def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
         status=tuple(status.tolist()),
         failure=tuple(found.reasons[i][1] if i in found.reasons else "" for i in range(n)),
         notes=_notes(solution),
-        cost=Cost(seconds, "least squares", elements, n * p, factorisations=evaluations),
+        cost=Cost("least squares", elements, n * p, factorisations=evaluations),
         bounds=partial(kept_bounds, batch.interval),
         batch=batch,
     )
@@ -307,7 +307,6 @@ def each_alone(
         failure=tuple(str(failed[i]) if i in failed else "" for i in range(n)),
         notes=_gathered({i: one.notes for i, one in enumerate(there) if one is not None}),
         cost=Cost(
-            sum(one.seconds for one in costs),
             costs[0].method if costs else "none",
             how.elements or 0,
             n * len(how.paths),

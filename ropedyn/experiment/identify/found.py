@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -35,7 +34,6 @@ class Found:
     ropes: Ropes
     solution: Solution  # of the ropes that have one
     reasons: Reasons  # of the others
-    seconds: float  # wall time of each
 
     def error(self, i: int) -> RopedynError:
         """Return why a rope has no solution."""
@@ -70,7 +68,6 @@ def find(
     progress: Progress = None,
 ) -> Found:
     """Identify ropes that a scene describes alike, but those that are refused."""
-    began = time.perf_counter()
     ropes = _rows(measured, orders, refused, how)
     identification = Identification.of(scene, how, ropes)
     n, k = ropes["measured"].shape
@@ -86,7 +83,6 @@ def find(
         ropes=ropes,
         solution=Solution(identification.task(ropes), rows, record[rows]),
         reasons=reasons,
-        seconds=(time.perf_counter() - began) / max(n, 1),
     )
 
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.array import Integer, Real
-from ...base.computed import changed
+from ...base.computed import changed, waited
 from ...base.errors import IdentifyWarning, SceneError
 from ...base.progress import Progress
 from ...curves.measured import Measured, above_zero
@@ -98,6 +98,7 @@ def identify(
 ) -> Fits: ...
 
 
+@waited
 def identify(
     scene: Scene,
     measured: Any,
@@ -353,7 +354,7 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
 
 def _warn(notes: Sequence[str]) -> None:
     for note in notes:
-        warnings.warn(note, IdentifyWarning, stacklevel=3)
+        warnings.warn(note, IdentifyWarning, stacklevel=4)
 
 
 # --- what was given ---------------------------------------------------------------------------

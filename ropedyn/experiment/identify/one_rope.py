@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,7 +11,7 @@ import numpy as np
 
 from ...base.answer import Cost
 from ...base.array import Integer, Real
-from ...base.computed import changed, computed
+from ...base.computed import computed, waited
 from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
@@ -118,20 +117,19 @@ class RopeTask:
         """Which mode each peak is, where somebody says it."""
         return given_orders(self.how.orders, self.peaks)
 
+    @waited
     def fit(self) -> Fit:
         """Find its orders and its numbers."""
-        began = time.perf_counter()
         refuse_outside(self.scene, self.peaks.sensors or ())
         found, status = self._numbered()
         if status == "refused":
-            return self._refused(time.perf_counter() - began)
+            return self._refused()
         orders = np.array(found[0].orders, dtype=np.int64)
         told, damped = self._both(orders)
         if self.said is None:
             slipped = slips_of_peaks(np.asarray(self.peaks.frequency), self.scene.compile())
             told = replace(told, notes=(*told.notes, *slipped))
-        fit = self._fit(told, damped, orders, self._decision(status, found, told, damped))
-        return changed(fit, cost=replace(fit.cost, seconds=time.perf_counter() - began))
+        return self._fit(told, damped, orders, self._decision(status, found, told, damped))
 
     def _both(self, orders: Integer) -> tuple[Told, PeakDamping | None]:
         """Return what frequencies and widths tell, each with what the other has told."""
@@ -278,7 +276,7 @@ class RopeTask:
             assumed=(*told.assumed, *self._assumed()),
             notes=(*notes, *self._far(told)) if trusted else (AMBIGUOUS, *notes),
             seed=how.seed,
-            cost=Cost(0.0, told.method, how.elements or 0, k, factorisations=told.evaluations),
+            cost=Cost(told.method, how.elements or 0, k, factorisations=told.evaluations),
             candidates=decision.candidates,
             bounds=partial(kept_bounds, decision.known.interval),
             known=decision.known,
@@ -336,7 +334,7 @@ class RopeTask:
             if one.tension is not None
         )
 
-    def _refused(self, seconds: float) -> Fit:
+    def _refused(self) -> Fit:
         """Return a fit without numbers."""
         how, frequency = self.how, np.asarray(self.peaks.frequency)
         p, k = len(how.paths), len(frequency)
@@ -367,7 +365,7 @@ class RopeTask:
             assumed=(),
             notes=(NO_MODES,),
             seed=how.seed,
-            cost=Cost(seconds, "evidence", how.elements or 0, k),
+            cost=Cost("evidence", how.elements or 0, k),
             candidates=empty,
             bounds=np.broadcast_to(blank, (len(LEVELS), p, 2)).copy(),
             remarks=Remarks(),

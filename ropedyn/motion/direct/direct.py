@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -39,13 +38,11 @@ def march(run: Run) -> History:
         raise SceneError(why)
     chains = lumped_chains(run)
     g = stage_of(run.spectral_radius)
-    start = time.perf_counter()
     passage = march_within(run, chains, g) if run.step is None else march_given(run, chains, g)
-    seconds = time.perf_counter() - start
     error = passage.error
     if error is not None and (passage.reached == 0 or not isinstance(error, STOPS)):
         raise error
-    history = _history(run, chains, passage, seconds)
+    history = _history(run, chains, passage)
     if error is not None and not run.partial:
         if isinstance(error, SolveError):
             error.history = history
@@ -82,7 +79,7 @@ def refuse_responses(run: Run) -> None:
             )
 
 
-def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) -> History:
+def _history(run: Run, chains: list[Lumps], passage: Passage) -> History:
     kept, seen = slice(passage.reached), slice(passage.seen)
     asked = replace(run.kept, time=run.time[kept], snapshots=run.snapshots[seen])
     value = passage.value[:, kept]
@@ -100,7 +97,7 @@ def _history(run: Run, chains: list[Lumps], passage: Passage, seconds: float) ->
         value=value,
         x=run.model.x,
         snapshot=passage.snapshot[seen],
-        cost=Cost(seconds, "direct", len(run.model.x) - 1, unknowns, *work),
+        cost=Cost("direct", len(run.model.x) - 1, unknowns, *work),
         balance=Balance(energy),
         error=partial(_error, asked, value, passage.step_error[:, kept]),
         mesh_error=mesh_error,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -132,7 +131,6 @@ class Branches(Answer):
 
 def solve_branches(asked: SteppedSine) -> Branches:
     """Follow branches between the lowest and the highest frequency."""
-    start = clock.perf_counter()
     driven = Driven.of(asked)
     _refuse(driven)
     harmonics = HARMONICS
@@ -141,7 +139,7 @@ def solve_branches(asked: SteppedSine) -> Branches:
         traces = [[settled(driven, one) for one in way] for way in traced(driven, balance)]
         found = [[one for one in way if one is not None] for way in traces]
         if found == traces:
-            return _answer(driven, found, start)
+            return _answer(driven, found)
         harmonics *= 2
         if 2 * harmonics > MOST:
             raise SolveError(f"{harmonics} harmonics do not tell where branches lead")
@@ -203,7 +201,7 @@ def _passed(omega: Real, piece: tuple[Place, Place]) -> list[float]:
     return inside if end > begin else inside[::-1]
 
 
-def _answer(driven: Driven, traces: list[list[SteadyState]], start: float) -> Branches:
+def _answer(driven: Driven, traces: list[list[SteadyState]]) -> Branches:
     """Put the branches one after another; a fold ends one and begins the next."""
     asked = driven.asked
     states: list[SteadyState] = []
@@ -222,10 +220,9 @@ def _answer(driven: Driven, traces: list[list[SteadyState]], start: float) -> Br
     for k, one in enumerate(states):
         stable.append(one.kind != "fold" and holds(driven, one))
         asked.progress((k + 1) / len(states))
-    seconds = clock.perf_counter() - start
     unknowns = max(len(one.place.x) for one in states)
     lines = driven.transfer.lines + len(states)
-    cost = Cost(seconds, "balance", len(asked.model.x) - 1, unknowns, sweeps=2 * lines)
+    cost = Cost("balance", len(asked.model.x) - 1, unknowns, sweeps=2 * lines)
     whole = asked.answer(frequency, value, error, cost, np.array(stable))
     return Branches(
         whole.drive,

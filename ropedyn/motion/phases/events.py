@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time as clock
 from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple
@@ -78,7 +77,6 @@ def _record(
 
 def solve_events(run: Run) -> History:
     """Follow the motion from event to event; see `Model.transient`."""
-    start = clock.perf_counter()
     why = why_not_events(run)
     if why:
         raise SceneError(f'{why} where the method is "events"')
@@ -89,7 +87,6 @@ def solve_events(run: Run) -> History:
         looks.append(Look(points, run.snapshots, 0))
     found, error = _within(run, looks)
     value = found.seen[0]
-    seconds = clock.perf_counter() - start
     sure = _sure_until(run, found, error)
     error[:, run.time > sure] = np.inf
     width = len(run.model.coordinates)
@@ -99,7 +96,7 @@ def solve_events(run: Run) -> History:
         value=value,
         x=x,
         snapshot=np.ascontiguousarray(kept.T).reshape(-1, len(x), width),
-        cost=Cost(seconds, "events", len(run.model.x) - 1, found.modes),
+        cost=Cost("events", len(run.model.x) - 1, found.modes),
         balance=partial(balance, run.kept, found.modes),
         error=error,
         mesh_error=partial(against_spans, run.kept, value, solve_events),

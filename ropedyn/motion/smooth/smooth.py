@@ -8,7 +8,6 @@ modes that are left out.
 
 from __future__ import annotations
 
-import time as clock
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -189,14 +188,13 @@ def component_motion(run: Run, asked: LawQuestion) -> Agreed:
 
 def collocate(run: Run) -> History:
     """Find the motion under smooth laws; see `Model.transient`."""
-    start = clock.perf_counter()
     model = run.model
     x = within(model.x, POINTS) if model.element == "continuous" else model.x
     answer = _Answer(run, x)
     for component in model.components:
         laws = laws_on(model, component)
         answer.take(component, laws)
-    history = answer.history(clock.perf_counter() - start)
+    history = answer.history()
     error = answer.error
     if error is not None and (len(history.time) == 0 or not isinstance(error, STOPS)):
         raise error
@@ -261,7 +259,7 @@ class _Answer:
         self.snapshot[:, :, at] = found.snapshot[:, :, at]
         self.modes += found.cost.unknowns
 
-    def history(self, seconds: float) -> History:
+    def history(self) -> History:
         """Return all of it until the end that was reached."""
         run = self.run.kept
         kept = run.time <= self.reached if self.error is not None else np.isfinite(run.time)
@@ -274,7 +272,7 @@ class _Answer:
             value=value,
             x=self.x,
             snapshot=self.snapshot[seen],
-            cost=Cost(seconds, "collocation", elements, self.modes, self.stages),
+            cost=Cost("collocation", elements, self.modes, self.stages),
             balance=partial(balance, asked),
             error=self.step_error[:, kept] + self.truncation[:, None],
             mesh_error=partial(against_spans, asked.kept, value, collocate),

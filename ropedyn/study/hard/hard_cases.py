@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from ...base import check
 from ...base.answer import Answer, Cost, axes
 from ...base.array import Flags, Real
+from ...base.computed import waited
 from ...base.errors import SceneError
 from ...base.progress import Progress, reporter
 from ...base.table import Table, numbers
@@ -127,6 +127,7 @@ class HardCases(Answer):
         return Table.of(self.verdict, rows)
 
 
+@waited
 def hard_cases(random: int = 0, seed: int | None = None, *, progress: Progress = None) -> HardCases:
     """Run cases that are hard to keep stable, and attack random hard scenes.
 
@@ -167,7 +168,7 @@ def hard_cases(random: int = 0, seed: int | None = None, *, progress: Progress =
     if seed is not None:
         check.count(seed, "seed", least=0, most=2**63)
     report = reporter(progress)
-    start, cases = time.perf_counter(), hard_list()
+    cases = hard_list()
     whole, kept, peers = len(cases) + random, [], []
     for case in cases:
         kept.append(case.run())
@@ -189,6 +190,6 @@ def hard_cases(random: int = 0, seed: int | None = None, *, progress: Progress =
         drawn=random,
         refused=wrong.count(None),
         failures=tuple(text for one in wrong for text in one or []),
-        cost=Cost(time.perf_counter() - start, "trials", 0, 0),
+        cost=Cost("trials", 0, 0),
         **columns,
     )
