@@ -51,10 +51,9 @@ static void massless_matrix(const struct rd_chain *chain, double *K)
 static void continuous_matrix(const struct rd_chain *chain, double *K)
 {
     const size_t w = chain->width;
-    struct rate_matrix rate;
+    const cv part[RD_PARTS] = {c_real(1), c_real(1), c_real(1), c_real(-LAMBDA), c_zero()};
     struct rd_transfer transfer;
-    rd_rate_fill(chain, 0, c_real(1), c_real(1), c_real(-LAMBDA), c_zero(), &rate);
-    rd_transfer_fill(chain, 0, &rate, &transfer);
+    rd_transfer_fill(chain, 0, part, &transfer);
     double F[W * W], T[W * W], G[W * W], GF[W * W], FGF[W * W];
     for (size_t i = 0; i < w * w; i++) {
         F[i] = creal(transfer.F[0][i]);

@@ -56,10 +56,9 @@ static cv lanes_of(double complex x)
 static void transfer_at(const struct span *span, struct factors factors,
                         struct rd_transfer *transfer)
 {
-    struct rate_matrix rate;
-    rd_rate_fill(&span->chain, 0, lanes_of(factors.section), lanes_of(factors.tension),
-                 lanes_of(factors.inertia), c_zero(), &rate);
-    rd_transfer_fill(&span->chain, 0, &rate, transfer);
+    const cv part[RD_PARTS] = {lanes_of(factors.section), lanes_of(factors.tension), c_real(1),
+                               lanes_of(factors.inertia), c_zero()};
+    rd_transfer_fill(&span->chain, 0, part, transfer);
 }
 
 /* motion and force at the two ends of an element */
@@ -418,14 +417,13 @@ static void bending_is_the_same_alone_and_beside_twist(void)
 static void lanes_do_not_see_each_other(void)
 {
     struct span span;
-    struct rate_matrix rate;
     struct rd_transfer together, alone;
     cv inertia = c_zero();
     span_make(&span, "xzab", &laid, 0.1, 300, everywhere);
     for (int k = 0; k < LANES; k++)
         inertia.re[k] = -1e3 * k;
-    rd_rate_fill(&span.chain, 0, c_real(1), c_real(1), inertia, c_zero(), &rate);
-    rd_transfer_fill(&span.chain, 0, &rate, &together);
+    const cv part[RD_PARTS] = {c_real(1), c_real(1), c_real(1), inertia, c_zero()};
+    rd_transfer_fill(&span.chain, 0, part, &together);
     for (int k = 0; k < LANES; k++) {
         transfer_at(&span, (struct factors){1, 1, -1e3 * k}, &alone);
         for (int i = 0; i < W * W; i++) {
