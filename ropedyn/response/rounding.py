@@ -82,12 +82,13 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     # to the right of a node the force is more by what the node takes
     moved, pulled = np.maximum(size / z, load), np.maximum((np.abs(f) + taken) * z, slip)
     here = _energies(moved, pulled, d, r)
-    # where sections or hinges mix the coordinates each rounds by all of them
-    mixes = _mixes(chain, stations.node)[:, None] / len(z)
-    mixed = _energies(_added(moved, axis=2), _added(pulled, axis=2), d, r) * mixes
+    # coordinates that scatter together round by each other: by the mean of all, or that on top
+    mean = _energies(_added(moved, axis=2), _added(pulled, axis=2), d, r) / len(z)
     wave = here + pulled[d, None] * pulled[r]
     wave = np.maximum(wave[:, :, 1:], wave[:, :, :-1]) * _radians(chain, stations, factor)
-    energy = OF_STATIONS * np.sqrt(_added((_added(here, axis=3) + mixed) ** 2, axis=2))
+    own = _added(here, axis=3)
+    own = np.where(_mixes(chain, stations.node), own + mean, np.maximum(own, mean))
+    energy = OF_STATIONS * np.sqrt(_added(own**2, axis=2))
     energy += OF_WAVES * _added(_added(wave, axis=3), axis=2)
     energy += OF_NODES * _added(_added(size[d, None] * taken[r], axis=3), axis=2)
     energy += OF_NODES * _of_structures(chain, stations.node, factor, u, len(drives.node))
@@ -106,10 +107,11 @@ def _energies(moved: Real, pulled: Real, drives: slice, responses: slice) -> Rea
 
 
 def _mixes(chain: Chain, node: Index) -> Flags:
-    """Say at which nodes a coordinate rounds by others: of hinges, of all in a coupled section."""
-    if chain.section_loss > 1 or chain.hinge is None:
-        return np.full(len(node), chain.section_loss > 1)
-    return np.asarray(chain.hinge.any(axis=1)[chain.term_of[node]])
+    """Say where one coordinate is made of others: in coupled sections, at hinges, (stations, 1)."""
+    mixes = np.full((len(node), 1), chain.section_loss > 1)
+    if chain.hinge is not None:
+        mixes[:, 0] |= chain.hinge.any(axis=1)[chain.term_of[node]]
+    return mixes
 
 
 def _added(terms: Real, axis: int) -> Real:
