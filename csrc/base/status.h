@@ -6,6 +6,7 @@ enum rd_status {
     RD_OK = 0,
     RD_NO_MEMORY,             /* the workspace handed in is too small */
     RD_NOT_POSITIVE_DEFINITE, /* a section or a flexibility that would create energy */
+    RD_INDEFINITE_ELEMENT,    /* rounding leaves nothing positive of an element's flexibility */
     RD_CRITICAL_ELEMENT,      /* tension is the critical load of one element: no triple exists */
     RD_SINGULAR,              /* a factorisation met an exact zero */
     RD_UNSTABLE_MASSLESS,     /* stiffness is not positive on coordinates without mass */

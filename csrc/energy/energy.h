@@ -27,7 +27,7 @@ struct rd_energy {
 
    The motion inside continuous elements is that at the eigenvalue lambda, and the integrals along
    them are exact; they must be shorter than their first resonance as a cantilever.
-   RD_NOT_POSITIVE_DEFINITE where one is not. */
+   RD_INDEFINITE_ELEMENT where one is not. */
 enum rd_status rd_energy_fill(struct rd_sensitivity *sensitivity, struct rd_energy *energy);
 
 #endif

@@ -45,7 +45,7 @@ void rd_sensitivity_begin(struct rd_sensitivity *sensitivity, const struct rd_li
    stretch, jump (pairs, width) <- the sum of the products by which its hinges open:
    dPi/d(spring stiffness of the hinge). place (pairs), or NULL: of continuous elements, whose
    stretches come in order, dPi/dx of the node where the stretch begins; 0 of the first.
-   RD_NOT_POSITIVE_DEFINITE, RD_CRITICAL_ELEMENT: as rd_element_matrix; the first also where a
+   RD_NOT_POSITIVE_DEFINITE, RD_CRITICAL_ELEMENT: as rd_element_matrix; RD_INDEFINITE_ELEMENT where a
    continuous element without forces is longer than its first resonance as a cantilever and nothing
    is damped. */
 enum rd_status rd_sensitivity_stretch(struct rd_sensitivity *sensitivity, size_t stretch,

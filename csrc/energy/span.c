@@ -679,7 +679,7 @@ static enum rd_status fill_graded(struct rd_wave_slopes *slopes, const struct rd
     add_number(slopes, RD_OF_SAG, one, &t);
     for (size_t i = 0; i < w * w; i++)
         t.D[i].im = t.G[i].im = t.Q[i].im = (lanes){0};
-    return status != RD_OK ? status : keep(slopes, &t) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+    return status != RD_OK ? status : keep(slopes, &t) ? RD_OK : RD_INDEFINITE_ELEMENT;
 }
 
 /* pieces of one radian by their ends */
@@ -705,7 +705,7 @@ enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
     for (int k = 0; k < mixed; k++)
         join(slopes, &triple);
     if (!forces)
-        return keep(slopes, &triple) ? RD_OK : RD_NOT_POSITIVE_DEFINITE;
+        return keep(slopes, &triple) ? RD_OK : RD_INDEFINITE_ELEMENT;
     begin_waves(slopes, &triple);
     for (int k = mixed; k < halvings; k++)
         join_waves(slopes);

@@ -49,7 +49,7 @@ struct rd_wave_slopes {
 };
 
 /* Where forces are told the halves of an element are joined by the waves between them, which meet no
-   resonance. Else RD_NOT_POSITIVE_DEFINITE where G is not: the element is longer than its first
+   resonance. Else RD_INDEFINITE_ELEMENT where G is not: the element is longer than its first
    resonance as a cantilever. Where it is damped that is not seen. */
 enum rd_status rd_wave_slopes_of(const struct rd_chain *chain, size_t e,
                                  const struct rd_lines *lines, bool forces,

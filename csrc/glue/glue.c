@@ -12,6 +12,10 @@ static const char *text_of(enum rd_status status)
     switch (status) {
     case RD_NOT_POSITIVE_DEFINITE:
         return "a section flexibility is not positive definite to working precision";
+    case RD_INDEFINITE_ELEMENT:
+        return "the flexibility of an element is not positive definite to working precision: "
+               "bending, twist and stretch are coupled too strongly, or it is longer than its "
+               "first resonance";
     case RD_CRITICAL_ELEMENT:
         return "the compression is exactly the critical load of one element: no transfer exists; "
                "use other elements";

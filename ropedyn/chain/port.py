@@ -28,6 +28,11 @@ class Ports(NamedTuple):
     force: Real | None
     """(points, width) share of the internal force at the right end of the element, or None."""
 
+    def part(self, rows: slice) -> Ports:
+        """Return some of the points."""
+        force = None if self.force is None else self.force[rows]
+        return Ports(self.node[rows], self.row[rows], force)
+
 
 def is_force(point: Point) -> bool:
     """Whether the point asks for an internal force such as ("F_z", 0.3)."""

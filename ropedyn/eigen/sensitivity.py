@@ -215,8 +215,11 @@ class Sensitivity:
     @computed
     def largest(self) -> Slopes:
         """Sizes of those of shapes as large as the modes that turn from node to node."""
-        shapes = self.shapes
+        shapes, row = self.shapes, self.shapes.model.chain.attached_row
         u = np.abs(shapes.shape).max(axis=1, keepdims=True)
+        if row is not None:
+            # what moves far on a rope that hardly does sets the rounding of both
+            u[:, 0] = np.maximum(u[:, 0], np.abs(shapes.motion) @ np.abs(row[:, 0]))
         sign = 1.0 - 2.0 * (np.arange(shapes.shape.shape[1]) % 2)
         turning = u * sign[:, None]
         return sizes(Slopes.of(shapes.model.chain, shapes.eigenvalue, turning, shapes.motion))

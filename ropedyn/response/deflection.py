@@ -12,7 +12,7 @@ import numpy as np
 from .. import _core
 from ..base import check
 from ..base.answer import Answer, Cost, Work, axes
-from ..base.array import Index, Real
+from ..base.array import Flags, Index, Real
 from ..base.computed import Late, Lazy, lazy
 from ..base.errors import SceneError, SolveError
 from ..base.table import Table
@@ -45,6 +45,8 @@ class Deflection(Answer):
     rounding_error : ndarray, shape (nodes, coordinates)
         Bound of what rounding does to the displacement, to first order, computed when it is read
         [m, rad]. The closer a load is to a critical one the larger it is.
+    force_rounding_error : ndarray, shape (nodes, coordinates)
+        The same of the forces, which are what the rope beside a node leaves of its forces [N, N m].
     load : tuple of (point, float)
         That was asked for [N, N m].
     critical_loads : int
@@ -70,6 +72,9 @@ class Deflection(Answer):
     critical_loads: int
     cost: Cost
     rounding_error: Lazy[Real] = lazy(np.ndarray, axes=axes("node", "coordinate", unit="m or rad"))
+    force_rounding_error: Lazy[Real] = lazy(
+        np.ndarray, axes=axes("node", "coordinate", unit="N or N m")
+    )
 
     def table(self) -> Table:
         """Return displacement and force at every node."""
@@ -107,12 +112,12 @@ def solve_static(
     displacement, force = np.zeros((len(x), width)), np.zeros((len(x), width))
     unknowns, works = 0, []
     for component, free in zip(model.components, model.unknowns):
-        here = {point: value for point, value in loads.items() if point[0] in component}
-        if not here:
+        if not any(point[0] in component for point in loads):
             continue
         at = [model.coordinates.index(c) for c in component]
         try:
-            displacement[:, at], force[:, at], work = solver_of.solve(model, component, here, x)
+            push = _push(model, component, loads, x)
+            displacement[:, at], force[:, at], work = solver_of.solve(push)
         except SolveError as error:
             raise SolveError(
                 f"({', '.join(component)}): the stiffness is singular to working precision: a "
@@ -123,6 +128,9 @@ def solve_static(
         works.append(work)
     if not np.isfinite(displacement).all() or not np.isfinite(force).all():
         raise SolveError("the numbers of the static deflection overflow: check the units")
+    motion_error, force_error = (
+        partial(of, solver_of.bound) for of in (_motion_error, solver_of.force_error)
+    )
     return Deflection(
         coordinates=model.coordinates,
         x=x,
@@ -130,7 +138,8 @@ def solve_static(
         force=force,
         load=tuple(loads.items()),
         critical_loads=critical_loads(model, loads) if unstable else 0,
-        rounding_error=Late(partial(_rounding, model, loads, x, solver_of.bound)),
+        rounding_error=Late(partial(_rounding, model, loads, x, motion_error)),
+        force_rounding_error=Late(partial(_rounding, model, loads, x, force_error)),
         cost=Cost(solver, len(model.x) - 1, unknowns, *Work.of(works)),
     )
 
@@ -139,73 +148,148 @@ POINTS = 64  # A deflection is given at so many parts of each continuous span.
 BLOCK = 4096  # One sweep reports the motion of so many nodes.
 
 
-def _sweep(
+class Push(NamedTuple):
+    """Loads of a component on a chain that is cut under them and at the nodes of the answer."""
+
+    chain: Chain
+    kept: Index  # nodes of the answer
+    ports: Ports
+    amount: Real  # (loads,) [N, N m]
+    nodal: Real  # (nodes, width) what they amount to
+
+    @property
+    def moves(self) -> Flags:
+        """Which coordinates of the nodes of the answer can move, (kept, width)."""
+        return np.asarray(self.chain.held[self.chain.term_of[self.kept]] == 0)
+
+
+def _push(
     model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
-) -> tuple[Real, Real, Work]:
-    """Return motion of the nodes, what the surroundings put on them, and what it took."""
-    longer, finer, kept = _cut(model, component, loads, nodes)
-    pushed = ports(longer, finer, component, loads)
-    amount = np.array(list(loads.values()))
-    asked = 0
+) -> Push:
+    """Cut the chain of a component under its loads and at nodes."""
+    here = {point: value for point, value in loads.items() if point[0] in component}
+    chain, x = model.chain.only(component).at_rest, model.x
+    if model.element in EXACT:
+        chain, x = cut(chain, x, [*nodes, *(point[1] for point in here), *stops(chain, x)])
+    kept, pushed = np.flatnonzero(np.isin(x, nodes)), ports(chain, x, component, here)
+    amount = np.array(list(here.values()))
+    return Push(chain, kept, pushed, amount, nodal(chain, x, component, here))
+
+
+class Ends(NamedTuple):
+    """Motion of the nodes of an answer, and forces on right ends of elements beside them."""
+
+    u: Real  # (kept, width)
+    right: Real  # (kept - 1, width) of those that end there
+    begins: Real  # (kept - 1, width) of those that begin there
+    work: Work
+
+
+def _sweep(push: Push) -> Ends:
+    chain, kept, asked = push.chain, push.kept, 0
 
     def ask(node: Index, forces: bool) -> Real:
         """Return motion of nodes, or force on the right end of the elements left of them."""
-        w = len(component)
-        watched = _watching(longer, node)
-        if forces:
-            unit = np.tile(np.eye(w), (len(node), 1))
-            watched = Ports(np.repeat(node - 1, w).astype(np.int32), 0 * watched.row, unit)
+        watched = _right_ends(chain, node) if forces else _watching(chain, node)
         nonlocal asked
         asked += 1
-        value, _, solved = _core.sweep(longer, STILL, pushed, watched)
+        value, _, solved = _core.sweep(chain, STILL, push.ports, watched)
         if solved == 0:
             raise SolveError("singular")
-        answer = np.einsum("d,dr->r", amount, value[:, :, 0].real)
-        return answer.reshape(len(node), w)
+        answer = np.einsum("d,dr->r", push.amount, value[:, :, 0].real)
+        return answer.reshape(len(node), -1)
 
     def ask_all(node: Index, forces: bool) -> Real:
         blocks = [node[k : k + BLOCK] for k in range(0, len(node), BLOCK)]
         return np.concatenate([ask(block, forces) for block in blocks])
 
-    u = ask_all(kept, False)
+    # what is held is still, to the last digit
+    u = ask_all(kept, False) * push.moves
     right = ask_all(kept[1:], True)
-    begins = ask_all(kept[:-1] + 1, True) if len(kept) < longer.nodes else right
-    return u, _on_nodes(longer, kept, u, right, begins), Work(2 * asked)
+    begins = ask_all(kept[:-1] + 1, True) if len(kept) < chain.nodes else right
+    return Ends(u, right, begins, Work(2 * asked))
 
 
-def _band(
-    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
-) -> tuple[Real, Real, Work]:
-    chain, x, kept = _cut(model, component, loads, nodes)
-    u, force = _core.mixed_deflection(chain, nodal(chain, x, component, loads))
-    on_nodes = _on_nodes(chain, kept, u[kept], force[kept[1:] - 1], force[kept[:-1]])
-    return u[kept], on_nodes, Work(factorisations=1)
+def _band(push: Push) -> Ends:
+    u, force = _core.mixed_deflection(push.chain, push.nodal)
+    kept = push.kept
+    return Ends(u[kept] * push.moves, force[kept[1:] - 1], force[kept[:-1]], Work(factorisations=1))
+
+
+def _by_ends(ends_of: Callable[[Push], Ends], push: Push) -> tuple[Real, Real, Work]:
+    """Return motion of the nodes, what the surroundings put on them, and what it took."""
+    ends = ends_of(push)
+    force = np.zeros_like(ends.u)
+    force[1:] += ends.right
+    force[:-1] -= _left_forces(push, ends)
+    return ends.u, force, ends.work
 
 
 STILL = np.array([[1.0], [1.0], [1.0], [0.0], [0.0]], dtype=np.complex128)
 """At 0 Hz the factors on sections, tension, springs, inertia and dashpots."""
+SUMMED = 8 * np.finfo(float).eps  # So far are elements off, and sums over their coordinates.
 AT_ONCE = 32  # The rounding of so many nodes is bounded together.
 Bound = Callable[[Chain, Ports, Ports], Real]
 
 
-def _rounding(model: Compiled, loads: dict[Point, float], nodes: Real, bound: Bound) -> Real:
-    """Bound what rounding does to the displacement of the nodes, linear in the loads [m, rad]."""
+def _rounding(
+    model: Compiled, loads: dict[Point, float], nodes: Real, bounded: Callable[[Push], Real]
+) -> Real:
+    """Bound what rounding does to motion of the nodes or forces on them, linear in the loads."""
     error = np.zeros((len(nodes), len(model.coordinates)))
     for component in model.components:
-        here = {point: value for point, value in loads.items() if point[0] in component}
-        if not here:
-            continue
-        chain, x, kept = _cut(model, component, here, nodes)
-        pushed, amount = ports(chain, x, component, here), np.abs(list(here.values()))
-        parts = [
-            amount @ bound(chain, pushed, _watching(chain, kept[k : k + AT_ONCE]))
-            for k in range(0, len(kept), AT_ONCE)
-        ]
-        moves = chain.held[chain.term_of[kept]] == 0
-        at = [model.coordinates.index(c) for c in component]
-        error[:, at] = np.concatenate(parts).reshape(moves.shape) * moves
+        if any(point[0] in component for point in loads):
+            at = [model.coordinates.index(c) for c in component]
+            error[:, at] = bounded(_push(model, component, loads, nodes))
     error.setflags(write=False)
     return error
+
+
+def _bounds(bound: Bound, push: Push, watched: Ports) -> Real:
+    """Bound what is watched, all coordinates of one place after another, (places, width)."""
+    width = push.chain.held.shape[1]
+    step = AT_ONCE * width
+    parts = [
+        np.abs(push.amount) @ bound(push.chain, push.ports, watched.part(slice(k, k + step)))
+        for k in range(0, len(watched.node), step)
+    ]
+    return np.concatenate(parts).reshape(-1, width)
+
+
+def _motion_error(bound: Bound, push: Push) -> Real:
+    return _bounds(bound, push, _watching(push.chain, push.kept)) * push.moves
+
+
+def _force_error(ends_of: Callable[[Push], Ends], bound: Bound, push: Push) -> Real:
+    """Bound f_b of the element on the left less f_a of the one on the right, and their difference.
+
+    What rounding did to f_a = E f_b - Q u_a + P u_b is that of the response of this sum.
+    """
+    chain, before, ends = push.chain, push.kept[:-1], ends_of(push)
+    of, first, width = left_ends(chain), chain.element_of[before], push.moves.shape[1]
+    row = np.stack([-of.Q[first], of.P[first]], axis=2).reshape(-1, 2, width)
+    begins = Ports(before.repeat(width).astype(np.int32), row, of.E[first].reshape(-1, width))
+    error = np.zeros_like(ends.u)
+    error[1:] += _bounds(bound, push, _right_ends(chain, push.kept[1:]))
+    error[1:] += SUMMED * np.abs(ends.right)
+    error[:-1] += _bounds(bound, push, begins) * np.abs(_hinged(push, of.Q[first]))
+    error[:-1] += SUMMED * chain.section_loss * _left_sizes(push, ends)
+    return error
+
+
+def _assembled_force_error(bound: Bound, push: Push) -> Real:
+    """Bound K u by the errors of u and of the entries of K."""
+    everywhere = push._replace(kept=np.arange(push.chain.nodes))
+    size = np.abs(_core.deflection(push.chain, push.nodal)[0])
+    wrong = _motion_error(bound, everywhere) + SUMMED * size
+    return _held_up(push.chain, wrong, np.abs)[push.kept]
+
+
+def _right_ends(chain: Chain, node: Index) -> Ports:
+    """Return the ports of the forces on the right ends of the elements left of nodes."""
+    watched = _watching(chain, node)
+    force = np.tile(np.eye(chain.held.shape[1]), (len(node), 1))
+    return Ports((node - 1).repeat(chain.held.shape[1]).astype(np.int32), 0 * watched.row, force)
 
 
 def _watching(chain: Chain, node: Index) -> Ports:
@@ -229,26 +313,32 @@ def _lapack_bound(chain: Chain, pushed: Ports, watched: Ports) -> Real:
     return _core.frf(chain, np.ascontiguousarray(STILL.T), pushed, watched)[1][0]
 
 
-def _on_nodes(
-    chain: Chain,
-    kept: Index,
-    u: Real,
-    right: Real,
-    begins: Real,
-) -> Real:
-    """Return f_b of the element on the left less f_a = E f_b - Q u_a + P u_b of the right one."""
-    of = left_ends(chain)
-    first = chain.element_of[kept[:-1]]
-    left_end = np.einsum("nij,nj->ni", of.E[first], begins)
-    left_end -= np.einsum("nij,nj->ni", of.Q[first], u[:-1])
+def _left_forces(push: Push, ends: Ends) -> Real:
+    """Return f_a = E f_b - Q u_a + P u_b of the elements right of nodes."""
+    E, Q, P = (one[push.chain.element_of[push.kept[:-1]]] for one in left_ends(push.chain))
+    left = np.einsum("nij,nj->ni", E, ends.begins)
+    left -= np.einsum("nij,nj->ni", Q, ends.u[:-1])
     # struts are never cut: their right end is the next node that is kept
-    left_end += np.einsum("nij,nj->ni", of.P[first], u[1:])
-    if chain.hinge is not None:
-        left_end *= _kept(chain.hinge[chain.term_of[kept[:-1]]], of.Q[first])
-    force = np.zeros_like(u)
-    force[1:] += right
-    force[:-1] -= left_end
-    return force
+    left += np.einsum("nij,nj->ni", P, ends.u[1:])
+    return left * _hinged(push, Q)
+
+
+def _left_sizes(push: Push, ends: Ends) -> Real:
+    """Return the sizes of what that is the sum of; c = 1/(1 + Q C) rounds by 1 + 2 |c|."""
+    of = left_ends(push.chain)
+    E, Q, P = (np.abs(one[push.chain.element_of[push.kept[:-1]]]) for one in of)
+    size = np.einsum("nij,nj->ni", E, np.abs(ends.begins))
+    size += np.einsum("nij,nj->ni", Q, np.abs(ends.u[:-1]))
+    size += np.einsum("nij,nj->ni", P, np.abs(ends.u[1:]))
+    left = np.abs(_hinged(push, of.Q[push.chain.element_of[push.kept[:-1]]]))
+    return 2 * size * left * (1 + left)
+
+
+def _hinged(push: Push, Q: Real) -> Real:
+    """Return what hinges leave of f_a, 1 where there is none."""
+    if push.chain.hinge is None:
+        return np.ones(Q.shape[:2])
+    return _kept(push.chain.hinge[push.chain.term_of[push.kept[:-1]]], Q)
 
 
 def _kept(compliance: Real, Q: Real) -> Real:
@@ -259,35 +349,23 @@ def _kept(compliance: Real, Q: Real) -> Real:
     return np.where(free, 0.0, 1 / (1 + np.einsum("nii->ni", Q) * finite))
 
 
-def _lapack(
-    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
-) -> tuple[Real, Real, Work]:
-    chain, x, kept = _cut(model, component, loads, nodes)
-    u, _ = _core.deflection(chain, nodal(chain, x, component, loads))
-    return u[kept], _held_up(chain, u)[kept], Work(factorisations=1)
-
-
-def _cut(
-    model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
-) -> tuple[Chain, Real, Index]:
-    """Return the chain with nodes under the loads, where they stand, and those of the answer."""
-    chain, x = model.chain.only(component).at_rest, model.x
-    if model.element in EXACT:
-        chain, x = cut(chain, x, [*nodes, *(point[1] for point in loads), *stops(chain, x)])
-    return chain, x, np.flatnonzero(np.isin(x, nodes))
+def _lapack(push: Push) -> tuple[Real, Real, Work]:
+    u, _ = _core.deflection(push.chain, push.nodal)
+    return u[push.kept], _held_up(push.chain, u)[push.kept], Work(factorisations=1)
 
 
 class Static(NamedTuple):
     """A solver: what finds motion of and forces on the nodes of one component, and its rounding."""
 
-    solve: Callable[[Compiled, tuple[str, ...], dict[Point, float], Real], tuple[Real, Real, Work]]
-    bound: Bound  # of each motion watched under unit loads, (loads, watched)
+    solve: Callable[[Push], tuple[Real, Real, Work]]
+    bound: Bound  # of each thing watched under unit loads, (loads, watched)
+    force_error: Callable[[Bound, Push], Real]
 
 
 SOLVERS = {
-    "sweep": Static(_sweep, _sweep_bound),
-    "band": Static(_band, _band_bound),
-    "lapack": Static(_lapack, _lapack_bound),
+    "sweep": Static(partial(_by_ends, _sweep), _sweep_bound, partial(_force_error, _sweep)),
+    "band": Static(partial(_by_ends, _band), _band_bound, partial(_force_error, _band)),
+    "lapack": Static(_lapack, _lapack_bound, _assembled_force_error),
 }
 
 
@@ -320,9 +398,9 @@ def nodal(
     return force
 
 
-def _held_up(chain: Chain, u: Real) -> Real:
-    """Return what the elements need from outside at every node: K_elements u."""
-    elastic, elastic_beside, string, string_beside, _, _, _ = _core.assemble(chain)
+def _held_up(chain: Chain, u: Real, of: Callable[[Real], Real] = np.asarray) -> Real:
+    """Return what the elements need from outside at every node: K_elements u, or |K_elements| u."""
+    elastic, elastic_beside, string, string_beside, *_ = map(of, _core.assemble(chain))
     force = np.einsum("nij,nj->ni", elastic + string, u)
     beside = elastic_beside + string_beside
     force[:-1] += np.einsum("nij,nj->ni", beside, u[1:])

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..base.array import Complex, Index, Real
+from ..base.array import Complex, Flags, Index, Real
 from ..chain.chain import CHANNELS, CONTINUOUS, PLANE, Chain
 from ..chain.port import Ports
 from ..scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION
@@ -81,10 +81,14 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     taken = _added(node * size[:, :, None], axis=3)
     # to the right of a node the force is more by what the node takes
     moved, pulled = np.maximum(size / z, load), np.maximum((np.abs(f) + taken) * z, slip)
-    here = moved[d, None] * (moved[r] + pulled[r]) + pulled[d, None] * moved[r]
+    here = _energies(moved, pulled, d, r)
+    # coordinates that scatter together round by each other: by the mean of all, or that on top
+    mean = _energies(_added(moved, axis=2), _added(pulled, axis=2), d, r) / len(z)
     wave = here + pulled[d, None] * pulled[r]
     wave = np.maximum(wave[:, :, 1:], wave[:, :, :-1]) * _radians(chain, stations, factor)
-    energy = OF_STATIONS * np.sqrt(_added(_added(here, axis=3) ** 2, axis=2))
+    own = _added(here, axis=3)
+    own = np.where(_mixes(chain, stations.node), own + mean, np.maximum(own, mean))
+    energy = OF_STATIONS * np.sqrt(_added(own**2, axis=2))
     energy += OF_WAVES * _added(_added(wave, axis=3), axis=2)
     energy += OF_NODES * _added(_added(size[d, None] * taken[r], axis=3), axis=2)
     energy += OF_NODES * _of_structures(chain, stations.node, factor, u, len(drives.node))
@@ -94,6 +98,20 @@ def bound_of(chain: Chain, factor: Complex, drives: Ports, responses: Ports) -> 
     around = _added(moved + pulled, axis=2)
     energy += OF_LOADS * _added(lost[d, None] * around[r] + around[d, None] * lost[r], axis=2)
     return np.where(np.isfinite(energy), EPS * chain.section_loss * energy, np.inf)
+
+
+def _energies(moved: Real, pulled: Real, drives: slice, responses: slice) -> Real:
+    """Return sizes of what the fields of drives and responses do to each other at stations."""
+    both_of = moved[responses] + pulled[responses]
+    return moved[drives, None] * both_of + pulled[drives, None] * moved[responses]
+
+
+def _mixes(chain: Chain, node: Index) -> Flags:
+    """Say where one coordinate is made of others: in coupled sections, at hinges, (stations, 1)."""
+    mixes = np.full((len(node), 1), chain.section_loss > 1)
+    if chain.hinge is not None:
+        mixes[:, 0] |= chain.hinge.any(axis=1)[chain.term_of[node]]
+    return mixes
 
 
 def _added(terms: Real, axis: int) -> Real:

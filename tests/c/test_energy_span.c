@@ -187,7 +187,7 @@ static void element_beyond_its_resonance_is_refused(void)
     const double k = 2 / LENGTH, shape[2] = {0, 1};
     double stored[RD_STRAINS], kinetic[W], dragged;
     CHECK_INT(mode_energy(&rope.chain, 300 * k * k / MU, shape, stored, kinetic, &dragged),
-              RD_NOT_POSITIVE_DEFINITE);
+              RD_INDEFINITE_ELEMENT);
     rope_free(&rope);
 }
 

@@ -134,7 +134,9 @@ def test_a_stiff_end_goes_to_infinity_and_says_so():
     with pytest.warns(rd.IdentifyWarning):
         fits = fitted(start, given, ["tension", SPRING])
     ends = fits.value[:, 1]
-    assert set(fits.status) == {"trusted"}
+    endless = np.isinf(fits.interval(0.95)[:, 1, 1])
+    assert endless.sum() >= 6
+    assert fits.status == tuple(np.where(endless, "ambiguous", "trusted"))
     for value, std in zip(ends, fits.std[:, 1]):
         # at the bound, which has no std, or too stiff to be told, or finite by chance of noise
         assert np.isinf(value) == np.isnan(std)
@@ -190,7 +192,7 @@ def test_an_unknown_end_is_not_left_in_the_worse_of_two_valleys():
         given.append(exact * (1 + 1e-3 * random.normal(size=8)))
     fits = fitted(scene(TENSION, 10.0, spring), peaks_of(given, 1e-3), [*BOTH, SPRING])
     without = fitted(scene(TENSION, 10.0, clamped), peaks_of(given, 1e-3), BOTH)
-    solved = np.array(fits.status) == "trusted"
+    solved = np.array(fits.status) != "refused"
     assert solved.sum() >= 55
     # a spring more fits no worse; 1e-3 is what the end of a flat valley leaves
     assert (8e6 * (fits.rms**2 - without.rms**2)[solved] < 1e-3).all()

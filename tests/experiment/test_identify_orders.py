@@ -132,7 +132,7 @@ def test_command_takes_std_orders_and_prior_and_prints_numbers(cord_file, tmp_pa
 
 def test_command_says_what_peaks_do_not_tell_beside_its_numbers(cord_file, capsys):
     few = ["--peaks", "13.88,27.89", "--unknown", "tension,bending_stiffness", "--csv"]
-    assert main(["identify", cord_file, *few, "--ends", "given", "--orders", "1,2"]) == 0
+    assert main(["identify", cord_file, *few, "--ends", "given", "--orders", "1,2"]) == 3
     printed = capsys.readouterr()
     assert printed.out.startswith("unknown,value,std")
     assert "as many unknown as peaks" in printed.err

@@ -1,5 +1,6 @@
 """How far answers of `identify` can be trusted, from peaks and from records to a tension."""
 
+import json
 import time
 import warnings
 from dataclasses import dataclass
@@ -200,3 +201,31 @@ def test_intervals_with_ends_and_orders_given_widen_where_std_is_understated(cla
     rng = np.random.default_rng(66)
     held = sum(given(rng, understated=3.0) for _ in range(1000))
     claim(1 - held / 1000)
+
+
+@pytest.mark.filterwarnings("ignore::ropedyn.IdentifyWarning")
+@pytest.mark.parametrize(
+    ("unknown", "peaks"),
+    [
+        (["tension", "linear_density"], [25.0, 50.0, 75.0]),
+        (["tension"], [25.0]),
+        (["tension", "ends[0].spring.beta"], [26.5, 53.1, 80.0]),
+    ],
+    ids=["a ratio alone", "nothing tells the noise", "an end that may be held"],
+)
+def test_number_without_a_limit_is_not_trusted(unknown, peaks):
+    scene = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0)
+    if "ends[0].spring.beta" in unknown:
+        hinged = rd.End(beta="free", spring={"beta": 10.0})
+        rope = scene.rope.replace(bending_stiffness=1.0)
+        scene = scene.replace(rope=rope, ends=(hinged, "clamped"))
+    given = rd.Peaks(peaks, std=0.01 if len(peaks) > 1 else None)
+    orders = list(range(1, len(peaks) + 1))
+    fit = rd.identify(scene, given, unknown, orders=orders, ends="given")
+    assert np.isinf(fit.interval(0.95)).any()
+    assert fit.status == "ambiguous"
+    assert fit.notes
+    assert len(fit.candidates) == 1
+    beside = rd.identify(scene, [given, given], unknown, orders=orders, ends="given")
+    assert beside.status == ("ambiguous", "ambiguous")
+    assert json.loads(fit.to_json())["status"] == "ambiguous"

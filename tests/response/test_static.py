@@ -8,6 +8,7 @@ import pytest
 from conftest import EPS, dense, free
 
 import ropedyn as rd
+from ropedyn.study.hard.drawn import drawn_scene
 
 L, B, C, EA = 2.0, 7.0, 3.0, 500.0
 BEAM = rd.Rope(L, 0.1, bending_stiffness=B)
@@ -279,6 +280,51 @@ def test_rounding_error_covers_what_is_lost_next_to_the_critical_load(below, ele
     bound = static.rounding_error[node, 0]
     assert error <= bound <= 1e3 * EPS * (elements or 1) ** 4 / below * static.displacement[node, 0]
     assert (static.rounding_error[[0, -1], 0] == 0).all()
+
+
+def moment_at_clamps(tension, bending):
+    """Of a clamped beam of 1 m under compression and 1 N at midspan (Timoshenko, Gere 1961)."""
+    with mpmath.workdps(40):
+        u = mpmath.sqrt(-mpmath.mpf(tension) / mpmath.mpf(bending)) / 2
+        return (1 - mpmath.cos(u)) / (4 * u * mpmath.sin(u))
+
+
+@pytest.mark.parametrize("below", [0.1, 1e-3, 1e-6, 1e-10])
+@pytest.mark.parametrize(
+    ("elements", "solver"), [(None, "sweep"), (4, "sweep"), (8, "band"), (8, "lapack")]
+)
+def test_rounding_error_of_forces_covers_what_a_moment_at_a_clamp_loses(below, elements, solver):
+    bending = 2.5
+    tension = -4 * np.pi**2 * bending * (1 - below)
+    scene = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=bending), tension=tension)
+    static = scene.compile(elements=elements).static({("z", 0.5): 1.0}, solver=solver)
+    exact = moment_at_clamps(tension, bending)
+    error = abs(float(abs(mpmath.mpf(float(static.force[0, 1]))) - exact))
+    bound = static.force_rounding_error
+    assert error <= bound[0, 1]
+    # assembled, the forces beside a node are far larger than what they leave of each other
+    assert bound[0, 1] < (1e-12 if solver != "lapack" else 1e-10) / below * abs(exact)
+    assert (np.abs(np.abs(static.force[[0, -1], 0]) - 0.5) <= bound[[0, -1], 0]).all()
+    assert bound.shape == static.force.shape
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_motion_and_forces_of_hard_scenes_are_those_of_the_same_rope_cut_elsewhere(number):
+    random = np.random.default_rng([11, number])
+    scene = drawn_scene(random)
+    load = {("z", float(random.uniform(0.01, 0.99))): 1.0}
+    spans = len(scene.compile().x) - 1
+    try:
+        one = scene.compile().static(load, points=4)
+        other = scene.compile(elements=spans + 2, element="continuous").static(load, points=4)
+    except rd.SolveError:
+        return
+    at = np.array([np.abs(other.x - x).argmin() for x in one.x])
+    there = np.abs(other.x[at] - one.x) < 1e-15
+    for name, bound in (("displacement", "rounding_error"), ("force", "force_rounding_error")):
+        apart = np.abs(getattr(one, name) - getattr(other, name)[at])
+        limit = getattr(one, bound) + getattr(other, bound)[at]
+        assert (apart <= limit)[there].all()
 
 
 @pytest.mark.parametrize("away", [0.0, 1e-15, -1e-15])

@@ -23,8 +23,8 @@ from ropedyn.study.hard.drawn import CHECKS, Drawn, attack, drawn_scene
 ROOT = Path(__file__).parent.parent.parent
 CASES = {case.name: case for case in shipped()}
 LISTED = {one.name: one for one in hard_list.LIST}
-SAMPLE, SEED, MANY, MANY_SEED = 40, 21, 1000, 27182
-"""Scenes and seeds of the small sample and of the large one: neither was tuned on."""
+SAMPLE, SEED, MANY, MANY_SEEDS = 40, 21, 1000, (141421, 662607)
+"""Scenes and seeds of the small sample and of the large ones: none was tuned on."""
 
 
 def test_shipped_cases_are_those_that_are_listed():
@@ -180,17 +180,40 @@ def test_random_hard_scenes_keep_what_must_hold(claim):
 
 @pytest.mark.slow
 @pytest.mark.claim(
-    f"Random hard scenes: share of {MANY} with a response or a derivative beyond its bound; no "
-    "count and no mode is wrong",
+    f"Random hard scenes, counts, bounds, cuts, reciprocity, energy: failures of {MANY} on each of "
+    f"{len(MANY_SEEDS)} seeds",
     reference="the same rope cut elsewhere, the reciprocal response, energies of the parts",
-    accepted=5e-3,
-    limit=True,
+    accepted=0.0,
 )
-def test_very_many_random_hard_scenes_keep_what_must_hold(claim):
-    found = failures(MANY_SEED, MANY)[0]
-    texts = [text.split(": ")[1] for text in found]
-    assert [text for text in texts if "counted" in text or text.startswith("mode")] == []
-    claim(len({text.partition(":")[0] for text in found}) / MANY)
+@pytest.mark.parametrize("seed", MANY_SEEDS)
+def test_very_many_random_hard_scenes_keep_what_must_hold(seed, claim):
+    found, refused = failures(seed, MANY)
+    assert found == []
+    assert refused < MANY / 50
+    claim(len(found))
+
+
+FOUND = {
+    "a heavy resonator, and stations 9e-9 apart on a stiff spring": (2121, 235),
+    "a support 3e-9 before a loose hinge": (577215, 628),
+    "bending that twists, next to two resonances": (1618, 427),
+    "a slow body far below the waves of the rope": (577215, 876),
+    "the same beside a support": (1618, 1388),
+}
+"""Scenes that other seeds have found, by seed and number: a bound was exceeded, or too high a
+frequency was counted and refused."""
+
+
+@pytest.mark.parametrize(("seed", "number"), FOUND.values(), ids=FOUND)
+def test_scene_that_was_found_keeps_what_must_hold(seed, number):
+    assert attack(seed, number) == []
+
+
+def test_derivatives_that_rounding_forbids_are_refused_by_name():
+    scene = drawn_scene(np.random.default_rng([577215, 735]))
+    with pytest.raises(rd.SolveError, match="flexibility of an element is not positive definite"):
+        scene.compile().modes(6).derivative("tension")
+    assert attack(577215, 735) is None
 
 
 def test_a_scene_is_the_same_for_the_same_seed():

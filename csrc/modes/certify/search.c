@@ -10,6 +10,9 @@ enum { LANES = RD_LANES, DEEPER = 48, HIGHER = 60, CUTS = 200, CUTS_EACH = 8 };
 /* deeper than this times the stiffest there is, a count is of rounding */
 static const double DEEPEST = 1e8;
 
+/* a step to the next lambda that is counted; shorter ones lead nowhere */
+static const double SHORTEST = 1.01;
+
 /* of the size of the first mode; nearer to zero, counts are of rounding */
 static const double ABSOLUTE = 1e-13;
 
@@ -102,20 +105,28 @@ enum rd_status rd_search_bottom(struct rd_search *search, double nearest)
     return unknown ? RD_SHORT_WAVES : RD_UNSTABLE_MASSLESS;
 }
 
-/* In small steps at first, since a count costs what lambda has half waves. */
+/* In small steps at first, since a count costs what lambda has half waves; in smaller ones where the
+   highest of them cannot be counted, which may be far beyond what is wanted. */
 enum rd_status rd_search_top(struct rd_search *search, double upper, size_t *below)
 {
     double lambda[LANES], count[LANES];
-    double at = search->size, step = 2.5;
+    double at = search->size, counted = at, step = 2.5, longest = INFINITY;
     for (int pass = 0; pass < HIGHER; pass++) {
         for (size_t k = 0; k < LANES; k++, at *= step)
             lambda[k] = fmin(fmin(at, 1e300), upper);
         count_all(search, lambda, count);
-        if (search->lost)
-            return RD_SHORT_WAVES;
+        if (search->lost) {
+            if (step < SHORTEST)
+                return RD_SHORT_WAVES;
+            search->lost = false;
+            longest = step = sqrt(step);
+            at = counted;
+            continue;
+        }
         if (count[LANES - 1] >= (double)search->wanted || lambda[LANES - 1] >= fmin(upper, 1e300))
             break;
-        step = pass < 4 ? 2.5 : 16;
+        counted = lambda[LANES - 1];
+        step = fmin(pass < 4 ? 2.5 : 16, longest);
     }
     *below = (size_t)fmax(count[LANES - 1], 0);
     return RD_OK;

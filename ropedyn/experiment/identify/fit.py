@@ -31,10 +31,11 @@ class Fit(Identified):
     unknown : tuple of str
         Paths of the numbers.
     status : {"trusted", "ambiguous", "refused"}
-        Whether the peaks tell which modes they are: ``"trusted"`` where orders were given, or one
-        numbering has more than 95 % of the probability and at least three modes; ``"ambiguous"``
-        where other numberings cannot be left out, which `candidates` has; ``"refused"`` where there
-        is no numbering, with numbers that are NaN and a note that says why.
+        Whether the peaks tell which modes they are, and every number: ``"trusted"`` where orders
+        were given, or one numbering has more than 95 % of the probability and at least three modes;
+        ``"ambiguous"`` where other numberings cannot be left out, which `candidates` has, or the
+        interval of 95 % of some number has no end; ``"refused"`` where there is no numbering, with
+        numbers that are NaN and a note that says why.
     value, std : Named, shape (p,)
         Each number, ``fit.value["tension"]``, and its standard deviation; infinite where the peaks
         do not tell it, NaN where the interval has one bound. A stiffness that they do not show

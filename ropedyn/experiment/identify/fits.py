@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, overload
 import numpy as np
 
 from ...base.answer import TRANSIENT, Answer, Cost, axes
-from ...base.array import Real
+from ...base.array import Flags, Real
 from ...base.computed import Lazy, computed, lazy
 from ...base.drawing import draw
 from ...base.errors import RopedynError, SceneError, SolveError
@@ -23,7 +23,15 @@ from ...response.question import workers_of
 from ..fitting.solution import Solution
 from .fit import Fit
 from .found import Found, by_peaks_alone
-from .known import LEVELS, METHODS, checked_level, kept_bounds
+from .known import (
+    LEVELS,
+    METHODS,
+    TOLD,
+    checked_level,
+    intervals,
+    kept_bounds,
+    without_end,
+)
 from .notes import notes_of, noteworthy
 from .one_rope import RopeTask
 from .told import Told
@@ -31,6 +39,7 @@ from .told import Told
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+CLEAR = 0.1  # Of itself: a number with less of a standard deviation has an interval with two ends.
 NAMED = 5  # Ropes of which the same is noted are named up to so many.
 
 
@@ -259,7 +268,7 @@ def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
     elements = how.elements or 0
     batch = SideBySide(found, measured)
     status = np.full(n, "refused", dtype=object)
-    status[at] = "trusted"
+    status[at] = np.where(_without_end(solution), "ambiguous", "trusted")
     return Fits(
         unknown=how.paths,
         value=value,
@@ -272,6 +281,18 @@ def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
         bounds=partial(kept_bounds, batch.interval),
         batch=batch,
     )
+
+
+def _without_end(solution: Solution) -> Flags:
+    """Say of which ropes the interval of some number reaches infinity, shape (n,)."""
+    shown = solution.unknowns.shown
+    value, std = solution.value[:, :shown], solution.std[:, :shown]
+    clear = (std < CLEAR * np.abs(value)).all(axis=1) & ~noteworthy(solution)
+    endless, doubtful = np.zeros(len(clear), dtype=np.bool_), np.flatnonzero(~clear)
+    if len(doubtful):
+        found = intervals(solution.take(doubtful), TOLD, METHODS[0])[:, :shown]
+        endless[doubtful] = without_end(found).any(axis=1)
+    return endless
 
 
 def each_alone(

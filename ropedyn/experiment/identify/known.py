@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base import check
 from ...base.answer import Answer
-from ...base.array import Real
+from ...base.array import Flags, Real
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table, numbers
@@ -20,6 +20,9 @@ LEVELS = (0.5, 0.68, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999)
 """Levels whose intervals a file keeps."""
 
 METHODS = ("profile", "linear")
+
+TOLD = 0.95
+"""Level whose interval must have an end where a number is trusted."""
 
 
 class Known(Protocol):
@@ -52,6 +55,11 @@ class Solved:
 def intervals(solution: Solution, level: float, method: str) -> Real:
     """Return bounds of the numbers of each rope, shape (n, p, 2)."""
     return solution.interval(level) if method == "profile" else solution.linear_interval(level)
+
+
+def without_end(interval: Real) -> Flags:
+    """Say which intervals, shape (..., 2), reach infinity."""
+    return np.asarray(np.isinf(interval).any(axis=-1))
 
 
 def checked_level(level: Any, method: Any) -> float:

@@ -30,7 +30,7 @@ from .candidates import Candidates
 from .cross_checks import cross_checks
 from .fit import Fit
 from .fit_peaks import Options
-from .known import LEVELS, Known, kept_bounds
+from .known import LEVELS, METHODS, TOLD, Known, kept_bounds, without_end
 from .other_ends import Remarks, other_ends
 from .peak_damping import PeakDamping, beside, damping_of_peaks
 from .report import shown
@@ -57,6 +57,8 @@ AMBIGUOUS = (
     "ambiguous: the peaks do not tell which modes they are, see the candidates; a prior of the "
     "tension, sensors that tell shapes (one at 0.15 of the length) or more modes would decide"
 )
+
+UNLIMITED = "not trusted: no limit of 95 % of {}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +102,7 @@ class Decision(NamedTuple):
     status: str
     candidates: Any  # or what computes them
     known: Known
+    unlimited: tuple[str, ...] = ()  # numbers of an interval without end, of the one numbering
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +179,12 @@ class RopeTask:
             candidates = candidates()
             known = Hull(known, candidates)
         known = known if damped is None else WithDamping(known, damped)
-        return Decision(status, candidates, known)
+        if status == "ambiguous":
+            return Decision(status, candidates, known)
+        paths = self.how.paths if damped is None else (*self.how.paths, *damped.unknown)
+        endless = without_end(known.interval(TOLD, METHODS[0]))
+        unlimited = tuple(path for path, one in zip(paths, endless) if one)
+        return Decision("ambiguous" if unlimited else status, candidates, known, unlimited)
 
     def _damping(self, told: Told, orders: Integer) -> PeakDamping:
         """Return what the damping ratios of the peaks tell."""
@@ -251,8 +259,8 @@ class RopeTask:
     ) -> Fit:
         """Gather what was found."""
         how, k, p = self.how, len(orders), len(told.value)
-        trusted = decision.status == "trusted"
-        std = told.std if trusted else np.full(p, np.nan)
+        alone = decision.status == "trusted" or bool(decision.unlimited)
+        std = told.std if alone else np.full(p, np.nan)
         paths, value, correlation, notes = how.paths, told.value, told.correlation, told.notes
         if damped is not None:
             paths, value = (*paths, *damped.unknown), np.append(value, damped.value)
@@ -274,7 +282,7 @@ class RopeTask:
             budget=told.budget,
             ends=how.ends,
             assumed=(*told.assumed, *self._assumed()),
-            notes=(*notes, *self._far(told)) if trusted else (AMBIGUOUS, *notes),
+            notes=(*_why(decision, paths, std), *notes, *(self._far(told) if alone else ())),
             seed=how.seed,
             cost=Cost(told.method, how.elements or 0, k, factorisations=told.evaluations),
             candidates=decision.candidates,
@@ -372,6 +380,14 @@ class RopeTask:
             details=details_of(self.peaks),
             record=self.record,
         )
+
+
+def _why(decision: Decision, paths: Sequence[str], std: Real) -> tuple[str, ...]:
+    """Say why a fit is not trusted; what has no finite std has a note of its own."""
+    if not decision.unlimited:
+        return (AMBIGUOUS,) * (decision.status == "ambiguous")
+    silent = [p for p, one in zip(paths, std) if p in decision.unlimited and np.isfinite(one)]
+    return (UNLIMITED.format(", ".join(silent)),) if silent else ()
 
 
 def details_of(peaks: Peaks) -> tuple[dict[str, Any], ...]:
