@@ -12,7 +12,7 @@ from pathlib import Path
 from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
-from .file import INSPECT, SCHEMA
+from .file import INSPECT, SCENE_FILE, SCHEMA
 from .hard import HARD
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
@@ -31,6 +31,7 @@ COMMANDS = (
     FLOQUET,
     STABILITY,
     SECTION,
+    SCENE_FILE,
     INSPECT,
     SCHEMA,
 )
@@ -43,7 +44,7 @@ SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
     try:
-        options = _parser().parse_args(arguments)
+        options = parser().parse_args(arguments)
         status = options.run(options) or SOLVED
         sys.stdout.flush()
         return status
@@ -62,7 +63,8 @@ def _complain(error: Exception, status: int) -> int:
     return status
 
 
-def _parser() -> argparse.ArgumentParser:
+def parser() -> argparse.ArgumentParser:
+    """Return what reads the arguments."""
     parser = argparse.ArgumentParser(
         prog=NAME,
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",

@@ -71,3 +71,25 @@ def test_schemas_are_those_of_the_package(capsys, name):
     text = capsys.readouterr().out
     assert text == (resources.files(rd) / f"{name}-1.schema.json").read_text(encoding="utf-8")
     jsonschema.Draft202012Validator.check_schema(json.loads(text))
+
+
+def test_example_is_a_scene_that_says_what_it_is(tmp_path, capsys):
+    assert main(["scene", "--example"]) == 0
+    path = tmp_path / "rope.toml"
+    path.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert main(["scene", str(path)]) == 0
+    assert capsys.readouterr().out.strip() == str(rd.Scene.load(path))
+
+
+@pytest.mark.parametrize("arguments", [[], ["rope.toml", "--example"]])
+def test_a_scene_or_its_example_is_asked_for(arguments, capsys):
+    assert main(["scene", *arguments]) == 2
+    assert "either SCENE.toml or --example" in capsys.readouterr().err
+
+
+def test_nothing_is_written_of_a_tension_that_is_refused(tmp_path):
+    rd.Scene(rd.Rope(2.0, 0.1), tension=900.0).save(tmp_path / "rope.toml")
+    peaks = ["--peaks", "25.1,31.7,36.9,41.2,44.4,47.3", "--std", "0.01"]
+    found = tmp_path / "found.toml"
+    assert main(["tension", str(tmp_path / "rope.toml"), *peaks, "--save", str(found)]) == 1
+    assert not found.exists()
