@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
@@ -45,7 +46,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
     try:
         options = parser().parse_args(arguments)
-        status = options.run(options) or SOLVED
+        with warnings.catch_warnings():
+            warnings.showwarning = _warn
+            status = options.run(options) or SOLVED
         sys.stdout.flush()
         return status
     except BrokenPipeError:
@@ -56,6 +59,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(error, REFUSED)
     except (RopedynError, TypeError, OSError, ImportError) as error:
         return _complain(error, BAD_INPUT)
+
+
+def _warn(message: Warning | str, *_: object) -> None:
+    print(f"{NAME}: warning: {message}", file=sys.stderr)
 
 
 def _complain(error: Exception, status: int) -> int:

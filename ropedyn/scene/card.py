@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..base.check import COORDINATES
+from .doubt import doubts
 from .end import End
 from .rope import own_number
 from .tension import Tension
@@ -46,6 +47,8 @@ def card(scene: Scene) -> Card:
     if scene.dampings:
         told["damping"] = _counted(type(damping).__name__ for damping in scene.dampings)
     told["effects"] = ", ".join(scene.effects)
+    if found := doubts(scene):
+        told["doubt"] = "; ".join(found)
     return told
 
 

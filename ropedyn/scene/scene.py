@@ -21,6 +21,7 @@ from .agree import agree
 from .card import card, card_html, card_text
 from .checked import checked_damping, checked_ends, checked_parts, checked_tension
 from .damping import Damping
+from .doubt import warn_of
 from .end import End
 from .gravity import Gravity
 from .left import SECOND_PLANE
@@ -465,6 +466,11 @@ NodeForce, Stop, AddedMass, LocalChange
         SceneError
             If it is not TOML, a key is unknown or missing, or a value has no meaning.
 
+        Warns
+        -----
+        UnitWarning
+            If no steel rope has such numbers: a unit may have slipped.
+
         Examples
         --------
         >>> from pathlib import Path
@@ -476,4 +482,6 @@ NodeForce, Stop, AddedMass, LocalChange
         ...     rd.Scene.load(Path(folder, "rope.toml")) == scene
         True
         """
-        return toml.load(Scene, path)
+        scene = toml.load(Scene, path)
+        warn_of(scene, 2)
+        return scene

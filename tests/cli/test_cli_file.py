@@ -93,3 +93,13 @@ def test_nothing_is_written_of_a_tension_that_is_refused(tmp_path):
     found = tmp_path / "found.toml"
     assert main(["tension", str(tmp_path / "rope.toml"), *peaks, "--save", str(found)]) == 1
     assert not found.exists()
+
+
+@pytest.mark.filterwarnings("default::ropedyn.UnitWarning")
+def test_a_slip_of_units_in_a_scene_is_said_beside_the_answer(tmp_path, capsys):
+    rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54e6)
+    rd.Scene(rope, tension=2830.0).save(tmp_path / "rope.toml")
+    assert main(["modes", str(tmp_path / "rope.toml"), "--modes", "1", "--csv"]) == 0
+    said = capsys.readouterr()
+    assert said.err.startswith("ropedyn: warning: 0.1017 kg/m of steel is some 5.24 mm thick: ")
+    assert len(said.out.splitlines()) == 2
