@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from .. import study2015
 from ..base.errors import RopedynError, SolveError
@@ -61,7 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(error, BAD_INPUT)
 
 
-def _warn(message: Warning | str, *_: object) -> None:
+def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
     print(f"{NAME}: warning: {message}", file=sys.stderr)
 
 

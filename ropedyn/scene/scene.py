@@ -18,10 +18,9 @@ from . import damping as _damping
 from . import end as _end
 from . import left, toml
 from .agree import agree
-from .card import card, card_html, card_text
+from .card import card, card_html, card_text, warn_of
 from .checked import checked_damping, checked_ends, checked_parts, checked_tension
 from .damping import Damping
-from .doubt import warn_of
 from .end import End
 from .gravity import Gravity
 from .left import SECOND_PLANE

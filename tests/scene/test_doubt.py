@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ropedyn as rd
-from ropedyn.scene.doubt import doubts
+from ropedyn.scene.card import doubts
 
 
 def scene(length=1.35, density=0.1017, bending=1.54, tension=2830.0):
