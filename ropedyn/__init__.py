@@ -17,7 +17,7 @@ from .base import drawing as _drawing
 
 # public names stand in __init__.pyi alone, and each is imported when it is first used
 __getattr__, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # what those on lower floors ask for by name, and do not know
 _answer.named = __getattr__

@@ -1,6 +1,6 @@
 from . import ask, study2015
 from .base.answer import Answer, Cost, load
-from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
+from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError, UnitWarning
 from .base.table import Table
 from .chain.mesh_choice import Choice
 from .curves.measured import Measured
@@ -142,6 +142,7 @@ __all__ = [
     "Tension",
     "TorsionTest",
     "Track",
+    "UnitWarning",
     "ViscousDamping",
     "Wire",
     "WireShifts",

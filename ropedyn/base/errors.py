@@ -70,5 +70,20 @@ class IdentifyWarning(UserWarning):
     """
 
 
-for _error in (RopedynError, SceneError, SolveError, IdentifyWarning):
+class UnitWarning(UserWarning):
+    """A number that no rope could have, as where a unit has slipped; nothing is changed.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import ropedyn as rd
+    >>> with warnings.catch_warnings(record=True) as told:
+    ...     warnings.simplefilter("always")
+    ...     test = rd.BendingTest(0.7, [0.0, 2.0, 4.0], [0.0, 5.0, 10.0])
+    >>> print(told[0].message)
+    deflection is up to 10 m on a span of 0.7 m: is it in m?
+    """
+
+
+for _error in (RopedynError, SceneError, SolveError, IdentifyWarning, UnitWarning):
     _error.__module__ = "ropedyn"  # where users find them, and what a traceback says

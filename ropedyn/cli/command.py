@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from .. import study2015
 from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
-from .file import INSPECT, SCHEMA
+from .file import INSPECT, SCENE_FILE, SCHEMA
 from .hard import HARD
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
@@ -31,6 +33,7 @@ COMMANDS = (
     FLOQUET,
     STABILITY,
     SECTION,
+    SCENE_FILE,
     INSPECT,
     SCHEMA,
 )
@@ -43,8 +46,10 @@ SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
     try:
-        options = _parser().parse_args(arguments)
-        status = options.run(options) or SOLVED
+        options = parser().parse_args(arguments)
+        with warnings.catch_warnings():
+            warnings.showwarning = _warn
+            status = options.run(options) or SOLVED
         sys.stdout.flush()
         return status
     except BrokenPipeError:
@@ -57,12 +62,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(error, BAD_INPUT)
 
 
+def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
+    print(f"{NAME}: warning: {message}", file=sys.stderr)
+
+
 def _complain(error: Exception, status: int) -> int:
     print(f"ropedyn: {error}", file=sys.stderr)
     return status
 
 
-def _parser() -> argparse.ArgumentParser:
+def parser() -> argparse.ArgumentParser:
+    """Return what reads the arguments."""
     parser = argparse.ArgumentParser(
         prog=NAME,
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",

@@ -1,4 +1,4 @@
-"""Commands about files: what a measured one holds, and the schemas of what is printed."""
+"""Commands about files: of scenes, of measurements, and the schemas of what is printed."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import argparse
 from importlib import resources
 from pathlib import Path
 
+from ..base.errors import SceneError
 from ..curves.files.contents import contents
-from .options import FORM, Command, OptionGroup, option, show_table
+from ..scene.scene import Scene
+from .options import FORM, Command, OptionGroup, option, show_table, switch
 
 SCHEMAS = ("table", "tension")
 
@@ -17,11 +19,30 @@ def _inspect(options: argparse.Namespace) -> None:
     show_table(options, contents(options.file, **layout))
 
 
+def _scene(options: argparse.Namespace) -> None:
+    if (options.scene is None) == (not options.example):
+        raise SceneError("either SCENE.toml or --example must be given, got both or none")
+    if options.example:
+        example = resources.files("ropedyn") / "scene" / "example.toml"
+        print(example.read_text(encoding="utf-8"), end="")
+    else:
+        print(Scene.load(options.scene))
+
+
 def _schema(options: argparse.Namespace) -> None:
     file = resources.files("ropedyn") / f"{options.name}-1.schema.json"
     print(file.read_text(encoding="utf-8"), end="")
 
 
+SCENE_FILE = Command(
+    "scene",
+    _scene,
+    "what a scene file says: length, mass, waves, effects; or an example of one",
+    (switch("--example", "print a file with comments, to begin with"),),
+    elements=(),
+    subject=(option("scene", "the scene", nargs="?", metavar="SCENE.toml"),),
+    form=(),
+)
 INSPECT = Command(
     "inspect",
     _inspect,

@@ -70,6 +70,8 @@ def _tension(options: argparse.Namespace) -> int:
             model_std=options.model_std,
             seed=options.seed,
         )
+    if options.save is not None and fit.status != "refused":
+        fit.scene.save(options.save)
     if record is None:
         return shown_fit(options, fit)
     return shown_fit(options, changed(fit, record=said_of(record)), peaks)
@@ -129,6 +131,7 @@ TENSION = Command(
             metavar="PATH=VALUE:STD",
         ),
         option("--model-std", "what the model is off, relative", type=float, default=0.0),
+        option("--save", "write the scene with what was found; its ends stay", metavar="FILE.toml"),
         option("--seed", "of the random numbers (%(default)s)", type=int, default=0),
         OptionGroup(OF_RECORD, "of a RECORD that does not say so itself"),
     ),

@@ -110,7 +110,7 @@ def _mixes(chain: Chain, node: Index) -> Flags:
     """Say where one coordinate is made of others: in coupled sections, at hinges, (stations, 1)."""
     mixes = np.full((len(node), 1), chain.section_loss > 1)
     if chain.hinge is not None:
-        mixes[:, 0] |= chain.hinge.any(axis=1)[chain.term_of[node]]
+        mixes[:, 0] |= np.any(chain.hinge, axis=1)[chain.term_of[node]]
     return mixes
 
 

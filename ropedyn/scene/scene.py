@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..base import check
 from . import left, toml
 from .agree import agree
-from .card import card, card_html, card_text
+from .card import card, card_html, card_text, warn_of
 from .described import EFFECTS, Described
 
 if TYPE_CHECKING:
@@ -309,6 +309,11 @@ NodeForce, Stop, AddedMass, LocalChange
         SceneError
             If it is not TOML, a key is unknown or missing, or a value has no meaning.
 
+        Warns
+        -----
+        UnitWarning
+            If no steel rope has such numbers: a unit may have slipped.
+
         Examples
         --------
         >>> from pathlib import Path
@@ -320,4 +325,6 @@ NodeForce, Stop, AddedMass, LocalChange
         ...     rd.Scene.load(Path(folder, "rope.toml")) == scene
         True
         """
-        return toml.load(Scene, path)
+        scene = toml.load(Scene, path)
+        warn_of(scene, 2)
+        return scene

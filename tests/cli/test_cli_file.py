@@ -71,3 +71,35 @@ def test_schemas_are_those_of_the_package(capsys, name):
     text = capsys.readouterr().out
     assert text == (resources.files(rd) / f"{name}-1.schema.json").read_text(encoding="utf-8")
     jsonschema.Draft202012Validator.check_schema(json.loads(text))
+
+
+def test_example_is_a_scene_that_says_what_it_is(tmp_path, capsys):
+    assert main(["scene", "--example"]) == 0
+    path = tmp_path / "rope.toml"
+    path.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert main(["scene", str(path)]) == 0
+    assert capsys.readouterr().out.strip() == str(rd.Scene.load(path))
+
+
+@pytest.mark.parametrize("arguments", [[], ["rope.toml", "--example"]])
+def test_a_scene_or_its_example_is_asked_for(arguments, capsys):
+    assert main(["scene", *arguments]) == 2
+    assert "either SCENE.toml or --example" in capsys.readouterr().err
+
+
+def test_nothing_is_written_of_a_tension_that_is_refused(tmp_path):
+    rd.Scene(rd.Rope(2.0, 0.1), tension=900.0).save(tmp_path / "rope.toml")
+    peaks = ["--peaks", "25.1,31.7,36.9,41.2,44.4,47.3", "--std", "0.01"]
+    found = tmp_path / "found.toml"
+    assert main(["tension", str(tmp_path / "rope.toml"), *peaks, "--save", str(found)]) == 1
+    assert not found.exists()
+
+
+@pytest.mark.filterwarnings("default::ropedyn.UnitWarning")
+def test_a_slip_of_units_in_a_scene_is_said_beside_the_answer(tmp_path, capsys):
+    rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54e6)
+    rd.Scene(rope, tension=2830.0).save(tmp_path / "rope.toml")
+    assert main(["modes", str(tmp_path / "rope.toml"), "--modes", "1", "--csv"]) == 0
+    said = capsys.readouterr()
+    assert said.err.startswith("ropedyn: warning: 0.1017 kg/m of steel is some 5.24 mm thick: ")
+    assert len(said.out.splitlines()) == 2

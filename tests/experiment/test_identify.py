@@ -38,6 +38,10 @@ def noisy(frequency, relative, seed):
 # --- exact peaks ------------------------------------------------------------------------------
 
 
+SLIPPED = pytest.mark.filterwarnings("ignore:tension is .* times its guess:ropedyn.IdentifyWarning")
+"""Guesses that are off on purpose, as a slip of units would make them."""
+
+
 def test_string_of_one_peak_has_the_tension_of_the_formula():
     """T = 4 mu L^2 f^2, whatever the guess."""
     string = rd.Scene(rd.Rope(LENGTH, DENSITY), tension=1.0)
@@ -78,6 +82,7 @@ def test_exact_peaks_of_a_pinned_rope_tell_its_tension_and_stiffness(ratio, clai
         ),
     ],
 )
+@SLIPPED
 def test_guesses_wrong_by_powers_of_ten_lead_to_the_same_clamped_rope(ratio, guess, claim):
     bending = TENSION * LENGTH**2 / ratio
     clamped = ("clamped", "clamped")
@@ -92,6 +97,7 @@ DECADES = st.floats(-2.0, 2.0)
 
 @settings(max_examples=20)
 @given(st.floats(1.0, 5.0), WORD, WORD, DECADES, DECADES, st.integers(3, 10))
+@SLIPPED
 def test_exact_peaks_tell_what_they_were_made_with(ratio, left, right, tension, bending, number):
     """T L^2/B from 10 to 10^5, guesses up to 100 times off, three peaks and more."""
     stiffness = TENSION * LENGTH**2 / 10**ratio

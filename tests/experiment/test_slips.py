@@ -7,7 +7,8 @@ import pytest
 from damped_ropes import damped_rope
 
 import ropedyn as rd
-from ropedyn.experiment.compare.slips import slips, slips_of_peaks
+from ropedyn.experiment.compare.slips import slips
+from ropedyn.experiment.compare.unit_slips import slips_of_peaks
 
 QUANTITIES = ("receptance", "mobility", "accelerance")
 

@@ -1,37 +1,89 @@
-"""What the README says in Python runs."""
+"""What the README and the pages say in Python and as commands runs, and gives their numbers."""
 
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-README = (Path(__file__).parent.parent.parent / "README.md").read_text(encoding="utf-8")
+from ropedyn.cli.command import main, parser
+
+ROOT = Path(__file__).parent.parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs/guide.md").read_text(encoding="utf-8")
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(text, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", text, flags=re.M | re.S)
+
+
+def commands(text):
+    """Return the lines of a page that call ropedyn, without where they print to."""
+    lines = [line for block in blocks(text, "text") for line in block.splitlines()]
+    return [line.partition(">")[0] for line in lines if line.startswith("ropedyn ")]
+
+
+def run(text, folder):
+    """Return the names that the blocks have bound, run one after another in a folder."""
+    bound = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for block in blocks(text, "python"):
+            exec(compile(block, "page", "exec"), bound)
+    return bound
+
+
+@pytest.fixture(scope="module")
+def first_screen(tmp_path_factory):
+    return run(README, tmp_path_factory.mktemp("readme"))
 
 
 @pytest.fixture(scope="module")
 def names(tmp_path_factory):
-    """Names that the blocks have bound, run one after another in a folder of their own."""
-    bound = {}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(tmp_path_factory.mktemp("readme"))
-        for block in re.findall(r"^```python\n(.*?)^```", README, flags=re.M | re.S):
-            exec(compile(block, "README.md", "exec"), bound)
-    return bound
+    return run(GUIDE, tmp_path_factory.mktemp("guide"))
+
+
+def held(fit, text, digits, scale=1.0):
+    """Hold status, tension and interval against the first comment that has them."""
+    unit = "MN" if scale > 1 else "N"
+    pattern = rf"# (?:(\w+), )?(\S+) {unit}, from (\S+) to (\S+)(?: {unit})?\n"
+    status, *printed = re.search(pattern, text).groups()
+    numbers = [fit.value["tension"], *fit.interval(0.95)["tension"]]
+    assert [f"{one / scale:.{digits}f}" for one in numbers] == printed
+    assert status in (None, fit.status)
+
+
+def test_first_tension_is_the_one_that_is_printed(first_screen):
+    held(first_screen["fit"], README, 2, 1e6)
+    assert np.isfinite(first_screen["frf"].value).all()
+
+
+def test_first_commands_give_the_same_tension_and_response(
+    first_screen, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    example, tension, response = commands(README)[:3]
+    assert main(shlex.split(example)[1:]) == 0
+    Path("rope.toml").write_text(capsys.readouterr().out, encoding="utf-8")
+    assert main(shlex.split(tension)[1:]) == 0
+    printed = re.search(r"^tension +(\S+) MN   95 %: (\S+) to (\S+) MN", capsys.readouterr().out)
+    fit = first_screen["fit"]
+    numbers = [fit.value["tension"], *fit.interval(0.95)["tension"]]
+    assert printed.groups() == tuple(f"{one / 1e6:.4g}" for one in numbers)
+    assert main([*shlex.split(response)[1:], "--csv"]) == 0
+    rows = [line.split(",") for line in capsys.readouterr().out.splitlines()[1:]]
+    assert [float(row[1]) for row in rows] == np.abs(first_screen["frf"].value[0]).tolist()
+    assert Path("frf.png").stat().st_size > 0
 
 
 def test_fit_is_the_one_that_is_printed(names):
-    value, low, high = re.search(r"# (\S+) N, from (\S+) to (\S+)", README).groups()
-    fit = names["fit"]
-    found = [fit.value["tension"], *fit.interval(0.95)["tension"]]
-    assert [f"{one:.3f}" for one in found] == [value, low, high]
+    held(names["fit"], GUIDE, 3)
 
 
 def test_tension_of_the_record_is_the_one_that_is_printed(names):
-    status, *printed = re.search(r"# (\w+), (\S+) MN, from (\S+) to (\S+) MN", README).groups()
-    signed = names["signed"]
-    found = [signed.value["tension"], *signed.interval(0.95)["tension"]]
-    assert (signed.status, [f"{one / 1e6:.1f}" for one in found]) == (status, printed)
+    held(names["signed"], GUIDE, 1, 1e6)
 
 
 def test_answers_are_finite(names):
@@ -39,9 +91,29 @@ def test_answers_are_finite(names):
     assert np.isfinite(names["tip"].value).all()
     assert names["damped"].damping_ratio[0] > 0
     assert names["sticks"].value[0, -1] != 0  # friction holds the rope off its rest
+    many = names["many"]
+    assert (many.frequency.shape, many.derivative.shape) == ((1000, 10), (1000, 10, 3))
+    assert many.certified.all() and many.failed == {}
 
 
-def test_links_lead_to_files():
-    root = Path(__file__).parent.parent.parent
-    for target in re.findall(r"\]\(([^)#:]+)\)", README):
-        assert (root / target).exists(), target
+@pytest.mark.parametrize("name", ["cannot_tell", "index"])
+def test_blocks_of_other_pages_run(name, tmp_path):
+    assert run((ROOT / f"docs/{name}.md").read_text(encoding="utf-8"), tmp_path)
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_links_lead_to_files(path):
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
+        # notebooks are pages of the gallery on the site
+        at = path.parent / re.sub(r"^gallery/(\w+\.ipynb)", r"../notebooks/\1", target)
+        assert at.exists(), target
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_commands_have_the_options_they_are_shown_with(path):
+    for line in commands(path.read_text(encoding="utf-8")):
+        parser().parse_args(shlex.split(line)[1:])
+
+
+def test_the_first_screen_stays_short():
+    assert README.count("\n") <= 150

@@ -1,6 +1,7 @@
 """The pages of the site leave nothing out; what they name wrongly Sphinx finds."""
 
 import re
+import runpy
 from pathlib import Path
 
 import ropedyn as rd
@@ -35,3 +36,14 @@ def test_every_notebook_stands_in_the_gallery():
     pages = (ROOT / "docs/gallery/index.md").read_text()
     notebooks = [path.stem for path in (ROOT / "notebooks").glob("*.ipynb")]
     assert [name for name in notebooks if f"({name}.ipynb)" not in pages] == []
+
+
+def test_page_of_scene_files_is_that_of_the_declarations():
+    maker = ROOT / "docs/scene_file.py"
+    assert maker.with_suffix(".md").read_text(encoding="utf-8") == runpy.run_path(maker)["page"]()
+
+
+def test_every_page_of_the_site_stands_in_its_index():
+    index = (ROOT / "docs/index.md").read_text(encoding="utf-8")
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
+    assert pages - set(re.findall(r"^(\w+)$", index, re.MULTILINE)) == set()

@@ -258,6 +258,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("what", REFUSED)
+@pytest.mark.filterwarnings("ignore:deflection is up to:ropedyn.UnitWarning")
 def test_what_no_test_can_tell_is_refused(what):
     with pytest.raises(rd.SceneError) as caught:
         REFUSED[what]()

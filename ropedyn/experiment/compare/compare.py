@@ -29,7 +29,8 @@ from .cause import likely_cause, tension_alone
 from .measured import MeasuredPeaks, measured_peaks
 from .numbering import Pairing, Verdict, common_factor, numbered, verdict, weighed
 from .pairing import calculated_at, drive_of, paired
-from .slips import ANGULAR, slips, slips_of_peaks
+from .slips import slips
+from .unit_slips import ANGULAR, slips_of_peaks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

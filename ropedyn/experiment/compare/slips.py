@@ -1,4 +1,4 @@
-"""Slips in what was measured: signs of phase, quantities, angles, angular frequencies."""
+"""Slips in measured responses: signs of phase, quantities, angles, units of frequencies."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ...signal.likeness import residues
 from .calculated import CalculatedPeaks, index, is_motion, undamped_peaks
 from .measured import peaks_in
 from .numbering import numbered
+from .unit_slips import slips_of_peaks
 
 CLEAR = 6.0  # A damping ratio is proved by so many standard uncertainties.
 FEWEST = 3  # Of fewer peaks nothing is said of all of them.
@@ -28,16 +29,8 @@ LEAST = 4  # Of fewer residues no trend is said.
 TREND = 0.35  # Amplitudes grow by a whole power of frequency to so much.
 NODE = 0.3  # Residues of less than this share of the largest say less.
 PROVED = 0.2  # Standard error of that power at most.
-ALMOST = 0.9  # Of all peaks so many pair.
-FARTHER = 20.0  # Modes above so many times the median peak are not looked at.
-BELOW = 0.4  # Of the first mode, less than this no peak pairs.
-MUCH = 5.0  # By which the evidence of angular frequencies is more than that of frequencies.
 TURN = math.radians(1.02 * math.pi)  # Phases in radians that were read as degrees are less.
 MOVES = math.radians(1.0)  # And move by a radian.
-ANGULAR = (
-    "all peaks pair with modes after division by 2 pi: the frequencies are rad/s, or the tension "
-    "is some 40 times the scene's; divide them by 2 pi"
-)
 
 
 class Residues(NamedTuple):
@@ -69,23 +62,6 @@ def slips(measured: Measured, model: Model | None = None) -> tuple[str, ...]:
     if model is not None:
         said += slips_of_peaks(peaks_in(found).frequency, model)
     return tuple(said)
-
-
-def slips_of_peaks(frequency: Real, model: Model) -> tuple[str, ...]:
-    """Name slips in measured frequencies [Hz]."""
-    frequency = np.asarray(frequency, dtype=np.float64)
-    if len(frequency) < FEWEST:
-        return ()
-    highest = min(float(frequency.max()), FARTHER * float(np.median(frequency)))
-    found = undamped_peaks(model, highest, len(frequency)).frequency
-    slower, unknown = frequency / (2 * np.pi), np.full(len(frequency), np.nan)
-    if np.mean(slower > BELOW * found.min(initial=np.inf)) < ALMOST:
-        return ()
-    as_said = numbered(frequency, found, unknown)[0]
-    as_omega = numbered(slower, found, unknown)[0]
-    if as_omega.pairs < ALMOST * len(frequency) or as_omega.evidence < as_said.evidence + MUCH:
-        return ()
-    return (ANGULAR,)
 
 
 def _in_radians(measured: Measured) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,7 +18,7 @@ from ...base.named import Named
 from ...curves.peaks import Peaks
 from ...scene.path import value_at, with_values
 from ...scene.scene import Scene
-from ..compare.slips import slips_of_peaks
+from ..compare.unit_slips import slip_of_tension, slips_of_peaks
 from ..fitting.natural import is_moved, shift_by_damping
 from ..fitting.natural_frequencies import NaturalFrequencies
 from ..fitting.unknown import TIE, Unknowns
@@ -129,10 +130,14 @@ class RopeTask:
             return self._refused()
         orders = np.array(found[0].orders, dtype=np.int64)
         told, damped = self._both(orders)
-        if self.said is None:
-            slipped = slips_of_peaks(np.asarray(self.peaks.frequency), self.scene.compile())
-            told = replace(told, notes=(*told.notes, *slipped))
+        told = replace(told, notes=(*told.notes, *self._slipped()))
         return self._fit(told, damped, orders, self._decision(status, found, told, damped))
+
+    def _slipped(self) -> tuple[str, ...]:
+        """Name a slip of units in peaks whose orders nobody gave."""
+        if self.said is not None:
+            return ()
+        return slips_of_peaks(np.asarray(self.peaks.frequency), self.scene.compile())
 
     def _both(self, orders: Integer) -> tuple[Told, PeakDamping | None]:
         """Return what frequencies and widths tell, each with what the other has told."""
@@ -309,12 +314,16 @@ class RopeTask:
         )
 
     def _far(self, told: Told) -> tuple[str, ...]:
-        """Name a tension that is far from its guess."""
-        if not self._weighs_guess():
+        """Name a tension that is far from its guess, or as far as a slip of units is."""
+        if TENSION not in self.how.paths:
             return ()
-        times = float(told.value[self.how.paths.index(TENSION)])
-        times /= value_at(self.scene, TENSION)
-        if 1 / FAR < times < FAR:
+        found = float(told.value[self.how.paths.index(TENSION)])
+        guess = value_at(self.scene, TENSION)
+        times = found / guess if guess else math.nan
+        slip = slip_of_tension(guess, found)
+        if slip is not None:
+            return (f"tension is {times:.3g} times its guess, {slip.name}: {slip.asked}",)
+        if not self._weighs_guess() or math.isnan(times) or 1 / FAR < times < FAR:
             return ()
         return (
             f"tension is {times:.3g} times its guess: if the guess is nearer than that the orders "
@@ -371,7 +380,7 @@ class RopeTask:
             budget={},
             ends=how.ends,
             assumed=(),
-            notes=(NO_MODES,),
+            notes=(NO_MODES, *self._slipped()),
             seed=how.seed,
             cost=Cost("evidence", how.elements or 0, k),
             candidates=empty,

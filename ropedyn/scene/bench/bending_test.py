@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import KW_ONLY
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import axes
-from ...base.errors import SceneError
+from ...base.errors import SceneError, UnitWarning
 from ...base.parameter import Description, depending, number, numbers, one_of
 from .static_test import StaticTest
+
+LARGE = 0.5  # A part of the span that no bending test of a rope moves.
 
 
 def _cantilever(L: float, s: float, t: float) -> float:
@@ -112,6 +116,11 @@ class BendingTest(Description, StaticTest, eq=False):
         If something is not finite, a place is off the piece or does not move, the lengths differ,
         the forces are all equal, or the deflection does not grow with them.
 
+    Warns
+    -----
+    UnitWarning
+        If the deflection is more than half of the span.
+
     Examples
     --------
     >>> import ropedyn as rd
@@ -136,6 +145,13 @@ class BendingTest(Description, StaticTest, eq=False):
 
     def _agree(self) -> None:
         self._check_readings()
+        moved = float(np.ptp(np.asarray(self.deflection)))
+        if moved > LARGE * self.span:
+            warnings.warn(
+                f"deflection is up to {moved:.3g} m on a span of {self.span:g} m: is it in m?",
+                UnitWarning,
+                stacklevel=4,
+            )
 
     @property
     def factor(self) -> float:
