@@ -165,7 +165,7 @@ POINTS = 64  # A deflection is given at so many parts of each continuous span.
 BLOCK = 4096  # One sweep reports the motion of so many nodes.
 
 
-class Push(NamedTuple):
+class Loaded(NamedTuple):
     """Loads of a component on a chain that is cut under them and at the nodes of the answer."""
 
     chain: Chain
@@ -182,7 +182,7 @@ class Push(NamedTuple):
 
 def _push(
     model: Compiled, component: tuple[str, ...], loads: dict[Point, float], nodes: Real
-) -> Push:
+) -> Loaded:
     """Cut the chain of a component under its loads and at nodes."""
     here = {point: value for point, value in loads.items() if point[0] in component}
     chain, x = model.chain.only(component).at_rest, model.x
@@ -190,7 +190,7 @@ def _push(
         chain, x = cut(chain, x, [*nodes, *(point[1] for point in here), *stops(chain, x)])
     kept, pushed = np.flatnonzero(np.isin(x, nodes)), ports(chain, x, component, here)
     amount = np.array(list(here.values()))
-    return Push(chain, kept, pushed, amount, nodal(chain, x, component, here))
+    return Loaded(chain, kept, pushed, amount, nodal(chain, x, component, here))
 
 
 class Ends(NamedTuple):
@@ -202,7 +202,7 @@ class Ends(NamedTuple):
     work: Work
 
 
-def _sweep(push: Push) -> Ends:
+def _sweep(push: Loaded) -> Ends:
     chain, kept, asked = push.chain, push.kept, 0
 
     def ask(node: Index, forces: bool) -> Real:
@@ -227,13 +227,13 @@ def _sweep(push: Push) -> Ends:
     return Ends(u, right, begins, Work(2 * asked))
 
 
-def _band(push: Push) -> Ends:
+def _band(push: Loaded) -> Ends:
     u, force = _core.mixed_deflection(push.chain, push.nodal)
     kept = push.kept
     return Ends(u[kept] * push.moves, force[kept[1:] - 1], force[kept[:-1]], Work(factorisations=1))
 
 
-def _by_ends(ends_of: Callable[[Push], Ends], push: Push) -> tuple[Real, Real, Work]:
+def _by_ends(ends_of: Callable[[Loaded], Ends], push: Loaded) -> tuple[Real, Real, Work]:
     """Return motion of the nodes, what the surroundings put on them, and what it took."""
     ends = ends_of(push)
     force = np.zeros_like(ends.u)
@@ -250,7 +250,7 @@ Bound = Callable[[Chain, Ports, Ports], Real]
 
 
 def _rounding(
-    model: Compiled, loads: dict[Point, float], nodes: Real, bounded: Callable[[Push], Real]
+    model: Compiled, loads: dict[Point, float], nodes: Real, bounded: Callable[[Loaded], Real]
 ) -> Real:
     """Bound what rounding does to motion of the nodes or forces on them, linear in the loads."""
     error = np.zeros((len(nodes), len(model.coordinates)))
@@ -262,7 +262,7 @@ def _rounding(
     return error
 
 
-def _bounds(bound: Bound, push: Push, watched: Ports) -> Real:
+def _bounds(bound: Bound, push: Loaded, watched: Ports) -> Real:
     """Bound what is watched, all coordinates of one place after another, (places, width)."""
     width = push.chain.held.shape[1]
     step = AT_ONCE * width
@@ -273,11 +273,11 @@ def _bounds(bound: Bound, push: Push, watched: Ports) -> Real:
     return np.concatenate(parts).reshape(-1, width)
 
 
-def _motion_error(bound: Bound, push: Push) -> Real:
+def _motion_error(bound: Bound, push: Loaded) -> Real:
     return _bounds(bound, push, _watching(push.chain, push.kept)) * push.moves
 
 
-def _force_error(ends_of: Callable[[Push], Ends], bound: Bound, push: Push) -> Real:
+def _force_error(ends_of: Callable[[Loaded], Ends], bound: Bound, push: Loaded) -> Real:
     """Bound f_b of the element on the left less f_a of the one on the right, and their difference.
 
     What rounding did to f_a = E f_b - Q u_a + P u_b is that of the response of this sum.
@@ -294,7 +294,7 @@ def _force_error(ends_of: Callable[[Push], Ends], bound: Bound, push: Push) -> R
     return error
 
 
-def _assembled_force_error(bound: Bound, push: Push) -> Real:
+def _assembled_force_error(bound: Bound, push: Loaded) -> Real:
     """Bound K u by the errors of u and of the entries of K."""
     everywhere = push._replace(kept=np.arange(push.chain.nodes))
     size = np.abs(_core.deflection(push.chain, push.nodal)[0])
@@ -330,7 +330,7 @@ def _lapack_bound(chain: Chain, pushed: Ports, watched: Ports) -> Real:
     return _core.frf(chain, np.ascontiguousarray(STILL.T), pushed, watched)[1][0]
 
 
-def _left_forces(push: Push, ends: Ends) -> Real:
+def _left_forces(push: Loaded, ends: Ends) -> Real:
     """Return f_a = E f_b - Q u_a + P u_b of the elements right of nodes."""
     E, Q, P = (one[push.chain.element_of[push.kept[:-1]]] for one in left_ends(push.chain))
     left = np.einsum("nij,nj->ni", E, ends.begins)
@@ -340,7 +340,7 @@ def _left_forces(push: Push, ends: Ends) -> Real:
     return left * _hinged(push, Q)
 
 
-def _left_sizes(push: Push, ends: Ends) -> Real:
+def _left_sizes(push: Loaded, ends: Ends) -> Real:
     """Return the sizes of what that is the sum of; c = 1/(1 + Q C) rounds by 1 + 2 |c|."""
     of = left_ends(push.chain)
     E, Q, P = (np.abs(one[push.chain.element_of[push.kept[:-1]]]) for one in of)
@@ -351,7 +351,7 @@ def _left_sizes(push: Push, ends: Ends) -> Real:
     return 2 * size * left * (1 + left)
 
 
-def _hinged(push: Push, Q: Real) -> Real:
+def _hinged(push: Loaded, Q: Real) -> Real:
     """Return what hinges leave of f_a, 1 where there is none."""
     if push.chain.hinge is None:
         return np.ones(Q.shape[:2])
@@ -366,7 +366,7 @@ def _kept(compliance: Real, Q: Real) -> Real:
     return np.where(free, 0.0, 1 / (1 + np.einsum("nii->ni", Q) * finite))
 
 
-def _lapack(push: Push) -> tuple[Real, Real, Work]:
+def _lapack(push: Loaded) -> tuple[Real, Real, Work]:
     u, _ = _core.deflection(push.chain, push.nodal)
     return u[push.kept], _held_up(push.chain, u)[push.kept], Work(factorisations=1)
 
@@ -374,9 +374,9 @@ def _lapack(push: Push) -> tuple[Real, Real, Work]:
 class Static(NamedTuple):
     """A solver: what finds motion of and forces on the nodes of one component, and its rounding."""
 
-    solve: Callable[[Push], tuple[Real, Real, Work]]
+    solve: Callable[[Loaded], tuple[Real, Real, Work]]
     bound: Bound  # of each thing watched under unit loads, (loads, watched)
-    force_error: Callable[[Bound, Push], Real]
+    force_error: Callable[[Bound, Loaded], Real]
 
 
 SOLVERS = {

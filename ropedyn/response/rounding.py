@@ -17,7 +17,7 @@ from ..chain.port import Ports
 from ..scene.damping import DASHPOT, INERTIA, SECTION, SPRING, TENSION
 
 EPS, TINY = np.finfo(float).eps, np.finfo(float).tiny  # TINY: the smallest normal number.
-OF_STATIONS, OF_WAVES, OF_NODES, OF_LOADS = 5.0, 1.5, 2.0, 1.0  # Roundings, by random lines.
+OF_STATIONS, OF_WAVES, OF_NODES, OF_LOADS = 5.0, 2.0, 2.0, 1.0  # Roundings, by random lines.
 
 
 class Stations(NamedTuple):
@@ -108,10 +108,11 @@ def _energies(moved: Real, pulled: Real, drives: slice, responses: slice) -> Rea
 
 def _mixes(chain: Chain, node: Index) -> Flags:
     """Say where one coordinate is made of others: in coupled sections, at hinges, (stations, 1)."""
-    mixes = np.full((len(node), 1), chain.section_loss > 1)
-    if chain.hinge is not None:
-        mixes[:, 0] |= np.any(chain.hinge, axis=1)[chain.term_of[node]]
-    return mixes
+    coupled = np.full((len(node), 1), chain.section_loss > 1)
+    if chain.hinge is None:
+        return coupled
+    opens = chain.hinge[chain.term_of[node]] > 0
+    return np.asarray(coupled | np.logical_or.reduce(opens, axis=1, keepdims=True))
 
 
 def _added(terms: Real, axis: int) -> Real:
