@@ -20,7 +20,7 @@ from ..response.frf import FRF
 from ..response.solvers import SOLVERS
 from ..scene.parts.part import PointMass
 from ..scene.scene import Scene
-from .question import AnyQuestion
+from .question import AnyQuestion, relative_to
 
 ON_A_NODE = 1e-9  # Of the length: a load that is not farther from a node stands on it.
 
@@ -190,7 +190,6 @@ class StaticQuestion(AnyQuestion):
     solvers: ClassVar[tuple[str, ...]] = ("sweep", "band", "lapack")
     usual: ClassVar[tuple[str, ...]] = ("sweep", "lapack")
     of_spans: ClassVar[tuple[str, ...]] = ("sweep",)
-    bounded: ClassVar[bool] = False
     each: ClassVar[float] = 1e-5
 
     def __post_init__(self) -> None:
@@ -213,6 +212,18 @@ class StaticQuestion(AnyQuestion):
 
     def values(self, answer: Deflection) -> Real:
         """Return the deflection in each load."""
+        return self._in_loads(answer, answer.displacement)
+
+    def rounding(self, answer: Deflection) -> Real:
+        """Return the relative error that rounding causes."""
+        return relative_to(self.values(answer), self._in_loads(answer, answer.rounding_error))
+
+    def mesh(self, answer: Deflection) -> Real:
+        """Return the relative error that the mesh causes."""
+        return relative_to(self.values(answer), self._in_loads(answer, answer.mesh_error))
+
+    def _in_loads(self, answer: Deflection, each: Real) -> Real:
+        """Return what there is of each node and coordinate in each load."""
         found = np.zeros(len(self.load))
         for k, (coordinate, x) in enumerate(self.load):
             node = np.abs(answer.x - x).argmin()
@@ -221,7 +232,7 @@ class StaticQuestion(AnyQuestion):
                     f"load must stand on a node, such as one under a part, to be compared, got x = "
                     f"{x:g} m beside a node at {answer.x[node]:g} m"
                 )
-            found[k] = answer.displacement[node, answer.coordinates.index(coordinate)]
+            found[k] = each[node, answer.coordinates.index(coordinate)]
         return found
 
     def placed(self, scene: Scene) -> Scene:

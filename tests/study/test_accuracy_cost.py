@@ -420,8 +420,10 @@ def test_times_with_the_error_bar_are_there_where_answers_have_one():
     answer = cost(BEAM, rd.ask.modes(2), elements=32)
     assert (answer.seconds_with_bound > 0).all()
     static = cost(BEAM, rd.ask.static({("z", 0.3): 1.0}), elements=32)
-    assert np.isnan(static.seconds_with_bound).all()
-    assert np.isinf(static.estimated_error).all()
+    assert (static.seconds_with_bound > 0).all()
+    # of what was found and of what is right
+    most = static.estimated_error / (1 - static.estimated_error)
+    assert (static.error <= most + 4 * EPS).all()
 
 
 # every stated error, recomputed from answers of the models alone
