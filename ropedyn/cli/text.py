@@ -31,7 +31,7 @@ FORCES: dict[str, tuple[type[Description], tuple[str, ...]]] = {
 """Each kind of force, and its numbers in the order in which they follow the word."""
 
 NO_OPTIONS = {"scene", "run", "json", "csv", "file", "record", "name"}
-RENAMED = {"number": "modes", "measured": "peaks", "frequencies": "frequency"}
+RENAMED = {"number": "modes", "frequencies": "frequency"}
 """Arguments that are options of another name."""
 ORDERS = {"auto": "auto", "search": None}  # Orders that are words.
 
@@ -51,8 +51,9 @@ def figure_file(text: str, option: str) -> Path:
 def in_options(message: str, options: Mapping[str, Any]) -> str:
     """Return what is said of arguments of Python as said of the options of these names."""
     known = {name: f"--{name.replace('_', '-')}" for name in options if name not in NO_OPTIONS}
-    given = {name for name in known if options[name] is not None}
-    known |= {name: known[one] for name, one in RENAMED.items() if one in given}
+    known |= {name: known[one] for name, one in RENAMED.items() if one in known}
+    if options.get("peaks") is not None:
+        known["measured"] = known["peaks"]
 
     def option(found: re.Match[str]) -> str:
         return known.get(found["name"], found[0])
