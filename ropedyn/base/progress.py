@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable
 from typing import Any
 
 Progress = None | bool | Callable[[float], Any]
 """What users give: nothing, True for a line on stderr, or what takes the fraction that is done."""
+
+PATIENCE = 2.0  # Seconds in which nobody asks.
 
 
 def reporter(progress: Progress) -> Callable[[float], Any]:
@@ -19,6 +22,22 @@ def reporter(progress: Progress) -> Callable[[float], Any]:
     if not callable(progress):
         raise TypeError(f"progress must be None, True or callable, got {progress!r}")
     return progress
+
+
+def on_terminal() -> Progress:
+    """Return what says so on a terminal, of work that takes longer than `PATIENCE`."""
+    if not sys.stderr.isatty():
+        return None
+    began = time.monotonic()
+    said = False
+
+    def say(fraction: float) -> None:
+        nonlocal said
+        if said or (time.monotonic() - began > PATIENCE and fraction < 1):
+            said = True
+            _print(fraction)
+
+    return say
 
 
 def silent(fraction: float) -> None:

@@ -19,6 +19,7 @@ from .hard import HARD
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
 from .tension import TENSION
+from .text import in_options
 
 COMMANDS = (
     MODES,
@@ -45,6 +46,7 @@ SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line."""
+    options = argparse.Namespace()
     try:
         options = parser().parse_args(arguments)
         with warnings.catch_warnings():
@@ -57,17 +59,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return SOLVED
     except SolveError as error:
-        return _complain(error, REFUSED)
-    except (RopedynError, TypeError, OSError, ImportError) as error:
-        return _complain(error, BAD_INPUT)
+        return _complain(in_options(str(error), vars(options)), REFUSED)
+    except OSError as error:
+        said = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        return _complain(said, BAD_INPUT)
+    except (RopedynError, TypeError, ImportError) as error:
+        return _complain(in_options(str(error), vars(options)), BAD_INPUT)
 
 
 def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
     print(f"{NAME}: warning: {message}", file=sys.stderr)
 
 
-def _complain(error: Exception, status: int) -> int:
-    print(f"ropedyn: {error}", file=sys.stderr)
+def _complain(said: str, status: int) -> int:
+    print(f"{NAME}: {said}", file=sys.stderr)
     return status
 
 

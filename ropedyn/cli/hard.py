@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 
 from ..study.hard.hard_cases import hard_cases
-from .options import Command, option, show
+from .options import Command, option, progress, show
 
 FAILED = 1  # Exit status where a case lost digits, or a random scene failed.
 
 
 def _hard(options: argparse.Namespace) -> int:
-    table = hard_cases(options.random, options.seed)
+    table = hard_cases(options.random, options.seed, progress=progress(options))
     show(options, table, "\n".join([str(table), *table.failures]))
     return 0 if table.ok else FAILED
 

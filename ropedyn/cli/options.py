@@ -5,19 +5,19 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..base.answer import Answer
 from ..base.atomic import replacing
 from ..base.errors import RopedynError, SceneError
+from ..base.progress import Progress, on_terminal
 from ..base.table import Table
 from ..chain.chain import KINDS
 from ..curves.peaks import Peaks
 from ..experiment.identify.fit import Fit
 from ..model import Model
 from ..scene.scene import Scene
-from .text import drive, point
+from .text import drive, figure_file, point
 
 
 class Option(NamedTuple):
@@ -114,7 +114,12 @@ ELEMENTS = (
 FORM = (switch("--json", "print the table as JSON"), switch("--csv", "print the table as CSV"))
 DRIVE = ("--drive", "coordinate@position [m], such as z@0.5, or end:0:z", drive)
 RESPONSE = repeated("--response", "as --drive", point)
-OUTPUT = (option("--plot", "write a figure", type=Path, metavar="FILE"), OptionGroup(FORM))
+OUTPUT = (option("--plot", "write a figure", figure_file, metavar="FILE"), OptionGroup(FORM))
+
+
+def progress(options: argparse.Namespace) -> Progress:
+    """Return what says how far long work is: where that is asked, and on a terminal."""
+    return True if getattr(options, "progress", False) else on_terminal()
 
 
 def refuse(options: argparse.Namespace, refused: tuple[Option, ...], instead: str) -> None:

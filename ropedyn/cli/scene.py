@@ -24,6 +24,7 @@ from .options import (
     OptionGroup,
     compiled,
     option,
+    progress,
     refuse,
     repeated,
     show,
@@ -34,7 +35,7 @@ LINES = ("--frequency", "start:stop:lines or a comma list [Hz]", text.spaced("Hz
 CARRYING = option(
     "--modes", "with transverse motion, the lowest (%(default)s)", type=int, default=4
 )
-PROGRESS = switch("--progress", "say on stderr how far it is")
+PROGRESS = switch("--progress", "say on stderr how far it is, where that is no terminal too")
 
 QUESTION = (
     OptionGroup(
@@ -110,6 +111,7 @@ def _accuracy(options: argparse.Namespace) -> None:
         elements=options.elements,
         element=options.element,
         solver=options.solver,
+        progress=progress(options),
     )
     show(options, cost)
 
@@ -133,7 +135,7 @@ ACCURACY = Command(
 def _effects(options: argparse.Namespace) -> None:
     scene = Scene.load(options.scene)
     how = {"elements": options.elements, "element": options.element}
-    cost = effect_cost(scene, _question(options), **how)
+    cost = effect_cost(scene, _question(options), progress=progress(options), **how)
     show(options, cost, cost.report())
 
 
@@ -163,7 +165,7 @@ def _transient(options: argparse.Namespace) -> None:
         method=options.method,
         step=options.step,
         tolerance=options.tolerance,
-        progress=options.progress,
+        progress=progress(options),
     )
     show(options, history)
 
@@ -216,7 +218,7 @@ FLOQUET = Command(
 
 def _stability(options: argparse.Namespace) -> None:
     chart = compiled(options).stability_map(
-        options.frequency, options.amplitude, modes=options.modes, progress=options.progress
+        options.frequency, options.amplitude, modes=options.modes, progress=progress(options)
     )
     show(options, chart)
 

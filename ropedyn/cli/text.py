@@ -5,7 +5,9 @@ Each takes the text and the name of its option, which its error says.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -28,7 +30,47 @@ FORCES: dict[str, tuple[type[Description], tuple[str, ...]]] = {
 }
 """Each kind of force, and its numbers in the order in which they follow the word."""
 
+NO_OPTIONS = {"scene", "run", "json", "csv", "file", "record", "name"}
+RENAMED = {"number": "modes", "frequencies": "frequency"}
+"""Arguments that are options of another name."""
 ORDERS = {"auto": "auto", "search": None}  # Orders that are words.
+
+
+def figure_file(text: str, option: str) -> Path:
+    """Return the file of a figure, whose ending says its format."""
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    known = sorted(FigureCanvasBase.get_supported_filetypes())
+    path = Path(text)
+    if path.suffix[1:].lower() not in known:
+        ends = ", ".join(f".{one}" for one in known)
+        raise SceneError(f"{option} must be a file that ends in one of {ends}, got {shown(text)}")
+    return path
+
+
+def in_options(message: str, options: Mapping[str, Any]) -> str:
+    """Return what is said of arguments of Python as said of the options of these names."""
+    known = {name: f"--{name.replace('_', '-')}" for name in options if name not in NO_OPTIONS}
+    known |= {name: known[one] for name, one in RENAMED.items() if one in known}
+    if options.get("peaks") is not None:
+        known["measured"] = known["peaks"]
+
+    def option(found: re.Match[str]) -> str:
+        return known.get(found["name"], found[0])
+
+    def value(found: re.Match[str]) -> str:
+        name = found["name"]
+        return f"{known[name]} {found['value']}" if name in known else found[0]
+
+    message = re.sub(r"Tension\(([^,()]+), ([^()]*)\)", _table, message)
+    message = re.sub(r"\b(?P<name>\w+)=\"?(?P<value>[\w./^]+)\"?", value, message)
+    message = re.sub(r"(?<=\bleave )(?P<name>\w+)(?= out\b)", option, message)
+    return re.sub(r"\A(?:measured\.)?(?P<name>\w+)(?:\[[^]]*\])*(?=:? )", option, message)
+
+
+def _table(found: re.Match[str]) -> str:
+    """Return a pulsating tension as scene files have it."""
+    return f"tension = {{ mean = {found[1]}, {found[2].replace('=', ' = ')} }}"
 
 
 def words(text: str, option: str) -> list[str]:

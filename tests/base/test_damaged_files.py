@@ -142,6 +142,10 @@ def test_what_is_whole_is_read(kind, tmp_path):
         assert tried(path, readers) >= 1
 
 
+DOUBTED = pytest.mark.filterwarnings("ignore::ropedyn.UnitWarning")  # of damaged numbers
+
+
+@DOUBTED
 @pytest.mark.long
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_damaged_file_is_read_or_refused_by_name(kind, tmp_path, capfd):
@@ -150,6 +154,7 @@ def test_a_damaged_file_is_read_or_refused_by_name(kind, tmp_path, capfd):
     assert refused > 100 and (read > 20) == (kind != "nc")
 
 
+@DOUBTED
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", FORMATS)
 def test_many_damaged_files_are_read_or_refused_by_name(kind, tmp_path, capfd):
