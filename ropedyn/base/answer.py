@@ -313,17 +313,17 @@ def named(name: str) -> object:
     raise AttributeError(name)
 
 
-def load(path: str | os.PathLike[str]) -> Answer:
-    """Read an answer that `save` wrote.
+def load(path: str | os.PathLike[str]) -> Any:
+    """Read what the library saved: an answer, or a scene.
 
     Parameters
     ----------
     path : path
-        Of the file.
+        Of the file; a scene's ends in ``.toml``.
 
     Returns
     -------
-    Answer
+    Answer or Scene
         Of the kind that was saved.
 
     Raises
@@ -333,7 +333,7 @@ def load(path: str | os.PathLike[str]) -> Answer:
     OSError
         If the file cannot be read.
     SceneError
-        If it holds no answer of ropedyn.
+        If it holds no answer of ropedyn, or no scene.
 
     Examples
     --------
@@ -347,6 +347,9 @@ def load(path: str | os.PathLike[str]) -> Answer:
     'Modes'
     """
     file = check.path(path)
+    if file.suffix.lower() == ".toml":
+        scene: Any = named("Scene")
+        return scene.load(file)
     xarray = extra.netcdf()
     if not file.is_file():
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")

@@ -32,6 +32,8 @@ class Named(np.ndarray[Any, np.dtype[np.float64]]):
     (1000.0, 2.0)
     >>> value
     Named({'tension': 1000.0, 'bending_stiffness': 2.0})
+    >>> print(value)
+    tension 1000., bending_stiffness 2.
     """
 
     paths: tuple[str, ...] | None
@@ -70,6 +72,13 @@ class Named(np.ndarray[Any, np.dtype[np.float64]]):
             return repr(np.asarray(self))
         rows = {path: row.tolist() for path, row in self.items()}
         return f"Named({rows})"
+
+    def __str__(self) -> str:
+        if self.paths is None:
+            return str(np.asarray(self))
+        return ", ".join(
+            f"{path} {np.array2string(row, precision=6)}" for path, row in self.items()
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Named, (np.asarray(self), self.paths or ())

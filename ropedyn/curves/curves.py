@@ -71,6 +71,19 @@ class Curves(Answer):
         check.count(drive, "drive", least=0, most=len(self.drive) - 1)
         return self.value[response] if self.value.ndim == 2 else self.value[drive, response]
 
+    @property
+    def amplitude(self) -> Real:
+        """Size of each value, as `value` has it.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> model.frf([0.0, 5.0], drive=("z", 0.5), response=("z", 0.25)).amplitude.round(6)
+        array([[0.00125 , 0.001407]])
+        """
+        return np.abs(self.value)
+
     def to(self, quantity: str) -> Self:
         """Return the same response as another quantity.
 

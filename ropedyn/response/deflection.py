@@ -164,16 +164,17 @@ def _deflected(
 
 def _mesh(model: Compiled, loads: dict[Point, float], displacement: Real) -> Real:
     """Return how far a chain is from its continuous spans; infinite where these have no answer."""
-    if model.element == "continuous":
-        return np.zeros(displacement.shape)
-    solver_of, x = SOLVERS["sweep"], model.x
-    try:
-        spans = compile_scene(model.scene, elements=len(x) - 1, element="continuous")
-        true = _deflected(spans, loads, x, solver_of)[0]
-        uncertain = _rounding(spans, loads, x, partial(_motion_error, solver_of.bound))
-    except (SceneError, SolveError):
-        return np.full(displacement.shape, np.inf)
-    return np.asarray(np.abs(displacement - true) + uncertain)
+    error = np.zeros(displacement.shape)
+    if model.element != "continuous":
+        solver_of, x = SOLVERS["sweep"], model.x
+        try:
+            spans = compile_scene(model.scene, elements=len(x) - 1, element="continuous")
+            error = _rounding(spans, loads, x, partial(_motion_error, solver_of.bound))
+            error = error + np.abs(displacement - _deflected(spans, loads, x, solver_of)[0])
+        except (SceneError, SolveError):
+            error = np.full(displacement.shape, np.inf)
+    error.setflags(write=False)
+    return error
 
 
 def _warn_of_large(model: Compiled, displacement: Real) -> None:

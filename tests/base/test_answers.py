@@ -647,3 +647,9 @@ def test_a_missing_library_says_which_extra_brings_it(missing, tmp_path):
     if missing == "h5netcdf":
         assert "'peak': 1" in answers[-1]
     assert [p.name for p in tmp_path.iterdir()] == ["script.py"]
+
+
+def test_load_opens_scenes_too(tmp_path):
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
+    scene.save(tmp_path / "rope.toml")
+    assert rd.load(tmp_path / "rope.toml") == scene
