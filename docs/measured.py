@@ -82,10 +82,12 @@ def draw_tubes(ax: plt.Axes) -> None:
 
 
 def draw_rope(ax: plt.Axes) -> None:
-    """Draw the measured response, that of the scene as drawn, and that as identified."""
+    """Draw the made response, that of the scene as drawn, and that as identified."""
     found = measured()
     fit = rd.identify(DRAWN, found, ["tension", "bending_stiffness", "damping.mass"])
-    ax.semilogy(LINES, np.abs(found.value[0]), ".", color="0.6", markersize=3, label="measured")
+    ax.semilogy(
+        LINES, np.abs(found.value[0]), ".", color="0.6", markersize=3, label="made, with noise"
+    )
     for name, scene in (("as drawn", DRAWN), ("identified", fit.scene)):
         frf = scene.compile().frf(LINES, drive=("z", 0.4), response=("z", 0.9))
         ax.semilogy(LINES, np.abs(frf.value[0]), linewidth=1.2, label=name)
