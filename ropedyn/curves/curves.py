@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ..base import check
 from ..base.answer import Answer
 from ..base.array import Complex, Real
 from ..base.computed import changed
+from ..base.drawing import draw
 from ..base.errors import SceneError
 from ..base.table import Table
 from ..base.unit import QUANTITIES, label, named
@@ -19,6 +20,9 @@ from ..chain.port import Point
 from .files import Content
 from .files.formats import write
 from .resonance import Resonances, resonances
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Curves(Answer):
@@ -113,6 +117,38 @@ class Curves(Answer):
             )
         value = self.value * self.s**times
         return changed(self, quantity=quantity, value=value)
+
+    def plot(self, ax: Axes | None = None, *, phase: bool = False) -> Axes:
+        """Plot amplitudes over frequency on a logarithmic scale.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure's where left out.
+        phase : bool
+            Whether phases stand in axes of their own below, the last of the figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Of the amplitudes.
+
+        Raises
+        ------
+        TypeError
+            If `phase` is no truth.
+        SceneError
+            If the axes are not those of a subplot, which phases need.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
+        >>> ax = model.frf([5.0, 10.0, 20.0], drive=("z", 0.5)).plot(phase=True)
+        >>> [axes.get_ylabel() for axes in ax.figure.axes]
+        ['receptance, amplitude', 'phase [degrees]']
+        """
+        return draw(self, "plot", ax, phase=phase)
 
     def peaks(self, drive: int = 0) -> tuple[Resonances, ...]:
         """Find the resonances that show as peaks, for each response.

@@ -11,7 +11,7 @@ from ..base.array import Real
 from ..scene.construction.construction import Construction
 from ..scene.construction.section import Section
 from ..scene.construction.strand import Bar, Ring, Strand
-from .figure import plots
+from .figure import BLUE, colour, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,8 +40,8 @@ def plot_section(section: Section, ax: Axes) -> None:
 def _across(strand: Strand, ax: Axes) -> None:
     from matplotlib.patches import Circle
 
-    for bar, y, z, colour in _wires(strand):
-        face = FIBRE if bar.EA == 0 else colour
+    for bar, y, z, shade in _wires(strand):
+        face = FIBRE if bar.EA == 0 else shade
         circle = Circle((MM * y, MM * z), MM * bar.diameter / 2, facecolor=face, edgecolor="white")
         circle.set_linewidth(0.4)
         ax.add_patch(circle)
@@ -52,17 +52,17 @@ def _across(strand: Strand, ax: Axes) -> None:
 def _wires(strand: Strand) -> Iterator[tuple[Bar, float, float, str]]:
     """Yield wires with their places in the section and the colours of their layers."""
     for bar in sorted(strand.bars, key=lambda one: -one.diameter):
-        yield bar, 0.0, 0.0, "C0"
+        yield bar, 0.0, 0.0, BLUE
     for k, ring in enumerate(strand.rings):
         for angle in _angles(ring, k):
             y, z = ring.on.radius * np.cos(angle), ring.on.radius * np.sin(angle)
             if isinstance(ring.element, Bar):
-                yield ring.element, y, z, f"C{k + 1}"
+                yield ring.element, y, z, colour(k + 1)
                 continue
             for bar, dy, dz, _ in _wires(ring.element):
                 # each strand is turned as it lies on its helix
                 turned = complex(dy, dz) * np.exp(1j * angle)
-                yield bar, y + turned.real, z + turned.imag, f"C{k + 1}"
+                yield bar, y + turned.real, z + turned.imag, colour(k + 1)
 
 
 def _angles(ring: Ring, k: int) -> Real:
@@ -78,6 +78,6 @@ def _from_the_side(strand: Strand, ax: Axes) -> None:
         for angle in _angles(ring, k):
             phase = angle + ring.on.turn * x
             y = np.where(np.sin(phase) >= 0, ring.on.radius * np.cos(phase), np.nan)
-            shades: Any = {"color": f"C{k + 1}", "linewidth": 1.2, "zorder": k + 2}
+            shades: Any = {"color": colour(k + 1), "linewidth": 1.2, "zorder": k + 2}
             ax.plot(MM * x, MM * y, **shades)
     ax.set(xlabel="position along the rope [mm]", ylabel="y [mm]")

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base import check
+from ..base.array import Real
 from ..base.unit import place
 from ..curves.curves import Curves, named_curves
 from ..curves.peaks import Peaks
@@ -18,7 +20,7 @@ from ..parametric.floquet import Floquet
 from ..parametric.stability import StabilityMap
 from ..signal.ringdown import RingDown
 from ..signal.spectrum import Spectrum
-from .figure import amplitudes, light_grid, plots
+from .figure import BLUE, RED, amplitudes, below, colour, light_grid, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,13 +29,29 @@ LABELS = 32  # Height of the names of tongues [pt].
 
 
 @plots(Curves)
-def plot_curves(curves: Curves, ax: Axes) -> None:
-    """Plot amplitudes over frequency on a logarithmic scale."""
+def plot_curves(curves: Curves, ax: Axes, *, phase: bool = False) -> None:
+    """Plot amplitudes over frequency on a logarithmic scale, and phases below."""
+    check.instance(phase, "phase", bool, "True or False")
+    under = below(ax) if phase else None
     for name, _, curve in named_curves(curves):
         if curve.any():
             ax.semilogy(curves.frequency, np.abs(curve), label=name)
+        if under is not None and curve.any():
+            under.plot(*_unbroken(curves.frequency, np.degrees(np.angle(curve))))
     ax.set_title(f"frequency response, driven in {', '.join(map(place, curves.drive))}")
     amplitudes(ax, curves.quantity)
+    if under is not None:
+        ax.set_xlabel("")
+        ax.tick_params(labelbottom=False)
+        light_grid(under)
+        under.set(xlabel="frequency [Hz]", ylabel="phase [degrees]", ylim=(-190.0, 190.0))
+        under.set_yticks([-180, -90, 0, 90, 180])
+
+
+def _unbroken(frequency: Real, phase: Real) -> tuple[Real, Real]:
+    """Part a phase where it goes around, so that no line crosses the figure."""
+    around = np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1
+    return np.insert(frequency, around, np.nan), np.insert(phase, around, np.nan)
 
 
 @plots(Branches)
@@ -44,7 +62,7 @@ def plot_branches(branches: Branches, ax: Axes) -> None:
             stable = np.asarray(branch.stable, dtype=np.bool_)
             for these, style, told in ((stable, "-", name), (~stable, "--", "_" + name)):
                 shown = np.where(these, np.abs(curve), np.nan)
-                ax.semilogy(branch.frequency, shown, style, color=f"C{r}", label=told)
+                ax.semilogy(branch.frequency, shown, style, color=colour(r), label=told)
     ax.set_title(f"steady motion, driven in {', '.join(map(place, branches.drive))}")
     amplitudes(ax, branches.quantity)
 
@@ -123,7 +141,7 @@ def plot_floquet(floquet: Floquet, ax: Axes) -> None:
     angle = np.linspace(0.0, 2 * np.pi, 361)
     ax.plot(np.cos(angle), np.sin(angle), color="0.7", linewidth=0.8, label="unit circle")
     grows = np.abs(floquet.multiplier) > 1 + floquet.rounding_error
-    for these, color, name in ((~grows, "C0", "stays or decays"), (grows, "C3", "grows")):
+    for these, color, name in ((~grows, BLUE, "stays or decays"), (grows, RED, "grows")):
         value = floquet.multiplier[these]
         if value.size:
             ax.plot(value.real, value.imag, "o", color=color, label=name)

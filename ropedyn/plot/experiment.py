@@ -17,12 +17,12 @@ from ..experiment.plan.wire_shifts import WireShifts
 from ..experiment.track.track import Track
 from ..scene.bench.static_test import StaticTest
 from ..scene.path import unit_of
-from .figure import light_grid, plots
+from .figure import BLUE, GREEN, ORANGE, RED, colour, light_grid, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-PAIR, ALONE = "C2", "C3"
+PAIR, ALONE = GREEN, RED
 """Colours of peaks with a partner and without."""
 PHASES = (-180, -90, 0, 90, 180)  # Ticks of a phase [deg].
 
@@ -116,9 +116,9 @@ def _both(comparison: Comparison, ax: Axes, of: Callable[[Any], Any]) -> None:
     assert comparison.calculated_value is not None
     pairs = zip(comparison.response, comparison.measured_value, comparison.calculated_value)
     for k, (name, measured, calculated) in enumerate(pairs):
-        colour = f"C{k}"
-        ax.plot(f, of(measured), ".", markersize=3, color=colour, label=f"measured {name}")
-        ax.plot(f, of(calculated), color=colour, label="" if k else "lines: calculated")
+        shade = colour(k)
+        ax.plot(f, of(measured), ".", markersize=3, color=shade, label=f"measured {name}")
+        ax.plot(f, of(calculated), color=shade, label="" if k else "lines: calculated")
     ax.set_xlabel("frequency [Hz]")
     ax.grid(True, which="both", color="0.92")
 
@@ -132,9 +132,9 @@ def _mark_peaks(comparison: Comparison, ax: Axes) -> None:
         (comparison.calculated[paired], PAIR, "-", "their partners"),
         (comparison.measured[~paired], ALONE, ":", "measured peaks without partner"),
     )
-    for peaks, colour, style, label in marks:
+    for peaks, shade, style, label in marks:
         if len(peaks):
-            ax.vlines(peaks, bottom, top, colors=colour, linestyles=style, lw=0.8, label=label)
+            ax.vlines(peaks, bottom, top, colors=shade, linestyles=style, lw=0.8, label=label)
     ax.set_ylim(bottom, top)
 
 
@@ -179,9 +179,9 @@ def _budget(fit: Fit, ax: Axes) -> None:
     for level in levels:
         low, high = fit.interval(level)[path]
         if np.isfinite([low, high]).all():
-            ax.barh(0, high - low, left=low, height=0.8, color="C0", alpha=0.25)
+            ax.barh(0, high - low, left=low, height=0.8, color=BLUE, alpha=0.25)
     value = float(fit.value[path])
-    ax.plot([value, value], [-0.4, 0.4], color="C0")
+    ax.plot([value, value], [-0.4, 0.4], color=BLUE)
     parts = sorted(fit.budget.items(), key=lambda part: -part[1])
     parts = [(cause, half) for cause, half in parts if 0 < half < np.inf]
     for k, (_, half) in enumerate(parts, 1):
@@ -229,12 +229,12 @@ def plot_track(track: Track, ax: Axes) -> None:
     time = track.dates()
     for common, alpha, label in ((True, 0.2, "95 %"), (False, 0.4, "95 % of changes")):
         low, high = track.interval(0.95, common=common).T
-        ax.fill_between(time, low, high, color="C0", alpha=alpha, linewidth=0, label=label)
-    ax.plot(time, track.tension, color="C0", label="all records")
+        ax.fill_between(time, low, high, color=BLUE, alpha=alpha, linewidth=0, label=label)
+    ax.plot(time, track.tension, color=BLUE, label="all records")
     told = np.isfinite(track.measured)
     alone, half = track.measured[told], 1.96 * track.measured_std[told]
     ax.errorbar(
-        time[told], alone, half, fmt="o", markersize=4, color="C1", label="each alone, 95 %"
+        time[told], alone, half, fmt="o", markersize=4, color=ORANGE, label="each alone, 95 %"
     )
     out = "x" if (~told).any() else ""
     ax.plot(time[~told], track.tension[~told], out, color=ALONE, label="left out" if out else None)
@@ -281,8 +281,8 @@ def plot_wire_shifts(shifts: WireShifts, ax: Axes) -> None:
             name = f"{f:.1f} Hz, {family}" if i == 0 else f"{n} broken" if k == 0 else None
             share = 100 * np.abs(shifts.shift[i, k]) / f
             style = styles[i % len(styles)]
-            ax.semilogy(shifts.x, share, style, color=f"C{k}", label=name)
-        ax.axhline(100 * shifts.least[k] / f, color=f"C{k}", linewidth=0.8, alpha=0.6)
+            ax.semilogy(shifts.x, share, style, color=colour(k), label=name)
+        ax.axhline(100 * shifts.least[k] / f, color=colour(k), linewidth=0.8, alpha=0.6)
     ax.set(xlabel="position along the rope [m]", ylabel="shift of frequency, amount [%]")
     ax.legend(fontsize="small", ncols=2)
     light_grid(ax)

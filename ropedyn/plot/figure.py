@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..base import check
 from ..base.drawing import draws
+from ..base.errors import SceneError
 from ..base.unit import NAME, UNIT
 
 if TYPE_CHECKING:
@@ -15,6 +16,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Plot = Callable[..., None]
+BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK = PALETTE = (
+    "#0072B2",
+    "#E69F00",
+    "#009E73",
+    "#D55E00",
+    "#CC79A7",
+    "#56B4E9",
+    "#000000",
+)
+"""Colours that the colour-blind tell apart (Okabe and Ito 2008)."""
+
+
+def colour(k: int) -> str:
+    """Return that of the k-th of several."""
+    return PALETTE[k % len(PALETTE)]
 
 
 def new_figure(rows: int, *, height: float = 4.5) -> tuple[Figure, list[Axes]]:
@@ -25,6 +41,8 @@ def new_figure(rows: int, *, height: float = 4.5) -> tuple[Figure, list[Axes]]:
     figure = Figure(figsize=(8.0, height * rows), layout="constrained")
     FigureCanvasAgg(figure)
     axes: Any = figure.subplots(rows, 1, squeeze=False)
+    for ax in axes[:, 0]:
+        ax.set_prop_cycle(color=PALETTE)
     return figure, list(axes[:, 0])
 
 
@@ -65,6 +83,27 @@ def amplitudes(ax: Axes, quantity: str) -> None:
     ax.grid(True, which="both", color="0.92")
     if ax.lines:
         ax.legend(fontsize="small")
+
+
+def below(ax: Axes) -> Axes:
+    """Return axes under these, which give them a third of their height."""
+    spec = ax.get_subplotspec()
+    if spec is None:
+        raise SceneError("ax must be one of a grid of subplots where the phase is shown")
+    grid: Any = spec.subgridspec(2, 1, height_ratios=(2, 1))
+    ax.set_subplotspec(grid[0])
+    under: Axes = ax.figure.add_subplot(grid[1], sharex=ax)
+    under.set_prop_cycle(color=PALETTE)
+    return under
+
+
+def legend(ax: Axes, title: str | None = None) -> None:
+    """Name what is drawn beside it, where room is made for that; else within."""
+    place: dict[str, Any] = {"loc": "best"}
+    figure = ax.get_figure()
+    if figure is not None and figure.get_layout_engine() is not None:
+        place = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
+    ax.legend(title=title, fontsize="small", **place)
 
 
 def light_grid(ax: Axes) -> None:

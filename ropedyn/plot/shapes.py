@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base import check
+from ..base.array import Real
 from ..base.errors import SceneError
 from ..base.unit import NAME, UNIT, place
 from ..eigen.damage import Damage
@@ -14,13 +15,16 @@ from ..eigen.free_motion import FreeMotion
 from ..experiment.plan.plan import Plan
 from ..motion.history import History
 from ..response.deflection import Deflection
-from .figure import along_the_rope, coordinate_of, plots
+from .figure import along_the_rope, colour, coordinate_of, legend, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..eigen.damped.damped_modes import DampedModes
     from ..eigen.modes import Modes
+
+
+AT_ENDS = 0.05  # Part of the rope at each end.
 
 
 @plots(FreeMotion)
@@ -34,7 +38,7 @@ def plot_modes(modes: Modes | DampedModes, ax: Axes, coordinate: str | None) -> 
         ax.plot(modes.x, modes.shape[k, :, at].real, label=label)
     along_the_rope(ax, shown)
     ax.set_title("mode shapes, largest component of the mode's own coordinate 1")
-    ax.legend(title="mode", fontsize="small")
+    legend(ax, "mode")
 
 
 @plots(History, "snapshots")
@@ -61,14 +65,23 @@ def plot_damage(damage: Damage, ax: Axes, of: str | None) -> None:
     of = check.one_of(next(iter(damage.change)) if of is None else of, "of", damage.change)
     value = damage.change[of]
     rows = np.arange(len(damage.frequency) + 1) + 0.5
-    largest = float(np.abs(value).max(initial=0.0)) or 1.0
+    largest = _within(damage.edge, value)
     colours = ax.pcolormesh(
         damage.edge, rows, value, cmap="RdBu_r", vmin=-largest, vmax=largest, shading="flat"
     )
     ax.set(xlabel="position along the rope [m]", ylabel="mode", yticks=rows[:-1] + 0.5)
     ax.set_yticklabels([f"{k + 1}: {f:.4g} Hz" for k, f in enumerate(damage.frequency)])
     ax.set_title(f"where a loss of {of.replace('_', ' ')} changes frequencies")
-    ax.figure.colorbar(colours, ax=ax, label="relative change per relative loss [1/m]")
+    beyond = "both" if np.abs(value).max(initial=0.0) > largest else "neither"
+    label = "relative change per relative loss [1/m]"
+    ax.figure.colorbar(colours, ax=ax, label=label, extend=beyond)
+
+
+def _within(edge: Real, value: Real) -> float:
+    """Return the largest change away from the ends, whose layers would hide all others."""
+    middle = (edge[1:] + edge[:-1]) / 2 - edge[0]
+    inner = np.abs(middle / (edge[-1] - edge[0]) - 0.5) < 0.5 - AT_ENDS
+    return float(np.abs(value[:, inner]).max(initial=0.0) or np.abs(value).max(initial=0.0)) or 1.0
 
 
 @plots(Deflection)
@@ -90,13 +103,13 @@ def plot_plan(plan: Plan, ax: Axes) -> None:
     same = plan.drive[0] == plan.response[0][0]
     for k, (mode, f) in enumerate(zip(plan.mode.tolist(), plan.frequency.tolist())):
         name = f"{mode}: {f:.4g} Hz, seen {100 * plan.seen[k]:.0f} %"
-        ax.plot(plan.x, np.abs(plan.driven[k]), color=f"C{k % 10}", label=name)
+        ax.plot(plan.x, np.abs(plan.driven[k]), color=colour(k), label=name)
         if not same:
-            ax.plot(plan.x, np.abs(plan.heard[k]), color=f"C{k % 10}", linestyle="--")
+            ax.plot(plan.x, np.abs(plan.heard[k]), color=colour(k), linestyle="--")
     ax.axvline(plan.drive[1], color="black", label=f"drive {place(plan.drive)}")
     for response in plan.response:
         ax.axvline(response[1], color="black", linestyle=":", label=f"listen to {place(response)}")
     coordinate = plan.drive[0] if same else f"{plan.drive[0]} (dashed: {plan.response[0][0]})"
     ax.set(xlabel="position along the rope [m]", ylabel=f"|{coordinate}| over its largest [1]")
     ax.set(ylim=(0.0, 1.05), title="where modes can be driven and heard")
-    ax.legend(title="mode", fontsize="small")
+    legend(ax, "mode")

@@ -12,15 +12,15 @@ from ..base.unit import duration, power
 from ..study.accuracy import AccuracyCost
 from ..study.effect import EffectCost
 from ..study.hard.hard_cases import HardCases
-from .figure import light_grid, plots
+from .figure import BLUE, GREEN, ORANGE, RED, light_grid, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOR = {"difference": "C3", "rigid": "C0", "tensed": "C1", "continuous": "C2"}
+COLOR = {"difference": RED, "rigid": BLUE, "tensed": ORANGE, "continuous": GREEN}
 LINE = {"sweep": "-", "auto": "-", "lapack": "--", "direct": "--"}
 """Colours of each kind of element, and lines of solvers, dotted those of the others."""
-CHANGE, TIME = "C0", "C1"
+CHANGE, TIME = BLUE, ORANGE
 """Colours of what an effect changes, and of its share of time."""
 
 
@@ -157,8 +157,8 @@ def plot_hard_cases(table: HardCases, ax: Axes) -> None:
     y = np.arange(len(rows))
     ax.hlines(y, table.peer_kept[rows], table.kept[rows], color="0.8", zorder=0)
     ax.scatter(table.promised[rows], y, marker="|", color="black", s=60, label="promised")
-    ax.scatter(table.peer_kept[rows], y, marker="x", color="C3", label="SciPy")
-    ax.scatter(table.kept[rows], y, marker="o", color="C2", s=30, label="ropedyn")
+    ax.scatter(table.peer_kept[rows], y, marker="x", color=RED, label="SciPy")
+    ax.scatter(table.kept[rows], y, marker="o", color=GREEN, s=30, label="ropedyn")
     ax.set(yticks=y, ylim=(len(rows) - 0.4, -0.6), xlim=(-0.4, 16.4))
     names = zip(table.case[rows].tolist(), table.decades[rows].tolist())
     ax.set_yticklabels([f"{name}  [{decades:g}]" for name, decades in names], fontsize="small")

@@ -9,6 +9,7 @@ from made_history import decaying, made
 from matplotlib.figure import Figure
 
 import ropedyn as rd
+from ropedyn.plot.figure import PALETTE
 
 NAMES = ["modes", "frf", "static", "compare", "peaks", "resonances", "accuracy", "effects"]
 NAMES += ["history", "spectrum", "ring-down", "measured"]
@@ -110,3 +111,34 @@ def test_plotting_needs_no_pyplot():
         "sys.exit('matplotlib.pyplot' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_phases_stand_below_and_no_line_crosses_where_they_go_around():
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ViscousDamping(1.0))
+    frf = scene.compile().frf(np.linspace(1.0, 100.0, 500), drive=("z", 0.3), response=("z", 0.8))
+    upper, lower = frf.plot(phase=True).figure.axes
+    assert (upper.get_ylabel(), lower.get_ylabel()) == ("receptance, amplitude", "phase [degrees]")
+    (line,) = lower.lines
+    steps = np.abs(np.diff(line.get_ydata()))
+    around = np.abs(np.diff(np.degrees(np.angle(frf.value[0])))) > 180.0
+    assert around.any()
+    assert np.isnan(steps).sum() == 2 * around.sum()
+    assert np.nanmax(steps) < 180.0
+    with pytest.raises(rd.SceneError, match="grid of subplots"):
+        frf.plot(Figure().add_axes((0.0, 0.0, 1.0, 1.0)), phase=True)
+
+
+def test_ends_do_not_hide_what_a_loss_changes_between_them():
+    modes = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1e-3), tension=100.0).compile().modes(3)
+    damage = modes.damage()
+    ax = damage.plot()
+    shown = ax.collections[0].get_clim()[1]
+    value = np.abs(damage.change["bending_stiffness"])
+    middle = (damage.edge[1:] + damage.edge[:-1]) / 2
+    assert shown == value[:, (middle > 0.05) & (middle < 0.95)].max()
+    assert value.max() > 10 * shown
+
+
+def test_colours_are_those_that_the_colour_blind_tell_apart(model):
+    frf = model.frf([1.0, 2.0], drive=("z", 0.5), response=[("z", 0.3)] * 2)
+    assert [line.get_color() for line in frf.plot().lines] == list(PALETTE[:2])
