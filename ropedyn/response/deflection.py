@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,7 +14,7 @@ from ..base import check
 from ..base.answer import Answer, Cost, Work, axes
 from ..base.array import Flags, Index, Real
 from ..base.computed import Late, Lazy, lazy
-from ..base.errors import SceneError, SolveError, UnitWarning
+from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..base.unit import FORCE, FORCE_UNIT, UNIT
 from ..chain.chain import Chain
@@ -39,7 +38,7 @@ class Deflection(Answer):
     x : ndarray, shape (nodes,)
         [m].
     displacement : ndarray, shape (nodes, coordinates)
-        [m, rad]. Of more than a tenth of the rope's length `Model.static` warns, `UnitWarning`.
+        [m, rad].
     force : ndarray, shape (nodes, coordinates)
         What the surroundings put on each node: loads, and reactions where a coordinate is held or
         a spring stands [N, N m].
@@ -117,7 +116,6 @@ def solve_static(
     else:
         x = model.x
     displacement, force, unknowns, work = _deflected(model, loads, x, solver_of)
-    _warn_of_large(model, displacement)
     motion_error, force_error = (
         partial(of, solver_of.bound) for of in (_motion_error, solver_of.force_error)
     )
@@ -177,21 +175,6 @@ def _mesh(model: Compiled, loads: dict[Point, float], displacement: Real) -> Rea
     return error
 
 
-def _warn_of_large(model: Compiled, displacement: Real) -> None:
-    """Warn of what is no small deflection, at the line that asked the model."""
-    length = model.scene.rope.length
-    for k, coordinate in enumerate(model.coordinates):
-        largest = float(np.abs(displacement[:, k]).max(initial=0.0))
-        if UNIT[coordinate] == "m" and largest > LARGE * length:
-            warnings.warn(
-                f"{coordinate} moves by up to {largest:.3g} m on a rope of {length:g} m, and the "
-                "theory is of small deflections: is the load in N, the tension too?",
-                UnitWarning,
-                stacklevel=5,
-            )
-
-
-LARGE = 0.1  # A part of the length that is no small deflection.
 POINTS = 64  # A deflection is given at so many parts of each continuous span.
 BLOCK = 4096  # One sweep reports the motion of so many nodes.
 

@@ -56,20 +56,6 @@ def test_the_plane_of_z_of_a_pair_and_a_string_are_weighed():
     assert doubts(rd.Scene(rd.Rope(1.35, 0.1017), tension=2830.0)) == ()
 
 
-def test_a_large_deflection_is_said_at_the_line_that_asked():
-    model = scene().compile()
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always")
-        model.static({("z", 0.5): 10.0})
-        assert not told
-        small = model.static({("z", 0.5): 1e4}).displacement[:, 0].max()
-    (one,) = told
-    assert small > 0.135
-    assert one.category is rd.UnitWarning
-    assert one.filename == __file__
-    assert "z moves by up to 1." in str(one.message)
-
-
 def test_a_bending_test_that_no_rope_could_give_is_said():
     force = np.array([0.0, 2.0, 4.0])
     with pytest.warns(rd.UnitWarning, match=r"up to 10 m on a span of 0\.7 m") as told:
