@@ -183,8 +183,8 @@ RD_INLINE _Bool leg_walk_whole(struct wave *wave, const struct rd_walk *walk,
 
 /* the same of a leg whose tension grows, by pieces of its blocks */
 static RD_CLONES _Bool leg_walk_graded(struct wave *wave, const struct rd_walk *walk,
-                                       const struct rd_leg *leg, lanes lambda, const lanes *z,
-                                       const lanes *inverse, lanes *own)
+                                       const struct rd_leg *leg, const lanes *lambda,
+                                       const lanes *z, const lanes *inverse, lanes *own)
 {
     struct rd_block block[RD_BLOCKS_MOST];
     struct rd_family family;
@@ -192,8 +192,8 @@ static RD_CLONES _Bool leg_walk_graded(struct wave *wave, const struct rd_walk *
     struct step step;
     lanes first[W][W], inner[W][W];
     const size_t blocks = graded_blocks(walk, leg, lambda, block);
-    term_scale(walk, leg->first, leg->before, lambda, z, first);
-    term_scale(walk, leg->term, leg->element, lambda, z, inner);
+    term_scale(walk, leg->first, leg->before, *lambda, z, first);
+    term_scale(walk, leg->term, leg->element, *lambda, z, inner);
     for (size_t k = 0; k < blocks; k++) {
         graded_fill(walk, leg, lambda, block + k, &family);
         for (size_t i = 0; i < block[k].pieces; i++) {
@@ -203,8 +203,8 @@ static RD_CLONES _Bool leg_walk_graded(struct wave *wave, const struct rd_walk *
             walk_node(wave, walk, start ? leg->first : leg->term, start ? first : inner, &step,
                       start && leg == walk->leg);
             if (start)
-                walk_feet(wave, walk, leg->first, lambda, z, own);
-            step_transfer(wave, &step, 0);
+                walk_feet(wave, walk, leg->first, *lambda, z, own);
+            step_transfer(wave, &step, walk->chain);
             step_comply(wave, &step);
         }
     }
@@ -251,7 +251,7 @@ RD_INLINE _Bool leg_cross(struct wave *wave, const struct rd_walk *walk, const s
                           lanes lambda, const lanes *z, const lanes *inverse, lanes *own)
 {
     if (leg_is_graded(walk, leg))
-        return leg_walk_graded(wave, walk, leg, lambda, z, inverse, own);
+        return leg_walk_graded(wave, walk, leg, &lambda, z, inverse, own);
     return leg_walk_whole(wave, walk, leg, lambda, z, own) ||
            leg_walk(wave, walk, leg, lambda, z, inverse, own);
 }

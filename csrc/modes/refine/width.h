@@ -47,13 +47,14 @@ RD_INLINE void plain_change(const struct rd_refine *r, const struct rd_leg *leg,
 }
 
 /* the pieces of a leg whose tension grows, from step m on, as its plan has them; returns the last */
-static size_t graded_change(const struct rd_refine *r, size_t m, lanes lambda)
+static size_t graded_change(const struct rd_refine *r, size_t m, const lanes *lambda)
 {
     const struct rd_leg *leg = r->walk->leg + r->step[m].leg;
     struct rd_block block[RD_BLOCKS_MOST];
     struct rd_family family;
+    const lanes at = planned(r);
     int32_t made = 0;
-    graded_blocks(r->walk, leg, planned(r), block);
+    graded_blocks(r->walk, leg, &at, block);
     for (; m < r->steps && r->step[m].leg == (int32_t)(leg - r->walk->leg); m++) {
         const struct rd_step *step = r->step + m;
         struct piece *piece = (struct piece *)(r->piece + (size_t)step->piece * 6 * W * W);
@@ -75,7 +76,7 @@ RD_INLINE void pieces_change(const struct rd_refine *r, lanes lambda)
         if (step->piece <= done)
             continue;
         if (step->block > 0) {
-            m = graded_change(r, m, lambda);
+            m = graded_change(r, m, &lambda);
             done = r->step[m].piece;
             continue;
         }
@@ -296,7 +297,8 @@ static enum rd_status plan_plain(struct rd_refine *r, int32_t index, int32_t *pi
 }
 
 /* Steps of a leg whose tension grows: the pieces of its blocks. */
-static enum rd_status plan_graded(struct rd_refine *r, int32_t index, lanes lambda, int32_t *pieces)
+static enum rd_status plan_graded(struct rd_refine *r, int32_t index, const lanes *lambda,
+                                  int32_t *pieces)
 {
     const struct rd_leg *leg = r->walk->leg + index;
     struct rd_block block[RD_BLOCKS_MOST];
@@ -327,7 +329,7 @@ static enum rd_status plan_leg(struct rd_refine *r, int32_t index, lanes lambda,
     if (leg_is_plain_at(r->walk, leg, lambda))
         return plan_plain(r, index, pieces);
     if (leg_is_graded(r->walk, leg))
-        return plan_graded(r, index, lambda, pieces);
+        return plan_graded(r, index, &lambda, pieces);
     const _Bool joined = leg->count >= 4 || leg_is_continuous(r->walk, leg);
     struct piece level[LEVELS];
     const int halvings = leg_halvings(r->walk, leg, lambda);

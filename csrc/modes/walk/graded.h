@@ -12,18 +12,18 @@ RD_INLINE _Bool leg_is_graded(const struct rd_walk *walk, const struct rd_leg *l
 }
 
 /* the blocks (RD_BLOCKS_MOST) of one element of a leg; 0 where it has too many pieces */
-static size_t graded_blocks(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda,
-                            struct rd_block *block)
+static size_t graded_blocks(const struct rd_walk *walk, const struct rd_leg *leg,
+                            const lanes *lambda, struct rd_block *block)
 {
-    const struct rd_sizes sizes = {1, 1, largest(lambda), 0};
+    const struct rd_sizes sizes = {1, 1, largest(*lambda), 0};
     return rd_blocks_of(walk->chain, (size_t)leg->element, &sizes, 0, block);
 }
 
 /* a block's triples, with d/dlambda as their imaginary parts */
-static void graded_fill(const struct rd_walk *walk, const struct rd_leg *leg, lanes lambda,
+static void graded_fill(const struct rd_walk *walk, const struct rd_leg *leg, const lanes *lambda,
                         const struct rd_block *block, struct rd_family *family)
 {
-    const cv inertia = c_make(-lambda, l_fill(-RD_COMPLEX_STEP));
+    const cv inertia = c_make(-*lambda, l_fill(-RD_COMPLEX_STEP));
     struct rate_matrix rate;
     const struct rd_field field = {
         .width = W,
@@ -35,7 +35,7 @@ static void graded_fill(const struct rd_walk *walk, const struct rd_leg *leg, la
     rd_family_fill(&field, block, family);
 }
 
-static void graded_set(cv x, lanes *piece, lanes *change)
+RD_INLINE void graded_set(cv x, lanes *piece, lanes *change)
 {
     *piece = x.re;
     if (change)
