@@ -321,7 +321,7 @@ class Chain(NamedTuple):
             damping=_present(squares(self.damping)),
             drag=_present(columns(self.drag)),
             sag=self.sag if {"x", "z"} <= set(coordinates) else None,
-            rise=self.rise if "z" in coordinates else None,
+            rise=self.rise if {"y", "z"} & set(coordinates) else None,
             attached_row=columns(self.attached_row),
         )._moving_attached
 

@@ -40,7 +40,9 @@ class AttachedEnergy(NamedTuple):
             for kind in part.carried:
                 these = part.carries(kind)
                 own = np.ascontiguousarray(motion[:, plane.carried][:, these])
-                energy = _core.carried(part.carrying(these), u, own, eigenvalue)
+                # nodes alone carry them: how the tension grows between is nothing to them
+                nodes = part.carrying(these)._replace(rise=None)
+                energy = _core.carried(nodes, u, own, eigenvalue)
                 every.energy[ATTACHED.index(kind)] += energy
         np.abs(motion).max(axis=1, initial=0.0, out=every.motion)
         return every
