@@ -56,9 +56,7 @@ def claimed_share(seeds):
 
 @pytest.mark.parametrize("slip", BY_SLIP)
 def test_slips_of_units_are_named(slip):
-    # of 40 on other seeds 30 to 37 are; of lengths, which make a stiff rope a string, 25
-    least = 0.3 if slip == "length in mm" else 0.5
-    assert found_share(slip, range(71_000, 71_010)) >= least
+    assert found_share(slip, range(71_000, 71_010)) >= 0.7
 
 
 @pytest.mark.parametrize("times", ["(2 pi)^2", "1000"])
@@ -88,3 +86,23 @@ def test_peaks_in_kilohertz_are_refused_with_the_reason():
 
 def test_right_peaks_have_no_slip_of_units():
     assert claimed_share(range(72_000, 72_040)) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "slips of units in peaks that are not named, worst of rad/s, per minute, mHz, kHz, mm, g/m, "
+    "kN, MN: share of 100 each",
+    "random ropes, T L^2/B 300 to 10^6, 8 modes, a missing one or a stray, the tension guessed to "
+    "30 %",
+    0.3,
+)
+def test_most_slips_of_units_are_named(claim):
+    claim(max(1 - found_share(slip, range(73_000, 73_100)) for slip in BY_SLIP))
+
+
+@pytest.mark.slow
+@pytest.mark.claim(
+    "slips of units that are claimed of right peaks, share of 1000", "the same random ropes", 0.0
+)
+def test_right_peaks_have_very_rarely_a_slip_of_units(claim):
+    claim(claimed_share(range(74_000, 75_000)))

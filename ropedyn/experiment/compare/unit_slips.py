@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.array import Real
 from ...model import Model
+from ...scene.scene import Scene
 from .calculated import CalculatedPeaks, undamped_peaks
 from .numbering import Pairing, numbered, weighed
 
@@ -23,11 +24,12 @@ NEAR = 1.25  # A tension is so near to a power that it is a slip's.
 
 
 class UnitSlip(NamedTuple):
-    """Frequencies that are a factor too high, or a tension that is too low, and why."""
+    """What the frequencies, or the scene's tension and length, are times what they would be."""
 
-    factor: float
-    tension: float
     said: str
+    frequency: float = 1.0
+    tension: float = 1.0
+    length: float = 1.0
 
 
 class Power(NamedTuple):
@@ -43,40 +45,39 @@ ANGULAR = (
     "is some 40 times the scene's; divide them by 2 pi"
 )
 UNIT_SLIPS = (
-    UnitSlip(2 * math.pi, 1.0, ANGULAR),
+    UnitSlip(ANGULAR, frequency=2 * math.pi),
     UnitSlip(
-        60.0,
-        1.0,
         "all peaks pair with modes after division by 60: the frequencies are per minute, or the "
         "tension is some 3600 times the scene's; divide them by 60",
+        frequency=60.0,
     ),
     UnitSlip(
-        1e3,
-        1.0,
         "all peaks pair with modes after division by 1000: the frequencies are in mHz, or the "
         "scene has its length in mm; give Hz and m",
+        frequency=1e3,
     ),
     UnitSlip(
-        1e-3,
-        1.0,
         "all peaks pair with modes times 1000: the frequencies are in kHz, or the scene has its "
         "length in km; give Hz and m",
+        frequency=1e-3,
     ),
     UnitSlip(
-        math.sqrt(1e3),
-        1.0,
         "all peaks pair with modes after division by sqrt(1000): the scene has its linear_density "
         "in g/m, or a tension 1000 times too low; give kg/m and N",
+        frequency=math.sqrt(1e3),
     ),
     UnitSlip(
-        1.0,
-        1e3,
         "all peaks pair with modes of 1000 times the tension: the scene has it in kN; give N",
+        tension=1e-3,
     ),
     UnitSlip(
-        1.0,
-        1e6,
         "all peaks pair with modes of 10^6 times the tension: the scene has it in MN; give N",
+        tension=1e-6,
+    ),
+    UnitSlip(
+        "all peaks pair with modes of a 1000th of the length: the scene has its length in mm; give "
+        "m",
+        length=1e3,
     ),
 )
 POWERS = (
@@ -119,12 +120,12 @@ def _as_said(frequency: Real, model: Model) -> float:
 
 def _unslipped(frequency: Real, slip: UnitSlip, model: Model) -> Pairing | None:
     """Return the pairs of frequencies without a slip, None where not nearly all pair."""
-    if slip.tension != 1:
-        scene = model.scene
-        if not isinstance(scene.tension, float) or not scene.tension > 0:
+    if (slip.tension, slip.length) != (1, 1):
+        scene = _unslipped_scene(model.scene, slip)
+        if scene is None:
             return None
-        model = scene.replace(tension=scene.tension * slip.tension).compile()
-    scaled = frequency / slip.factor
+        model = scene.compile()
+    scaled = frequency / slip.frequency
     highest, most = _highest(scaled), DENSE * len(frequency)
     if model.count(below=highest) > most:
         return None
@@ -133,6 +134,16 @@ def _unslipped(frequency: Real, slip: UnitSlip, model: Model) -> Pairing | None:
         return None
     pairing = _numbered(scaled, found)
     return pairing if pairing.pairs >= ALMOST * len(frequency) else None
+
+
+def _unslipped_scene(scene: Scene, slip: UnitSlip) -> Scene | None:
+    """Return the scene without a slip, None where more than the slip would change."""
+    if not isinstance(scene.tension, float) or not scene.tension > 0:
+        return None
+    if slip.length != 1 and (scene.parts or scene.gravity is not None):
+        return None
+    rope = scene.rope.replace(length=scene.rope.length / slip.length)
+    return scene.replace(rope=rope, tension=scene.tension / slip.tension)
 
 
 def _numbered(frequency: Real, found: CalculatedPeaks) -> Pairing:
