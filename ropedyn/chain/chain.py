@@ -129,7 +129,11 @@ class Chain(NamedTuple):
         # the end correction of tensed elements makes the mass matrix indefinite
         free = self.held == 0
         moving = np.where(free[:, :, None] & free[:, None, :], self.mass, 0.0)
-        negative = (np.linalg.eigvalsh(moving) < 0).sum(axis=1)
+        # of coordinates in their own units, in which 0 is told from rounding
+        size = np.sqrt(np.abs(np.diagonal(moving, axis1=1, axis2=2)))
+        size = np.where(size > 0, size, 1.0)
+        scaled = moving / (size[:, :, None] * size[:, None, :])
+        negative = (np.linalg.eigvalsh(scaled) < -1e-13).sum(axis=1)
         return int(negative[self.term] @ self._sizes)
 
     @property

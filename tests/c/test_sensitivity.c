@@ -335,7 +335,7 @@ static void impossible_elements_are_refused(void)
     wave.length = 6; /* beyond a quarter of a wave */
     rope = rope_make(&wave);
     asked = mode_ask(&rope.chain, LAMBDA / 1e2, u);
-    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_NOT_POSITIVE_DEFINITE);
+    CHECK_INT(stretch_of(asked, 0, slope, jump), RD_INDEFINITE_ELEMENT);
     mode_forget(asked);
     rope_free(&rope);
 }

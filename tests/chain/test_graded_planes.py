@@ -75,3 +75,21 @@ def test_resonator_shares_the_energy_where_the_rope_twists_beside_a_growing_tens
         .frequency[0],
         rel_tol=1e-12,
     )
+
+
+@pytest.mark.parametrize("elements", [40, 60, 120])
+def test_lumps_of_negative_mass_are_told_from_zeros_of_all_units(elements):
+    rope = rd.Rope(
+        2.5992806540756925,
+        8.41294919816472,
+        bending_stiffness=167.92693070469534,
+        torsional_stiffness=863.4641928903494,
+        rotary_inertia=(2.175181333971964e-06, 5.853646721391733e-06),
+        polar_inertia=3.5053403540766014e-05,
+    )
+    springs = {"y": 13.0, "z": 48.0, "beta": 1.4, "gamma": 4900.0}
+    loose = rd.End(**dict.fromkeys(springs, "free"), spring=springs)
+    model = rd.Scene(rope, tension=11e3, ends=("pinned", loose), planes="both").compile(
+        elements=elements
+    )
+    assert model.chain.spurious == (np.linalg.eigvalsh(model.mass().toarray()) < 0).sum()
