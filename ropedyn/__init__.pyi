@@ -1,4 +1,5 @@
 from . import ask, study2015
+from .axis.axis import Axis
 from .base.answer import Answer, Cost, load
 from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError
 from .base.table import Table
@@ -74,6 +75,7 @@ __all__ = [
     "AddedMass",
     "Animation",
     "Answer",
+    "Axis",
     "BendingTest",
     "Boundary",
     "Branches",
