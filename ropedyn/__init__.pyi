@@ -62,6 +62,7 @@ from .scene.scene import Scene
 from .scene.tension import Tension
 from .signal.ringdown import RingDown
 from .signal.spectrum import Spectrum
+from .space.model import SpaceModel
 from .study.accuracy import AccuracyCost, accuracy_cost
 from .study.effect import EffectCost, effect_cost
 from .study.hard.hard_cases import HardCases, hard_cases
@@ -132,6 +133,7 @@ __all__ = [
     "SectionSpread",
     "Sine",
     "SolveError",
+    "SpaceModel",
     "Spectrum",
     "Spring",
     "StabilityMap",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,6 +53,8 @@ class Axis:
     begins : tuple of (position, frame)
         Of each piece, in space: x, y, z [m], and rows of the matrix whose columns are the unit
         vectors of the frame.
+    words : mapping
+        What made it, as a file keeps it: `from_words`.
 
     Examples
     --------
@@ -73,6 +75,37 @@ class Axis:
 
     pieces: tuple[Piece, ...]
     begins: tuple[tuple[Vector, tuple[Vector, Vector, Vector]], ...]
+    words: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @staticmethod
+    def from_words(words: Mapping[str, Any]) -> Axis:
+        """Return the axis that its `words` say, as a file keeps them.
+
+        Parameters
+        ----------
+        words : mapping
+            ``kind``, one of "line", "arc", "helix", "catenary" and "points", the arguments of what
+            makes it, and perhaps ``reversed``.
+
+        Raises
+        ------
+        TypeError
+            If something is of the wrong type, or there is no such argument.
+        SceneError
+            If there is no such kind, or as what makes it does.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Axis.from_words({"kind": "arc", "radius": 2.0, "angle": 1.5}).length
+        3.0
+        """
+        check.instance(words, "axis", Mapping, "a mapping with its kind")
+        given = dict(words)
+        kind = check.one_of(given.pop("kind", None), "axis.kind", KINDS)
+        back = check.instance(given.pop("reversed", False), "axis.reversed", bool, "True or False")
+        found: Axis = getattr(Axis, kind)(**given)
+        return found.reversed() if back else found
 
     @staticmethod
     def line(length: float) -> Axis:
@@ -96,7 +129,8 @@ class Axis:
         >>> rd.Axis.line(2.0).is_straight
         True
         """
-        return _placed([UniformPiece(check.number(length, "length", "m", sign="positive"))])
+        long = check.number(length, "length", "m", sign="positive")
+        return _placed(UniformPiece(long), kind="line", length=long)
 
     @staticmethod
     def arc(radius: float, angle: float) -> Axis:
@@ -124,7 +158,7 @@ class Axis:
         """
         r = check.number(radius, "radius", "m", sign="positive")
         turned = check.number(angle, "angle", "rad", sign="positive")
-        return _placed([UniformPiece(r * turned, 0.0, 1 / r)])
+        return _placed(UniformPiece(r * turned, 0.0, 1 / r), kind="arc", radius=r, angle=turned)
 
     @staticmethod
     def helix(radius: float, pitch_angle: float, turns: float, hand: str = "right") -> Axis:
@@ -164,7 +198,9 @@ class Axis:
         around = check.number(turns, "turns", sign="positive")
         sign = 1 if check.one_of(hand, "hand", ("right", "left")) == "right" else -1
         c, s = math.cos(pitch), math.sin(pitch)
-        return _placed([UniformPiece(2 * math.pi * r * around / c, sign * s * c / r, c * c / r)])
+        piece = UniformPiece(2 * math.pi * r * around / c, sign * s * c / r, c * c / r)
+        words: dict[str, Any] = {"radius": r, "pitch_angle": pitch, "turns": around, "hand": hand}
+        return _placed(piece, kind="helix", **words)
 
     @staticmethod
     def catenary(span: float, rise: float = 0.0, *, parameter: float) -> Axis:
@@ -205,7 +241,8 @@ class Axis:
         piece = CatenaryPiece(last - first, c, first)
         slope = math.atan2(first, c)
         frame = np.array([[c, 0, -first], [0, math.hypot(c, first), 0], [first, 0, c]])
-        return _axis([(piece, np.zeros(3), frame * math.cos(slope) / c)])
+        words: dict[str, Any] = {"span": over, "rise": up, "parameter": c}
+        return _axis([(piece, np.zeros(3), frame * math.cos(slope) / c)], kind="catenary", **words)
 
     @staticmethod
     def points(xyz: ArrayLike, fillet: float | None = None) -> Axis:
@@ -240,7 +277,10 @@ class Axis:
         (3, (), array([1., 0., 1.]))
         """
         radius = check.optional(fillet, "fillet", "m", sign="positive")
-        return _axis(polyline(checked_points(xyz), radius))
+        points = checked_points(xyz)
+        words: dict[str, Any] = {"kind": "points", "xyz": points.tolist()}
+        words |= {} if radius is None else {"fillet": radius}
+        return _axis(polyline(points, radius), **words)
 
     @property
     def length(self) -> float:
@@ -255,12 +295,26 @@ class Axis:
 
     @property
     def is_uniform(self) -> bool:
-        """Whether curvature and torsion are constant in each piece."""
+        """Whether curvature and torsion are constant in each piece.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Axis.arc(1.0, 2.0).is_uniform, rd.Axis.catenary(9.0, parameter=5.0).is_uniform
+        (True, False)
+        """
         return all(isinstance(piece, UniformPiece) for piece in self.pieces)
 
     @property
     def joints(self) -> Real:
-        """Arc lengths at which pieces begin, and that of the end, shape (pieces + 1,) [m]."""
+        """Arc lengths at which pieces begin, and that of the end, shape (pieces + 1,) [m].
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Axis.points([[0, 0, 0], [1, 0, 0], [1, 2, 0]]).joints
+        array([0., 1., 3.])
+        """
         return np.concatenate([[0.0], np.cumsum([piece.length for piece in self.pieces])])
 
     @property
@@ -368,7 +422,9 @@ class Axis:
         for k, piece in reversed(list(enumerate(self.pieces))):
             place, frame = self._of(k, np.array([piece.length]))
             back.append((piece.backward(), place[0], frame[0] * [-1.0, -1.0, 1.0]))
-        return _axis(back)
+        return replace(
+            _axis(back), words={**self.words, "reversed": not self.words.get("reversed", False)}
+        )
 
     def _of(self, k: int, s: Real) -> tuple[Real, Real]:
         """Return positions and frames in space, by the arc length of piece k."""
@@ -388,15 +444,18 @@ class Axis:
         return found.reshape((*np.shape(s), *shape))
 
 
-def _axis(placed: Iterable[tuple[Piece, Real, Real]]) -> Axis:
+KINDS = ("line", "arc", "helix", "catenary", "points")
+
+
+def _axis(placed: Iterable[tuple[Piece, Real, Real]], **words: Any) -> Axis:
     pieces, begins = [], []
     for piece, position, frame in placed:
         pieces.append(piece)
         rows = tuple(tuple(float(v) for v in row) for row in frame)
         begins.append((tuple(float(v) for v in position), rows))
-    return Axis(tuple(pieces), tuple(begins))  # type: ignore[arg-type]
+    return Axis(tuple(pieces), tuple(begins), words)  # type: ignore[arg-type]
 
 
-def _placed(pieces: list[UniformPiece]) -> Axis:
+def _placed(piece: UniformPiece, **words: Any) -> Axis:
     """Return an axis of one piece from the origin on, its frame that of space."""
-    return _axis((piece, np.zeros(3), np.eye(3)) for piece in pieces)
+    return _axis([(piece, np.zeros(3), np.eye(3))], **words)

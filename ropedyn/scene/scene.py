@@ -50,6 +50,9 @@ EFFECTS = (
     Gravity.kind,
     Gravity.grading,
     SECOND_PLANE,
+    "axis",
+    "initial moment",
+    "shear",
 )
 """The effects that a scene can have, in their fixed order."""
 
@@ -222,6 +225,9 @@ NodeForce, Stop, AddedMass, LocalChange
             Gravity.kind: self.sags,
             Gravity.grading: self.is_graded,
             SECOND_PLANE: self.planes == "both",
+            "axis": rope.axis is not None,
+            "initial moment": rope.axis is not None and rope.natural == "straight",
+            "shear": rope.shear_stiffness is not None,
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))
 
@@ -355,6 +361,7 @@ NodeForce, Stop, AddedMass, LocalChange
         Returns
         -------
         Model
+            Of a rope on an axis a `SpaceModel`, which takes no arguments here.
 
         Raises
         ------

@@ -144,6 +144,12 @@ def test_points_on_a_line_are_a_line():
     assert axis.is_straight and axis.length == pytest.approx(3 * math.sqrt(3), rel=1e-15)
 
 
+def test_words_make_the_same_axis(axis):
+    assert rd.Axis.from_words(axis.words) == axis
+    assert rd.Axis.from_words(axis.reversed().words) == axis.reversed()
+    assert rd.Axis.from_words(axis.reversed().reversed().words).pieces == axis.pieces
+
+
 def test_equal_axes_are_equal():
     assert rd.Axis.arc(1.0, 2.0) == rd.Axis.arc(1.0, 2.0) != rd.Axis.arc(1.0, 2.5)
     assert len({rd.Axis.arc(1.0, 2.0), rd.Axis.arc(1.0, 2.0)}) == 1
