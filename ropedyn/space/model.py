@@ -28,7 +28,7 @@ from .static import solve_static
 
 ELSEWHERE = (
     *("transient", "floquet", "stability_map", "stepped_sine", "matrices", "triples"),
-    *("node_terms", "chain", "mesh_order", "element", "components"),
+    *("node_terms", "chain", "mesh_order"),
 )
 """What a model of a straight rope has that this one does not carry."""
 
@@ -78,6 +78,30 @@ class SpaceModel(Frozen):
     def coordinates(self) -> tuple[str, ...]:
         """Of every place."""
         return SIX
+
+    @property
+    def components(self) -> tuple[tuple[str, ...], ...]:
+        """Coordinates that move together: they are solved all at once.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> arc = rd.Axis.arc(1.0, 2.0)
+        >>> rope = rd.Rope(arc, 0.5, bending_stiffness=50.0, torsional_stiffness=30.0)
+        >>> rd.Scene(rope, planes="both").compile().components
+        (('x', 'y', 'z', 'alpha', 'beta', 'gamma'),)
+        """
+        return (SIX,)
+
+    @property
+    def element(self) -> str:
+        """Kind of the elements, "continuous"."""
+        return "continuous"
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns: coordinates of the ends of pieces that can move."""
+        return self.rope.unknowns
 
     @property
     def x(self) -> Real:

@@ -76,6 +76,12 @@ class SpaceRope:
         """How many coordinates of nodes can move."""
         return int((~self.held).sum())
 
+    def has_inertia(self, coordinates: tuple[str, ...]) -> bool:
+        """Whether any of some coordinates has inertia."""
+        at = [SIX.index(c) for c in coordinates]
+        of = (self.inertia, self.masses)
+        return any(bool(one[:, at, at].any()) for one in of)
+
     def cut(self, places: Real, near: float) -> tuple[SpaceRope, Index]:
         """Return it with nodes at places too, and which nodes these are."""
         x = self.x

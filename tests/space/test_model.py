@@ -178,6 +178,25 @@ def test_effects_come_and_go():
     assert type(straight.compile()) is rd.Model
 
 
+def test_what_curvature_changes_is_priced():
+    rope = rd.Rope(
+        rd.Axis.arc(4.0, 0.5),
+        0.8,
+        bending_stiffness=40.0,
+        torsional_stiffness=25.0,
+        natural="straight",
+        axial_stiffness=1e5,
+    )
+    scene = rd.Scene(rope, planes="both", tension=300.0)
+    cost = rd.effect_cost(scene, rd.ask.modes(3), repeat=1)
+    modes, straight = (s.compile().modes(3) for s in (scene, scene.without("axis")))
+    change = np.abs(modes.frequency - straight.frequency).max()
+    column = cost.table().column("largest [Hz]")
+    assert column[cost.table().column("left out").index("axis")] > 0.9 * change
+    assert "axis" in scene.needed(rd.ask.modes(2), 1e-2)
+    assert "initial moment" not in scene.needed(rd.ask.modes(2), 1e-2)
+
+
 def test_other_verbs_are_refused_by_name():
     for name in ("transient", "floquet", "stability_map", "stepped_sine"):
         with pytest.raises(rd.SceneError, match=f"{name} is not carried for a rope on an axis"):
