@@ -1,4 +1,5 @@
 from . import ask, study2015
+from .axis.axis import Axis
 from .base.answer import Answer, Cost, load
 from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError, UnitWarning
 from .base.table import Table
@@ -61,6 +62,7 @@ from .scene.scene import Scene
 from .scene.tension import Tension
 from .signal.ringdown import RingDown
 from .signal.spectrum import Spectrum
+from .space.model import SpaceModel
 from .study.accuracy import AccuracyCost, accuracy_cost
 from .study.effect import EffectCost, effect_cost
 from .study.hard.hard_cases import HardCases, hard_cases
@@ -74,6 +76,7 @@ __all__ = [
     "AddedMass",
     "Animation",
     "Answer",
+    "Axis",
     "BendingTest",
     "Boundary",
     "Branches",
@@ -130,6 +133,7 @@ __all__ = [
     "SectionSpread",
     "Sine",
     "SolveError",
+    "SpaceModel",
     "Spectrum",
     "Spring",
     "StabilityMap",

@@ -19,6 +19,7 @@ _SmoothCalls = tuple[Callable[[Any, Any, Any], Any] | None, ...]
 _SmoothLaws = tuple[_Integers, _Real, _SmoothCalls, NDArray[np.uint8]]
 _Step = tuple[float, _Real, _Real, _Real, _Real, _Real, _Real]
 _Failure = tuple[BaseException | None, int, float, float, float]
+_Space = tuple[Any, ...]
 _State = tuple[_Real, _Real, _Real, _Real, _Real]
 
 def section(
@@ -185,3 +186,7 @@ def closed_chain_modes(
 def closed_chain_count(
     kind: str, numbers: _Real, hinge: NDArray[np.uint8], omega: float, /
 ) -> NDArray[np.int64]: ...
+def space_triples(
+    rates: _Complex, length: float, halvings: int, doublings: int, gentle: float, /
+) -> tuple[_Complex, _Integers]: ...
+def space_count(rope: _Space, eigenvalue: _Real, /) -> _Real: ...

@@ -33,6 +33,7 @@ from .response.deflection import Deflection, solve_static
 from .response.frf import FRF
 from .response.second_harmonic import solver_of
 from .scene.scene import Scene
+from .space.model import compile_space
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,9 +109,8 @@ class Model(Compiled):
             clusters of eight modes and more within a relative 1e-8 are refused. ``"lapack"``:
             assembles the matrices and reduces them to a dense symmetric problem (see
             csrc/assembled). The assembled stiffness loses digits as n^4: of the first frequency of
-            a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. The time
-            grows as n^3; more than 8000 unknowns are refused, and the dense solution itself, most
-            of a minute for so many, does not stop for Ctrl-C.
+            a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. Time grows
+            as n^3; more than 8000 unknowns are refused, and Ctrl-C waits for the dense solution.
         points : int, optional
             Of continuous spans: shapes are given at the ends of so many equal parts of each span
             or element, exactly; 16 to a half wave of the highest mode where left out.
@@ -280,8 +280,7 @@ class Model(Compiled):
         solver : {"sweep", "lapack", "band"}
             As `frf` at 0 Hz; ``"lapack"``: band LU of the assembled stiffness.
         points : int, optional
-            Of continuous spans: given at the ends of so many equal parts of each span or element
-            (64 where left out) and under the loads.
+            Of continuous spans: so many equal parts of each are told apart, 64 where left out.
         unstable : bool
             True: answer beyond a critical load too, where no rope stays, and say so in it.
 
@@ -587,9 +586,10 @@ class Model(Compiled):
         return solve_branches(asked) if branches else solve_stepped(asked)
 
 
-def compile_model(scene: Scene, **how: Any) -> Model:
+def compile_model(scene: Scene, **how: Any) -> Any:
     """Compile a scene; see `Scene.compile`."""
-    # its fields are those of what was compiled, which is checked and frozen
+    if scene.rope.axis is not None:
+        return compile_space(scene, **how)
     model = object.__new__(Model)
     vars(model).update(vars(compile_within(scene, **how)))
     return model

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from .axis.axis import Axis
+from .axis.flexibility import end_flexibility
 from .base import check
 from .base.array import Real
 from .base.errors import IdentifyWarning, SceneError
@@ -122,6 +124,49 @@ def scene(mass: str = "rope") -> Scene:
         polar_inertia=TWIST_INERTIA / ELEMENT_LENGTH,
     )
     return Scene(rope, damping=StiffnessDamping(GAMMA))
+
+
+def axis_flexibility(axis: Axis, *, A: float, B: float, C: float) -> Real:
+    """Return the flexibility of the right end of an element on any axis, held at its left end.
+
+    The second derivatives of the potential energy of Eq. 6 by the six end forces, the moments
+    along the axis by Eq. 3 to 5: the integral of Eq. 6 along r(s), piece by piece.
+
+    Parameters
+    ----------
+    axis : Axis
+        Of the element.
+    A, B : float
+        Bending stiffnesses about the principal normal z and about y [N m^2]: of gamma and of beta.
+    C : float
+        Torsional stiffness [N m^2].
+
+    Returns
+    -------
+    ndarray, shape (6, 6)
+        (x, y, z, alpha, beta, gamma) of the right end per force and moment on them, in the frame
+        of its section [m/N, rad/N, rad/(N m)].
+
+    Raises
+    ------
+    TypeError
+        If something is of the wrong type.
+    SceneError
+        If a stiffness is not positive.
+
+    Examples
+    --------
+    A straight element under a force across it and a moment: l^3/3 B, l^2/2 B, l/B.
+
+    >>> import ropedyn as rd
+    >>> G = rd.study2015.axis_flexibility(rd.Axis.line(0.3), A=3.0, B=2.0, C=1.5)
+    >>> print(G[2, 2].round(6), G[2, 4].round(6), G[4, 4].round(6), G[3, 3].round(6))
+    0.0045 0.0225 0.15 0.2
+    """
+    check.instance(axis, "axis", Axis, "an Axis")
+    stiff = {"A": A, "B": B, "C": C}
+    found = {k: check.number(v, k, "N m^2", sign="positive") for k, v in stiff.items()}
+    return end_flexibility(axis, (found["C"], found["B"], found["A"]))
 
 
 def tensed_beam(tension: float, bending_stiffness: float) -> Scene:

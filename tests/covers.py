@@ -30,6 +30,7 @@ FOLDERS = {
         *("ropedyn/response", "csrc/sweep", "csrc/energy", "csrc/assembled", "csrc/mixed"),
     ],
     "scene": ["ropedyn/scene"],
+    "space": ["ropedyn/axis", "ropedyn/space", "csrc/base", "csrc/space"],
     "study": ["ropedyn/study", "ropedyn/study2015.py"],
 }
 """By folder of tests: what of the library its claims measure."""

@@ -20,6 +20,7 @@
 #define LAPACKE_dpbtrf_work scipy_LAPACKE_dpbtrf_work
 #define LAPACKE_dsyev_work scipy_LAPACKE_dsyev_work
 #define LAPACKE_dsyevr_work scipy_LAPACKE_dsyevr_work
+#define LAPACKE_dsytrf_work scipy_LAPACKE_dsytrf_work
 #define LAPACKE_dtbtrs_work scipy_LAPACKE_dtbtrs_work
 #define LAPACKE_zgbtrf_work scipy_LAPACKE_zgbtrf_work
 #define LAPACKE_zgbtrs_work scipy_LAPACKE_zgbtrs_work

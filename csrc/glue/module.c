@@ -45,6 +45,9 @@ static PyMethodDef methods[] = {
     {"carried_slopes", py_carried_slopes, METH_VARARGS,
      "carried_slopes(chain, shape, motion, eigenvalue) -> slopes by m and k, by the row of the "
      "foot"},
+    {"space_triples", py_space_triples, METH_VARARGS,
+     "space_triples(rates, length, halvings, doublings, gentle) -> triples, doublings"},
+    {"space_count", py_space_count, METH_VARARGS, "space_count(rope, eigenvalues) -> counts"},
     {"recurrence", py_recurrence, METH_VARARGS,
      "recurrence(change, seen, length, force, state) -> value, state"},
     {"tip", py_tip, METH_VARARGS, "tip(chain, k, factor) -> (3, 2, f)"},

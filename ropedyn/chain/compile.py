@@ -12,6 +12,7 @@ from .. import _core
 from ..base import check
 from ..base.array import Flags, Index, Real
 from ..base.errors import SceneError
+from ..scene.agree import refuse_axis
 from ..scene.damping import drag
 from ..scene.end import end_of
 from ..scene.parts.node import Attached, NodeTerm
@@ -44,6 +45,7 @@ def compile_scene(
     scene: Scene, *, elements: int | None = None, element: str | None = None
 ) -> Compiled:
     """Compile a scene; see `Scene.compile`."""
+    refuse_axis(scene, "a chain of elements or spans")
     if element is None:
         element = "continuous" if elements is None else "tensed"
     check.one_of(element, "element", KINDS)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..base import check
 from ..base.errors import SceneError
 from ..base.parameter import positions
+from . import damping
 from . import end as _end
 from .parts import part as _part
 from .parts.broken_wire import BrokenWire
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 def agree(scene: Described) -> None:
     """Refuse what has no meaning together."""
+    _check_on_axis(scene)
     _check_coordinates(scene)
     _check_planes(scene)
     _check_places(scene)
@@ -33,6 +35,38 @@ def agree(scene: Described) -> None:
         ropes(scene.rope, changing, ends)
     _check_gravity(scene)
     _check_stretching(scene)
+
+
+def refuse_axis(scene: Described, what: str) -> None:
+    """Refuse what is known of straight ropes alone."""
+    if scene.rope.axis is not None:
+        raise SceneError(f"rope must be straight for {what}, got one on an axis")
+
+
+def _check_on_axis(scene: Described) -> None:
+    """Refuse what is not carried where the rope follows an axis."""
+    axis = scene.rope.axis
+    if axis is None:
+        return
+    if scene.planes != "both":
+        raise SceneError('planes must be "both" for a rope on an axis, got "z"')
+    absent = {
+        "parts": check.shown(scene.parts) if scene.parts else "",
+        "gravity": check.shown(scene.gravity) if scene.gravity is not None else "",
+        "damping": "a ModalDamping" if damping.having(scene.dampings, "ratio") else "",
+    }
+    for name, got in absent.items():
+        if got:
+            raise SceneError(f"{name} must be left out for a rope on an axis, got {got}")
+    if isinstance(scene.tension, Tension):
+        got = check.shown(scene.tension)
+        raise SceneError(f"tension must be one number for a rope on an axis [N], got {got}")
+    corners = [kink.s for kink in axis.kinks if abs(kink.turn[0, 0] - 1) > check.NEAR]
+    if scene.tension != 0 and corners:
+        raise SceneError(
+            "tension must be 0 on an axis with corners, where nothing balances it: give them a "
+            f"fillet, got {scene.tension:g} N at the corner at {corners[0]:g} m"
+        )
 
 
 def _check_coordinates(scene: Described) -> None:

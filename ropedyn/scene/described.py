@@ -41,6 +41,9 @@ EFFECTS = (
     Gravity.kind,
     Gravity.grading,
     SECOND_PLANE,
+    "axis",
+    "initial moment",
+    "shear",
 )
 """The effects that a scene can have, in their fixed order."""
 
@@ -181,5 +184,8 @@ class Described(Description):
             Gravity.kind: self.sags,
             Gravity.grading: self.is_graded,
             SECOND_PLANE: self.planes == "both",
+            "axis": rope.axis is not None,
+            "initial moment": rope.axis is not None and rope.natural == "straight",
+            "shear": rope.shear_stiffness is not None,
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))

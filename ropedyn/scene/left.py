@@ -26,6 +26,8 @@ PROPERTIES = {
     "lay": ("lay_coupling", "lay_slope"),
     "rotary inertia": ("rotary_inertia",),
     "polar inertia": ("polar_inertia",),
+    "shear": ("shear_stiffness",),
+    "axis": ("axis", "shear_stiffness"),
 }
 """What a rope never had that never had one of these effects."""
 
@@ -34,6 +36,8 @@ SECOND_PLANE = "second plane"  # The effect that a scene moves in the plane of y
 
 def coordinates_of(rope: Rope, mean_tension: float, planes: str) -> tuple[str, ...]:
     """Return the coordinates that a rope under a tension has."""
+    if rope.axis is not None:
+        return COORDINATES
     bends = rope.bending_stiffness is not None
     present = {
         "x": rope.axial_stiffness is not None,
@@ -70,8 +74,11 @@ def left_of(scene: Described, effects: tuple[str, ...]) -> dict[str, Any]:
 def _rope(rope: Rope, effects: tuple[str, ...]) -> Rope:
     """Return the rope without properties that go with these effects."""
     pairs = [name for name in ACROSS if isinstance(getattr(rope, name), tuple)]
-    kept = {name: own_number(rope, name) for name in pairs if SECOND_PLANE in effects}
+    alike = pairs if SECOND_PLANE in effects else []
+    kept: dict[str, Any] = {name: own_number(rope, name) for name in alike}
     gone = {name for effect in effects for name in PROPERTIES.get(effect, ())}
+    if {"axis", "initial moment"} & {*effects}:
+        kept["natural"] = "axis"
     return rope.replace(**(kept | dict.fromkeys(gone)))
 
 

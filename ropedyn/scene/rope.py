@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..axis.axis import Axis
 from ..base import check
 from ..base.errors import SceneError
-from ..base.parameter import Description, Pair, number, pair
+from ..base.parameter import Description, Pair, instance, number, one_of, pair
 from .bench.bending_test import BendingTest
 from .bench.given import given_tests
 from .bench.torsion_test import TorsionTest
@@ -39,8 +40,10 @@ class Rope(Description):
 
     Parameters
     ----------
-    length : float
-        Between the two ends [m].
+    length : float or Axis
+        Between the two ends [m], or the line that the rope follows in space; a scene of such a rope
+        has all six coordinates, and needs ``planes="both"``, bending and torsional stiffness. On a
+        straight axis it is a straight rope.
     linear_density : float
         Mass per length [kg/m].
     bending_stiffness : float or pair of float, optional
@@ -64,6 +67,13 @@ class Rope(Description):
         Inertia of bending rotation per length [kg m], a pair as above; 0 is none.
     polar_inertia : float, optional
         Inertia of twist per length [kg m]; 0 is none.
+    shear_stiffness : float, optional
+        k G A [N], of a rope on an axis.
+    natural : {"axis", "straight"}
+        What a rope on an axis is when nothing loads it: as its axis, like a spring, or straight, so
+        that it is bent by the moment B times the curvature, which counts across its plane.
+    axis : Axis, optional
+        That was given as `length`.
 
     Raises
     ------
@@ -106,8 +116,26 @@ class Rope(Description):
     lay_slope: float | None = number(default=None)
     rotary_inertia: Pair | None = pair("kg m", sign="nonnegative", default=None)
     polar_inertia: float | None = number("kg m", sign="nonnegative", default=None)
+    shear_stiffness: float | None = number("N", sign="positive", default=None)
+    natural: str = one_of(("axis", "straight"), default="axis")
+    axis: Axis | None = instance(Axis, "an Axis", default=None)
+
+    def __post_init__(self) -> None:
+        own = vars(self)
+        if isinstance(self.length, Axis):
+            own["axis"], own["length"] = self.length, self.length.length
+        if isinstance(self.axis, Axis) and self.axis.is_straight:
+            own["axis"] = None
+        super().__post_init__()
+        if self.axis is None:
+            own["natural"] = "axis"
 
     def _agree(self) -> None:
+        if self.axis is not None:
+            _agree_on(self, self.axis)
+        elif self.shear_stiffness is not None:
+            got = check.shown(self.shear_stiffness)
+            raise SceneError(f"shear_stiffness must be None of a straight rope, got {got}")
         needs = {
             "lay_coupling": ("axial_stiffness", "torsional_stiffness"),
             "lay_slope": ("bending_stiffness", "torsional_stiffness"),
@@ -255,3 +283,24 @@ class Rope(Description):
             As `Rope` does.
         """
         return dataclasses.replace(self, **changes)
+
+
+def _agree_on(rope: Rope, axis: Axis) -> None:
+    """Refuse what a rope on an axis cannot be."""
+    if abs(rope.length - axis.length) > check.NEAR * axis.length:
+        raise SceneError(f"length must be that of the axis, {axis.length!r} m, got {rope.length!r}")
+    if not axis.is_uniform:
+        raise SceneError(
+            "axis must have constant curvature and torsion in each piece for a rope, as a line, "
+            "an arc, a helix or points have, got a catenary"
+        )
+    for name in ("bending_stiffness", "torsional_stiffness"):
+        if getattr(rope, name) is None:
+            raise SceneError(f"{name} must be given of a rope on an axis, got None")
+    if rope.natural == "straight" and len({piece[1:] for piece in axis.pieces}) > 1:
+        raise SceneError(
+            'natural must be "axis" where curvature or torsion jump, at which a rope that is bent '
+            'from a straight one would not rest without moments, got "straight"'
+        )
+    if rope.natural == "straight" and isinstance(rope.bending_stiffness, tuple):
+        raise SceneError('natural must be "axis" where bending_stiffness is a pair, got "straight"')

@@ -199,6 +199,7 @@ NodeForce, Stop, AddedMass, LocalChange
         Returns
         -------
         Model
+            Of a rope on an axis a `SpaceModel`, which takes no arguments here.
 
         Raises
         ------

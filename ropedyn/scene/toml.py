@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
+from ..axis.axis import Axis
 from ..base import check
 from ..base.atomic import write_bytes
 from ..base.errors import SceneError
@@ -55,10 +56,16 @@ def built(scene: type[_Scene], document: Mapping[str, Any]) -> _Scene:
 
 def document(scene: Any) -> dict[str, Any]:
     """Return the keys of a scene in a file."""
+    rope = _plain(scene.rope)
+    if scene.rope.axis is None:
+        del rope["natural"]
+    else:
+        del rope["length"]
+        rope["axis"] = dict(scene.rope.axis.words)
     found: dict[str, Any] = {
         "tension": scene.tension if isinstance(scene.tension, float) else _plain(scene.tension),
         "ends": [end if isinstance(end, str) else _plain(end) for end in scene.ends],
-        "rope": _plain(scene.rope),
+        "rope": rope,
     }
     if scene.planes != "z":
         found["planes"] = scene.planes
@@ -92,7 +99,7 @@ def _arguments(document: Mapping[str, Any], known: set[str]) -> dict[str, Any]:
     if "rope" not in document:
         raise SceneError("key rope is missing: a scene needs a table [rope]")
     arguments = dict(document)
-    arguments["rope"] = _built(Rope, document["rope"], "rope")
+    arguments["rope"] = _built(Rope, _with_axis(document["rope"]), "rope")
     if isinstance(document.get("tension"), dict):
         arguments["tension"] = _built(Tension, document["tension"], "tension")
     if "gravity" in document:
@@ -109,6 +116,19 @@ def _arguments(document: Mapping[str, Any], known: set[str]) -> dict[str, Any]:
     if "parts" in document:
         arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
     return arguments
+
+
+def _with_axis(rope: Any) -> Any:
+    """Return the keys of a rope, its length the axis that its table says."""
+    if not isinstance(rope, dict) or "axis" not in rope:
+        return rope
+    if "length" in rope:
+        raise SceneError(f"rope.length must be left out beside rope.axis, got {rope['length']!r}")
+    others = {key: value for key, value in rope.items() if key != "axis"}
+    try:
+        return others | {"length": Axis.from_words(rope["axis"])}
+    except (SceneError, TypeError) as error:
+        raise type(error)(f"rope.axis: {error}") from error
 
 
 def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:

@@ -25,6 +25,7 @@ FLOORS = [
     "law",
     "collocation",
     "volterra",
+    "space",
     "march/form",
     "march/kernel",
     "march",

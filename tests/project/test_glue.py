@@ -200,6 +200,10 @@ PAIRED = (FACTOR.T.copy(), FIELD, PAIR, SLIP)
 SPANNED = (PAIRED[0], FIELD[:, : 2 * SHAPES[0, :4].size].copy(), PAIR, SLIP)
 
 
+ARC = rd.Rope(rd.Axis.arc(1.0, 2.0), 0.1, bending_stiffness=1.0, torsional_stiffness=0.4)
+SPACE = rd.Scene(ARC, planes="both").compile().rope.core(1e4)
+RATES = np.stack(SPACE[2:5], axis=1) + 0j
+
 # every entry point that takes a chain
 ENTRIES = {
     "triples": _core.triples,
@@ -279,6 +283,8 @@ OTHERS = {
         np.array([0.6]),
     ),
     "divide": lambda _: _core.divide(*DIVIDED),
+    "space_triples": lambda _: _core.space_triples(RATES, 2.0, 6, 6, 1e4),
+    "space_count": lambda _: _core.space_count(SPACE, np.array([1e4, 1e6])),
 }
 
 
@@ -583,6 +589,41 @@ REFUSED = {
         r"node must lie in 0 ... 7, got -1",
     ),
     "span of the last node": (lambda: _core.local(CHAIN, 8, 0.0, 0.0), ValueError, "got 8"),
+    "rates of another shape": (
+        lambda: _core.space_triples(RATES[:, :2], 2.0, 6, 6, 1e4),
+        ValueError,
+        "rates must have 3 entries along axis 1, got 2",
+    ),
+    "halvings beyond": (
+        lambda: _core.space_triples(RATES, 2.0, 61, 6, 1e4),
+        ValueError,
+        "halvings must be from 0 to 60, got 61",
+    ),
+    "doublings below 0": (
+        lambda: _core.space_triples(RATES, 2.0, 6, -1, 1e4),
+        ValueError,
+        "doublings must be from 0 to 60, got -1",
+    ),
+    "halvings of a piece below 0": (
+        lambda: _core.space_count((SPACE[0], SPACE[1] - 100, *SPACE[2:]), np.ones(1)),
+        ValueError,
+        "halvings must be from 0 to 60, got -",
+    ),
+    "pieces without inertia": (
+        lambda: _core.space_count((*SPACE[:5], SPACE[5][1:], *SPACE[6:]), np.ones(1)),
+        ValueError,
+        "inertia must have 1 entries along axis 0, got 0",
+    ),
+    "nodes without masses": (
+        lambda: _core.space_count((*SPACE[:8], SPACE[8][1:], SPACE[9]), np.ones(1)),
+        ValueError,
+        "mass must have 2 entries along axis 0, got 1",
+    ),
+    "a rope of nine arrays": (
+        lambda: _core.space_count(SPACE[:9], np.ones(1)),
+        TypeError,
+        "10 arguments",
+    ),
     "element -1": (
         lambda: _core.triple(CHAIN, -1, FACTOR.T[:2].copy()),
         ValueError,

@@ -177,7 +177,16 @@ def every_effect_but_a_law():
         gravity=rd.Gravity(inclination=-math.pi / 2),
     )
     plain = {"rope": rope.replace(bending_stiffness=(1.0, 2.0)), "parts": (), "planes": "both"}
-    return sagging, stretching, upright, sagging.replace(**plain)
+    spring = rd.Rope(
+        rd.Axis.helix(0.5, 0.3, 2.0, hand="left").reversed(),
+        0.1,
+        bending_stiffness=1.0,
+        torsional_stiffness=2.0,
+        shear_stiffness=1e4,
+        natural="straight",
+    )
+    curved = rd.Scene(spring, planes="both")
+    return sagging, stretching, upright, sagging.replace(**plain), curved
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e != rd.NodeForce.kind])
@@ -248,7 +257,7 @@ REFUSED = {
     "unknown key": (changed("wind", value=9.81), "unknown key 'wind' in the file"),
     "unknown key of the rope": (
         changed("rope", "diameter", value=4e-3),
-        "unknown key 'diameter' in rope: expected one of axial_stiffness, bending_stiffness",
+        "unknown key 'diameter' in rope: expected one of axial_stiffness, axis, bending_stiffness",
     ),
     "unknown key of an end": (changed("ends", 1, "w", value="held"), "unknown key 'w' in ends[1]"),
     "unknown key of a damping": (

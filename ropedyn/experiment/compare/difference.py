@@ -18,6 +18,7 @@ from ...eigen.spectrum import in_hertz
 from ...model import Model
 from ...motion.history import History
 from ...response.frf import FRF
+from ...space.model import SpaceModel
 
 # Modes are told apart by whose kinetic energy they have: a cross section that turns with dz/dx
 # belongs to z, and what the rope carries has modes of its own.
@@ -81,7 +82,7 @@ def of_largest(found: Real, values: Real) -> Real:
 # --- modes ------------------------------------------------------------------------------------
 
 
-def change_of_modes(whole: Modes, model: Model, solver: str) -> AnswerChange:
+def change_of_modes(whole: Modes, model: Model | SpaceModel, solver: str) -> AnswerChange:
     """Compare modes with those of the same motion and order of a model that has less."""
     mine = motions(whole)
     others = _modes_alike(mine, model, solver)
@@ -135,9 +136,10 @@ def _moving(energies: Collection[str]) -> dict[str, tuple[str, ...]]:
     return {motion: own for motion, own in present.items() if own}
 
 
-def _modes_alike(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str, Real]:
+def _modes_alike(mine: NDArray[np.str_], model: Model | SpaceModel, solver: str) -> dict[str, Real]:
     """Return modes of a model, for each motion as many as wanted or as there are."""
-    energies = (*model.coordinates, *(CARRIED[kind] for kind in model.chain.carried))
+    carried = () if isinstance(model, SpaceModel) else model.chain.carried
+    energies = (*model.coordinates, *(CARRIED[kind] for kind in carried))
     wanted = {
         motion: min(int(np.sum(mine == motion)), _most(model, motion, own))
         for motion, own in _moving(energies).items()
@@ -145,7 +147,10 @@ def _modes_alike(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str,
     found = {motion: np.zeros((0, 4)) for motion in wanted}
     number = len(mine)
     while True:
-        modes = solve_modes(model, number, below=None, solver=solver, strict=False)
+        if isinstance(model, SpaceModel):
+            modes = model.modes(number)
+        else:
+            modes = solve_modes(model, number, below=None, solver=solver, strict=False)
         which, numbers = motions(modes), _numbers(modes)
         for motion in [m for m in wanted if len(found[m]) < wanted[m]]:
             found[motion] = numbers[which == motion][: wanted[motion]]
@@ -155,9 +160,11 @@ def _modes_alike(mine: NDArray[np.str_], model: Model, solver: str) -> dict[str,
         number *= 2
 
 
-def _most(model: Model, motion: str, own: tuple[str, ...]) -> int:
+def _most(model: Model | SpaceModel, motion: str, own: tuple[str, ...]) -> int:
     """Return how many modes of a motion there can be: as many as coordinates have inertia."""
     endless = np.iinfo(np.int32).max
+    if isinstance(model, SpaceModel):
+        return endless if model.rope.has_inertia(own) else 0
     if motion in CARRIED:
         return int(model.chain.carries(motion).sum()) if motion == "resonator" else endless
     chain = model.chain.only(own)

@@ -23,6 +23,7 @@ from ...curves.record.record import Record
 from ...curves.resonance import Resonances
 from ...family.rows import Shared
 from ...response.question import workers_of
+from ...scene.agree import refuse_axis
 from ...scene.bench.prior import Prior
 from ...scene.path import with_values
 from ...scene.scene import Scene
@@ -201,6 +202,7 @@ def identify(
     bending_stiffness  2.05243  0.0277407    1.99806   2.1068  trusted
     """
     check.instance(scene, "scene", Scene, "a Scene")
+    refuse_axis(scene, "identification")
     whole = isinstance(measured, Measured)
     sought, calibrated = _calibrated(unknown, whole=whole)
     given = None if whole else _given(measured)

@@ -14,6 +14,7 @@ from ...base import check
 from ...base.array import Integer, Real
 from ...base.errors import SceneError, SolveError
 from ...base.named import Named
+from ...scene.agree import refuse_axis
 from ...scene.damping import ModalDamping
 from ...scene.scene import Scene
 from ..fitting.minimum import Point
@@ -253,6 +254,7 @@ def _model(
     element: str | None,
 ) -> _Model:
     check.instance(scene, "scene", Scene, "a Scene")
+    refuse_axis(scene, "identification")
     wanted = [paths] if isinstance(paths, str) else list(paths)
     for path in wanted:
         if isinstance(path, str) and OF_DAMPING.fullmatch(path) is None:

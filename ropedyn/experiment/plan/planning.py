@@ -15,6 +15,7 @@ from ...base.errors import SceneError, SolveError
 from ...chain.place import points
 from ...chain.port import Point
 from ...model import Model
+from ...scene.agree import refuse_axis
 from ...scene.parts.part import Hinge, PointMass
 from ...scene.parts.stretch import AddedMass, LocalChange
 from ...scene.scene import Scene
@@ -121,6 +122,7 @@ def plan_measurement(
     Sample at 422.4 Hz or faster, band up to 165 Hz.
     """
     check.instance(scene, "scene", Scene, "a Scene")
+    refuse_axis(scene, "planning")
     model = scene.compile()
     where = _where(model, drive, response, sensors)
     target = target_modes(model, modes, where.coordinates)

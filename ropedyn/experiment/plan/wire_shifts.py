@@ -16,6 +16,7 @@ from ...base.array import Integer, Real
 from ...base.errors import SceneError, SolveError
 from ...base.table import Table
 from ...eigen.modes import Modes
+from ...scene.agree import refuse_axis
 from ...scene.parts.stretch import LocalChange
 from ...scene.scene import Scene
 from .plan import Plan
@@ -134,6 +135,7 @@ def broken_wire_shifts(
     array([-0.617, -0.03 ])
     """
     check.instance(scene, "scene", Scene, "a Scene")
+    refuse_axis(scene, "broken wires")
     each = [n] if isinstance(n, int) else list(check.instance(n, "n", Sequence, "whole numbers"))
     counts = [check.count(one, f"n[{k}]", most=MOST) for k, one in enumerate(each)]
     number = check.count(modes, "modes", most=MOST)

@@ -14,6 +14,7 @@ from ...base import check
 from ...base.array import Flags, Real
 from ...base.errors import IdentifyWarning, RopedynError, SceneError
 from ...base.progress import Progress, reporter
+from ...scene.agree import refuse_axis
 from ...scene.scene import Scene
 from ..identify.fit import Fit
 from ..identify.identify import identify
@@ -97,6 +98,7 @@ def track(
     (('trusted', 'trusted', 'trusted'), [1000.0, 1008.0, 1004.0])
     """
     check.instance(scene, "scene", Scene, "a Scene")
+    refuse_axis(scene, "tracking")
     check.instance(measured, "measured", (list, tuple), "a list of records or peaks, one a day")
     paths = _with_tension(unknown)
     n = len(measured)

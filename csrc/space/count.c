@@ -1,0 +1,274 @@
+/* Eigenvalues below lambda of a rope in space.
+
+   Wittrick and Williams (1971): they are those of its parts, each held at its left end, and the negative
+   pivots of what joins the parts. With motion u_i at the left of part i and force f_i at its right, the
+   left ends' balance and the parts' own law are
+
+       | Q_i + N_i   -F_i^T |  u_i, f_i, 1 between f_i and u_i+1,
+       |   -F_i       -G_i  |
+
+   a symmetric matrix that has as many negative pivots as the stiffness of the nodes has, and six more a
+   part; it exists where G is singular. Two parts of which only what is right of their joint is to
+   move are joined by [[-G_1, 1], [1, Q_2 + N]]. */
+#include "base/lapack.h"
+
+#include <assert.h>
+
+#define NUM double
+
+static inline double times(double a, double b)
+{
+    return a * b;
+}
+
+static inline double size(double a)
+{
+    return a < 0 ? -a : a;
+}
+
+static inline double over(double a)
+{
+    return 1 / a;
+}
+
+#include "space/kernel.h"
+
+enum {
+    PARTS = 32,                     /* that are counted together */
+    ALL = (2 * PARTS + 1) * RD_SIX, /* their unknowns */
+    PAIR = 2 * RD_SIX,              /* unknowns of a joint */
+    WORK = 64 * ALL,                /* of LAPACK */
+    ODD = 9,                        /* first divisions of a piece that are tried, 1, 3 .. */
+    INNER = -1,                     /* a node that nothing stands at */
+};
+
+/* of what no force stretches, so that its force is not left open */
+static const double COMPLIANT = 0x1p-50;
+
+struct counting {
+    const struct rd_space *rope;
+    double lambda, gentle;
+    size_t parts;        /* so far, the last of which grows */
+    double below;        /* eigenvalues of each part, its left end held */
+    struct triple *part; /* (PARTS) */
+    int node[PARTS];     /* on the left of each */
+    double *A;           /* (ALL, ALL) */
+    double *work;        /* (WORK) */
+    lapack_int pivot[ALL];
+};
+
+/* negative pivots of the lower triangle of A (n, n), by columns; one of 0 is not negative */
+static int negative(struct counting *c, int n)
+{
+    int found = 0;
+    LAPACKE_dsytrf_work(LAPACK_COL_MAJOR, 'L', n, c->A, n, c->pivot, c->work, WORK);
+    for (int k = 0; k < n; k++) {
+        const int two = c->pivot[k] < 0; /* one of either sign */
+        found += two || c->A[k * n + k] < 0;
+        k += two;
+    }
+    return found;
+}
+
+/* N of a node: stiffness - lambda mass */
+static void node_fill(const struct counting *c, int node, double *N)
+{
+    const size_t at = (size_t)node * RD_SIX * RD_SIX;
+    for (int i = 0; i < RD_SIX * RD_SIX; i++)
+        N[i] = node == INNER
+                   ? 0
+                   : c->rope->stiffness[at + (size_t)i] - c->lambda * c->rope->mass[at + (size_t)i];
+}
+
+/* whether G V < 1, so that no pivot of the joint 1 + G V is negative */
+static int is_small(const struct triple *one, const struct triple *two, const double *N)
+{
+    double most = 0, row[RD_SIX] = {0};
+    for (int i = 0; i < RD_SIX; i++)
+        for (int j = 0; j < RD_SIX; j++)
+            row[i] += fabs(two->Q[i][j] + N[i * RD_SIX + j]);
+    for (int i = 0; i < RD_SIX; i++) {
+        double sum = 0;
+        for (int j = 0; j < RD_SIX; j++)
+            sum += fabs(one->G[i][j]) * row[j];
+        most = fmax(most, sum);
+    }
+    return most < 1;
+}
+
+/* what the joint of two parts adds to the counts of both */
+static int joint(struct counting *c, const struct triple *one, const struct triple *two,
+                 const double *N)
+{
+    if (is_small(one, two, N))
+        return 0;
+    memset(c->A, 0, PAIR * PAIR * sizeof *c->A);
+    for (int j = 0; j < RD_SIX; j++) {
+        c->A[j * PAIR + RD_SIX + j] = 1;
+        for (int i = 0; i < RD_SIX; i++) {
+            c->A[j * PAIR + i] = -one->G[i][j];
+            c->A[(RD_SIX + j) * PAIR + RD_SIX + i] = two->Q[i][j] + N[i * RD_SIX + j];
+        }
+    }
+    return negative(c, PAIR) - RD_SIX;
+}
+
+/* F <- F R, Q <- R^T Q R: what begins with a kink */
+static void turn(struct triple *t, const double *R)
+{
+    double by[RD_SIX][RD_SIX], DR[RD_SIX][RD_SIX], none[RD_SIX][RD_SIX] = {{0}};
+    memcpy(by, R, sizeof by);
+    for (int i = 0; i < RD_SIX; i++)
+        by[i][i] -= 1;
+    memcpy(DR, t->D, sizeof DR);
+    carry(DR, by); /* D R */
+    for (int i = 0; i < RD_SIX; i++)
+        for (int j = 0; j < RD_SIX; j++)
+            t->D[i][j] = by[i][j] + DR[i][j];
+    add_congruent(none, t->Q, by, t->Q);
+}
+
+/* a part of so many eigenvalues behind those there are; false where they are too many */
+static int part_add(struct counting *c, const struct triple *next, double below, int node,
+                    int apart)
+{
+    struct triple joined;
+    double N[RD_SIX * RD_SIX];
+    node_fill(c, node, N);
+    c->below += below;
+    if (!apart && join(c->part + c->parts - 1, next, N, &joined) <= c->gentle) {
+        c->below += joint(c, c->part + c->parts - 1, next, N);
+        c->part[c->parts - 1] = joined;
+        return 1;
+    }
+    if (c->parts == PARTS)
+        return 0;
+    c->part[c->parts] = *next;
+    c->node[c->parts++] = node;
+    return 1;
+}
+
+static int is_held(const struct rd_space *rope, size_t node)
+{
+    int any = 0;
+    for (size_t i = 0; i < RD_SIX; i++)
+        any |= rope->held[node * RD_SIX + i];
+    return any;
+}
+
+/* Equal parts of a length: doubled as far as their joints are gentle, each has `below` eigenvalues.
+   Returns how often it is halved then. */
+static int doubled(struct counting *c, const struct rates *E, double length, int halvings,
+                   struct triple *t, double *below)
+{
+    const double nothing[RD_SIX * RD_SIX] = {0};
+    struct triple longer;
+    int left = halvings;
+    *below = 0;
+    first(E, ldexp(length, -left), t);
+    for (; left > 0 && join(t, t, NULL, &longer) <= c->gentle; left--) {
+        *below = 2 * *below + joint(c, t, t, nothing);
+        *t = longer;
+    }
+    return left;
+}
+
+/* Piece p. A joint of two halves near a resonance is that of all their equals: a piece of which one is
+   met is divided by three first, or five .., whose halves resonate elsewhere. */
+static int piece_add(struct counting *c, size_t p)
+{
+    const struct rd_space *rope = c->rope;
+    const size_t at = p * RD_SIX * RD_SIX;
+    struct rates E;
+    struct triple t, turned, tried;
+    double below = 0, own;
+    int copies = PARTS + 1;
+    memcpy(E.phi, rope->phi + at, sizeof E.phi);
+    memcpy(E.soft, rope->soft + at, sizeof E.soft);
+    for (int i = 0; i < RD_SIX; i++)
+        for (int j = 0; j < RD_SIX; j++) {
+            const size_t k = at + (size_t)(i * RD_SIX + j);
+            E.load[i][j] = rope->load[k] - c->lambda * rope->inertia[k];
+        }
+    for (int odd = 1, left = 1; odd <= ODD && left > 0; odd += 2) {
+        left = doubled(c, &E, rope->length[p] / odd, rope->halvings[p], &tried, &own);
+        if (left > 20 || odd << left >= copies)
+            continue;
+        copies = odd << left;
+        t = tried;
+        below = own;
+    }
+    if (copies > PARTS)
+        return 0;
+    turned = t;
+    turn(&turned, rope->turn + at);
+    const int apart = p == 0 || is_held(rope, p);
+    int fits = part_add(c, &turned, below, (int)p, apart);
+    for (int k = 1; fits && k < copies; k++)
+        fits = part_add(c, &t, below, INNER, 0);
+    return fits;
+}
+
+/* The parts that are left, and all nodes between them and at the ends. */
+static double parts_count(struct counting *c)
+{
+    const size_t n = (2 * c->parts + 1) * RD_SIX;
+    int place[ALL], rows = 0;
+    for (size_t k = 0; k <= c->parts; k++) {
+        const int node = k == c->parts ? (int)c->rope->pieces : c->node[k];
+        for (size_t i = 0; i < RD_SIX; i++)
+            place[2 * k * RD_SIX + i] =
+                node != INNER && c->rope->held[(size_t)node * RD_SIX + i] ? -1 : rows++;
+        for (size_t i = 0; i < RD_SIX && k < c->parts; i++)
+            place[(2 * k + 1) * RD_SIX + i] = rows++;
+    }
+    assert(rows <= ALL && n <= ALL);
+    memset(c->A, 0, (size_t)(rows * rows) * sizeof *c->A);
+    for (size_t k = 0; k <= c->parts; k++) {
+        const int *u = place + 2 * k * RD_SIX, *f = u + RD_SIX;
+        double N[RD_SIX * RD_SIX];
+        node_fill(c, k == c->parts ? (int)c->rope->pieces : c->node[k], N);
+        for (int i = 0; i < RD_SIX; i++)
+            for (int j = 0; j < RD_SIX; j++) {
+                const struct triple *t = c->part + k;
+                const double V = N[i * RD_SIX + j] + (k < c->parts ? t->Q[i][j] : 0);
+                if (u[i] >= 0 && u[j] >= 0)
+                    c->A[u[j] * rows + u[i]] = V;
+                if (k == c->parts)
+                    continue;
+                c->A[f[j] * rows + f[i]] = -t->G[i][j] - (i == j ? COMPLIANT : 0);
+                if (u[j] >= 0)
+                    c->A[u[j] * rows + f[i]] = -t->D[i][j] - (i == j);
+                if (i == j && f[RD_SIX + i] >= 0)
+                    c->A[f[i] * rows + f[RD_SIX + i]] = 1;
+            }
+    }
+    return c->below + negative(c, rows) - (double)(c->parts * RD_SIX);
+}
+
+static double count_one(struct counting *c, double lambda, double gentle)
+{
+    c->lambda = lambda;
+    c->gentle = gentle;
+    c->parts = 0;
+    c->below = 0;
+    for (size_t p = 0; p < c->rope->pieces; p++)
+        if (!piece_add(c, p))
+            return NAN;
+    return parts_count(c);
+}
+
+enum rd_status rd_space_count(const struct rd_space *rope, size_t count, const double *lambda,
+                              double *below, struct rd_workspace *workspace)
+{
+    struct counting c = {.rope = rope};
+    c.part = rd_take(workspace, PARTS, sizeof *c.part);
+    c.A = rd_take(workspace, (size_t)ALL * ALL, sizeof *c.A);
+    c.work = rd_take(workspace, WORK, sizeof *c.work);
+    if (!rd_workspace_fits(workspace))
+        return RD_NO_MEMORY;
+    for (size_t k = 0; workspace->base && k < count; k++)
+        for (int i = 0; i == 0 || (i < RD_SPACE_GENTLE && isnan(below[k])); i++)
+            below[k] = count_one(&c, lambda[k], rd_space_gentle[i]);
+    return RD_OK;
+}

@@ -1,0 +1,1 @@
+"""The axis of a rope in space: lines, arcs, helices, catenaries, polylines."""

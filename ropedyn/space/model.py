@@ -1,0 +1,341 @@
+"""The model of a rope on an axis, and the questions it answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from numpy.typing import ArrayLike
+
+from ..base import check
+from ..base.answer import Frozen
+from ..base.array import Real
+from ..base.computed import waited
+from ..base.errors import SceneError
+from ..chain.port import Point
+from ..eigen.modes import Modes
+from ..response.deflection import Deflection
+from ..response.frf import FRF
+from ..scene.card import Card, card, card_html, card_text
+from ..scene.scene import Scene
+from .compile import rope_of_scene
+from .modes import solve_modes
+from .response import solve_frf
+from .rope import SIX, SpaceRope
+from .spectrum import count_below
+from .static import solve_static
+
+ELSEWHERE = (
+    *("transient", "floquet", "stability_map", "stepped_sine", "matrices", "triples"),
+    *("node_terms", "chain", "mesh_order"),
+)
+"""What a model of a straight rope has that this one does not carry."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SpaceModel(Frozen):
+    """A rope on an axis in space: uniform pieces, exact at each frequency, all six coordinates.
+
+    Made by `Scene.compile`. Coordinates at s, the arc length from the left end, are along the frame
+    of the axis there; at a joint of two pieces along that on its left.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was compiled.
+    coordinates : tuple of str
+        x, y, z, alpha, beta, gamma.
+    rope : SpaceRope
+        Its pieces as arrays.
+
+    Examples
+    --------
+    A spring of ten turns, clamped at both ends:
+
+    >>> import math
+    >>> import ropedyn as rd
+    >>> d, E, G = 1e-3, 206e9, 79.2e9
+    >>> A, J = math.pi * d**2 / 4, math.pi * d**4 / 64
+    >>> wire = rd.Rope(
+    ...     rd.Axis.helix(5e-3, math.radians(8.6), 10),
+    ...     7900 * A,
+    ...     bending_stiffness=E * J,
+    ...     torsional_stiffness=2 * G * J,
+    ...     axial_stiffness=E * A,
+    ...     rotary_inertia=7900 * J,
+    ...     polar_inertia=2 * 7900 * J,
+    ... )
+    >>> model = rd.Scene(wire, planes="both").compile()
+    >>> print(model.modes(2).frequency.round(1))
+    [245.5 246.2]
+    """
+
+    scene: Scene
+    rope: SpaceRope
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Of every place."""
+        return SIX
+
+    @property
+    def components(self) -> tuple[tuple[str, ...], ...]:
+        """Coordinates that move together: they are solved all at once.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> arc = rd.Axis.arc(1.0, 2.0)
+        >>> rope = rd.Rope(arc, 0.5, bending_stiffness=50.0, torsional_stiffness=30.0)
+        >>> rd.Scene(rope, planes="both").compile().components
+        (('x', 'y', 'z', 'alpha', 'beta', 'gamma'),)
+        """
+        return (SIX,)
+
+    @property
+    def element(self) -> str:
+        """Kind of the elements, "continuous"."""
+        return "continuous"
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns: coordinates of the ends of pieces that can move."""
+        return self.rope.unknowns
+
+    @property
+    def x(self) -> Real:
+        """Where pieces begin and end [m]."""
+        return self.rope.x
+
+    def __repr__(self) -> str:
+        return card_text(*self._card)
+
+    def _repr_html_(self) -> str:
+        return card_html(*self._card)
+
+    @property
+    def _card(self) -> tuple[str, Card]:
+        pieces = f"{len(self.rope.length)} uniform pieces"
+        return "Model of a rope on an axis", card(self.scene) | {"model": pieces}
+
+    def __getattr__(self, name: str) -> NoReturn:
+        if name in ELSEWHERE:
+            raise SceneError(
+                f"{name} is not carried for a rope on an axis: the rope must be straight"
+            )
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    @waited
+    def modes(
+        self,
+        number: int | None = None,
+        *,
+        below: float | None = None,
+        points: int | None = None,
+        damped: bool = False,
+        solver: str = "sweep",
+    ) -> Modes:
+        """Find natural frequencies and shapes, certified by counts.
+
+        Parameters
+        ----------
+        number : int, optional
+            How many of the lowest.
+        below : float, optional
+            All below this frequency [Hz]; instead of `number`.
+        points : int, optional
+            Shapes are given at the ends of so many equal parts of each piece of the axis; 16 to a
+            half wave of the highest mode where left out.
+        damped : False
+            Complex modes are not carried.
+        solver : "sweep"
+            There is no other.
+
+        Returns
+        -------
+        Modes
+            Double modes, those closer than a relative 1e-8 among them, are found together.
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If not exactly one of `number` and `below` is given, or a value has no meaning.
+        SolveError
+            If more modes are asked for than are finite, or counts do not confirm what was found.
+
+        Examples
+        --------
+        An arch pinned at both ends:
+
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(
+        ...     rd.Axis.arc(1.0, 2.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0
+        ... )
+        >>> modes = rd.Scene(rope, ends=("pinned", "pinned"), planes="both").compile().modes(2)
+        >>> print(modes.frequency.round(3), modes.plane, modes.certified)
+        [ 1.804 12.36 ] ['y' 'z'] True
+        """
+        if damped is not False:
+            raise SceneError(f"damped must be False for a rope on an axis, got {damped!r}")
+        _only_sweep(solver)
+        return solve_modes(self.scene, self.rope, number, below=below, points=points)
+
+    def count(self, *, below: float) -> int:
+        """Count the natural frequencies below a limit.
+
+        Parameters
+        ----------
+        below : float
+            [Hz].
+
+        Returns
+        -------
+        int
+            Motion that grows is counted too.
+
+        Raises
+        ------
+        TypeError
+            If the limit is not a number.
+        SceneError
+            If it is not positive.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(
+        ...     rd.Axis.arc(1.0, 2.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0
+        ... )
+        >>> rd.Scene(rope, planes="both").compile().count(below=100.0)
+        7
+        """
+        limit = check.number(below, "below", "Hz", sign="positive")
+        return count_below(self.rope, (2 * math.pi * limit) ** 2)
+
+    @waited
+    def frf(
+        self,
+        frequency: ArrayLike,
+        *,
+        drive: Point | Sequence[Point],
+        response: Point | Sequence[Point] | None = None,
+        quantity: str = "receptance",
+        solver: str = "sweep",
+    ) -> FRF:
+        """Compute the frequency response to a harmonic force or moment.
+
+        Parameters
+        ----------
+        frequency : array_like, shape (f,)
+            [Hz], each >= 0.
+        drive : point or list of points
+            Coordinate and arc length of a unit force or moment, such as ``("y", 0.5)``. With a list
+            the values have a leading axis of drives.
+        response : point or list of points, optional
+            What is watched, such as ``("gamma", 0.5)``; the drive points where left out.
+        quantity : {"receptance", "mobility", "accelerance"}
+            Displacement, velocity or acceleration per force.
+        solver : "sweep"
+            There is no other.
+
+        Returns
+        -------
+        FRF
+            Motion is Re(value exp(+i omega t)).
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning.
+        SolveError
+            If a frequency lies on an undamped resonance.
+
+        Examples
+        --------
+        What the free end of a quarter of a circle gives way by, pi R^3/4 B in its plane:
+
+        >>> import math
+        >>> import ropedyn as rd
+        >>> axis = rd.Axis.arc(1.0, math.pi / 2)
+        >>> rope = rd.Rope(axis, 0.5, bending_stiffness=50.0, torsional_stiffness=30.0)
+        >>> model = rd.Scene(rope, ends=("clamped", "free"), planes="both").compile()
+        >>> frf = model.frf([0.0], drive=("z", axis.length))
+        >>> bool(math.isclose(frf.value[0, 0].real, math.pi / 4 / 50.0, rel_tol=1e-12))
+        True
+        """
+        _only_sweep(solver)
+        return solve_frf(
+            self.scene, self.rope, frequency, drive=drive, response=response, quantity=quantity
+        )
+
+    @waited
+    def static(
+        self,
+        load: Mapping[Point, float],
+        *,
+        points: int | None = None,
+        unstable: bool = False,
+        solver: str = "sweep",
+    ) -> Deflection:
+        """Find the static deflection under forces and moments.
+
+        Parameters
+        ----------
+        load : mapping from points to float
+            Such as ``{("y", 0.5): 10.0}`` [N, N m].
+        points : int, optional
+            Given at the ends of so many equal parts of each piece of the axis (64 where left out)
+            and under the loads.
+        unstable : bool
+            True: answer beyond a critical load too, and say so in it.
+        solver : "sweep"
+            There is no other.
+
+        Returns
+        -------
+        Deflection
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If a value has no meaning.
+        SolveError
+            If a rigid motion is free, or critical loads are met or exceeded: how many.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> axis = rd.Axis.points([[0, 0, 0], [1, 0, 0], [1, 0, 1]])
+        >>> rope = rd.Rope(axis, 0.5, bending_stiffness=50.0, torsional_stiffness=30.0)
+        >>> model = rd.Scene(rope, ends=("clamped", "free"), planes="both").compile()
+        >>> static = model.static({("y", 2.0): 1.0})
+        >>> print(static.displacement[-1, 1].round(6), round(1 / 150 + 1 / 30 + 1 / 150, 6))
+        0.046667 0.046667
+        """
+        _only_sweep(solver)
+        check.instance(unstable, "unstable", bool, "True or False")
+        return solve_static(self.scene, self.rope, load, points=points, unstable=unstable)
+
+
+def _only_sweep(solver: Any) -> None:
+    if solver != "sweep":
+        raise SceneError(f'solver must be "sweep" for a rope on an axis, got {solver!r}')
+
+
+def compile_space(scene: Scene, **how: Any) -> SpaceModel:
+    """Compile a scene with a rope on an axis; see `Scene.compile`."""
+    for name, value in how.items():
+        if value is not None and not (name == "element" and value == "continuous"):
+            raise SceneError(
+                f"{name} must be left out for a rope on an axis, whose pieces are exact, "
+                f"got {check.shown(value)}"
+            )
+    return SpaceModel(scene, rope_of_scene(scene))

@@ -1,0 +1,216 @@
+"""The modes of a rope on an axis: frequencies first, shapes and energies when they are read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..base import check
+from ..base.answer import Cost
+from ..base.array import Index, Real
+from ..base.computed import Late, computed
+from ..base.errors import SceneError
+from ..base.unit import FAMILY
+from ..eigen.eigen import check_asked, no_mesh
+from ..eigen.modes import Modes, UndampedVectors
+from ..eigen.spectrum import error_in_hertz
+from ..eigen.vectors import largest, within
+from ..scene import damping
+from ..scene.scene import Scene
+from .assembly import MOST_PARTS, assemble
+from .rope import SIX, SpaceRope, unforced
+from .spectrum import BESIDE, STEP, TOGETHER, Lowest, lowest, ritz, start, unit_of
+
+SEEN = 1e-9  # Shares of kinetic energy above it are motion.
+
+
+def solve_modes(
+    scene: Scene,
+    rope: SpaceRope,
+    number: int | None,
+    *,
+    below: float | None,
+    points: int | None,
+) -> Modes:
+    """Find natural frequencies and shapes; see `SpaceModel.modes`."""
+    limit = check_asked(number, below)
+    check_points(rope, points)
+    found = lowest(rope, number, limit)
+    value = np.where(np.abs(found.eigenvalue) <= found.error, 0.0, found.eigenvalue)
+    shapes = SpaceShapes(scene, rope, value, found, points or points_for(rope, value))
+    frequency = np.sqrt(np.maximum(value, 0.0)) / (2 * math.pi)
+    return Modes(
+        coordinates=SIX,
+        certified=True,
+        x=within(rope.x, shapes.points),
+        frequency=frequency,
+        eigenvalue=value,
+        growth=np.sqrt(np.maximum(-value, 0.0)),
+        rounding_error=error_in_hertz(value, found.error),
+        plane=Late(lambda: shapes.plane),
+        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=found.counts),
+        vectors=Late(partial(vectors_of, shapes)),
+        mesh=partial(no_mesh, frequency),
+        solve_shapes=refuse_derivatives,
+    )
+
+
+def refuse_derivatives(points: int | None = None) -> Any:
+    """Refuse what needs derivatives of the core."""
+    raise SceneError(
+        "derivatives and damage are not carried for a rope on an axis: the rope must be straight"
+    )
+
+
+def check_points(rope: SpaceRope, points: int | None) -> None:
+    """Check how many parts of each piece an answer is given at."""
+    if points is not None:
+        check.count(points, "points", most=MOST_PARTS // len(rope.length))
+
+
+def points_for(rope: SpaceRope, eigenvalue: Real) -> int:
+    """Return how many parts of each piece show the highest mode."""
+    soft = np.diagonal(rope.soft, axis1=1, axis2=2)[:, 4:].max()
+    wave = (np.abs(eigenvalue).max(initial=0.0) * rope.inertia[:, 1, 1].max() * soft) ** 0.25
+    most = MOST_PARTS // len(rope.length)
+    return int(min(max(32, math.ceil(16 * wave * rope.length.max() / math.pi)), most))
+
+
+class SpaceShapes:
+    """Shapes of modes at equal parts of each piece, and forms of them."""
+
+    def __init__(
+        self, scene: Scene, rope: SpaceRope, eigenvalue: Real, found: Lowest, points: int
+    ) -> None:
+        self.scene, self.rope, self.points = scene, rope, points
+        self.eigenvalue, self.error = eigenvalue, found.error
+
+    def clusters(self) -> Iterator[Index]:
+        """Yield the numbers of modes that are found together."""
+        value, near = self.eigenvalue, TOGETHER * np.abs(self.eigenvalue) + self.error
+        if len(value):
+            parts = np.flatnonzero(np.diff(value) > near[1:] + near[:-1]) + 1
+            yield from np.split(np.arange(len(value)), parts)
+
+    @computed
+    def solved(self) -> tuple[Real, dict[str, Real]]:
+        """Shapes of unit modal mass (k, nodes, 6), and twice the energies of each."""
+        shape = np.zeros((len(self.eigenvalue), len(self.rope.length) * self.points + 1, 6))
+        energy = {name: np.zeros(len(self.eigenvalue)) for name in self.variants}
+        for cluster in self.clusters():
+            value, unit = self.eigenvalue[cluster], unit_of(self.rope)
+            mean = float(value.mean())
+            beside = max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), unit))
+            lines, z = unforced([mean + beside], STEP), self.rope.scale(mean)
+            system = assemble(self.rope, lines, z, equal=self.points)
+            x = start(system, len(cluster) + 3)
+            for _ in range(2):
+                _, _, own, x = ritz(system, x, len(cluster))
+            u, _ = system.apart(own)
+            shape[cluster] = (z[:, None] * u[system.shown(self.points)]).transpose(2, 0, 1)
+            for name, varied in self.variants.items():
+                energy[name][cluster] = self._form(varied, mean, z, own)
+        return shape, energy
+
+    @property
+    def variants(self) -> dict[str, SpaceRope]:
+        """Ropes of which one thing has a small imaginary part, that of its energy in x^T A x."""
+        rope, step = self.rope, 1j * STEP
+        found = {}
+        for name, own in SECTION.items():
+            # flexibilities store what they are, with the other sign
+            soft = np.where(own, rope.soft, 0.0)
+            if soft.any():
+                found[name] = replace(rope, soft=rope.soft - step * soft)
+        found["tension"] = replace(
+            rope, stress=rope.stress * (1 + step), initial=rope.initial * (1 + step)
+        )
+        found["spring"] = replace(rope, springs=rope.springs * (1 + step))
+        found["drag"] = replace(
+            rope, stress=rope.stress + step * rope.drag, springs=rope.springs + step * rope.dashpots
+        )
+        for k, name in enumerate(SIX):
+            own = np.zeros((6, 6))
+            own[k, k] = step.imag
+            found[name] = replace(
+                rope,
+                stress=rope.stress + 1j * own * rope.inertia,
+                springs=rope.springs + 1j * own * rope.masses,
+            )
+        return found
+
+    def _form(self, varied: SpaceRope, eigenvalue: float, z: Real, own: Real) -> Real:
+        """Return what an imaginary part adds to x^T A x of vectors."""
+        system = assemble(varied, unforced([eigenvalue]), z, equal=self.points)
+        u, f = system.apart(own)
+        p, d = system.apply(u[None], f[None])
+        form: Real = (own * system.together(p[0].imag, d[0].imag)).sum(0) / STEP
+        return form
+
+    @property
+    def kinetic(self) -> Real:
+        """Modal mass by coordinate, shape (k, 6)."""
+        energy = self.solved[1]
+        return np.stack([energy[c] for c in SIX], axis=1)
+
+    @property
+    def plane(self) -> Any:
+        """In which each mode moves across."""
+        shares = self.kinetic / self.kinetic.sum(axis=1, keepdims=True)
+        y = shares[:, [1, 5]].sum(axis=1) > SEEN
+        z = shares[:, [2, 4]].sum(axis=1) > SEEN
+        return np.select([y & z, y, z], ["space", "y", "z"], "")
+
+
+SECTION = {
+    "bending": np.diag([0, 0, 0, 0, 1, 1]).astype(bool),
+    "twist": np.diag([0, 0, 0, 1, 0, 0]).astype(bool),
+    "stretch": np.diag([1, 0, 0, 0, 0, 0]).astype(bool),
+    "shear": np.diag([0, 1, 1, 0, 0, 0]).astype(bool),
+    "lay": ~np.eye(6, dtype=bool),
+}
+"""Entries of the section flexibility that store each kind of strain energy."""
+
+
+def vectors_of(shapes: SpaceShapes) -> UndampedVectors:
+    """Return what follows from the shapes."""
+    shape, energy = shapes.solved
+    kinetic = shapes.kinetic
+    own = kinetic.argmax(axis=1)
+    size = largest(shape, own)
+    # a mode that stands still at all points keeps its unit modal mass
+    size = np.where(np.abs(size) > 1e-8 * np.abs(shape).max(axis=(1, 2)), size, 1.0)
+    return UndampedVectors(
+        damping_ratio=_damping_ratio(shapes, energy, kinetic),
+        family=np.array([FAMILY[SIX[k]] for k in own], dtype=np.str_),
+        modal_mass=kinetic.sum(axis=1) / size**2,
+        shape=shape / size[:, None, None],
+        energy=_fractions(shapes, energy, kinetic),
+    )
+
+
+def _damping_ratio(shapes: SpaceShapes, energy: dict[str, Real], kinetic: Real) -> Real:
+    """Return zeta = x^T Im(dynamic stiffness) x/(2 omega^2 x^T M x), to first order."""
+    omega = np.sqrt(np.maximum(shapes.eigenvalue, 0.0))
+    mass = kinetic.sum(axis=1)
+    section = sum((energy[name] for name in SECTION if name in energy), np.zeros_like(omega))
+    part = np.stack([section, energy["tension"], energy["spring"], mass, energy["drag"]], axis=1)
+    lost = (damping.factors(shapes.scene.dampings, omega).imag * part).sum(axis=1)
+    ratio = np.zeros_like(omega)
+    return np.divide(lost, 2 * omega**2 * mass, where=omega > 0, out=ratio)
+
+
+def _fractions(shapes: SpaceShapes, energy: dict[str, Real], kinetic: Real) -> dict[str, Real]:
+    """Return shares of the strain and of the kinetic energy."""
+    stored = {name: energy[name] for name in (*SECTION, "tension", "spring") if name in energy}
+    stored = {name: one for name, one in stored.items() if np.any(one)}
+    total = sum(stored.values(), np.zeros(len(kinetic)))
+    moves = (shapes.eigenvalue != 0) & (total != 0)
+    none = np.zeros_like(total)
+    found = {k: np.divide(v, total, where=moves, out=none.copy()) for k, v in stored.items()}
+    return found | {c: kinetic[:, k] / kinetic.sum(axis=1) for k, c in enumerate(SIX)}

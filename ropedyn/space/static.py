@@ -1,0 +1,119 @@
+"""The static deflection of a rope on an axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..base import check
+from ..base.answer import Cost
+from ..base.array import Real
+from ..base.computed import Late
+from ..base.errors import SceneError, SolveError
+from ..base.unit import FORCE_UNIT
+from ..chain.port import Point
+from ..eigen.vectors import within
+from ..response.critical import exceeds
+from ..response.deflection import POINTS, Deflection
+from ..scene.scene import Scene
+from .assembly import Assembly, assemble
+from .modes import check_points
+from .response import bound
+from .rope import SIX, SpaceRope, unforced
+from .spectrum import count_below, unit_of
+
+
+def solve_static(
+    scene: Scene, rope: SpaceRope, load: Any, *, points: int | None, unstable: bool
+) -> Deflection:
+    """Find the static deflection; see `SpaceModel.static`."""
+    loads = checked_loads(scene, load)
+    check_points(rope, points)
+    critical = count_below(rope, -1e-13 * unit_of(rope))
+    if critical and not unstable:
+        raise SolveError(
+            f"the rope does not stay at rest: {exceeds(critical)}; "
+            "unstable=True answers all the same"
+        )
+    near = check.NEAR * scene.rope.length
+    x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in loads]])
+    cut, _ = rope.cut(x, near)
+    x = cut.x
+    system = assemble(cut, unforced([0.0]), cut.scale(0.0))
+    right = np.zeros((system.parts + 1, 6, 1))
+    for (coordinate, at), amount in loads.items():
+        k = SIX.index(coordinate)
+        right[system.node[int(np.abs(x - at).argmin())], k] += amount * system.z[k]
+    u, f = _solved(system, right)
+    shown = u[system.node, :, 0]
+    return Deflection(
+        coordinates=SIX,
+        x=x,
+        displacement=shown * system.z,
+        force=_force(system, u, f) / system.z,
+        load=tuple(loads.items()),
+        critical_loads=critical,
+        cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=1),
+        rounding_error=Late(partial(_rounding, system, (u, f))),
+        force_rounding_error=_same(shown.shape, np.inf),
+        mesh_error=_same(shown.shape, 0.0),
+    )
+
+
+def _same(shape: tuple[int, ...], value: float) -> Real:
+    error = np.full(shape, value)
+    error.setflags(write=False)
+    return error
+
+
+def _solved(system: Assembly, right: Real) -> tuple[Real, Real]:
+    """Return motion and force of columns of loads (parts + 1, 6, columns)."""
+    right = np.where(system.held[:, :, None], 0.0, right)
+    none = np.zeros((system.parts, 6, right.shape[2]))
+    try:
+        x = system.factored(0, real=True).solve(system.together(right, none))
+    except SolveError:
+        x = np.full(1, np.nan)
+    if not np.isfinite(x).all() or np.abs(x).max() > 1e14 * np.abs(right).max():
+        raise SolveError(
+            "the stiffness is singular to working precision: a rigid motion is free, or the "
+            "compression is critical"
+        )
+    return system.apart(x)
+
+
+def _force(system: Assembly, u: Real, f: Real) -> Real:
+    """Return what the surroundings put on the nodes: f_b on the left less f_a on the right."""
+    D, Q = system.D[0].real, system.Q[0].real
+    force = np.zeros(u.shape)
+    force[1:] += f
+    force[:-1] += Q @ u[:-1] - f - D.swapaxes(1, 2) @ f
+    return force[system.node, :, 0]
+
+
+def _rounding(system: Assembly, found: tuple[Real, Real]) -> Real:
+    """Bound what rounding does to the displacement, shape (nodes, 6)."""
+    nodes = len(system.node)
+    unit = np.zeros((system.parts + 1, 6, 6 * nodes))
+    unit[np.repeat(system.node, 6), np.tile(np.arange(6), nodes), np.arange(6 * nodes)] = 1.0
+    limit = bound(system, 0, found, _solved(system, unit))[0].reshape(nodes, 6) * system.z
+    limit[system.held[system.node]] = 0.0
+    limit.setflags(write=False)
+    return limit
+
+
+def checked_loads(scene: Scene, load: Any) -> dict[Point, float]:
+    """Return forces at points, those given twice as their sum."""
+    what = 'a mapping such as {("z", 0.5): 10.0}'
+    check.instance(load, "load", Mapping, what)
+    if not load:
+        raise SceneError(f"load must be {what} with at least one entry, got {{}}")
+    loads: dict[Point, float] = {}
+    for key, value in load.items():
+        point = check.point(key, "load point", SIX, scene.rope.length)
+        amount = check.number(value, f"load[{key}]", FORCE_UNIT[point[0]])
+        loads[point] = loads.get(point, 0.0) + amount
+    return loads

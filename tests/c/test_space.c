@@ -1,0 +1,150 @@
+/* Ropes in space: triples of their pieces against closed forms, and counts. */
+#include "space/space.h"
+
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIX = RD_SIX, FULL = RD_SIX * RD_SIX };
+
+static const double PI = 3.14159265358979323846;
+
+/* A straight beam: B = 2 N m^2 in both planes, C = 1.5 N m^2, EA = 1e3 N, 0.5 kg/m. */
+static void beam(double *phi, double *soft, double *load, double *inertia)
+{
+    const double flexibility[SIX] = {1e-3, 0, 0, 1 / 1.5, 0.5, 0.5};
+    memset(phi, 0, FULL * sizeof *phi);
+    memset(soft, 0, FULL * sizeof *soft);
+    memset(load, 0, FULL * sizeof *load);
+    memset(inertia, 0, FULL * sizeof *inertia);
+    phi[1 * SIX + 5] = phi[2 * SIX + 4] = 1;
+    for (int i = 0; i < SIX; i++) {
+        soft[i * SIX + i] = flexibility[i];
+        inertia[i * SIX + i] = i < 3 ? 0.5 : 0;
+    }
+}
+
+/* at rest D has the length as the lever of beta and gamma, G is l^3/3B, l^2/2B, l/B, and Q = 0 */
+static void test_triple_of_a_beam_at_rest(void)
+{
+    const double l = 3;
+    double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
+    double _Complex rates[RD_SPACE_TRIPLE], triple[RD_SPACE_TRIPLE];
+    beam(phi, soft, load, inertia);
+    for (int i = 0; i < FULL; i++) {
+        rates[i] = phi[i];
+        rates[FULL + i] = soft[i];
+        rates[2 * FULL + i] = load[i];
+    }
+    for (int doublings = 0; doublings <= 6; doublings += 3) {
+        const double length = ldexp(l, 6 - doublings);
+        CHECK_INT(rd_space_triple(rates, length, 6, doublings, 1e9, triple), doublings);
+        const double _Complex *G = triple + FULL, *Q = G + FULL;
+        CHECK_ABS(creal(triple[2 * SIX + 4]), l, 8 * EPS * l, "roundings");
+        CHECK_ABS(creal(G[2 * SIX + 2]), l * l * l / 6, 64 * EPS * l * l * l, "roundings");
+        CHECK_ABS(creal(G[1 * SIX + 5]), l * l / 4, 64 * EPS * l * l, "roundings");
+        CHECK_ABS(creal(G[4 * SIX + 4]), l / 2, 64 * EPS * l, "roundings");
+        CHECK_ABS(creal(G[3 * SIX + 3]), l / 1.5, 64 * EPS * l, "roundings");
+        for (int i = 0; i < FULL; i++)
+            CHECK(Q[i] == 0);
+    }
+}
+
+/* Clamped at both ends: sin kl = 0 of stretch and cos kl cosh kl = 1 of bending in both planes, whose roots
+   are soon (n + 1/2) pi; twist has no inertia. */
+static size_t expected(double lambda, double l)
+{
+    const double beams[] = {4.730040744862704, 7.853204624095838, 10.99560783800167,
+                            14.13716549125746, 17.27875965739948};
+    size_t count = 0;
+    for (int n = 1; n < 100; n++)
+        count += pow(n * PI / l, 2) * 1e3 / 0.5 < lambda;
+    for (int n = 0; n < 100; n++)
+        count += pow((n < 5 ? beams[n] : (n + 1.5) * PI) / l, 4) * 2 / 0.5 < lambda ? 2 : 0;
+    return count;
+}
+
+struct rope {
+    double length[2], phi[2 * FULL], soft[2 * FULL], load[2 * FULL], inertia[2 * FULL];
+    double turn[2 * FULL], none[3 * FULL];
+    int32_t halvings[2];
+    uint8_t held[3 * SIX];
+    struct rd_space space;
+};
+
+/* of one or two pieces, clamped at both ends */
+static void rope_fill(struct rope *rope, size_t pieces, double l)
+{
+    memset(rope, 0, sizeof *rope);
+    for (size_t p = 0; p < pieces; p++) {
+        const size_t at = p * FULL;
+        beam(rope->phi + at, rope->soft + at, rope->load + at, rope->inertia + at);
+        rope->length[p] = pieces == 1 ? l : p == 0 ? 0.3 * l : 0.7 * l;
+        rope->halvings[p] = 8;
+        for (int i = 0; i < SIX; i++)
+            rope->turn[at + (size_t)(i * SIX + i)] = 1;
+    }
+    memset(rope->held, 1, SIX);
+    memset(rope->held + pieces * SIX, 1, SIX);
+    rope->space = (struct rd_space){
+        .pieces = pieces,
+        .length = rope->length,
+        .halvings = rope->halvings,
+        .phi = rope->phi,
+        .soft = rope->soft,
+        .load = rope->load,
+        .inertia = rope->inertia,
+        .turn = rope->turn,
+        .stiffness = rope->none,
+        .mass = rope->none,
+        .held = rope->held,
+    };
+}
+
+static void test_counts_of_rods_and_beams(void)
+{
+    static struct rope rope;
+    struct rd_workspace workspace = {0};
+    const double lambda[] = {-10, 1, 30, 300, 3e3, 7e3, 2e4, 5e4};
+    enum { COUNT = sizeof lambda / sizeof *lambda };
+    double below[COUNT];
+    rope_fill(&rope, 1, 4);
+    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, below, &workspace), RD_NO_MEMORY);
+    workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+    for (size_t pieces = 1; pieces <= 2; pieces++) {
+        rope_fill(&rope, pieces, 4);
+        workspace.used = 0;
+        CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, below, &workspace), RD_OK);
+        for (size_t k = 0; k < COUNT; k++)
+            CHECK_INT((long long)below[k], (long long)expected(lambda[k], 4));
+    }
+    workspace.size = workspace.used - 1;
+    workspace.used = 0;
+    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, below, &workspace), RD_NO_MEMORY);
+    free(workspace.base);
+}
+
+/* a support in the middle of what is clamped at both ends */
+static void test_a_held_node_within_is_counted(void)
+{
+    static struct rope rope;
+    struct rd_workspace workspace = {0};
+    double below;
+    rope_fill(&rope, 2, 4);
+    memset(rope.held + SIX, 1, SIX);
+    const double lambda = 3e3;
+    rd_space_count(&rope.space, 1, &lambda, &below, &workspace);
+    workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+    CHECK_INT(rd_space_count(&rope.space, 1, &lambda, &below, &workspace), RD_OK);
+    CHECK_INT((long long)below, (long long)(expected(lambda, 1.2) + expected(lambda, 2.8)));
+    free(workspace.base);
+}
+
+int main(void)
+{
+    test_triple_of_a_beam_at_rest();
+    test_counts_of_rods_and_beams();
+    test_a_held_node_within_is_counted();
+    return check_report("space");
+}
