@@ -11,7 +11,7 @@ import numpy as np
 from ..axis.axis import Axis
 from ..base import check
 from ..base.errors import SceneError
-from ..base.parameter import Description, Pair, instance, number, one_of, pair
+from ..base.parameter import Description, Pair, given, instance, number, pair
 from .bench.bending_test import BendingTest
 from .bench.given import given_tests
 from .bench.torsion_test import TorsionTest
@@ -33,6 +33,10 @@ def own_number(rope: Rope, name: str) -> float | None:
     """Return a property of the plane of z, or of that of y by its name in `ACROSS`."""
     found: float | None = in_plane(getattr(rope, _ACROSS_OF.get(name, name)), name in _ACROSS_OF)
     return found
+
+
+def _checked_natural(value: Any) -> str | None:
+    return None if value is None else check.one_of(value, "natural", ("axis", "straight"))
 
 
 class Rope(Description):
@@ -69,9 +73,10 @@ class Rope(Description):
         Inertia of twist per length [kg m]; 0 is none.
     shear_stiffness : float, optional
         k G A [N], of a rope on an axis.
-    natural : {"axis", "straight"}
-        What a rope on an axis is when nothing loads it: as its axis, like a spring, or straight, so
-        that it is bent by the moment B times the curvature, which counts across its plane.
+    natural : {"axis", "straight"}, optional
+        What a rope on an axis is when nothing loads it: as its axis, like a spring, where this is
+        left out, or straight, so that it is bent by the moment B times the curvature, which counts
+        across its plane. None of a straight rope.
     axis : Axis, optional
         That was given as `length`.
 
@@ -117,7 +122,7 @@ class Rope(Description):
     rotary_inertia: Pair | None = pair("kg m", sign="nonnegative", default=None)
     polar_inertia: float | None = number("kg m", sign="nonnegative", default=None)
     shear_stiffness: float | None = number("N", sign="positive", default=None)
-    natural: str = one_of(("axis", "straight"), default="axis")
+    natural: str | None = given(_checked_natural, default=None)
     axis: Axis | None = instance(Axis, "an Axis", default=None)
 
     def __post_init__(self) -> None:
@@ -127,8 +132,7 @@ class Rope(Description):
         if isinstance(self.axis, Axis) and self.axis.is_straight:
             own["axis"] = None
         super().__post_init__()
-        if self.axis is None:
-            own["natural"] = "axis"
+        own["natural"] = None if self.axis is None else self.natural or "axis"
 
     def _agree(self) -> None:
         if self.axis is not None:

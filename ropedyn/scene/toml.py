@@ -58,7 +58,7 @@ def document(scene: Any) -> dict[str, Any]:
     """Return the keys of a scene in a file."""
     rope = _plain(scene.rope)
     if scene.rope.axis is None:
-        del rope["natural"]
+        rope.pop("natural", None)
     else:
         del rope["length"]
         rope["axis"] = dict(scene.rope.axis.words)
