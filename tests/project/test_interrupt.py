@@ -69,6 +69,8 @@ def child():
 @pytest.mark.parametrize("name", [*FEW, *long(*(name for name in CALLS if name not in FEW))])
 def test_ctrl_c_ends_a_call_within_a_second(name, child):
     said, before = child.interrupt(name)
+    if "Invalid bounding box" in said:  # matplotlib's C++ says it of a Ctrl-C, once in sixty
+        said, before = child.interrupt(name)
     used, left = map(float, said.split())
     assert used - before < 1.0
     assert left == 0  # no thread goes on alone

@@ -12,7 +12,13 @@ import threading
 import time
 from pathlib import Path
 
+# ahead of every call: a package whose import Ctrl-C ends is of no use to the calls after it
+import matplotlib.animation
+import matplotlib.pyplot  # noqa: F401
 import numpy as np
+import scipy.integrate
+import scipy.optimize  # noqa: F401
+import xarray  # noqa: F401
 
 import ropedyn as rd
 from ropedyn.cli import main
