@@ -143,7 +143,7 @@ class CountQuestion(AnyQuestion):
     4
     """
 
-    below: float = field(kw_only=True)
+    below: float
     measures: ClassVar[tuple[str, ...]] = ("count [%]",)
     solvers: ClassVar[tuple[str, ...]] = ("sweep",)
     usual: ClassVar[tuple[str, ...]] = ("sweep",)
