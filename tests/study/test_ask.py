@@ -282,7 +282,7 @@ AT = ("z", 0.3)
 REFUSED = {
     "number": (rd.ask.modes, [1.5, "3"], [0, -1]),
     "damped": (lambda v: rd.ask.modes(1, damped=v), [1, "yes", None], []),
-    "below": (lambda v: rd.ask.count(v), ["1", None], [0.0, -1.0, float("nan")]),
+    "below": (rd.ask.count, ["1", None], [0.0, -1.0, float("nan")]),
     "modes": (rd.ask.floquet, [1.5, None], [0, 10**6]),
     "load": (rd.ask.static, [None, 1.0, [AT]], [{}, {AT: float("inf")}]),
     "amplitude": (
