@@ -18,6 +18,7 @@ from ..chain.chain import plane_of
 from ..chain.compile import check_points, compile_scene
 from ..chain.compiled import Compiled
 from ..scene.scene import Scene
+from .catenary import on_catenary
 from .fewest import solve_components
 from .modes import Modes, UndampedMesh, UndampedVectors
 from .spectrum import (
@@ -84,6 +85,7 @@ def solve_modes(
         cost=_cost(model, solver, found),
         vectors=later if solver == "sweep" else vectors_of(model, found, eigenvalue, order),
         mesh=mesh,
+        hanging=partial(on_catenary, model, which, frequency),
         solve_shapes=partial(solve_shapes, model, solver, eigenvalue, which),
     )
 

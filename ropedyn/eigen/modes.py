@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base import check
-from ..base.answer import TRANSIENT, Cost, axes
+from ..base.answer import TRANSIENT, Cost, Frozen, axes
 from ..base.array import Real
 from ..base.computed import Lazy, Read, computed, lazy
 from ..base.drawing import draw
@@ -36,6 +36,14 @@ class UndampedMesh(MeshOfModes):
     """What continuous spans say about the undamped modes of a chain; see `Modes`."""
 
     limit: Real = field(metadata=axes("mode", unit="Hz"))
+
+
+@dataclass(frozen=True, eq=False)
+class OnCatenary(Frozen):
+    """What the true curve of a hanging rope says about its modes; see `Modes`."""
+
+    model_error: Real = field(metadata=axes("mode", unit="Hz"))
+    catenary: Real = field(metadata=axes("mode", unit="Hz"))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -70,6 +78,14 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         The frequency without mesh error [Hz]: that of the continuous spans, which the frequencies
         of ever finer chains of tensed or rigid elements approach. Exact, where extrapolation from
         two chains would be an estimate. 0 where motion grows, NaN where there is no answer.
+    model_error : ndarray, shape (k,)
+        Absolute error of the frequency that the parabola of a rope that sags causes [Hz]: the
+        distance to the mode of the same number on the curve that the rope, and the masses on it,
+        really rest on, by Ritz's method with the shapes of the straight rope. 0 without sag,
+        infinite where it is not known: beside lay, and where ends do not hold x or something
+        between them does.
+    catenary : ndarray, shape (k,)
+        The frequency on that curve [Hz]; NaN where it is not known.
     certified : bool
         True: no mode is missed below the last, shown by count. The assembled solver does not count.
     damping_ratio : ndarray, shape (k,)
@@ -121,9 +137,12 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     cost: Cost
     vectors: Lazy[UndampedVectors] = lazy(UndampedVectors)
     mesh: Lazy[UndampedMesh] = lazy(UndampedMesh)
+    hanging: Lazy[OnCatenary] = lazy(OnCatenary)
     solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     limit = Read[Real]("mesh", "Frequencies without mesh error [Hz], shape (k,).")
+    model_error = Read[Real]("hanging", "Error that the parabola of sag causes [Hz], shape (k,).")
+    catenary = Read[Real]("hanging", "Frequencies on the true curve [Hz], shape (k,).")
     damping_ratio = Read[Real]("vectors", "Damping ratio of each mode, shape (k,).")
 
     @computed
@@ -279,6 +298,8 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
             "damping ratio": self.damping_ratio,
             "family": self.family,
         }
+        if (self.model_error > 0).any():
+            columns["model error [Hz]"] = self.model_error
         if (self.plane == "y").any():
             columns["plane"] = self.plane
         if (self.growth > 0).any():

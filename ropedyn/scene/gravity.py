@@ -43,8 +43,9 @@ class Gravity(Description):
 
     alone and antisymmetric ones not at all. With x free at an end h is 0 and sag stiffens nothing.
 
-    It holds for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it between.
-    The weight of what stands on it does not curve it; a `PointMass` keeps its inertia along x.
+    It is accepted for a sag w L^2/8H up to an eighth of L, the whole rope's whatever supports it
+    between. The weight of what stands on it does not curve it; a `PointMass` keeps its inertia
+    along x. `Modes.model_error` says what both leave out, and `Modes.catenary` what is true.
     Where both would act, an inclined rope with axial stiffness, one of them has to be left out.
 
     Parameters

@@ -17,7 +17,7 @@ from ..base.computed import Late, computed
 from ..base.errors import SceneError
 from ..base.unit import FAMILY
 from ..eigen.eigen import check_asked, no_mesh
-from ..eigen.modes import Modes, UndampedVectors
+from ..eigen.modes import Modes, OnCatenary, UndampedVectors
 from ..eigen.spectrum import error_in_hertz
 from ..eigen.vectors import largest, within
 from ..scene import damping
@@ -56,6 +56,7 @@ def solve_modes(
         cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=found.counts),
         vectors=Late(partial(vectors_of, shapes)),
         mesh=partial(no_mesh, frequency),
+        hanging=partial(OnCatenary, np.zeros_like(frequency), frequency),
         solve_shapes=refuse_derivatives,
     )
 
