@@ -25,7 +25,7 @@ from mpmath import mpf
 import ropedyn as rd
 from ropedyn.scene.toml import document
 
-FILE = Path(__file__).parent.parent.parent / "ropedyn" / "study" / "hard" / "cases.json"
+FILE = Path(rd.__file__).parent / "study" / "hard" / "cases.json"
 WORK, KEPT = 60, 40
 """Digits that are computed with, and that are kept."""
 B, MU, T = 2.5, 0.1, 100.0

@@ -34,7 +34,7 @@ def _kept(case: HardCase, solve: Callable[..., Real | Complex], how: Mapping[str
         warnings.simplefilter("ignore")
         try:
             return case.kept(solve(case.scene.compile(**how), case))
-        except (ArithmeticError, RuntimeError, ValueError, RopedynError):
+        except (ArithmeticError, RuntimeError, ValueError, np.linalg.LinAlgError, RopedynError):
             return 0.0
 
 
