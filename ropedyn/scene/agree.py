@@ -208,11 +208,6 @@ def _check_gravity(scene: Described) -> None:
 def _check_stretching(scene: Described) -> None:
     if not isinstance(scene.tension, Tension) or not scene.tension.stretching:
         return
-    if scene.planes == "both":
-        raise SceneError(
-            'planes must be "z" where the tension is stretching, got "both": motion in one '
-            "plane would strain the rope in the other"
-        )
     refuse_uneven(scene.parts, "where the tension is stretching")
     if scene.rope.axial_stiffness is None:
         raise SceneError(

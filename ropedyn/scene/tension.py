@@ -28,11 +28,12 @@ class Tension(Description):
         T(t) = mean + amplitude cos(2 pi frequency t + phase) + stretching,
 
     where the stretching, if it is asked for, is EA/2L times the integral of (dz/dx)^2 along the
-    rope: transverse motion lengthens a rope whose ends hold it along x, and the tension this adds
-    is the same everywhere where waves along x are much faster than transverse ones (Kirchhoff's
-    string). Frequencies, responses and deflections are those of the mean tension; what pulsates and
-    stretches acts in `Model.transient`, `Model.stepped_sine`, `Model.floquet` and
-    `Model.stability_map`. A laid rope is turned by what pulsates, at ends that are free to turn.
+    rope, in both planes of (dz/dx)^2 + (dy/dx)^2: transverse motion lengthens a rope whose ends
+    hold it along x, and the tension this adds is the same everywhere where waves along x are much
+    faster than transverse ones (Kirchhoff's string). Frequencies, responses and deflections are
+    those of the mean tension; what pulsates and stretches acts in `Model.transient`,
+    `Model.stepped_sine`, `Model.floquet` and `Model.stability_map`. A laid rope is turned by what
+    pulsates, at ends that are free to turn.
 
     Parameters
     ----------

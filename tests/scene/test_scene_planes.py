@@ -83,10 +83,8 @@ def test_what_needs_the_second_plane_says_so(case):
         ACROSS[case]()
 
 
-STRETCHING = rd.Tension(250.0, stretching=True)
 REFUSED = {
     "a broken wire": {"parts": [rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3)]},
-    "stretching": {"rope": ROPE.replace(axial_stiffness=1e5), "tension": STRETCHING},
 }
 
 

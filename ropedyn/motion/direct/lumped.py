@@ -19,6 +19,7 @@ from ...response.deflection import nodal
 from ...response.moved_end import is_end
 from ...scene.damping import having
 from ...scene.force import Force
+from ...scene.tension import Tension
 from ..acting import ActingLaw, acting_laws
 from ..request import Run
 from .beside import Beside, plain_lumps, pulsation_of
@@ -240,6 +241,12 @@ def refuse_model(model: Compiled) -> None:
         raise SceneError(
             'elements must be given where the method is "direct", such as compile(elements=64): '
             "continuous spans have no steps"
+        )
+    grows = isinstance(scene.tension, Tension) and scene.tension.stretching
+    if grows and scene.planes == "both":
+        raise SceneError(
+            'method must be "auto", and damping proportional, where the tension is stretching and '
+            'planes is "both": steps along the chain follow each plane alone'
         )
     for one in having(scene.dampings, "loss", "ratio"):
         raise SceneError(

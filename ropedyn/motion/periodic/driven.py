@@ -217,7 +217,7 @@ def _string(
             "compile(elements=16): its work is summed up over nodes"
         )
     chain, own = model.chain, [c for c in ("z", "y") if c in model.coordinates]
-    # the planes one after another: none of them but z where the tension is stretching
+    # the planes one after another: what stretches the rope adds up
     every = [(c, k) for c in own for k in range(len(model.x))]
     rises = np.asarray(np.kron(np.eye(len(own)), np.diff(np.eye(len(model.x)), axis=0)))
     stays = chain.held[chain.term_of][:, [model.coordinates.index(c) for c in own]] != 0

@@ -31,7 +31,13 @@ from ..request import TOLERANCE, Run
 from ..states import without_dashpots
 from .laws import PointLaw, laws_on, why_not_smooth
 from .passage import LawPassage
-from .stretching import StretchedPassage, StretchedSystem, is_stretched, stretched_points
+from .stretching import (
+    StretchedPassage,
+    StretchedSystem,
+    is_stretched,
+    moving_together,
+    stretched_points,
+)
 from .system import LawQuestion, LawSystem, OutputTimes
 
 MODES, MOST_MODES = 64, 512  # Of continuous spans and long chains, at first and at most.
@@ -191,7 +197,7 @@ def collocate(run: Run) -> History:
     model = run.model
     x = within(model.x, POINTS) if model.element == "continuous" else model.x
     answer = _Answer(run, x)
-    for component in model.components:
+    for component in moving_together(model):
         laws = laws_on(model, component)
         answer.take(component, laws)
     history = answer.history()

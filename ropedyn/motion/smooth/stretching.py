@@ -1,6 +1,7 @@
 """Mean stretching: forces on all modes by quadratic forms of their amplitudes.
 
-With the mean tension's modes of unit mass, G the integral of the products of their slopes,
+With the mean tension's modes of unit mass, of both planes where there are two, and G the integral
+of the products of their slopes in a plane,
 
     q_k'' + 2 sigma_k q_k' + square_k q_k = drive_k - N (G q)_k,   N = EA/(2 L) q^T G q,
 
@@ -56,15 +57,17 @@ class StretchedSystem(LawSystem):
 
     @classmethod
     def stretched(cls, run: Run, asked: LawQuestion) -> StretchedSystem:
-        """Find the modes of a chain and how stretching couples them."""
+        """Find the modes of a chain, in one plane or both, and how stretching couples them."""
+        from scipy.linalg import block_diag
+
         model, (component, _, outputs, looks) = run.model, asked
-        chain = model.chain.only(component)
-        eigenvalue, shape = unit_modes(model, component)
+        planes = [_Plane.of(model, one) for one in model.components if {*one} <= {*component}]
+        eigenvalue = np.concatenate([plane.eigenvalue for plane in planes])
+        sigma = np.concatenate([plane.decay for plane in planes])
         count = len(eigenvalue)
-        sigma = _decay(model, component, eigenvalue)
-        seen = np.concatenate([np.eye(count), moved_by(model, component, shape, outputs)])
+        seen = np.concatenate([np.eye(count), _moved(planes, outputs)])
         drive = [k for k, p in enumerate(run.places) if moving(p) in component]
-        push = moved_by(model, component, shape, [run.places[k] for k in drive])
+        push = _moved(planes, [run.places[k] for k in drive])
         none = np.zeros((1, len(seen), 0)), np.zeros((1, len(seen)))
         rest = {"b": np.zeros((1, *seen.shape)), "p": np.zeros(0), "r": none[0], "rest": none[1]}
         stiffness = (model.scene.rope.axial_stiffness or 0.0) / model.scene.rope.length
@@ -81,7 +84,7 @@ class StretchedSystem(LawSystem):
             time=run.time,
             looks=[look._replace(output=shifted(look.output, count)) for look in looks],
             beyond=np.inf,
-            forms=(Form(stiffness, by_tension(chain, shape)),),
+            forms=(Form(stiffness, block_diag(*(plane.form for plane in planes))),),
         )
 
     @property
@@ -90,10 +93,48 @@ class StretchedSystem(LawSystem):
         return slice(len(self.modes.sigma))
 
 
+class _Plane(NamedTuple):
+    """All modes of a plane of a chain, of unit modal mass."""
+
+    model: Compiled
+    component: tuple[str, ...]
+    eigenvalue: Real
+    decay: Real
+    shape: Real
+    form: Real  # integrals of the products of their slopes
+
+    @classmethod
+    def of(cls, model: Compiled, component: tuple[str, ...]) -> _Plane:
+        eigenvalue, shape = unit_modes(model, component)
+        decay = _decay(model, component, eigenvalue)
+        form = by_tension(model.chain.only(component), shape)
+        return cls(model, component, eigenvalue, decay, shape, form)
+
+
+def _moved(planes: Sequence[_Plane], points: list[Point]) -> Real:
+    """Return how the modes of all planes move points at nodes, (points, k)."""
+    moved = []
+    for plane in planes:
+        mine = [k for k, point in enumerate(points) if moving(point) in plane.component]
+        rows = np.zeros((len(points), len(plane.eigenvalue)))
+        own = [points[k] for k in mine]
+        rows[mine] = moved_by(plane.model, plane.component, plane.shape, own)
+        moved.append(rows)
+    return np.concatenate(moved, axis=1)
+
+
 def is_stretched(model: Compiled, component: tuple[str, ...]) -> bool:
     """Whether motion of a component adds to the tension."""
     tension = model.scene.tension
-    return "z" in component and isinstance(tension, Tension) and tension.stretching
+    across = not {"y", "z"}.isdisjoint(component)
+    return across and isinstance(tension, Tension) and tension.stretching
+
+
+def moving_together(model: Compiled) -> list[tuple[str, ...]]:
+    """Return the components, as one those that stretching couples."""
+    planes = [one for one in model.components if is_stretched(model, one)]
+    others = [one for one in model.components if one not in planes]
+    return [*([sum(planes, ())] if planes else []), *others]
 
 
 def stretched_points(model: Compiled, component: tuple[str, ...], points: Sequence[Any]) -> bool:
