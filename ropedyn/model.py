@@ -276,7 +276,8 @@ class Model(Compiled):
         Parameters
         ----------
         load : mapping from points to float
-            Such as ``{("z", 0.5): 10.0}`` [N, N m].
+            Such as ``{("z", 0.5): 10.0}`` [N, N m]. ``{}``: the mean tension alone, from the slack
+            rope on, with an end let go along x: it stretches a rope and turns a laid one's swivel.
         solver : {"sweep", "lapack", "band"}
             As `frf` at 0 Hz; ``"lapack"``: band LU of the assembled stiffness.
         points : int, optional
@@ -296,11 +297,6 @@ class Model(Compiled):
             If a value has no meaning.
         SolveError
             If a rigid motion is free, or critical loads are met or exceeded: how many.
-
-        Notes
-        -----
-        How far tension stretches and turns a laid rope is ``static({("x", length): tension})`` of
-        the scene without tension that ends in ``End(x="free", alpha="free")``.
 
         Examples
         --------

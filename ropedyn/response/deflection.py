@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -18,13 +18,17 @@ from ..base.errors import SceneError, SolveError
 from ..base.table import Table
 from ..base.unit import FORCE, FORCE_UNIT, UNIT
 from ..chain.chain import Chain
-from ..chain.compile import check_points, compile_scene, finer
+from ..chain.compile import check_points, compile_scene, finer, remeshed
 from ..chain.compiled import EXACT, Compiled
 from ..chain.place import refuse_slack
 from ..chain.port import Point, Ports, cut, ports, stops
 from ..chain.reaction import left_ends
+from ..scene.end import end_of
 from .critical import critical_loads, exceeds, refuse_critical
 from .rounding import bound_of
+
+LOAD = 'a mapping such as {("z", 0.5): 10.0}'
+"""What loads are, as messages name it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +109,9 @@ def solve_static(
     unstable: bool = False,
 ) -> Deflection:
     """Find the static deflection; see `Model.static`."""
+    check.instance(load, "load", Mapping, LOAD)
+    if not load:
+        model, load = _pulled(model)
     solver_of = SOLVERS[check.one_of(solver, "solver", SOLVERS)]
     loads = checked_loads(model, load)
     check_points(model, points)
@@ -132,6 +139,21 @@ def solve_static(
         mesh_error=Late(partial(_mesh, model, loads, displacement)),
         cost=Cost(solver, len(model.x) - 1, unknowns, *work),
     )
+
+
+def _pulled(model: Compiled) -> tuple[Compiled, dict[Point, float]]:
+    """Return the rope with an end let go along x, and the mean tension that pulls there."""
+    scene, length = model.scene, model.scene.rope.length
+    if scene.rope.axial_stiffness is None or scene.gravity is not None:
+        raise SceneError(
+            f"load must be {LOAD}: without one the mean tension pulls, along a rope with "
+            f"axial_stiffness and without gravity, got {{}} and {scene.gravity or 'no stiffness'}"
+        )
+    ends = [end_of(end) for end in scene.ends]
+    side = 1 if ends[0].holds("x") else 0
+    ends[side] = replace(ends[side], x="free")
+    tension = scene.mean_tension if side else -scene.mean_tension
+    return remeshed(model, scene.replace(ends=tuple(ends))), {("x", side * length): tension}
 
 
 def _deflected(
@@ -403,10 +425,9 @@ SOLVERS = {
 
 def checked_loads(model: Compiled, load: Any, name: str = "load") -> dict[Point, float]:
     """Return forces at points, those given twice as their sum."""
-    what = 'a mapping such as {("z", 0.5): 10.0}'
-    check.instance(load, name, Mapping, what)
+    check.instance(load, name, Mapping, LOAD)
     if not load:
-        raise SceneError(f"{name} must be {what} with at least one entry, got {{}}")
+        raise SceneError(f"{name} must be {LOAD} with at least one entry, got {{}}")
     loads: dict[Point, float] = {}
     for key, value in load.items():
         point = check.point(key, f"{name} point", model.coordinates, model.scene.rope.length)

@@ -387,3 +387,39 @@ def test_mesh_error_is_the_distance_to_the_closed_form(element, elements):
 def test_continuous_spans_have_no_mesh_error():
     scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
     assert (scene.compile().static({("z", 0.3): 1.0}).mesh_error == 0).all()
+
+
+SWIVEL = rd.Scene(
+    rd.Rope(1.35, 0.17, axial_stiffness=6e5, torsional_stiffness=0.1485, lay_coupling=120.0),
+    tension=2830.0,
+    ends=("clamped", rd.End(alpha="free")),
+)
+
+
+@pytest.mark.parametrize("elements", [None, 5])
+def test_mean_tension_turns_a_swivel(elements):
+    EA, C, D = map(mpmath.mpf, (6e5, 0.1485, 120.0))
+    turned = -D * mpmath.mpf(1.35) * 2830 / (EA * C - D**2)
+    found = SWIVEL.compile(elements=elements).static({})
+    assert found.load == ((("x", 1.35), 2830.0),)
+    alpha = found.displacement[-1, found.coordinates.index("alpha")]
+    assert abs(alpha / turned - 1) <= 64 * EPS
+
+
+def test_mean_tension_turns_what_is_free_at_the_left_as_well():
+    mirror = SWIVEL.replace(ends=(rd.End(x="free", alpha="free"), "clamped"))
+    found, right = mirror.compile().static({}), SWIVEL.compile().static({})
+    at = found.coordinates.index("alpha")
+    np.testing.assert_allclose(-found.displacement[0, at], right.displacement[-1, at], rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        rd.Scene(rd.Rope(1.0, 0.1), tension=100.0),
+        rd.Scene(rd.Rope(1.0, 0.1, axial_stiffness=1e5), tension=100.0, gravity=rd.Gravity()),
+    ],
+)
+def test_mean_tension_alone_needs_a_rope_that_it_stretches_evenly(scene):
+    with pytest.raises(rd.SceneError, match=r"load must be a mapping.*axial_stiffness"):
+        scene.compile().static({})
