@@ -300,6 +300,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
         }
         if (self.model_error > 0).any():
             columns["model error [Hz]"] = self.model_error
+            columns["on the catenary [Hz]"] = self.catenary
         if (self.plane == "y").any():
             columns["plane"] = self.plane
         if (self.growth > 0).any():
