@@ -4,71 +4,14 @@ import math
 
 import numpy as np
 import pytest
-import scipy.linalg
 import scipy.optimize
-from numpy.polynomial import legendre
+from catenary_elements import elements, of_catenary
 from random_scene import log_uniform
 
 import ropedyn as rd
 
 NUMBER = 6
 LAID = rd.Rope(100.0, 2.0, axial_stiffness=2e7, torsional_stiffness=1e3, lay_coupling=1e3)
-
-
-def integrated(degree, at):
-    """Integrated Legendre polynomials, the ends' first, and their derivatives on [-1, 1]."""
-    value, rate = np.zeros((2, degree + 1, len(at)))
-    value[0], value[1], rate[0], rate[1] = (1 - at) / 2, (1 + at) / 2, -0.5, 0.5
-    unit = np.eye(degree + 1)
-    for k in range(2, degree + 1):
-        value[k] = legendre.legval(at, unit[k] - unit[k - 2]) / math.sqrt(2 * (2 * k - 1))
-        rate[k] = math.sqrt((2 * k - 1) / 2) * legendre.legval(at, unit[k - 1])
-    return value, rate
-
-
-def elements(edges, rest, mass=(), degree=12):
-    """Frequencies [Hz] of a string in its plane: `rest` gives T, the slope and mu and EA at s."""
-    at, weight = legendre.leggauss(degree + 6)
-    value, rate = integrated(degree, at)
-    count = len(edges) - 1
-    nodes = count * degree + 1
-    stiff, heavy = np.zeros((2, 2 * nodes, 2 * nodes))
-    for k in range(count):
-        half = (edges[k + 1] - edges[k]) / 2
-        tension, slope, density, axial = rest(edges[k] + half * (1 + at))
-        own = np.array([k * degree, (k + 1) * degree, *(k * degree + np.arange(1, degree))])
-        both = np.concatenate([own, own + nodes])
-        cos, sin, d = np.cos(slope), np.sin(slope), rate / half
-        strain, turn = np.concatenate([cos * d, sin * d]), np.concatenate([-sin * d, cos * d])
-        energy = (strain * axial * weight) @ strain.T + (turn * tension * weight) @ turn.T
-        stiff[np.ix_(both, both)] += half * energy
-        for one in (own, own + nodes):
-            heavy[np.ix_(one, one)] += half * (value * density * weight) @ value.T
-    for k, one in enumerate(mass, start=1):
-        for node in (k * degree, k * degree + nodes):
-            heavy[node, node] += one
-    held = [0, nodes - 1, nodes, 2 * nodes - 1]
-    free = np.setdiff1d(np.arange(2 * nodes), held)
-    pair = stiff[np.ix_(free, free)], heavy[np.ix_(free, free)]
-    value = scipy.linalg.eigh(*pair, eigvals_only=True, subset_by_index=[0, NUMBER - 1])
-    return np.sqrt(value) / (2 * math.pi)
-
-
-def of_catenary(scene, count=4):
-    """Frequencies on the catenary between the ends, in closed form."""
-    rope, gravity = scene.rope, scene.gravity
-    turned, w = gravity.inclination, rope.linear_density * gravity.g
-    level = scene.tension * math.cos(turned)
-    c, chord = level / w, rope.length
-    span, rise = chord * math.cos(turned), chord * math.sin(turned)
-    middle = c * math.asinh(rise / (2 * c * math.sinh(span / (2 * c))))
-    start, stop = (c * math.sinh((middle + side * span / 2) / c) for side in (-1, 1))
-
-    def rest(s):
-        return np.hypot(level, w * s), np.arctan(w * s / level), rope.linear_density, axial
-
-    axial = rope.axial_stiffness
-    return elements(np.linspace(start, stop, count + 1), rest)
 
 
 def of_loaded(scene):
@@ -100,7 +43,7 @@ def of_loaded(scene):
     axial = rope.axial_stiffness
     edges = [0, share * long / 2, share * long, (1 + share) * long / 2, long]
     masses = (0.0, mass.mass, 0.0)
-    return elements(np.array(edges), rest, masses)
+    return elements(np.array(edges), rest, masses, number=NUMBER)
 
 
 def hanging(rng, *, steep, parts=()):
@@ -129,7 +72,7 @@ def check(modes, exact):
 def test_error_of_the_parabola_is_that_against_the_catenary(seed):
     rng = np.random.default_rng((2031, seed))
     scene = hanging(rng, steep=1.2 * (seed % 2))
-    check(scene.compile().modes(NUMBER), of_catenary(scene))
+    check(scene.compile().modes(NUMBER), of_catenary(scene, number=NUMBER))
 
 
 @pytest.mark.parametrize(("sag", "off"), [(0.06, 0.018), (0.12, 0.072)])
