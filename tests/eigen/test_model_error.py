@@ -68,11 +68,19 @@ def check(modes, exact):
     assert (np.abs(modes.catenary - exact) <= 0.02 * modes.model_error + 1e-5 * exact).all()
 
 
+@pytest.mark.claim(
+    "Six frequencies of hanging strings on their true curve, sag to L/8, chords to 1.2 rad: "
+    "largest error over the error of the parabola that is stated",
+    reference="Legendre elements on the closed-form catenary: tests/support/catenary_elements.py",
+    accepted=1.0,
+)
 @pytest.mark.parametrize("seed", range(20))
-def test_error_of_the_parabola_is_that_against_the_catenary(seed):
+def test_error_of_the_parabola_is_that_against_the_catenary(seed, claim):
     rng = np.random.default_rng((2031, seed))
     scene = hanging(rng, steep=1.2 * (seed % 2))
-    check(scene.compile().modes(NUMBER), of_catenary(scene, number=NUMBER))
+    modes, exact = scene.compile().modes(NUMBER), of_catenary(scene, number=NUMBER)
+    check(modes, exact)
+    claim((np.abs(modes.catenary - exact) / modes.model_error).max())
 
 
 @pytest.mark.parametrize(("sag", "off"), [(0.06, 0.018), (0.12, 0.072)])
