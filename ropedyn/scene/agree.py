@@ -158,8 +158,8 @@ def _check_tension(scene: Described) -> None:
     if scene.sags:
         raise SceneError(
             "gravity of an inclined rope with axial_stiffness both curves it and changes its "
-            "tension along it, which is not solved together: say sag=False or "
-            f"own_weight=False, got {scene.gravity}"
+            "tension along it, which is not solved together: say sag=False, or own_weight=False "
+            f"and read Modes.catenary, which knows both, got {scene.gravity}"
         )
     if scene.rope.lay_slope:
         raise SceneError(
