@@ -278,7 +278,7 @@ def _with_attached(
     scene: Scene, stations: Real, terms: Iterable[tuple[int, NodeTerm]], chain: Chain
 ) -> Chain:
     """Return the chain with the structures that its stations carry."""
-    carried = [(at, one) for at, _, one in carried_by(terms)]
+    carried = [(at, one) for at, _, one in carried_by(scene, terms)]
     if not carried:
         return chain
     row = np.zeros((len(carried), 2, len(scene.coordinates)))
@@ -301,10 +301,15 @@ def _with_attached(
 
 
 def carried_by(
-    terms: Iterable[tuple[int, NodeTerm]],
+    scene: Scene, terms: Iterable[tuple[int, NodeTerm]]
 ) -> list[tuple[int, NodeTerm, Attached]]:
     """Return the structures of what stands at stations, in the order that the chain has them in."""
-    carried = [(at, term, one) for at, term in terms for one in term.attached]
+    carried = [
+        (at, term, one)
+        for at, term in terms
+        for one in term.attached
+        if next(iter(one.displacement)) in scene.coordinates
+    ]
     carried.sort(key=lambda one: one[0])  # stable: those of a station in the order of the parts
     return carried
 

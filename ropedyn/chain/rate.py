@@ -505,9 +505,9 @@ def _of_part(places: Places, i: int, of: NodeRate) -> Rate:
         if c in of.hinge:
             others = sum(t.hinge.get(c, 0.0) for s, t in terms if s == station and t is not term)
             rate.hinge[station, k] = of.hinge[c] * _share(term.hinge[c], others) ** 2
-    if of.attached is not None:
-        own = [t is term for _, t, _ in carried_by(terms)].index(True)
-        _set_attached(rate, places, own, of.attached)
+    for k, (_, carries, one) in enumerate(carried_by(scene, terms)):
+        if carries is term and of.attached:
+            _set_attached(rate, places, k, of.attached[term.attached.index(one)])
     return rate
 
 

@@ -42,11 +42,20 @@ def tip_of(model: Compiled, point: Point) -> Tip:
     # the chain has them by their place, those of one place as the scene has them
     order = sorted(range(len(nodes)), key=nodes.__getitem__)
     rank = order.index(int(point[1]))
-    structure = int(np.flatnonzero(chain.attached_kind == kind)[rank])
+    each = 2 if "y" in model.coordinates else 1  # that along z is the first
+    structure = int(np.flatnonzero(chain.attached_kind == kind)[each * rank])
     node = chain.feet[structure]
     moved = chain.attached_row[structure].any(axis=0)
     root = [(c, float(model.x[node])) for c, moves in zip(model.coordinates, moved) if moves]
     return Tip(structure, root)
+
+
+def _tip(model: Compiled, structure: int, factor: Complex) -> Complex:
+    """Ask the core in the plane of z, where a structure may have another number."""
+    plane, kinds = model.chain.planes[0], model.chain.attached_kind
+    assert kinds is not None
+    numbers = np.arange(len(kinds))[plane.carried]
+    return _core.tip(plane.chain, int(numbers.searchsorted(structure)), factor)
 
 
 def root_rows(model: Compiled, tip: Tip, factor: Complex) -> Complex:
@@ -54,7 +63,7 @@ def root_rows(model: Compiled, tip: Tip, factor: Complex) -> Complex:
     assert model.chain.attached_row is not None
     kept = [model.coordinates.index(c) for c, _ in tip.root]
     row = model.chain.attached_row[tip.structure][:, kept]
-    return np.einsum("klf,lc->kcf", _core.tip(model.chain, tip.structure, factor), row)
+    return np.einsum("klf,lc->kcf", _tip(model, tip.structure, factor), row)
 
 
 def row_slope(
@@ -67,7 +76,7 @@ def row_slope(
     assert model.chain.attached_row is not None
     k, root = tip_of(model, point)
     kept = [model.coordinates.index(c) for c, _ in root]
-    own, by_stiffness, by_ratio = _core.tip(model.chain, k, factor)
+    own, by_stiffness, by_ratio = _tip(model, k, factor)
     change = by_stiffness * (weights.stiffer[k] - weights.heavier[k] + stiffer)
     change = change + by_ratio * weights.damped[k]
     moved = np.einsum("lf,lc->cf", own, weights.moves[k][:, kept])

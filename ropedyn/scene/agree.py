@@ -89,11 +89,16 @@ def _check_planes(scene: Described) -> None:
     for name in ACROSS if scene.planes == "z" else ():
         _refuse_pair(scene, f"rope.{name}", getattr(scene.rope, name))
     for i, part in enumerate(scene.parts if scene.planes == "both" else ()):
-        if isinstance(part, BrokenWire):
-            raise SceneError(
-                f'planes must be "z" where there is a broken wire, as parts[{i}]: its tip is '
-                'known in one plane, got "both"'
-            )
+        if isinstance(part, BrokenWire) and scene.rope.torsional_stiffness is not None:
+            _refuse_turned(part, f"parts[{i}].angle")
+
+
+def _refuse_turned(wire: BrokenWire, name: str) -> None:
+    if wire.term().attached[1].displacement["alpha"]:
+        raise SceneError(
+            f"{name} must be 0 [rad] in both planes of a rope that twists, got {wire.angle!r}: "
+            "twist would tie the planes there"
+        )
 
 
 def _refuse_pair(scene: Described, name: str, value: Any) -> None:

@@ -291,7 +291,7 @@ SLACK = {
             "gravity": rd.Gravity(inclination=0.4),
             "tension": 1e4,
         },
-        "say sag=False or own_weight=False",
+        "say sag=False, or own_weight=False",
     ),
     "lay": (
         {

@@ -43,6 +43,7 @@ PART = {
     "length": (0, 0, 1),
     "diameter": (0, 0, 1),
     "radius": (0, 0, 1),
+    "angle": (0, 0, 0),
     "youngs_modulus": (1, 0, -1),
     "density of a wire": (0, 1, -3),
 }

@@ -1,5 +1,7 @@
 """Scenes in both planes: what they have, what is refused by name, what is left without."""
 
+import dataclasses
+
 import pytest
 
 import ropedyn as rd
@@ -83,15 +85,15 @@ def test_what_needs_the_second_plane_says_so(case):
         ACROSS[case]()
 
 
-REFUSED = {
-    "a broken wire": {"parts": [rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3)]},
-}
-
-
-@pytest.mark.parametrize("case", REFUSED)
-def test_what_knows_one_plane_alone_is_refused_by_name(case):
-    with pytest.raises(rd.SceneError, match=f'planes must be "z".*{case}'):
-        in_both(**REFUSED[case])
+def test_a_wire_beside_the_axis_ties_twist_to_both_planes():
+    twists = ROPE.replace(torsional_stiffness=1.0, polar_inertia=1e-6)
+    wire = rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3, angle=0.3)
+    with pytest.raises(rd.SceneError, match=r"parts\[0\].angle must be 0 .* got 0.3"):
+        in_both(rope=twists, parts=[wire])
+    assert "broken wire" in in_both(parts=[wire]).effects
+    assert (
+        "broken wire" in in_both(rope=twists, parts=[dataclasses.replace(wire, angle=0.0)]).effects
+    )
 
 
 @pytest.mark.parametrize("planes", ["y", "Z", "", "all"])

@@ -18,11 +18,12 @@ FIRST_ROOT = 1.8751040687119611  # The first root of 1 + cos x cosh x = 0: of a 
 class BrokenWire(Part):
     """The free end of a broken wire: a small cantilever that the rope carries.
 
-    A solid round Euler-Bernoulli beam parallel to the axis, towards larger x. Its root moves
-    transversely by z + radius alpha and turns by beta, where the scene has these. In undamped modes
-    it is free of damping, as the rope is; dampings of the rope do not act on it, but Rayleigh
-    damping on its mass. The motion of its tip is the response ("wire", 0) of `Model.frf` for the
-    first one among the parts, and so on.
+    A solid round Euler-Bernoulli beam parallel to the axis, towards larger x. Its root stands at y
+    = radius cos(angle), z = radius sin(angle) of the section, moves by z + radius cos(angle) alpha
+    and turns by beta, where the scene has these; in both planes it moves by y - radius sin(angle)
+    alpha and turns by gamma as well. In undamped modes it is free of damping, as the rope is;
+    dampings of the rope do not act on it, but Rayleigh damping on its mass. The motion of its tip
+    along z is the response ("wire", 0) of `Model.frf` for the first one among the parts, and so on.
 
     Parameters
     ----------
@@ -31,7 +32,10 @@ class BrokenWire(Part):
     length, diameter : float
         Of the wire [m].
     radius : float
-        Of its root from the axis, sideways [m]: how far it moves with twist; may be negative.
+        Of its root from the axis [m]: how far it moves with twist; may be negative.
+    angle : float, optional
+        Round the rope, from the direction of y to that of z [rad]. In both planes of a rope that
+        twists it must be 0: elsewhere twist would tie the planes.
     youngs_modulus : float, optional
         [N/m^2].
     density : float, optional
@@ -62,6 +66,7 @@ class BrokenWire(Part):
     diameter: float = number("m", sign="positive")
     _: KW_ONLY
     radius: float = number("m")
+    angle: float = number("rad", default=0.0)
     youngs_modulus: float = number("N/m^2", sign="positive", default=2.06e11)
     density: float = number("kg/m^3", sign="positive", default=7850.0)
     damping_ratio: float = number(sign="nonnegative", default=0.0)
@@ -95,21 +100,34 @@ class BrokenWire(Part):
         return ("z",)
 
     def term(self) -> NodeTerm:
-        """Return the structure, which moves with z and alpha and turns with beta."""
-        moves = {"z": 1.0, "alpha": self.radius}
-        return NodeTerm(attached=[Attached(self.kind, moves, {"beta": 1.0}, self._values)])
+        """Return the structure in each plane, which moves with it and alpha and turns with it."""
+        along, across = self._lever
+        up = Attached(self.kind, {"z": 1.0, "alpha": along}, {"beta": 1.0}, self._values)
+        side = Attached(self.kind, {"y": 1.0, "alpha": across}, {"gamma": 1.0}, self._values)
+        return NodeTerm(attached=[up, side])
+
+    @property
+    def _lever(self) -> tuple[float, float]:
+        """How far twist moves the root along z and along y [m]."""
+        return self.radius * math.cos(self.angle), -self.radius * math.sin(self.angle)
 
     def rates(self) -> dict[str, NodeRate]:
         """Return those of a mass as density d^2 l and a stiffness as E d^4/l^3."""
+        cos, sin = math.cos(self.angle), math.sin(self.angle)
+        up = self._rates("beta", cos, -self.radius * sin)
+        side = self._rates("gamma", -sin, -self.radius * cos)
+        return {name: NodeRate(attached=[up[name], side[name]]) for name in up}
+
+    def _rates(self, turns: str, lever: float, turned: float) -> dict[str, AttachedRate]:
+        """Return those of one plane, with those of its lever by the radius and by the angle."""
         length, d = self.length, self.diameter
-        attached = {
-            "length": AttachedRate(
-                size=1 / length, stiffness=-4 / length, rotation={"beta": 1 / length}
-            ),
+        longer = {turns: 1 / length}
+        return {
+            "length": AttachedRate(size=1 / length, stiffness=-4 / length, rotation=longer),
             "diameter": AttachedRate(size=2 / d, stiffness=2 / d),
-            "radius": AttachedRate(displacement={"alpha": 1.0}),
+            "radius": AttachedRate(displacement={"alpha": lever}),
+            "angle": AttachedRate(displacement={"alpha": turned}),
             "youngs_modulus": AttachedRate(stiffness=1 / self.youngs_modulus),
             "density": AttachedRate(mass=1 / self.density),
             "damping_ratio": AttachedRate(damping=1.0),
         }
-        return {name: NodeRate(attached=rate) for name, rate in attached.items()}

@@ -14,7 +14,10 @@ NOTHING: Mapping[str, float] = MappingProxyType({})
 
 
 class Attached(NamedTuple):
-    """A structure condensed to its foot at a node; see csrc/chain/attached.h."""
+    """A structure condensed to its foot at a node; see csrc/chain/attached.h.
+
+    Its foot moves with a plane, which is named first: where that is absent, so is the structure.
+    """
 
     kind: str  # in `chain.ATTACHED`
     displacement: Mapping[str, float]  # of the foot per motion of the node
@@ -67,15 +70,15 @@ class NodeRate(NamedTuple):
     stiffness: Mapping[str, float] = NOTHING
     hinge: Mapping[str, float] = NOTHING  # of the stiffness across a hinge
     damping: Mapping[str, float] = NOTHING
-    attached: AttachedRate | None = None  # of the structure that it carries
+    attached: Sequence[AttachedRate] = ()  # of the structures that it carries, in their order
 
     def acts(self, coordinates: Collection[str]) -> bool:
         """Whether it changes anything where there are only some coordinates."""
         moved = [self.mass, self.stiffness, self.hinge, self.damping]
-        if self.attached is not None:
-            if self.attached._replace(displacement={}, rotation={}) != AttachedRate():
+        for one in self.attached:
+            if one._replace(displacement={}, rotation={}) != AttachedRate():
                 return True
-            moved += [self.attached.displacement, self.attached.rotation]
+            moved += [one.displacement, one.rotation]
         return any(c in coordinates for values in moved for c in values)
 
 

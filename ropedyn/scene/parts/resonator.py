@@ -94,4 +94,4 @@ class Resonator(Part):
             "frequency": AttachedRate(stiffness=2 / self.frequency),
             "damping_ratio": AttachedRate(damping=1.0),
         }
-        return {name: NodeRate(attached=rate) for name, rate in attached.items()}
+        return {name: NodeRate(attached=[rate]) for name, rate in attached.items()}
