@@ -69,6 +69,7 @@ DESCRIBED = {
         "length": (0.02, "m", "mm"),
         "diameter": (5e-4, "m", "um"),
         "radius": (2e-3, "m", "mm"),
+        "angle": (0.3, "rad", "deg"),
         "youngs_modulus": (2e11, "N/m^2", "GPa"),
         "density": (7800.0, "kg/m^3", "g/cm^3"),
         "damping_ratio": (0.01, "", "percent"),
