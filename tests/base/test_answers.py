@@ -82,7 +82,7 @@ ANSWERS = {
     ),
     "history": HISTORY,
     "spectrum": HISTORY.spectrum(),
-    "ring-down": HISTORY.damping([20.0], since=0.0),
+    "ring-down": HISTORY.ring_down([20.0], since=0.0),
     "measured": HISTORY.frf(),
     "measured with coherence": HISTORY.frf(segments=3),
     "no resonances": MODEL.frf([1.0, 2.0], drive=("z", 0.31)).peaks()[0],

@@ -376,7 +376,7 @@ def test_fit_is_saved_pickled_and_read(tmp_path):
     FIT.save(tmp_path / "fit.nc")
     for again in (rd.load(tmp_path / "fit.nc"), pickle.loads(pickle.dumps(FIT))):
         assert dict(again.value) == dict(FIT.value)
-        assert str(again.peaks) == str(FIT.peaks)
+        assert str(again.peaks()) == str(FIT.peaks())
         assert again.notes == FIT.notes
     assert pickle.loads(pickle.dumps(FIT)).interval().tolist() == FIT.interval().tolist()
     again = rd.load(tmp_path / "fit.nc")

@@ -199,9 +199,17 @@ class Fit(Identified):
         """
         return draw(self, "plot", ax, of=of)
 
-    @property
     def peaks(self) -> Table:
-        """One row for each peak."""
+        """Return one row for each peak: which mode it is, and how far off.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
+        >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
+        >>> fit.peaks().column("mode")
+        (1, 2, 3)
+        """
         columns: dict[str, Any] = {
             "measured [Hz]": self.measured,
             "std [Hz]": self.measured_std,

@@ -25,14 +25,14 @@ NEXT = 3
 def report_of(fit: Fit) -> str:
     """Return the report of a fit."""
     if fit.status == "refused":
-        return "\n".join(["refused", *fit.notes, "", str(fit.peaks)])
+        return "\n".join(["refused", *fit.notes, "", str(fit.peaks())])
     lines = [*_given_ends(fit), *_numbers(fit), *_budget(fit)]
     lines += [f"  ends {one}" for one in fit.said_of_ends if fit.ends == "unknown"]
     lines += _orders(fit)
     lines.append(f"  fit: {_goodness(fit)}; rms residual {100 * fit.rms:.3g} %")
     if fit.cross_checks:
         lines.append(f"  cross-checks: {', '.join(fit.cross_checks)}")
-    lines += ["", str(fit.table()), "", str(fit.peaks)]
+    lines += ["", str(fit.table()), "", str(fit.peaks())]
     lines += [f"assumed: {'; '.join(fit.assumed)}"] if fit.assumed else []
     notes = (*fit.left_out, *fit.notes[fit.status == "ambiguous" :])
     return "\n".join([*lines, *(f"note: {note}" for note in notes)])
