@@ -13,8 +13,9 @@ from ...base.computed import Lazy, Read, lazy
 from ...base.drawing import draw
 from ...base.named import Named
 from ...base.table import Table, numbers
+from ...scene.scene import Scene
 from .candidates import Candidates
-from .known import Identified, Known
+from .known import KEPT_SCENE, Identified, Known
 from .other_ends import Remarks
 from .report import report_of, sheet_of
 
@@ -28,6 +29,8 @@ class Fit(Identified):
 
     Attributes
     ----------
+    scene : Scene
+        With the numbers that were found.
     unknown : tuple of str
         Paths of the numbers.
     status : {"trusted", "ambiguous", "refused"}
@@ -115,6 +118,7 @@ class Fit(Identified):
     seed: int
     cost: Cost
     candidates: Lazy[Candidates] = lazy(Candidates)
+    scene: Lazy[Scene] = lazy(Scene, KEPT_SCENE)
     bounds: Lazy[Real] = lazy(np.ndarray, axes("level", "unknown", "bound"))
     remarks: Lazy[Remarks] = lazy(Remarks)
     details: tuple[dict[str, Any], ...] = ()
