@@ -148,6 +148,7 @@ class Answer(Frozen):
     """
 
     kinds: ClassVar[dict[str, type[Answer]]] = {}
+    said: ClassVar[tuple[str, ...]] = ()  # Attributes that the report tells beside the table.
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -220,6 +221,26 @@ class Answer(Frozen):
         [25.0, 50.0]
         """
         return self.table().to_dataframe()
+
+    def to_json(self) -> str:
+        """Return the table, and all that the report says beside it, as JSON.
+
+        Returns
+        -------
+        str
+            Of the schema "ropedyn.table/1", which ``ropedyn schema table`` prints.
+
+        Examples
+        --------
+        >>> import json
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=90.0).compile()
+        >>> sheet = json.loads(rd.compare(model, rd.Peaks([15.3, 30.0])).to_json())
+        >>> sheet["rows"][1]["mode"], sheet["details"]["status"]
+        (2, 'ambiguous')
+        """
+        details = {name: getattr(self, name) for name in self.said}
+        return self.table().to_json({k: v for k, v in details.items() if v is not None})
 
     def to_xarray(self) -> xr.Dataset:
         """Return every array with its axes and units.
@@ -413,8 +434,8 @@ def leaves(thing: Any, absent: dict[str, Any]) -> Iterator[tuple[Field[Any], Any
                 known[item] = item.metadata["sheet"](known[item])
         except (SceneError, SolveError) as error:
             absent[item.name] = [type(error).__name__, str(error)]
-    for item in known:
-        value = known[item] if "sheet" in item.metadata else getattr(thing, item.name)
+    for item, kept in known.items():
+        value = kept if "sheet" in item.metadata else getattr(thing, item.name)
         if "nested" in item.metadata:
             yield from leaves(value, absent)
         else:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import warnings
+from functools import partial
 from typing import Any
 
 from ..base.errors import IdentifyWarning
@@ -12,6 +14,7 @@ from ..base.unit import QUANTITIES
 from ..curves.measured import Measured
 from ..curves.peaks import Peaks
 from ..experiment.compare.compare import compare
+from ..experiment.identify.fit import Fit
 from ..experiment.identify.identify import ENDS, identify
 from ..scene.scene import Scene
 from . import text
@@ -155,12 +158,19 @@ def _identify(options: argparse.Namespace) -> int:
             element=options.element,
             **given,
         )
-    # what limits the report stands in it, and beside a table alone
-    if options.json or options.csv:
+    # what limits the report stands in it, and in JSON; beside a table alone
+    if options.csv:
         for note in found.notes:
             print(f"ropedyn: {note}", file=sys.stderr)
-    show(options, found, found.report())
+    show(options, found, found.report(), partial(_sheet, found))
     return 0 if whole else STATUS[found.status]
+
+
+def _sheet(found: Any) -> str:
+    """Return the table as JSON; beside that of a fit of peaks all that `tension` would print."""
+    if not isinstance(found, Fit):
+        return str(found.to_json())
+    return found.table().to_json(json.loads(found.to_json()))
 
 
 IDENTIFY = Command(

@@ -105,6 +105,18 @@ class Comparison(Answer):
     array([ 2., -5.])
     """
 
+    said = (
+        "status",
+        "reason",
+        "factor",
+        "response",
+        "frac",
+        "mac",
+        "band",
+        "notes",
+        "hint",
+    )
+
     order: Integer = field(metadata=axes("peak"))
     measured: Real = field(metadata=axes("peak", unit="Hz"))
     calculated: Real = field(metadata=axes("peak", unit="Hz"))

@@ -134,7 +134,7 @@ def _goodness(fit: Fit) -> str:
 def sheet_of(fit: Fit) -> str:
     """Return a fit as JSON of `SCHEMA`."""
     refused = fit.status == "refused"
-    clusters = [] if refused else [_cluster(one) for one in fit.candidates]
+    clusters = [] if refused else [_cluster(one, fit.value[0]) for one in fit.candidates]
     sheet = {
         "schema": SCHEMA,
         "status": fit.status,
@@ -178,7 +178,7 @@ def _quantity(fit: Fit, path: str) -> dict[str, Any]:
     }
 
 
-def _cluster(one: Candidate) -> dict[str, Any]:
+def _cluster(one: Candidate, first: float) -> dict[str, Any]:
     bounds = one.interval()
     paths = one.value.paths or ()
     return {
@@ -186,6 +186,7 @@ def _cluster(one: Candidate) -> dict[str, Any]:
         "values": {p: _finite(one.value[p]) for p in paths},
         "interval95": {p: [_finite(x) for x in bounds[p].tolist()] for p in paths},
         "orders": one.orders.tolist(),
+        "times": _finite(one.value[0] / first),
     }
 
 
@@ -199,6 +200,7 @@ def _peak(fit: Fit, i: int) -> dict[str, Any]:
         "order": order or None,
         "p_order": min(sum(alike), 1.0) if fit.candidates else None,
         "calculated": _finite(fit.calculated[i]),
+        "residual": _finite(fit.residual[i]),
         "residual_std": _finite(fit.residual[i] / std) if std > 0 else None,
     }
 

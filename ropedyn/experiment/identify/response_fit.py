@@ -68,6 +68,8 @@ class ResponseFit(Identified):
     identified
     """
 
+    said = ("lines", "freedom", "chi_square", "notes")
+
     unknown: tuple[str, ...]
     value: Named = field(metadata=axes("unknown"))
     std: Named = field(metadata=axes("unknown"))

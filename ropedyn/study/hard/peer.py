@@ -65,7 +65,9 @@ def _eig(model: Model, case: HardCase) -> Complex:
     """Return the rates nearest to the known ones: the linearised problem, dense."""
     from scipy.linalg import eigvals
 
-    K, C, M = (of().toarray() for of in (model.stiffness, model.damping, model.mass))
+    K, C, M = (
+        of().toarray() for of in (model.stiffness_matrix, model.damping_matrix, model.mass_matrix)
+    )
     unit, none = np.eye(len(K)), np.zeros_like(K)
     rates = eigvals(np.block([[none, unit], [-K, -C]]), np.block([[unit, none], [none, M]]))
     rates = rates[np.isfinite(rates)]
