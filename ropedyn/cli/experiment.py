@@ -32,9 +32,10 @@ from .options import (
     switch,
 )
 
+PEAKS_ARE = "comma list [Hz], or a file or - with one a line, and their std"
 MEASURED = OptionGroup(
     (
-        option("--peaks", "measured peaks, comma list [Hz]", text.numbers),
+        option("--peaks", f"measured peaks, {PEAKS_ARE}", text.peaks, metavar="PEAKS|FILE|-"),
         option("--measured", "measured response, universal file or CSV", metavar="FILE"),
     ),
     required=True,
@@ -82,6 +83,12 @@ ORDER = option(
 BAND = option("--band", "that FRAC is taken over at each line [Hz]", type=float)
 
 
+def peaks_of(options: argparse.Namespace, **also: Any) -> Peaks:
+    """Return the peaks that are given; what options say beside a file replaces what it says."""
+    also = {"std": options.std, **also}
+    return Peaks(**options.peaks | {name: one for name, one in also.items() if one is not None})
+
+
 def _read(options: argparse.Namespace) -> Measured:
     """Read the file."""
     given = {
@@ -109,7 +116,7 @@ def _compare(options: argparse.Namespace) -> None:
     measured: Any
     if options.peaks is not None:
         refuse(options, (*OF_FILE, BAND), "--measured")
-        measured = Peaks(options.peaks, std=options.std, order=options.order)
+        measured = peaks_of(options, order=options.order)
     else:
         refuse(options, (STD_OF_COMPARED, ORDER), "--peaks")
         measured = _read(options)
@@ -141,7 +148,7 @@ def _identify(options: argparse.Namespace) -> int:
     whole = options.peaks is None and options.only_peaks is None
     if options.peaks is not None:
         refuse(options, (*OF_FILE, ONLY_PEAKS), "--measured")
-        measured = Peaks(options.peaks, std=options.std)
+        measured = peaks_of(options)
     else:
         refuse(options, (STD_OF_FITTED,), "--peaks")
         measured = _read(options)
