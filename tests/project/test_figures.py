@@ -10,7 +10,7 @@ from matplotlib.testing.compare import compare_images
 ROOT = Path(__file__).parent.parent.parent
 PAGES = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
 SAME = 0.1
-"""Root mean square of 0 to 255: drawn twice it is 0, another colour of six short ticks makes 0.8."""
+"""Root mean square of 0 to 255: drawn twice it is 0, other colours of six short ticks make 0.8."""
 
 
 @pytest.fixture(scope="module")
