@@ -24,6 +24,7 @@ import scene as rope
 from scipy.sparse.linalg import eigsh, spsolve
 
 import ropedyn as rd
+from ropedyn.plot.figure import PURPLE
 
 BEAM = rope.scene()
 STAY = rd.Scene(
@@ -82,6 +83,7 @@ def deflection_by_spsolve(elements: int) -> np.ndarray:
     return spsolve(K, force)[[at]]
 
 
+STORED = report.RESULTS / "accuracy.json"
 CASES = (
     Case("a clamped rope", BEAM, rd.ask.modes(10), {}, "eigsh", modes_by_eigsh),
     Case(
@@ -212,7 +214,7 @@ def milliseconds(seconds: float) -> str:
     return "-" if np.isnan(seconds) else report.digits(1e3 * seconds)
 
 
-def draw(stored: dict[str, Any]) -> None:
+def draw(stored: dict[str, Any], path: Path) -> None:
     from matplotlib.figure import Figure
 
     count = len(stored["cases"])
@@ -224,7 +226,7 @@ def draw(stored: dict[str, Any]) -> None:
         ax.set_title(f"{case['name']}: {ax.get_title()}", fontsize="small")
         if case["others"]:
             _, time, error = zip(*case["others"])
-            ax.plot(time, error, "x--", color="C4", label=f"{case['peer']}, finite elements")
+            ax.plot(time, error, "x--", color=PURPLE, label=f"{case['peer']}, finite elements")
             ax.legend(fontsize="small")
     for ax in axes[count:]:
         ax.remove()
@@ -232,13 +234,13 @@ def draw(stored: dict[str, Any]) -> None:
         "What accuracy costs: largest relative error over processor time from the scene to the "
         f"answer, ropedyn's ways and others'.\n{stored['machine']}, {stored['date']}"
     )
-    figure.savefig(report.RESULTS / "accuracy.png", dpi=65)
+    figure.savefig(path, dpi=65)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draw", action="store_true", help="write from the stored numbers")
-    file = Path(report.RESULTS) / "accuracy.json"
+    file = STORED
     if not parser.parse_args().draw:
         stored = {
             "machine": report.machine(),
@@ -248,7 +250,7 @@ def main() -> None:
         file.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
     stored = json.loads(file.read_text(encoding="utf-8"))
     report.write("accuracy.md", page(stored))
-    draw(stored)
+    draw(stored, report.RESULTS / "accuracy.png")
 
 
 if __name__ == "__main__":

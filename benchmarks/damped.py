@@ -75,7 +75,10 @@ class Assembled:
     """The companion pencil of M s^2 + C s + K in units of 1/omega; rates by each of SciPy's."""
 
     def __init__(self, model: rd.Model) -> None:
-        M, C, K = (part.tocsc() for part in (model.mass(), model.damping(), model.stiffness()))
+        M, C, K = (
+            part.tocsc()
+            for part in (model.mass_matrix(), model.damping_matrix(), model.stiffness_matrix())
+        )
         scale = sp.diags(1 / np.sqrt(K.diagonal()))
         M, C, K = (scale @ part @ scale for part in (M, C, K))
         self.omega = 1 / math.sqrt(abs(M).max())

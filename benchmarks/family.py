@@ -103,7 +103,7 @@ def banded(values: np.ndarray) -> Callable[[], np.ndarray]:
     matrices = []
     for T, B in values:
         model = scene_of(T, B).compile(elements=ELEMENTS)
-        matrices.append((model.stiffness().tocsc(), model.mass().tocsc()))
+        matrices.append((model.stiffness_matrix().tocsc(), model.mass_matrix().tocsc()))
 
     def solve() -> np.ndarray:
         each = [eigsh(K, NUMBER, M, sigma=0, return_eigenvectors=False) for K, M in matrices]

@@ -110,7 +110,9 @@ def sweep(model: rd.Model, frequency: np.ndarray) -> Any:
 
 def measure(kind: str, twist: bool, elements: int) -> Row:
     model = scene.model(kind, elements, twist=twist)
-    assembled = Assembled(model.stiffness(), model.damping(), model.mass(), middle_of(model))
+    assembled = Assembled(
+        model.stiffness_matrix(), model.damping_matrix(), model.mass_matrix(), middle_of(model)
+    )
     few = FREQUENCY[:: 1000 // fewer(elements)]
     calls: dict[str, Callable[[], Any]] = {
         "sweep": partial(sweep, model, FREQUENCY),

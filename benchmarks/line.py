@@ -31,7 +31,9 @@ def beside(model: rd.Model, count: int, rate: float) -> tuple[float, float, floa
     """Return medians of the seconds of lsim over ours, of ours, and the difference."""
     t = np.arange(count) / rate
     force = np.sin(2 * np.pi * 37.0 * t)
-    M, C, K = (one().toarray() for one in (model.mass, model.damping, model.stiffness))
+    M, C, K = (
+        one().toarray() for one in (model.mass_matrix, model.damping_matrix, model.stiffness_matrix)
+    )
     n, at = len(M), 2 * (round(0.25 * (len(model.x) - 1)) - 1)
     solved = np.linalg.solve(M, np.hstack([K, C, np.eye(n)[:, [at]]]))
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-solved[:, : 2 * n]]])

@@ -103,7 +103,7 @@ def measure(kind: str, elements: int) -> Row:
     calls: dict[str, Callable[[], Any]] = {"sweep": partial(sweep, model)}
     others = [name for name in MOST if name != "sweep" and elements <= MOST[name]]
     if others:
-        assembled = Assembled(model.stiffness(), model.mass())
+        assembled = Assembled(model.stiffness_matrix(), model.mass_matrix())
         calls |= {name: getattr(assembled, name) for name in others}
     modes = sweep(model)
     found = {"sweep": modes.frequency} | {name: calls[name]() for name in others}

@@ -33,7 +33,9 @@ SAMPLES = 64
 
 def first_order() -> tuple[np.ndarray, np.ndarray, int]:
     """Return A, b of y' = A y + b cos(omega t) and the unknown that is watched."""
-    M, C, K = (m.toarray() for m in (MODEL.mass(), MODEL.damping(), MODEL.stiffness()))
+    M, C, K = (
+        m.toarray() for m in (MODEL.mass_matrix(), MODEL.damping_matrix(), MODEL.stiffness_matrix())
+    )
     n, width = len(M), len(MODEL.coordinates)
     at = width * (round(DRIVE[1] / rd.study2015.ELEMENT_LENGTH) - 1) + MODEL.coordinates.index("z")
     inverse = np.linalg.inv(M)

@@ -42,7 +42,9 @@ FORCE = np.sin(2 * np.pi * FREQUENCY * TIME)
 
 def matrices() -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Return mass, damping, stiffness and the unknown that is pushed and watched."""
-    parts = [m.toarray() for m in (MODEL.mass(), MODEL.damping(), MODEL.stiffness())]
+    parts = [
+        m.toarray() for m in (MODEL.mass_matrix(), MODEL.damping_matrix(), MODEL.stiffness_matrix())
+    ]
     return *parts, 2 * (AT - 1)
 
 

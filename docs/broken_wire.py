@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ropedyn as rd
+from ropedyn.plot.figure import BLACK, RED
 
 LENGTH, X = 1.35, 0.50625  # the third mass of eight elements [m]
 ROPE = rd.Rope(
@@ -60,11 +61,11 @@ def main(path: Path) -> None:
         own = [rd.BrokenWire(X, at, DIAMETER, radius=RADIUS).frequency for at in LENGTHS]
         ax.plot(own, 1e3 * LENGTHS, "w--", linewidth=0.8)
         for frequency, family in zip(modes.frequency, modes.family):
-            color = "r" if family == "torsional" else "k"
+            color = RED if family == "torsional" else BLACK
             ax.plot(
                 [frequency] * 2,
                 [1.0, 1.03],
-                color,
+                color=color,
                 transform=ax.get_xaxis_transform(),
                 clip_on=False,
             )

@@ -19,6 +19,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, NullLocator
 
 import ropedyn as rd
+from ropedyn.plot.figure import PALETTE
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "tests" / "support"))
@@ -107,15 +108,16 @@ def page() -> str:
     return "\n".join(parts)
 
 
-def main() -> None:
-    """Write the page, and draw both sides of the figure."""
-    (HERE / "measured.md").write_text(page(), encoding="utf-8")
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2))
+def main(path: Path) -> None:
+    """Draw both sides of the figure."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    for ax in (left, right):
+        ax.set_prop_cycle(color=PALETTE)
     draw_tubes(left)
     draw_rope(right)
-    figure.tight_layout()
-    figure.savefig(HERE / "measured.png", dpi=110)
+    figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":
-    main()
+    (HERE / "measured.md").write_text(page(), encoding="utf-8")
+    main(HERE / "measured.png")

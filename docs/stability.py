@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ropedyn as rd
+from ropedyn.plot.figure import BLACK, BLUE
 
 TENSION = 1000.0  # mean [N]
 SCENE = rd.Scene(
@@ -32,12 +33,12 @@ AMPLITUDE = np.linspace(0.0, 500.0, 101)  # of the tension [N]
 LEVELS = np.linspace(20.0, 500.0, 25)  # where boundaries are computed [N]
 
 
-def mark_boundaries(ax: plt.Axes, scene: rd.Scene, style: str) -> None:
+def mark_boundaries(ax: plt.Axes, scene: rd.Scene, color: str) -> None:
     """Draw a dot wherever stability changes."""
     stability = scene.compile().stability_map(FREQUENCY[[0, -1]], [0.0])
     for amplitude in LEVELS:
         edge = stability.boundary(float(amplitude)).frequency
-        ax.plot(edge, np.full_like(edge, amplitude), style, markersize=1.5)
+        ax.plot(edge, np.full_like(edge, amplitude), ".", color=color, markersize=1.5)
 
 
 def main(path: Path) -> None:
@@ -47,8 +48,8 @@ def main(path: Path) -> None:
     stability.plot(ax)
     for line in list(ax.lines):
         line.remove()
-    mark_boundaries(ax, SCENE.replace(damping=None), "C0.")
-    mark_boundaries(ax, SCENE, "k.")
+    mark_boundaries(ax, SCENE.replace(damping=None), BLUE)
+    mark_boundaries(ax, SCENE, BLACK)
     ax.set_title("growth under a pulsating tension; blue: where it begins without damping", pad=32)
     figure.savefig(path, dpi=100)
 

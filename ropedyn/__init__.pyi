@@ -3,13 +3,11 @@ from .axis.axis import Axis
 from .base.answer import Answer, Cost, load
 from .base.errors import IdentifyWarning, RopedynError, SceneError, SolveError, UnitWarning
 from .base.table import Table
-from .chain.mesh_choice import Choice
 from .curves.measured import Measured
 from .curves.peaks import Peaks
 from .curves.record.record import Record
 from .curves.record.spectrum import RecordSpectrum
 from .curves.resonance import Resonances
-from .eigen.animation import Animation
 from .eigen.damage import Damage
 from .eigen.damped.damped_modes import DampedModes
 from .eigen.modes import Modes
@@ -74,7 +72,6 @@ __all__ = [
     "FRF",
     "AccuracyCost",
     "AddedMass",
-    "Animation",
     "Answer",
     "Axis",
     "BendingTest",
@@ -82,7 +79,6 @@ __all__ = [
     "Branches",
     "BrokenWire",
     "Chirp",
-    "Choice",
     "Comparison",
     "Construction",
     "Cost",

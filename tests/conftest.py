@@ -154,7 +154,11 @@ def pinned_rigid_chain(elements, wave, tension=0.0):
 
 def dense(model):
     """Return stiffness, mass and damping matrix as arrays."""
-    return model.stiffness().toarray(), model.mass().toarray(), model.damping().toarray()
+    return (
+        model.stiffness_matrix().toarray(),
+        model.mass_matrix().toarray(),
+        model.damping_matrix().toarray(),
+    )
 
 
 def free(model):

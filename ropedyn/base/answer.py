@@ -6,10 +6,12 @@ import hashlib
 import io
 import json
 import os
-from collections.abc import Iterable, Iterator, Mapping
+import zipfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import Field, dataclass, fields
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -112,6 +114,11 @@ def freeze(thing: Any) -> None:
 TRANSIENT = {"transient": True}  # Metadata of a field that no file keeps: it has a default.
 
 
+def kept_as(sheet: Callable[[Any], Any], read: Callable[[Any], Any]) -> dict[str, Any]:
+    """Return the metadata of a field that a file keeps as what JSON knows."""
+    return {"sheet": sheet, "read": read}
+
+
 class Frozen:
     """Base of dataclasses whose arrays are read-only: made, unpickled or copied."""
 
@@ -141,6 +148,7 @@ class Answer(Frozen):
     """
 
     kinds: ClassVar[dict[str, type[Answer]]] = {}
+    said: ClassVar[tuple[str, ...]] = ()  # Attributes that the report tells beside the table.
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -214,6 +222,26 @@ class Answer(Frozen):
         """
         return self.table().to_dataframe()
 
+    def to_json(self) -> str:
+        """Return the table, and all that the report says beside it, as JSON.
+
+        Returns
+        -------
+        str
+            Of the schema "ropedyn.table/1", which ``ropedyn schema table`` prints.
+
+        Examples
+        --------
+        >>> import json
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=90.0).compile()
+        >>> sheet = json.loads(rd.compare(model, rd.Peaks([15.3, 30.0])).to_json())
+        >>> sheet["rows"][1]["mode"], sheet["details"]["status"]
+        (2, 'ambiguous')
+        """
+        details = {name: getattr(self, name) for name in self.said}
+        return self.table().to_json({k: v for k, v in details.items() if v is not None})
+
     def to_xarray(self) -> xr.Dataset:
         """Return every array with its axes and units.
 
@@ -282,15 +310,20 @@ class Answer(Frozen):
         array([25., 50.])
         """
         check.path(path)
-        extra.netcdf()
-        dataset = self.to_xarray()
-        # netCDF knows no complex numbers: real and imaginary parts along a last axis
-        for name in [n for n, v in dataset.data_vars.items() if np.iscomplexobj(v)]:
-            value = dataset[name]
-            parts = np.stack([value.values.real, value.values.imag], axis=-1)
-            dataset[name] = ((*value.dims, "re_im"), parts, value.attrs)
-        content = _netcdf(dataset)
-        write_bytes(path, content + _seal(content))
+        write_bytes(path, sealed(self))
+
+
+def sealed(answer: Answer) -> bytes:
+    """Return the content of the file of an answer."""
+    extra.netcdf()
+    dataset = answer.to_xarray()
+    # netCDF knows no complex numbers: real and imaginary parts along a last axis
+    for name in [n for n, v in dataset.data_vars.items() if np.iscomplexobj(v)]:
+        value = dataset[name]
+        parts = np.stack([value.values.real, value.values.imag], axis=-1)
+        dataset[name] = ((*value.dims, "re_im"), parts, value.attrs)
+    content = _netcdf(dataset)
+    return content + _seal(content)
 
 
 def _seal(content: bytes) -> bytes:
@@ -314,7 +347,7 @@ def named(name: str) -> object:
 
 
 def load(path: str | os.PathLike[str]) -> Any:
-    """Read what the library saved: an answer, or a scene.
+    """Read what the library saved: an answer, a scene, or a sweep over scenes.
 
     Parameters
     ----------
@@ -323,7 +356,7 @@ def load(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Answer or Scene
+    Answer, Scene or Sweep
         Of the kind that was saved.
 
     Raises
@@ -350,10 +383,18 @@ def load(path: str | os.PathLike[str]) -> Any:
     if file.suffix.lower() == ".toml":
         scene: Any = named("Scene")
         return scene.load(file)
-    xarray = extra.netcdf()
     if not file.is_file():
+        extra.netcdf()
         raise FileNotFoundError(f"path must be a file that Answer.save wrote, got {str(file)!r}")
-    whole = file.read_bytes()
+    if zipfile.is_zipfile(file):
+        many: Any = named("Sweep")
+        return many.load(file)
+    return unsealed(file.read_bytes(), file)
+
+
+def unsealed(whole: bytes, file: Path) -> Any:
+    """Return the answer that a file, or a part of it, holds."""
+    xarray = extra.netcdf()
     content = whole[: -len(_seal(b""))]
     if whole != content + _seal(content):
         raise SceneError(
@@ -389,10 +430,12 @@ def leaves(thing: Any, absent: dict[str, Any]) -> Iterator[tuple[Field[Any], Any
     for item in (item for item in fields(thing) if "transient" not in item.metadata):
         try:
             known[item] = getattr(thing, item.name)  # what that costs is part of the cost
+            if "sheet" in item.metadata:
+                known[item] = item.metadata["sheet"](known[item])
         except (SceneError, SolveError) as error:
             absent[item.name] = [type(error).__name__, str(error)]
-    for item in known:
-        value = getattr(thing, item.name)
+    for item, kept in known.items():
+        value = kept if "sheet" in item.metadata else getattr(thing, item.name)
         if "nested" in item.metadata:
             yield from leaves(value, absent)
         else:
@@ -409,6 +452,9 @@ def _rebuilt(kind: type[Any], dataset: Any) -> Any:
             arguments[item.name] = partial(_refused, *absent[item.name])
         elif "nested" in item.metadata:
             arguments[item.name] = _rebuilt(item.metadata["nested"], dataset)
+        elif "read" in item.metadata:
+            value = json.loads(dataset.attrs[PREFIX + item.name])
+            arguments[item.name] = item.metadata["read"](value)
         elif "axes" not in item.metadata:
             value = json.loads(dataset.attrs[PREFIX + item.name])
             arguments[item.name] = Cost(**value) if item.name == "cost" else _frozen(value)

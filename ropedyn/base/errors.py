@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from typing import Any
 
 
@@ -87,3 +89,15 @@ class UnitWarning(UserWarning):
 
 for _error in (RopedynError, SceneError, SolveError, IdentifyWarning, UnitWarning):
     _error.__module__ = "ropedyn"  # where users find them, and what a traceback says
+
+
+def warn(message: str, category: type[Warning]) -> None:
+    """Warn at the line of whoever called the package, through however many of its functions."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and _is_ours(frame.f_globals):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, category, stacklevel=level)
+
+
+def _is_ours(names: dict[str, Any]) -> bool:
+    return str(names.get("__name__", "")).partition(".")[0] == "ropedyn"

@@ -55,6 +55,17 @@ def _number(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def _sheet(value: Any) -> Any:
+    """Return what JSON has for something that a report says."""
+    if isinstance(value, Table):
+        return value._records()
+    if isinstance(value, Mapping):
+        return {str(name): _sheet(one) for name, one in value.items()}
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    return [_sheet(one) for one in value] if isinstance(value, (list, tuple)) else _number(value)
+
+
 @dataclass(frozen=True, repr=False)
 class Table:
     """Named columns with their units, in rows.
@@ -198,20 +209,20 @@ class Table:
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def to_csv(self) -> str:
-        """Return the table as comma-separated text with every digit.
+        """Return the table as comma-separated text with every digit, under the keys of its JSON.
 
         Examples
         --------
         >>> import ropedyn as rd
         >>> table = rd.Table.of("two ropes", {"rope": ("thin", "thick"), "mass [kg]": (0.1, 0.25)})
         >>> print(table.to_csv(), end="")
-        rope,mass [kg]
+        rope,mass
         thin,0.1
         thick,0.25
         """
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(self.columns)
+        writer.writerow(one.key for one in self.keys)
         writer.writerows(self.rows)
         return text.getvalue()
 
@@ -248,8 +259,13 @@ class Table:
             ]
         return tuple(found)
 
-    def to_json(self) -> str:
+    def to_json(self, details: Mapping[str, Any] | None = None) -> str:
         """Return the table as JSON of the schema "ropedyn.table/1": `ropedyn schema table`.
+
+        Parameters
+        ----------
+        details : mapping, optional
+            What is said beside the table: numbers, texts, arrays, tables, and lists of these.
 
         Examples
         --------
@@ -260,13 +276,19 @@ class Table:
         ('ropedyn.table/1', 'Hz', 130.0)
         """
         keys = self.keys
-        document = {
+        document: dict[str, Any] = {
             "schema": "ropedyn.table/1",
             "title": self.title,
             "columns": [one._asdict() for one in keys],
-            "rows": [dict(zip((one.key for one in keys), map(_number, row))) for row in self.rows],
+            "rows": self._records(),
         }
+        if details:
+            document["details"] = {name: _sheet(value) for name, value in details.items()}
         return json.dumps(document, indent=1, allow_nan=False)
+
+    def _records(self) -> list[dict[str, Any]]:
+        names = [one.key for one in self.keys]
+        return [dict(zip(names, map(_number, row))) for row in self.rows]
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a pandas data frame.

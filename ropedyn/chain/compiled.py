@@ -224,7 +224,7 @@ class Compiled(Frozen):
         chain = self.chain
         return NodeTerms(chain.mass, chain.stiffness, chain.held, chain.term_of)
 
-    def stiffness(self) -> sp.csr_array:
+    def stiffness_matrix(self) -> sp.csr_array:
         """Assemble the stiffness matrix, tension included.
 
         Returns
@@ -236,14 +236,14 @@ class Compiled(Frozen):
         --------
         >>> import ropedyn as rd
         >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile(elements=3, element="rigid")
-        >>> print(model.stiffness().toarray().round(6))
+        >>> print(model.stiffness_matrix().toarray().round(6))
         [[ 600. -300.]
          [-300.  600.]]
         """
         self._refuse_matrices()
         return matrices.stiffness(self.chain)
 
-    def mass(self) -> sp.csr_array:
+    def mass_matrix(self) -> sp.csr_array:
         """Assemble the mass matrix.
 
         Returns
@@ -255,14 +255,14 @@ class Compiled(Frozen):
         --------
         >>> import ropedyn as rd
         >>> model = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0).compile(elements=3, element="rigid")
-        >>> print(model.mass().toarray().round(6))
+        >>> print(model.mass_matrix().toarray().round(6))
         [[0.1 0. ]
          [0.  0.1]]
         """
         self._refuse_matrices()
         return matrices.mass(self.chain)
 
-    def damping(self) -> sp.csr_array:
+    def damping_matrix(self) -> sp.csr_array:
         """Assemble the damping matrix.
 
         Returns
@@ -280,7 +280,8 @@ class Compiled(Frozen):
         --------
         >>> import ropedyn as rd
         >>> scene = rd.Scene(rd.Rope(1.0, 0.3), tension=100.0, damping=rd.ViscousDamping(6.0))
-        >>> print(scene.compile(elements=3, element="rigid").damping().toarray().round(6))
+        >>> model = scene.compile(elements=3, element="rigid")
+        >>> print(model.damping_matrix().toarray().round(6))
         [[2. 0.]
          [0. 2.]]
         """

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import warnings
+from functools import partial
 from typing import Any
 
 from ..base.errors import IdentifyWarning
@@ -12,6 +14,7 @@ from ..base.unit import QUANTITIES
 from ..curves.measured import Measured
 from ..curves.peaks import Peaks
 from ..experiment.compare.compare import compare
+from ..experiment.identify.fit import Fit
 from ..experiment.identify.identify import ENDS, identify
 from ..scene.scene import Scene
 from . import text
@@ -29,9 +32,10 @@ from .options import (
     switch,
 )
 
+PEAKS_ARE = "comma list [Hz], or a file or - with one a line, and their std"
 MEASURED = OptionGroup(
     (
-        option("--peaks", "measured peaks, comma list [Hz]", text.numbers),
+        option("--peaks", f"measured peaks, {PEAKS_ARE}", text.peaks, metavar="PEAKS|FILE|-"),
         option("--measured", "measured response, universal file or CSV", metavar="FILE"),
     ),
     required=True,
@@ -79,6 +83,12 @@ ORDER = option(
 BAND = option("--band", "that FRAC is taken over at each line [Hz]", type=float)
 
 
+def peaks_of(options: argparse.Namespace, **also: Any) -> Peaks:
+    """Return the peaks that are given; what options say beside a file replaces what it says."""
+    also = {"std": options.std, **also}
+    return Peaks(**options.peaks | {name: one for name, one in also.items() if one is not None})
+
+
 def _read(options: argparse.Namespace) -> Measured:
     """Read the file."""
     given = {
@@ -106,7 +116,7 @@ def _compare(options: argparse.Namespace) -> None:
     measured: Any
     if options.peaks is not None:
         refuse(options, (*OF_FILE, BAND), "--measured")
-        measured = Peaks(options.peaks, std=options.std, order=options.order)
+        measured = peaks_of(options, order=options.order)
     else:
         refuse(options, (STD_OF_COMPARED, ORDER), "--peaks")
         measured = _read(options)
@@ -138,7 +148,7 @@ def _identify(options: argparse.Namespace) -> int:
     whole = options.peaks is None and options.only_peaks is None
     if options.peaks is not None:
         refuse(options, (*OF_FILE, ONLY_PEAKS), "--measured")
-        measured = Peaks(options.peaks, std=options.std)
+        measured = peaks_of(options)
     else:
         refuse(options, (STD_OF_FITTED,), "--peaks")
         measured = _read(options)
@@ -155,12 +165,19 @@ def _identify(options: argparse.Namespace) -> int:
             element=options.element,
             **given,
         )
-    # what limits the report stands in it, and beside a table alone
-    if options.json or options.csv:
+    # what limits the report stands in it, and in JSON; beside a table alone
+    if options.csv:
         for note in found.notes:
             print(f"ropedyn: {note}", file=sys.stderr)
-    show(options, found, found.report())
+    show(options, found, found.report(), partial(_sheet, found))
     return 0 if whole else STATUS[found.status]
+
+
+def _sheet(found: Any) -> str:
+    """Return the table as JSON; beside that of a fit of peaks all that `tension` would print."""
+    if not isinstance(found, Fit):
+        return str(found.to_json())
+    return found.table().to_json(json.loads(found.to_json()))
 
 
 IDENTIFY = Command(

@@ -62,7 +62,8 @@ SCHEMA = Command(
     _schema,
     "the JSON schema of what --json prints",
     (),
-    "The JSON schema of what --json prints: of tables, or of what `tension` and `identify` find.",
+    "The JSON schema of what --json prints: of tables, or of what `tension` finds, which is among "
+    "the details of the table of `identify`.",
     elements=(),
     subject=(
         option("name", "of the schema (%(default)s)", nargs="?", choices=SCHEMAS, default="table"),

@@ -136,18 +136,21 @@ def compiled(options: argparse.Namespace) -> Model:
 
 def shown_fit(options: argparse.Namespace, fit: Fit, peaks: Peaks | None = None) -> int:
     """Print what was identified, as the JSON of its schema where that is asked."""
-    if options.json:
-        print(fit.to_json())
-        draw(options, fit)
-    else:
-        report = fit.report() if peaks is None else f"{peaks.table()}\n\n{fit.report()}"
-        show(options, fit, report)
+    show(options, fit, fit.report() if peaks is None else f"{peaks.table()}\n\n{fit.report()}")
     return STATUS[fit.status]
 
 
-def show(options: argparse.Namespace, answer: Answer, report: str | None = None) -> None:
+def show(
+    options: argparse.Namespace,
+    answer: Answer,
+    report: str | None = None,
+    sheet: Callable[[], str] | None = None,
+) -> None:
     """Print an answer, as its report or its table, and draw it where that is asked."""
-    show_table(options, answer.table(), report)
+    if options.json:
+        print(answer.to_json() if sheet is None else sheet())
+    else:
+        show_table(options, answer.table(), report)
     draw(options, answer)
 
 

@@ -9,12 +9,11 @@ from typing import Any
 from ..base.computed import changed
 from ..base.errors import IdentifyWarning, SceneError
 from ..base.unit import MOTIONS
-from ..curves.peaks import Peaks
 from ..curves.record.record import Record
 from ..experiment.identify.identify import ENDS, identify, peaks_of_record, said_of
 from ..scene.scene import Scene
 from . import text
-from .experiment import STD_OF_FITTED
+from .experiment import PEAKS_ARE, STD_OF_FITTED, peaks_of
 from .options import Command, Option, OptionGroup, option, refuse, repeated, shown_fit
 
 COORDINATE = "z"
@@ -44,7 +43,7 @@ OF_RECORD = (
 """What only a record takes."""
 
 RECORD = Option("record", {"help": "CSV or universal file", "nargs": "?", "metavar": "RECORD"})
-PEAKS = option("--peaks", "peaks in place of a record, comma list [Hz]", text.numbers)
+PEAKS = option("--peaks", f"in place of a record, {PEAKS_ARE}", text.peaks, metavar="PEAKS|FILE|-")
 WIDE = ("tension", "bending_stiffness")
 """What is sought of a rope that bends."""
 
@@ -52,10 +51,7 @@ WIDE = ("tension", "bending_stiffness")
 def _tension(options: argparse.Namespace) -> int:
     scene = Scene.load(options.scene)
     record = _record(options)
-    if record is None:
-        peaks = Peaks(options.peaks, std=options.std)
-    else:
-        peaks = peaks_of_record(record, options.below)
+    peaks = peaks_of(options) if record is None else peaks_of_record(record, options.below)
     bends = "beta" in scene.coordinates
     unknown = options.unknown or list(WIDE[: 1 + bends])
     with warnings.catch_warnings():

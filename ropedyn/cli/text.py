@@ -6,6 +6,7 @@ Each takes the text and the name of its option, which its error says.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -31,7 +32,7 @@ FORCES: dict[str, tuple[type[Description], tuple[str, ...]]] = {
 """Each kind of force, and its numbers in the order in which they follow the word."""
 
 NO_OPTIONS = {"scene", "run", "json", "csv", "file", "record", "name"}
-RENAMED = {"number": "modes", "frequencies": "frequency"}
+RENAMED = {"number": "modes", "frequencies": "frequency", "positions": "position"}
 """Arguments that are options of another name."""
 ORDERS = {"auto": "auto", "search": None}  # Orders that are words.
 
@@ -65,7 +66,17 @@ def in_options(message: str, options: Mapping[str, Any]) -> str:
     message = re.sub(r"Tension\(([^,()]+), ([^()]*)\)", _table, message)
     message = re.sub(r"\b(?P<name>\w+)=\"?(?P<value>[\w./^]+)\"?", value, message)
     message = re.sub(r"(?<=\bleave )(?P<name>\w+)(?= out\b)", option, message)
-    return re.sub(r"\A(?:measured\.)?(?P<name>\w+)(?:\[[^]]*\])*(?=:? )", option, message)
+    message = re.sub(r"\{(?:[^{}:,]+: [^{}:,]+(?:, )?)+\}", _pairs, message)
+    message = message.replace(', or "X", "Y" or "Z"', "").replace("got None", "got none")
+    return re.sub(
+        r"(?:\A|(?<=; ))(?:measured\.)?(?P<name>\w+)(?:\[[^]]*\])*(?=:? )", option, message
+    )
+
+
+def _pairs(found: re.Match[str]) -> str:
+    """Return a dictionary as options have it: 1=0.5."""
+    each = found[0].strip("{}").split(", ")
+    return ", ".join("=".join(side.strip("\"'") for side in one.split(": ")) for one in each)
 
 
 def _table(found: re.Match[str]) -> str:
@@ -81,6 +92,50 @@ def words(text: str, option: str) -> list[str]:
 def numbers(text: str, option: str) -> list[float]:
     """Return the numbers of a comma list."""
     return _listed(text, float, f"{option} must be a comma list of numbers")
+
+
+def peaks(text: str, option: str) -> dict[str, list[Any]]:
+    """Return what is said of peaks: a comma list, a file of them, or ``-`` for standard input.
+
+    A file has a comma list, or a line for each peak: its frequency and maybe its standard deviation
+    [Hz], or what the first line names, as ``--csv`` of other commands prints it.
+    """
+    if text != "-" and not Path(text).is_file():
+        kinds = f"{option} must be a comma list of numbers, a file or - for the standard input"
+        return {"frequency": _listed(text, float, kinds)}
+    lines = sys.stdin.read() if text == "-" else Path(text).read_text(encoding="utf-8-sig")
+    rows = [re.split(r"[\s,;]+", line.strip()) for line in lines.splitlines()]
+    rows = [row for row in rows if row[0] and not row[0].startswith("#")]
+    if len(rows) == 1 and len(rows[0]) > 2:
+        rows = [[one] for one in rows[0]]
+    named = bool(rows) and not _is_number(rows[0][0])
+    names = rows.pop(0) if named else ["frequency", "std"][: len(rows[0]) if rows else 0]
+    if "frequency" not in names or {len(row) for row in rows} != {len(names)}:
+        raise SceneError(
+            f"{option} must be a file with the frequency and maybe the std of a peak [Hz] in each "
+            f"line, or columns of these names, got {shown(text)}"
+        )
+    known = {"frequency": float, "std": float, "order": int}
+    return {
+        name: [_entry(one, known[name], option) for one in column]
+        for name, column in zip(names, zip(*rows))
+        if name in known
+    }
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _entry(text: str, kind: Callable[[str], _Number], option: str) -> _Number:
+    try:
+        return kind(text)
+    except ValueError:
+        raise SceneError(f"{option} must be a file of numbers, got {shown(text)} in it") from None
 
 
 def whole_numbers(text: str, option: str) -> list[int]:

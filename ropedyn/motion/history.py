@@ -266,7 +266,7 @@ class History(Answer):
         """
         return amplitude(self.time, self.value, frequency, last)
 
-    def damping(
+    def ring_down(
         self,
         near: ArrayLike | None = None,
         *,
@@ -319,7 +319,7 @@ class History(Answer):
         >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
         >>> model, time = scene.compile(elements=64), np.linspace(0.0, 4.0, 2001)
         >>> history = model.transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
-        >>> print(history.damping().damping_ratio.round(6))
+        >>> print(history.ring_down().damping_ratio.round(6))
         [0.01]
         """
         over_time = self.time, self.value, self.force

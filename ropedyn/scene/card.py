@@ -5,13 +5,12 @@ from __future__ import annotations
 import html
 import math
 import textwrap
-import warnings
 from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..base.check import COORDINATES
-from ..base.errors import UnitWarning
+from ..base.errors import UnitWarning, warn
 from .end import End
 from .rope import Rope, own_number
 from .tension import Tension
@@ -100,10 +99,10 @@ def doubts(scene: Described) -> tuple[str, ...]:
     return (*_of_size(scene.rope), *_of_bending(scene.rope), *_of_tension(scene))
 
 
-def warn_of(scene: Described, stacklevel: int) -> None:
-    """Warn of them at the line that asked, so many calls up."""
+def warn_of(scene: Described) -> None:
+    """Warn of them."""
     for doubt in doubts(scene):
-        warnings.warn(doubt, UnitWarning, stacklevel=stacklevel + 1)
+        warn(doubt, UnitWarning)
 
 
 def _of_size(rope: Rope) -> tuple[str, ...]:

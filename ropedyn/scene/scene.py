@@ -327,5 +327,5 @@ NodeForce, Stop, AddedMass, LocalChange
         True
         """
         scene = toml.load(Scene, path)
-        warn_of(scene, 2)
+        warn_of(scene)
         return scene

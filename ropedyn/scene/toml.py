@@ -43,9 +43,6 @@ def save(scene: Any, path: str | os.PathLike[str]) -> None:
     import tomli_w
 
     check.path(path)
-    for i, one in enumerate(scene.parts):
-        if isinstance(one, NodeForce):
-            raise SceneError(f"parts[{i}].law cannot be written to a file, got {one.law!r}")
     write_bytes(path, tomli_w.dumps(document(scene)).encode())
 
 
@@ -56,6 +53,9 @@ def built(scene: type[_Scene], document: Mapping[str, Any]) -> _Scene:
 
 def document(scene: Any) -> dict[str, Any]:
     """Return the keys of a scene in a file."""
+    for i, one in enumerate(scene.parts):
+        if isinstance(one, NodeForce):
+            raise SceneError(f"parts[{i}].law cannot be written to a file, got {one.law!r}")
     rope = _plain(scene.rope)
     if scene.rope.axis is None:
         rope.pop("natural", None)

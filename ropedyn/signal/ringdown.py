@@ -49,7 +49,7 @@ class RingDown(Answer):
     >>> scene = rd.Scene(rd.Rope(1.0, 0.1), tension=10.0, damping=rd.ModalDamping(0.01))
     >>> time = np.linspace(0.0, 4.0, 2001)
     >>> history = scene.compile().transient(time, start={("z", 0.5): 0.4}, response=("z", 0.5))
-    >>> decay = history.damping(5.0)
+    >>> decay = history.ring_down(5.0)
     >>> decay.frequency.round(4), decay.damping_ratio.round(4)
     (array([5.]), array([0.01]))
     """
@@ -99,7 +99,7 @@ def ring_down(
     since: float | None,
 ) -> RingDown:
     """Estimate modes of free motion, of one of the responses (responses, t)."""
-    # see `History.damping`; motion is free since the forces (drives, t) last changed
+    # see `History.ring_down`; motion is free since the forces (drives, t) last changed
     check.count(response, "response", least=0, most=len(value) - 1)
     step = time_step(time)
     first = _first_free(time, force, since)

@@ -95,6 +95,8 @@ class AccuracyCost(Answer):
     4 Take
     """
 
+    said = ("verdict",)
+
     question: str
     reference: str
     element: NDArray[np.str_] = field(metadata=axes("row"))

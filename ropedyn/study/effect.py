@@ -95,6 +95,8 @@ class EffectCost(Answer):
     ((2,), 2, 2)
     """
 
+    said = ("verdict",)
+
     question: str
     way: str
     elements: int

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
@@ -15,9 +16,11 @@ import numpy as np
 from ..base import check
 from ..base.answer import Answer, Cost
 from ..base.array import Real
+from ..base.atomic import write_bytes
 from ..base.computed import waited
 from ..base.progress import Progress, reporter
 from ..base.table import Table, numbers
+from .archive import packed, unpacked
 from .outcome import Errand, Failure, Outcome, outcome_of
 
 if TYPE_CHECKING:
@@ -123,6 +126,59 @@ class Sweep(Sequence[Result | None], Generic[Result]):
         [1, 2]
         """
         return self.table().to_dataframe()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the sweep, every result whole, as one file that `load` reads.
+
+        Answers are kept as `Answer.save` keeps them, scenes as `Scene.save` does; numbers, texts,
+        arrays, and lists, tuples and dictionaries of all these as they are. Of what failed kind,
+        words and notes are kept; kinds that Python and ropedyn do not know become `RopedynError`.
+
+        Raises
+        ------
+        SceneError
+            If a result is something else.
+        ImportError
+            If xarray or h5netcdf is missing, of sweeps that hold answers.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> string = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0)
+        >>> found = rd.sweep(lambda scene: scene.compile().modes(2), [string, "no scene"])
+        >>> with TemporaryDirectory() as folder:
+        ...     found.save(Path(folder, "sweep.zip"))
+        ...     again = rd.load(Path(folder, "sweep.zip"))
+        >>> again[0].frequency.round(9), again.failed
+        (array([25., 50.]), {1: AttributeError("'str' object has no attribute 'compile'")})
+        """
+        check.path(path)
+        write_bytes(path, packed(vars(self)))
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Sweep[Any]:
+        """Read a sweep that was saved; `ropedyn.load` does so too.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        SceneError
+            If it holds no sweep.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import ropedyn as rd
+        >>> with TemporaryDirectory() as folder:
+        ...     rd.sweep(abs, [-1, 2]).save(Path(folder, "sweep.zip"))
+        ...     list(rd.Sweep.load(Path(folder, "sweep.zip")))
+        [1, 2]
+        """
+        return Sweep(**unpacked(check.path(path)))
 
 
 @waited

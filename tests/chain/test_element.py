@@ -57,7 +57,7 @@ def test_flexibility_agrees_with_the_closed_form(case, element, claim):
 
 @pytest.mark.parametrize("case", REFERENCE["cases"], ids=lambda case: f"H={case['H']}")
 def test_stiffness_of_a_cantilever_agrees_with_the_closed_form(case):
-    K = literal(case["H"]).stiffness().toarray()
+    K = literal(case["H"]).stiffness_matrix().toarray()
     # relative to sqrt(K_ii K_jj): G scaled to a unit diagonal has a condition of about 14, so
     # its inverse keeps 14 times a few eps; K12 = 0 exactly
     size = np.sqrt(np.diag(K))
@@ -67,7 +67,7 @@ def test_stiffness_of_a_cantilever_agrees_with_the_closed_form(case):
 def test_difference_element_is_the_inverse_flexibility_between_both_ends():
     # F = I: K_e = [[1, -1], [-1, 1]] x G^-1, so even its own end bears no lever
     model = literal(0.01, element="difference", ends=("free", "free"))
-    K = model.stiffness().toarray()
+    K = model.stiffness_matrix().toarray()
     corner = REFERENCE["cases"][0]["K"]
     size = np.sqrt(np.diag(K))
     expected = np.kron([[1, -1], [-1, 1]], corner) / np.outer(size, size)
@@ -128,7 +128,7 @@ def test_assembled_element_is_the_beam_with_a_string_in_parallel(tension):
     expected[np.ix_([0, 2], [0, 2])] += t * np.array([[1, -1], [-1, 1]])
     # the inverse of the flexibility loses its condition of 14; and the string's rows cancel
     scale = np.sqrt(np.diag(np.abs(expected)))
-    K = model.stiffness().toarray()
+    K = model.stiffness_matrix().toarray()
     np.testing.assert_allclose(
         K / np.outer(scale, scale), expected / np.outer(scale, scale), 0, 1e-14
     )
@@ -141,7 +141,7 @@ def test_triple_assembles_to_the_stiffness(tension):
     inverse = np.linalg.inv(G)
     expected = np.block([[Q + F.T @ inverse @ F, -F.T @ inverse], [-inverse @ F, inverse]])
     scale = np.sqrt(np.abs(np.diag(expected)))
-    K = model.stiffness().toarray()
+    K = model.stiffness_matrix().toarray()
     # G scaled to a unit diagonal: its condition is the factor
     unit = np.sqrt(np.diag(G))
     condition = np.linalg.cond(G / np.outer(unit, unit))
@@ -189,7 +189,7 @@ def rigid_motion(kind):
     + [("difference", k) for k in ("x", "z", "alpha", "beta")],
 )
 def test_rigid_motion_costs_no_force(element, kind):
-    K = laid(element=element, ends=("free", "free")).stiffness().toarray()
+    K = laid(element=element, ends=("free", "free")).stiffness_matrix().toarray()
     u = rigid_motion(kind)
     # sums that cancel: a few eps of their terms
     assert (np.abs(K @ u) <= 20 * EPS * (np.abs(K) @ np.abs(u))).all()
@@ -197,7 +197,7 @@ def test_rigid_motion_costs_no_force(element, kind):
 
 def test_difference_kinematics_resists_a_rigid_rotation():
     # why refining the 2015 study's chain leads away (design.md, section 8)
-    K = laid(element="difference", ends=("free", "free")).stiffness().toarray()
+    K = laid(element="difference", ends=("free", "free")).stiffness_matrix().toarray()
     u = rigid_motion("rotation")
     assert u @ K @ u == pytest.approx(K[1, 1] * LENGTH**2, rel=1e-14)
 
@@ -205,7 +205,7 @@ def test_difference_kinematics_resists_a_rigid_rotation():
 @pytest.mark.parametrize("tension", [-20.0, 0.0, 700.0])
 def test_rigid_element_turned_half_about_z_is_itself(tension):
     # half a turn about z swaps the ends and the signs of x, alpha and beta
-    K = laid(tension=tension, ends=("free", "free")).stiffness().toarray()
+    K = laid(tension=tension, ends=("free", "free")).stiffness_matrix().toarray()
     turn = np.kron([[0, 1], [1, 0]], np.diag([-1, 1, -1, -1]))
     size = np.sqrt(np.abs(np.diag(K)))
     # the inverse of the scaled flexibility errs by its condition, some 20, times a few eps
@@ -215,7 +215,7 @@ def test_rigid_element_turned_half_about_z_is_itself(tension):
 
 
 def test_difference_element_swapped_is_itself():
-    K = laid(element="difference", ends=("free", "free")).stiffness().toarray()
+    K = laid(element="difference", ends=("free", "free")).stiffness_matrix().toarray()
     swap = np.kron([[0, 1], [1, 0]], np.eye(4))
     np.testing.assert_array_equal(swap @ K @ swap, K)
 
@@ -225,4 +225,4 @@ def test_critical_load_of_one_element_has_no_triple():
     model = one_element(length=1.0, bending_stiffness=1.0, tension=-3.0)
     with pytest.raises(rd.SolveError, match="critical"):
         _ = model.triples
-    assert model.stiffness()[0, 0] == pytest.approx(12.0 - 3.0, rel=1e-14)
+    assert model.stiffness_matrix()[0, 0] == pytest.approx(12.0 - 3.0, rel=1e-14)

@@ -92,4 +92,4 @@ def test_lumps_of_negative_mass_are_told_from_zeros_of_all_units(elements):
     model = rd.Scene(rope, tension=11e3, ends=("pinned", loose), planes="both").compile(
         elements=elements
     )
-    assert model.chain.spurious == (np.linalg.eigvalsh(model.mass().toarray()) < 0).sum()
+    assert model.chain.spurious == (np.linalg.eigvalsh(model.mass_matrix().toarray()) < 0).sum()

@@ -158,7 +158,7 @@ def test_free_rope_resists_no_rigid_motion(rope, tension, elements):
     assume(tension > 0 or len(rd.Scene(rope, tension=1.0).coordinates) > 1)
     scene = rd.Scene(rope, tension=tension, ends=(FREE, FREE))
     model = scene.compile(elements=elements, element="rigid")
-    K = model.stiffness().toarray()
+    K = model.stiffness_matrix().toarray()
     shape = (len(model.x), len(model.coordinates))
     for k, c in enumerate(model.coordinates):
         u = np.zeros(shape)
@@ -273,7 +273,7 @@ def static_rounding(model, displacement, points):
     """
     own = sum(abs(model.frf(0.0, drive=point).value[0, 0]) for point in points)
     floor = np.zeros(displacement.shape)
-    floor[free(model)] = np.sqrt(own / model.stiffness().diagonal())
+    floor[free(model)] = np.sqrt(own / model.stiffness_matrix().diagonal())
     return 1e-9 * (np.abs(displacement).max(axis=0) + floor)
 
 

@@ -567,4 +567,4 @@ def test_hanging_string_has_no_matrix_of_stiffness_damping(element):
         rope, tension=2e4, gravity=rd.Gravity(), damping=rd.StiffnessDamping(1e-3)
     ).compile(elements=8, element=element)
     with pytest.raises(rd.SceneError, match="damping must scale sections and tension alike"):
-        scene.damping()
+        scene.damping_matrix()

@@ -60,7 +60,7 @@ def test_pinned_column_of_any_elements_buckles_at_euler_s_load(elements, beyond)
     model = pinned(euler * (1 + beyond), elements)
     if elements == 1:
         # rotations without inertia: the lowest value of their stiffness changes sign
-        lowest = np.linalg.eigvalsh(model.stiffness().toarray())[0]
+        lowest = np.linalg.eigvalsh(model.stiffness_matrix().toarray())[0]
     else:
         lowest = model.modes(1, solver="lapack").eigenvalue[0]
     assert math.copysign(1, lowest) == -math.copysign(1, beyond)
@@ -103,7 +103,7 @@ def test_sections_are_damped_and_tension_is_not(elements, lay, tension):
     # |D| sums the magnitudes of one rounding each; an entry of D has a few
     assert (np.abs(lapack.value - sweep.value)[known] <= 8 * allowed[known]).all()
     with pytest.raises(rd.SceneError, match="damping must scale sections and tension alike"):
-        model.damping()
+        model.damping_matrix()
 
 
 def test_stiffness_damping_of_one_tensed_element_is_that_of_its_complex_stiffness():

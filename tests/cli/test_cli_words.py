@@ -1,10 +1,15 @@
 """What the command line says where something is wrong, and of how far it is."""
 
 import io
+import json
+import re
 import sys
 import time
+from pathlib import Path
 
+import numpy as np
 import pytest
+from dataset58 import function
 
 import ropedyn as rd
 from ropedyn.base import progress
@@ -69,3 +74,50 @@ def test_long_work_says_how_far_it_is_on_a_terminal_alone(monkeypatch):
     say(0.5)
     say(1.0)
     assert terminal.getvalue() == "\r 50%\r100%\n"
+
+
+PEAKS = {
+    "a line each": "24.1\n48.6\n73.6\n",
+    "with std": "# Hz\n24.1 0.1\n48.6 0.1\n\n73.6 0.1\n",
+    "named": "std,frequency,kind\n0.1,24.1,mode\n0.1,48.6,mode\n0.1,73.6,mode\n",
+    "a comma list": "24.1, 48.6, 73.6\n",
+}
+
+
+@pytest.mark.parametrize("way", ["file", "standard input"])
+@pytest.mark.parametrize("text", PEAKS)
+def test_peaks_come_from_a_file_or_the_standard_input(text, way, tmp_path, monkeypatch, capsys):
+    file = tmp_path / "peaks.txt"
+    file.write_text(PEAKS[text], encoding="utf-8")
+    monkeypatch.setattr(sys, "stdin", io.StringIO(PEAKS[text]))
+    rd.Scene(rd.Rope(2.0, 0.1), tension=900.0).save(tmp_path / "rope.toml")
+    given = "-" if way == "standard input" else str(file)
+    assert main(["compare", str(tmp_path / "rope.toml"), "--peaks", given, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert [row["measured"] for row in rows] == [24.1, 48.6, 73.6]
+    has_std = text in ("with std", "named")
+    assert [row.get("std") for row in rows] == [0.1 if has_std else None] * 3
+
+
+@pytest.mark.parametrize(
+    "text", ["", "1 2 3\n4 5 6\n", "24.1 0.1\n48.6\n", "a b\n1 2\n", "24.1\nx\n"]
+)
+def test_a_file_that_has_no_peaks_is_refused(text, tmp_path, capsys):
+    file = tmp_path / "peaks.txt"
+    file.write_text(text, encoding="utf-8")
+    rd.Scene(rd.Rope(2.0, 0.1), tension=900.0).save(tmp_path / "rope.toml")
+    assert main(["tension", str(tmp_path / "rope.toml"), "--peaks", str(file)]) == 2
+    assert capsys.readouterr().err.startswith("ropedyn: --peaks must be a file ")
+
+
+def test_all_questions_of_a_universal_file_are_asked_at_once(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    rd.Scene(rd.Rope(2.0, 0.1), tension=900.0).save("rope.toml")
+    lines = np.linspace(1.0, 9.0, 5)
+    text = function(np.ones(5, complex), kinds=(8, 13), response=(7, 3), drive=(9, 3), uneven=lines)
+    Path("run.uff").write_text(text, encoding="ascii")
+    assert main(["compare", "rope.toml", "--measured", "run.uff"]) == 2
+    said = capsys.readouterr().err
+    asked = ["--position must be .* such as 7=0.5, got none", "--coordinate must .* Z=z, got none"]
+    assert re.search("; ".join([*asked, "--unit must be stated, such as"]), said)
+    assert "{" not in said

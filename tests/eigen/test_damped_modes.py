@@ -30,7 +30,10 @@ def beam(*parts, **more):
 
 def quadratic(model):
     """All roots with Im s >= 0 of det(s^2 M + s C + K), by the companion pencil, lowest first."""
-    K, C, M = (part().toarray() for part in (model.stiffness, model.damping, model.mass))
+    K, C, M = (
+        part().toarray()
+        for part in (model.stiffness_matrix, model.damping_matrix, model.mass_matrix)
+    )
     unit = 1 / np.sqrt(K.diagonal())
     K, C, M = (unit[:, None] * part * unit for part in (K, C, M))
     omega = 1 / math.sqrt(np.abs(M).max())

@@ -171,7 +171,10 @@ def quadratic(scene, resonators, **kind):
     """Roots with Im s >= 0 of the matrices with resonators as more unknowns, lowest first."""
     model = scene.replace(parts=(*scene.parts, *(rd.PointMass(r.x, 0.0) for r in resonators)))
     model = model.compile(**kind)
-    K, C, M = (part().toarray() for part in (model.stiffness, model.damping, model.mass))
+    K, C, M = (
+        part().toarray()
+        for part in (model.stiffness_matrix, model.damping_matrix, model.mass_matrix)
+    )
     # unknowns node by node: inner nodes of clamped ropes
     n, width = len(K), len(model.coordinates)
     K, C, M = (np.pad(part, (0, len(resonators))) for part in (K, C, M))

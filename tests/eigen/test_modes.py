@@ -39,7 +39,7 @@ def test_share_of_an_effect_is_what_its_stiffness_stores(without):
     # the station of the spring stays, so that the nodes are the same
     bare = scene.replace(parts=[rd.PointMass(0.4, 0), *scene.parts]).without(without)
     K, share = (
-        m.compile(elements=10, element="rigid").stiffness().toarray() for m in (scene, bare)
+        m.compile(elements=10, element="rigid").stiffness_matrix().toarray() for m in (scene, bare)
     )
     modes = model.modes(8)
     u = modes.shape[:, 1:-1].reshape(8, -1)
@@ -347,7 +347,7 @@ def test_point_mass_of_nothing_changes_nothing():
 def test_negative_spring_on_a_massless_rotation_is_refused():
     # nothing could make K + s M positive definite: the rotation would leave at once
     n = 4
-    K = beam(n, rotary=False).compile(elements=n, element="rigid").stiffness().toarray()
+    K = beam(n, rotary=False).compile(elements=n, element="rigid").stiffness_matrix().toarray()
     too_much = -2.0 * K[3, 3]
     scene = beam(n, rotary=False, parts=[rd.Spring(LENGTH / 2, too_much, coordinate="beta")])
     with pytest.raises(rd.SolveError, match="without mass"):
@@ -456,7 +456,7 @@ def test_shape_survives_a_step_that_hits_its_frequency_to_the_last_bit():
     scene = rd.Scene(rd.Rope(1.0, 1.0, axial_stiffness=10.0), ends=("free", "clamped"), parts=parts)
     model = scene.compile(elements=7, element="rigid")
     modes = model.modes(5)
-    K, M = model.stiffness().toarray(), model.mass().toarray()
+    K, M = model.stiffness_matrix().toarray(), model.mass_matrix().toarray()
     free = model.chain.held[model.chain.term_of][:, 0] == 0
     for eigenvalue, shape in zip(modes.eigenvalue, modes.shape[:, free, 0]):
         off = K @ shape - eigenvalue * (M @ shape)

@@ -133,7 +133,7 @@ def test_rigid_chain_has_its_stored_frequencies(case):
 
 def residual(model, modes):
     """max |K u - lambda M u| over |K| |u| for each mode, from the assembled matrices."""
-    K, M = model.stiffness(), model.mass()
+    K, M = model.stiffness_matrix(), model.mass_matrix()
     free = (model.chain.held[model.chain.term_of] == 0).ravel()
     u = modes.shape.reshape(len(modes.frequency), -1)[:, free].T
     left = np.abs(K @ u - (M @ u) * modes.eigenvalue).max(axis=0)
@@ -177,7 +177,7 @@ def test_shapes_are_orthogonal_and_their_energies_whole(scene, element):
     modes = model.modes(10, solver="sweep")
     free = (model.chain.held[model.chain.term_of] == 0).ravel()
     u = modes.shape.reshape(10, -1)[:, free]
-    product = u @ (model.mass() @ u.T)
+    product = u @ (model.mass_matrix() @ u.T)
     size = np.sqrt(np.diag(product))
     # vectors err by eps lambda/gap and what they are carried along; squares of both are not seen
     np.testing.assert_allclose(product / np.outer(size, size), np.eye(10), atol=1e-10)

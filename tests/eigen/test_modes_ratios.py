@@ -237,7 +237,7 @@ def test_shapes_of_rigid_motion_are_straight_and_orthogonal(n, element):
     slope = (z[:, -1] - z[:, 0]) / LENGTH
     np.testing.assert_allclose(z, z[:, :1] + slope[:, None] * model.x, atol=1e-13)
     np.testing.assert_allclose(beta, np.repeat(slope[:, None], n + 1, axis=1), atol=1e-13)
-    mass = model.mass()
+    mass = model.mass_matrix()
     u = modes.shape.reshape(2, -1)
     assert abs(u[0] @ (mass @ u[1])) < 1e-13 * math.sqrt(modes.modal_mass.prod())
 

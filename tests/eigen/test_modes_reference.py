@@ -73,7 +73,9 @@ def test_elements_are_those_of_the_library(element, tension):
     scene = rd.Scene(LAID, tension=tension, parts=[rd.PointMass(0.3, 0.2)])
     model = scene.compile(elements=5, element=element)
     exact = ExactChain(model.chain)
-    values = np.linalg.eigvals(np.linalg.solve(model.mass().toarray(), model.stiffness().toarray()))
+    values = np.linalg.eigvals(
+        np.linalg.solve(model.mass_matrix().toarray(), model.stiffness_matrix().toarray())
+    )
     values = np.sort(values.real[values.real > 0])
     # dense eigenvalues are right to eps of the largest, which is 1e6 times the lowest
     for k, value in enumerate(values.tolist()):

@@ -371,7 +371,7 @@ def test_errors_are_those_of_mesh_and_rounding():
 def test_what_is_not_known_has_no_column():
     plain = rd.compare(STRING, [16.0])
     differences = ("difference [Hz]", "difference [%]")
-    assert plain.peaks.columns == (
+    assert plain.peaks().columns == (
         "measured [Hz]",
         "calculated [Hz]",
         "error [Hz]",
@@ -379,7 +379,7 @@ def test_what_is_not_known_has_no_column():
         "mode",
     )
     assert np.isnan(plain.score).all()
-    known = rd.compare(STRING, rd.Peaks([16.0], std=0.1)).peaks
+    known = rd.compare(STRING, rd.Peaks([16.0], std=0.1)).peaks()
     assert known.columns[1:2] == ("std [Hz]",)
     assert known.columns[-2:] == ("difference/std", "mode")
 

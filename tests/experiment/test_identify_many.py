@@ -83,7 +83,7 @@ def test_peaks_of_many_ropes_differ_in_number_orders_and_std():
     for fit, peaks in zip(fits, given):
         alone = fitted(scene(400.0, 5.0), peaks, BOTH)
         np.testing.assert_allclose(fit.value, alone.value, rtol=1e-9)
-        assert str(fit.peaks) == str(alone.peaks)
+        assert str(fit.peaks()) == str(alone.peaks())
 
 
 def test_a_slack_scene_guesses_the_tension_of_each_rope():

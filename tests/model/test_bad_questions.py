@@ -332,7 +332,7 @@ def test_more_modes_than_the_model_has_is_refused_with_how_many_there_are(number
         lambda model: model.count(below=50.0),
         lambda model: model.frf([10.0], drive=("z", 0.5)),
         lambda model: model.static({("z", 0.5): 1.0}),
-        lambda model: model.damping(),
+        lambda model: model.damping_matrix(),
     ],
     ids=["modes", "count", "frf", "static", "damping"],
 )

@@ -204,17 +204,17 @@ row(
     NOT_FINITE | NEGATIVE | ZERO,
 )
 row(
-    "History.damping",
+    "History.ring_down",
     "near",
-    lambda v: HISTORY.damping(v, since=0.0),
+    lambda v: HISTORY.ring_down(v, since=0.0),
     without(NOT_AN_ARRAY, "none"),
     BAD_ARRAY | {"zero": [0.0], "beyond": [99.6]},
 )
-row("History.damping", "response", lambda v: HISTORY.damping(response=v), *INDEX)
+row("History.ring_down", "response", lambda v: HISTORY.ring_down(response=v), *INDEX)
 row(
-    "History.damping",
+    "History.ring_down",
     "since",
-    lambda v: HISTORY.damping(since=v),
+    lambda v: HISTORY.ring_down(since=v),
     without(NOT_A_NUMBER, "none"),
     NOT_FINITE,
 )

@@ -83,7 +83,9 @@ def independent(model, stops, time):
     where = [(x[n // width], model.coordinates[n % width]) for n in free]
     z = [k for k, (_, c) in enumerate(where) if c == "z"]
     b = [k for k, (_, c) in enumerate(where) if c == "beta"]
-    K, M, C = (m().toarray() for m in (model.stiffness, model.mass, model.damping))
+    K, M, C = (
+        m().toarray() for m in (model.stiffness_matrix, model.mass_matrix, model.damping_matrix)
+    )
     K = K[np.ix_(z, z)] - K[np.ix_(z, b)] @ np.linalg.solve(K[np.ix_(b, b)], K[np.ix_(b, z)])
     mass, C, n = np.diag(M)[z], C[np.ix_(z, z)], len(z)
     place = np.array([where[k][0] for k in z])

@@ -216,7 +216,9 @@ def explicit(model, laws, at, force, time, order):
     """Explicit steps of the assembled equations to 1e-13, from break to break."""
     linear = [one for one in model.scene.parts if not one.term().laws]
     plain = model.scene.replace(parts=linear).compile(elements=len(model.x) - 1, element="rigid")
-    M, C, K = (m.toarray() for m in (plain.mass(), plain.damping(), plain.stiffness()))
+    M, C, K = (
+        m.toarray() for m in (plain.mass_matrix(), plain.damping_matrix(), plain.stiffness_matrix())
+    )
     n, inverse = len(M), np.linalg.inv(M)
 
     def rhs(t, y):

@@ -160,7 +160,10 @@ class Dense:
 
     def __init__(self, model):
         self.model = model
-        K, M, C = (one().toarray() for one in (model.stiffness, model.mass, model.damping))
+        K, M, C = (
+            one().toarray()
+            for one in (model.stiffness_matrix, model.mass_matrix, model.damping_matrix)
+        )
         moves = (np.abs(M).sum(axis=1) + np.abs(C).sum(axis=1)) > 0
         still = ~moves
         K, self.whole = self._condensed(K, moves, still), K

@@ -216,9 +216,10 @@ def test_chain_moves_as_its_matrices_do():
     options = {"elements": 7, "element": "rigid"}
     model = scene.compile(**options)
     stiffness, mass, damping = (
-        matrix.toarray() for matrix in (model.stiffness(), model.mass(), model.damping())
+        matrix.toarray()
+        for matrix in (model.stiffness_matrix(), model.mass_matrix(), model.damping_matrix())
     )
-    more = scene.replace(tension=2000.0).compile(**options).stiffness().toarray() - stiffness
+    more = scene.replace(tension=2000.0).compile(**options).stiffness_matrix().toarray() - stiffness
     # stiffness damping acts on sections, which tension is none of; Rayleigh's on the mean tension
     n, frequency, amplitude = len(mass), 90.0, 400.0
     inverse = np.linalg.inv(mass)

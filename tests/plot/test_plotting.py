@@ -48,7 +48,7 @@ def answers(model):
         ),
         "history": (HISTORY, "time [s]", "displacement"),
         "spectrum": (HISTORY.spectrum(), "frequency [Hz]", "displacement, amplitude"),
-        "ring-down": (HISTORY.damping(since=0.0), "frequency [Hz]", "damping ratio [%]"),
+        "ring-down": (HISTORY.ring_down(since=0.0), "frequency [Hz]", "damping ratio [%]"),
         "measured": (HISTORY.frf(), "frequency [Hz]", "receptance, amplitude"),
         "resonances": (frf.peaks()[0], "frequency [Hz]", "amplitude of z at 0.500 m [m/N]"),
     }

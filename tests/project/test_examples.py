@@ -155,3 +155,22 @@ def alone():
 )
 def test_what_no_example_shows_is_found(thing, missing):
     assert without_example({"it": thing}) == missing
+
+
+def test_what_tab_offers_fits_a_screen():
+    assert len([name for name in dir(rd) if not name.startswith("_")]) < 90
+
+
+def silent(thing):
+    """Return the examples of a docstring none of which shows its output."""
+    found = examples(thing)
+    return bool(found) and not any(one.want for one in found)
+
+
+def test_every_example_shows_its_output():
+    named = things(rd)
+    kinds = [kind for kind in named.values() if inspect.isclass(kind)]
+    each = [*named.values(), *(one for kind in kinds for m in members(kind).values() for one in m)]
+    assert [
+        getattr(function_of(one) or one, "__qualname__", one) for one in each if silent(one)
+    ] == []

@@ -1349,7 +1349,7 @@ QUESTIONS = {
     "modes": lambda model: model.modes(5),
     "frf": lambda model: model.frf(np.linspace(0, 80, 200), drive=("z", 0.33)),
     "static": lambda model: model.static({("z", 0.33): 1.0}),
-    "stiffness": lambda _: LINEAR.stiffness().data,
+    "stiffness": lambda _: LINEAR.stiffness_matrix().data,
     "triples": lambda model: tuple(model.triples),
 }
 

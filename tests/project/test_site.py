@@ -13,7 +13,7 @@ PAGES = {
     path.stem: re.findall(r"^   (\w+)$", path.read_text(encoding="utf-8"), re.MULTILINE)
     for path in (ROOT / "docs/api").glob("*.rst")
 }
-ABOVE_THE_FOLDERS = {"ask": "study", "study2015": "study", "Choice": "model"}
+ABOVE_THE_FOLDERS = {"ask": "study", "study2015": "study"}
 """Names on the page of another folder than the one they are in."""
 
 

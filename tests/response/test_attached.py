@@ -400,7 +400,7 @@ def expanded(model):
     """Eigenvalues of the assembled matrices with the motion of each mass as an unknown more."""
     chain = model.chain
     bare = dataclasses.replace(model, chain=chain._replace(**dict.fromkeys(chain._fields[-4:])))
-    stiffness, mass = bare.stiffness().toarray(), bare.mass().toarray()
+    stiffness, mass = bare.stiffness_matrix().toarray(), bare.mass_matrix().toarray()
     free = chain.held[chain.term_of] == 0
     number = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
     n, more = len(stiffness), len(chain.attached_value)
@@ -587,7 +587,7 @@ REFUSED = {
         'solver must be "sweep" where parts have a broken wire, got "lapack"',
     ),
     "matrices": (
-        lambda: taut(WIRE, rd.Resonator(0.3, 1.0, 1.0)).compile(elements=8).mass(),
+        lambda: taut(WIRE, rd.Resonator(0.3, 1.0, 1.0)).compile(elements=8).mass_matrix(),
         "parts must not have a resonator or broken wire for matrices",
     ),
 }

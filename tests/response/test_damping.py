@@ -89,7 +89,7 @@ def test_pinned_beam_in_a_viscous_fluid_responds_as_its_waves(coefficient):
 
 def test_viscous_damping_acts_on_transverse_and_axial_motion_alone():
     model = rd.Scene(LAID, tension=T, damping=rd.ViscousDamping(0.7)).compile(elements=4)
-    damping = model.damping().toarray().diagonal().reshape(3, 4)
+    damping = model.damping_matrix().toarray().diagonal().reshape(3, 4)
     # x, z, alpha, beta of three nodes, a quarter of the rope each
     np.testing.assert_array_equal(damping, np.tile([0.7 / 4, 0.7 / 4, 0.0, 0.0], (3, 1)))
     np.testing.assert_array_equal(model.scene.compile().chain.drag, [[0.7, 0.7, 0.0, 0.0]])
@@ -173,7 +173,7 @@ def test_power_that_goes_in_is_what_the_dampings_dissipate(f):
     u = frf.value[(model.chain.held[model.chain.term_of] == 0).ravel(), 0]
 
     def power(scene):
-        C = scene.compile(elements=10, element="rigid").damping().toarray()
+        C = scene.compile(elements=10, element="rigid").damping_matrix().toarray()
         return omega**2 / 2 * (u.conj() @ C @ u).real
 
     bare = scene.without(*(d.kind for d in scene.dampings), "dashpot")
@@ -211,9 +211,9 @@ def test_frequencies_and_shapes_do_not_know_of_damping(elements):
 def test_damping_that_is_not_in_proportion_to_velocity_has_no_matrix(kind):
     scene = rd.Scene(BEAM, damping=(rd.StiffnessDamping(1e-4), kind(0.05)))
     with pytest.raises(rd.SceneError, match=rf"damping must be .* got {kind.__name__}\("):
-        scene.compile(elements=4).damping()
+        scene.compile(elements=4).damping_matrix()
     zero = scene.replace(damping=(rd.StiffnessDamping(1e-4), kind(0.0))).compile(elements=4)
-    assert zero.damping().nnz > 0
+    assert zero.damping_matrix().nnz > 0
 
 
 # damping ratios ----------------------------------------------------------------------------------

@@ -157,4 +157,4 @@ def test_damping_matrix_has_the_dashpots_on_its_diagonal():
     model = rd.Scene(rope, tension=T, parts=parts).compile(elements=4)
     # free coordinates: (z, beta) of three nodes
     expected = np.diag([7.0, 0.0, 3.0, 0.2, 0.0, 0.0])
-    np.testing.assert_array_equal(model.damping().toarray(), expected)
+    np.testing.assert_array_equal(model.damping_matrix().toarray(), expected)

@@ -141,7 +141,10 @@ def test_chains_answer_as_their_matrices_do(solver):
     )
     model = scene.compile(elements=4, element="rigid")
     found = model.frf(FREQUENCY, drive=("z", 0.325), decay=DECAY, solver=solver)
-    K, C, M = (one.toarray() for one in (model.stiffness(), model.damping(), model.mass()))
+    K, C, M = (
+        one.toarray()
+        for one in (model.stiffness_matrix(), model.damping_matrix(), model.mass_matrix())
+    )
     s = 2j * np.pi * FREQUENCY + DECAY
     force = np.zeros(len(K))
     # unknowns node by node: the rotation of the first, then z and rotation of the second

@@ -86,9 +86,9 @@ def test_stiffness_damping_damps_all_but_the_tension():
     damped = beam(8, tension=300.0, damping=rd.StiffnessDamping(gamma)).compile(
         elements=8, element="rigid"
     )
-    K = beam(8, tension=300.0).compile(elements=8, element="rigid").stiffness().toarray()
-    elastic = beam(8).compile(elements=8, element="rigid").stiffness().toarray()
-    M = damped.mass().toarray()
+    K = beam(8, tension=300.0).compile(elements=8, element="rigid").stiffness_matrix().toarray()
+    elastic = beam(8).compile(elements=8, element="rigid").stiffness_matrix().toarray()
+    M = damped.mass_matrix().toarray()
     D = K + (turning - 1) * elastic - (2 * math.pi * f) ** 2 * M
     at = 2 * 3 - 2
     exact = np.linalg.inv(D)[at, at]
@@ -205,7 +205,7 @@ def test_force_at_a_node_of_the_resonant_mode_is_answered(solver, mode):
     # half way, even modes stand still; the response there is that of the odd ones alone
     model = beam(16, tension=300.0).compile(elements=16, element="rigid")
     f = float(model.modes(mode).frequency[mode - 1])
-    square, shape = eigh(model.stiffness().toarray(), model.mass().toarray())
+    square, shape = eigh(model.stiffness_matrix().toarray(), model.mass_matrix().toarray())
     middle, other = shape[len(shape) // 2 - 1], np.arange(len(square)) != mode - 1
     exact = (middle**2 / (square - (2 * np.pi * f) ** 2))[other].sum()
     frf = model.frf([0.9 * f, f, f, 1.1 * f], drive=("z", LENGTH / 2), solver=solver)
@@ -250,7 +250,7 @@ def test_high_frequency_limit_is_the_mass_alone():
     f = 1e7
     value = model.frf(f, drive=("z", LENGTH / 2)).value[0, 0]
     mass = 0.13725 / 8
-    K = model.stiffness().toarray()
+    K = model.stiffness_matrix().toarray()
     rest = K[6, 6] / (mass * (2 * math.pi * f) ** 2)
     assert value == pytest.approx(-1 / ((2 * math.pi * f) ** 2 * mass), rel=2 * rest)
 

@@ -70,7 +70,7 @@ def test_string_responds_as_the_complete_sum_over_its_modes(ends, zeta, claim):
 
 def dense_sum(model, f, zeta, drive, response):
     """The sum over all modes of the assembled matrices, at degrees of freedom."""
-    K, M = model.stiffness().toarray(), model.mass().toarray()
+    K, M = model.stiffness_matrix().toarray(), model.mass_matrix().toarray()
     eigenvalue, shape = scipy.linalg.eigh(K, M)
     own = np.sqrt(np.maximum(eigenvalue, 0.0))
     omega = 2 * np.pi * f

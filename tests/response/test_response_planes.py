@@ -93,7 +93,9 @@ def test_matrices_have_the_modes_of_both_planes():
 
     rope = ROPE.replace(rotary_inertia=(1e-6, 2e-6))
     model = rd.Scene(rope, tension=2830.0, planes="both").compile(elements=6)
-    value = eigh(model.stiffness().toarray(), model.mass().toarray(), eigvals_only=True)[:6]
+    value = eigh(
+        model.stiffness_matrix().toarray(), model.mass_matrix().toarray(), eigvals_only=True
+    )[:6]
     assert np.sqrt(value) / (2 * np.pi) == pytest.approx(model.modes(6).frequency, rel=1e-12)
     assert model.triples.F.shape[1:] == (4, 4)
 

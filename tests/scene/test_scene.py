@@ -344,7 +344,7 @@ def test_a_bare_string_has_no_entry_of_what_it_was_not_given(kind):
     assert model.components == (("z",),)
     assert not model.chain.flexibility.any()
     assert not model.chain.stiffness.any()
-    assert model.damping().nnz == 0
+    assert model.damping_matrix().nnz == 0
     assert set(model.modes(1).energy) == {"tension", "z"}
 
 
@@ -360,9 +360,9 @@ def test_absent_inertia_has_no_entry_in_the_mass_matrix(effect):
 @pytest.mark.parametrize("effect", ["stiffness damping", "rayleigh damping", "viscous damping"])
 def test_absent_damping_has_no_entry_in_the_damping_matrix(effect):
     bare = full().without("dashpot", *DAMPINGS)
-    assert bare.compile(elements=9, element="rigid").damping().nnz == 0
+    assert bare.compile(elements=9, element="rigid").damping_matrix().nnz == 0
     damped = bare.replace(damping=DAMPINGS[effect])
-    assert damped.compile(elements=9, element="rigid").damping().nnz > 0
+    assert damped.compile(elements=9, element="rigid").damping_matrix().nnz > 0
     assert damped.without(effect) == bare
 
 

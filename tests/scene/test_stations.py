@@ -90,7 +90,7 @@ def test_stations_within_a_billionth_of_the_length_are_one(away):
     model = rd.Scene(rd.Rope(1.0, 0.1), tension=1.0, parts=parts).compile(elements=2)
     assert len(model.x) == 3
     # both masses and half of each element stand there
-    assert model.mass().toarray()[0, 0] == pytest.approx(0.3 + 0.05, rel=1e-15)
+    assert model.mass_matrix().toarray()[0, 0] == pytest.approx(0.3 + 0.05, rel=1e-15)
 
 
 @given(st.lists(st.floats(0.01, 0.99), max_size=5), st.integers(6, 40))
@@ -98,7 +98,7 @@ def test_lumping_keeps_the_mass_of_the_rope(positions, elements):
     parts = [rd.PointMass(x, 0) for x in positions]
     rope = rd.Rope(1.0, 0.1, bending_stiffness=1.0, rotary_inertia=0.003)
     scene = rd.Scene(rope, ends=("free", "free"), parts=parts)
-    mass = scene.compile(elements=elements).mass().diagonal()
+    mass = scene.compile(elements=elements).mass_matrix().diagonal()
     # sums of up to 40 numbers
     assert mass[0::2].sum() == pytest.approx(0.1, rel=1e-14)
     assert mass[1::2].sum() == pytest.approx(0.003, rel=1e-14)

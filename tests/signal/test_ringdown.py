@@ -23,13 +23,13 @@ def assert_found(found, modes, tolerance=EXACT):
 
 @pytest.mark.parametrize("rest", [0.0, 0.3])
 def test_modes_of_a_sum_are_found_exactly_beside_what_stands_still(rest):
-    found = made(TIME, rest + decaying(TIME, *MODES)).damping([19.0, 41.0, 60.0, 86.0])
+    found = made(TIME, rest + decaying(TIME, *MODES)).ring_down([19.0, 41.0, 60.0, 86.0])
     assert_found(found, MODES)
     assert found.residual.max() < 1e-6
 
 
 def test_two_modes_within_their_bandwidth_are_told_apart():
-    found = made(TIME, decaying(TIME, *CLOSE)).damping([19.8, 20.8])
+    found = made(TIME, decaying(TIME, *CLOSE)).ring_down([19.8, 20.8])
     assert_found(found, CLOSE, 1e-7)
 
 
@@ -38,23 +38,23 @@ def test_two_modes_within_their_bandwidth_are_told_apart():
 )
 def test_few_periods_and_few_times_of_each_are_enough(rate, seconds):
     time = np.arange(int(rate * seconds)) / rate
-    assert_found(made(time, decaying(time, MODES[0])).damping(20.0), MODES[:1])
+    assert_found(made(time, decaying(time, MODES[0])).ring_down(20.0), MODES[:1])
 
 
 def test_modes_above_do_not_matter_where_the_record_is_short():
     modes = [(5.0 * k, 0.01, 1 / k**2) for k in range(1, 40, 2)]
-    found = made(TIME, decaying(TIME, *modes)).damping(5.0)
+    found = made(TIME, decaying(TIME, *modes)).ring_down(5.0)
     assert_found(found, modes[:1], 1e-6)
 
 
 def test_a_weak_mode_is_told_from_strong_ones_beside_it():
     modes = [(40.0, 0.01, 1.0), (48.0, 0.01, 1e-3), (56.0, 0.01, 1.0)]
-    found = made(TIME, decaying(TIME, *modes)).damping(48.0)
+    found = made(TIME, decaying(TIME, *modes)).ring_down(48.0)
     assert_found(found, modes[1:2])
 
 
 def test_the_strongest_line_is_looked_at_where_nothing_is_said():
-    found = made(TIME, decaying(TIME, MODES[2], (40.3, 0.004, 0.5j))).damping()
+    found = made(TIME, decaying(TIME, MODES[2], (40.3, 0.004, 0.5j))).ring_down()
     assert_found(found, [MODES[1]])
 
 
@@ -81,13 +81,13 @@ def test_what_is_near_passes_and_what_stands_still_does_not(seconds, shift, widt
 
 def test_growth_is_negative_damping():
     growing = (30.0, -0.002, 1e-3)
-    assert_found(made(TIME, decaying(TIME, growing)).damping(30.0), [growing])
+    assert_found(made(TIME, decaying(TIME, growing)).ring_down(30.0), [growing])
 
 
 @pytest.mark.parametrize("response", [0, 1])
 def test_each_response_has_its_own_amplitude(response):
     value = [decaying(TIME, MODES[0]), decaying(TIME, (20.0, 0.01, -2.5j))]
-    found = made(TIME, value).damping(20.0, response=response)
+    found = made(TIME, value).ring_down(20.0, response=response)
     assert_found(found, [(20.0, 0.01, (1.0, -2.5j)[response])])
     assert found.label == f"z at 0.{response + 1}00 m [m]"
 
@@ -95,13 +95,13 @@ def test_each_response_has_its_own_amplitude(response):
 def test_free_motion_begins_when_the_force_has_changed_for_the_last_time():
     free = TIME > 0.5
     value = np.where(free, decaying(TIME - 0.5, MODES[0]), 7.0)
-    found = made(TIME, value, force=np.where(free, 0.0, 3.0)).damping(20.0)
+    found = made(TIME, value, force=np.where(free, 0.0, 3.0)).ring_down(20.0)
     assert found.since == TIME[free][0]
     start = np.exp(2j * np.pi * 20.0 * np.sqrt(1 - 1e-4) * (found.since - 0.5))
     assert found.amplitude[0] == pytest.approx(
         start * np.exp(-2 * np.pi * 0.2 * (found.since - 0.5)), rel=EXACT
     )
-    later = made(TIME, value).damping(20.0, since=1.0)
+    later = made(TIME, value).ring_down(20.0, since=1.0)
     assert later.since == 1.0
     assert later.damping_ratio[0] == pytest.approx(0.01, rel=EXACT)
 
@@ -113,7 +113,7 @@ def test_standard_errors_are_those_of_many_noisy_records(noise):
     value, runs = decaying(TIME, *modes), 60
     near = [mode[0] for mode in modes]
     found = [
-        made(TIME, value + noise * rng.normal(size=len(TIME))).damping(near) for _ in range(runs)
+        made(TIME, value + noise * rng.normal(size=len(TIME))).ring_down(near) for _ in range(runs)
     ]
     for name, true in (("frequency", near), ("damping_ratio", [m[1] for m in modes])):
         off = np.array([(getattr(f, name) - true) / getattr(f, f"{name}_std") for f in found])
@@ -125,17 +125,17 @@ def test_standard_errors_are_those_of_many_noisy_records(noise):
 def test_noise_alone_has_no_mode():
     noise = np.random.default_rng(4).normal(size=len(TIME))
     with pytest.raises(rd.SolveError, match="no mode near 30 Hz is told from noise"):
-        made(TIME, noise).damping(30.0)
+        made(TIME, noise).ring_down(30.0)
 
 
 def test_what_creeps_back_does_not_oscillate():
     with pytest.raises(rd.SolveError, match="nothing oscillates near 3 Hz"):
-        made(TIME, np.exp(-4.0 * TIME)).damping(3.0)
+        made(TIME, np.exp(-4.0 * TIME)).ring_down(3.0)
 
 
 def test_what_does_not_move_has_no_mode():
     with pytest.raises(rd.SolveError, match=r"nothing moves in response 0 since 0 s"):
-        made(TIME, np.zeros(len(TIME))).damping()
+        made(TIME, np.zeros(len(TIME))).ring_down()
 
 
 @pytest.mark.parametrize(
@@ -150,7 +150,7 @@ def test_what_does_not_move_has_no_mode():
 )
 def test_questions_without_meaning_are_refused(options, words):
     with pytest.raises(rd.SceneError, match=words):
-        made(TIME, decaying(TIME, *MODES)).damping(**options)
+        made(TIME, decaying(TIME, *MODES)).ring_down(**options)
 
 
 def test_a_history_has_its_errors_over_responses_and_time():

@@ -210,7 +210,9 @@ def test_report_says_what_arithmetic_says(report):
 def test_third_peak_is_as_plain_across_as_in_twist_and_grows_no_ten_times(report):
     """The model alone, by its matrices: responses at the seven masses between 160 and 225 Hz."""
     model = rd.study2015.scene().compile(elements=8, element="difference")
-    K, M, C = (m.toarray() for m in (model.stiffness(), model.mass(), model.damping()))
+    K, M, C = (
+        m.toarray() for m in (model.stiffness_matrix(), model.mass_matrix(), model.damping_matrix())
+    )
     n = len(model.coordinates)
     force = np.zeros(len(K))
     force[2 * n + model.coordinates.index("z")] = 1.0

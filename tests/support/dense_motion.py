@@ -9,13 +9,13 @@ class Dense:
 
     def __init__(self, model):
         self.model = model
-        self.K = model.stiffness().toarray()
+        self.K = model.stiffness_matrix().toarray()
         self.size = len(self.K)
-        mass = model.mass().toarray()
+        mass = model.mass_matrix().toarray()
         self.M = np.diag(np.diag(mass))
         # damping in proportion to mass goes with the plain lumps
         alpha = sum(d.term().rate.get(3, 0.0) for d in model.scene.dampings)
-        self.C = model.damping().toarray() + alpha * (self.M - mass)
+        self.C = model.damping_matrix().toarray() + alpha * (self.M - mass)
         held = model.node_terms.held[model.node_terms.term]
         self.number = np.where(held == 0, np.cumsum(held == 0).reshape(held.shape) - 1, -1)
         self.moves = np.diag(self.M) > 0

@@ -131,7 +131,10 @@ class Exact:
 
     def __post_init__(self):
         model = self.case.model
-        M, C, K = (one().toarray() for one in (model.mass, model.damping, model.stiffness))
+        M, C, K = (
+            one().toarray()
+            for one in (model.mass_matrix, model.damping_matrix, model.stiffness_matrix)
+        )
         n = len(M)
         solved = np.linalg.solve(M, np.hstack([K, C, np.eye(n)]))
         self.A = np.zeros((2 * n, 2 * n))

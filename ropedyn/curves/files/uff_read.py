@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -67,6 +68,7 @@ def read(
     )
     found = _numbered(found, records, file)
     functions = [r for r in found if r.fields["func_type"] == FRF]
+    _ask_at_once(functions, file, positions, coordinate, unit)
     lines = located(functions, file, positions, coordinate)
     if reciprocal:
         lines = [line._replace(response=line.drive, drive=line.response) for line in lines]
@@ -99,6 +101,37 @@ def read(
         std=_spread(lines, [r for r in found if _is_spread(r.fields)], factor, file),
         decay=_noted(lines, "id4", DECAY) or 0.0,
     )
+
+
+def _ask_at_once(
+    records: Sequence[FileFunction], file: Path, positions: Any, coordinate: Any, unit: Any
+) -> None:
+    """Refuse in one error all that a file does not say and nobody has said."""
+    if all(OWN.match(record.fields["id2"]) for record in records):
+        return
+    asked = []
+    codes = {r.fields[side] for r in records for side in ("rsp_dir", "ref_dir")}
+    for part in (
+        partial(_positions, positions, records, file),
+        *(partial(_turned, code, coordinate, records, file) for code in sorted(codes)[:1]),
+        partial(_refuse_without_unit, records, file, unit),
+    ):
+        try:
+            part()
+        except SceneError as error:
+            asked.append(str(error))
+    if len(asked) > 1:
+        raise SceneError("; ".join(asked))
+
+
+def _refuse_without_unit(records: Sequence[FileFunction], file: Path, unit: Any) -> None:
+    labels = ("ordinate_axis_units_lab", "orddenom_axis_units_lab")
+    for record in records if unit is None else ():
+        if record.units is None and not any(label_of(record.fields[one]) for one in labels):
+            raise SceneError(
+                f'unit must be stated, such as "m/s^2/N" or "g/N": dataset {record.number} of '
+                f"{str(file)!r} says none"
+            )
 
 
 def _numbered(found: Sequence[FileFunction], records: Any, file: Path) -> list[FileFunction]:

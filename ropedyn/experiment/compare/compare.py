@@ -105,6 +105,18 @@ class Comparison(Answer):
     array([ 2., -5.])
     """
 
+    said = (
+        "status",
+        "reason",
+        "factor",
+        "response",
+        "frac",
+        "mac",
+        "band",
+        "notes",
+        "hint",
+    )
+
     order: Integer = field(metadata=axes("peak"))
     measured: Real = field(metadata=axes("peak", unit="Hz"))
     calculated: Real = field(metadata=axes("peak", unit="Hz"))
@@ -149,9 +161,16 @@ class Comparison(Answer):
         number = np.arange(1, len(f) + 1)
         return np.setdiff1d(number[within], self.order)
 
-    @property
     def peaks(self) -> Table:
-        """The pairs with their differences; columns of what is not known of any are left out."""
+        """Return the pairs with their differences, of what is known of any.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=90.0).compile()
+        >>> print(rd.compare(model, rd.Peaks([15.3, 30.0])).peaks().column("mode"))
+        (1, 2)
+        """
         none = self.order == 0
         columns: dict[str, Any] = {
             "measured [Hz]": self.measured,
@@ -176,7 +195,7 @@ class Comparison(Answer):
 
     def table(self) -> Table:
         """Return the pairs with their differences."""
-        return self.peaks
+        return self.peaks()
 
     def report(self) -> str:
         """Return as text the pairs, FRAC of each response, notes and hint, as far as there are any.
@@ -189,7 +208,7 @@ class Comparison(Answer):
         >>> print(rd.compare(model, peaks).report().splitlines()[-1].split(":")[0])
         All shifts are alike within their uncertainty
         """
-        lines = [str(self.peaks)]
+        lines = [str(self.peaks())]
         if self.frac is not None:
             lines += [f"FRAC of {r}: {value:.4g}" for r, value in zip(self.response, self.frac)]
         lines += [*self.notes, *([self.hint] if self.hint else [])]

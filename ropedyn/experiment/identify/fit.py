@@ -13,8 +13,9 @@ from ...base.computed import Lazy, Read, lazy
 from ...base.drawing import draw
 from ...base.named import Named
 from ...base.table import Table, numbers
+from ...scene.scene import Scene
 from .candidates import Candidates
-from .known import Identified, Known
+from .known import KEPT_SCENE, Identified, Known
 from .other_ends import Remarks
 from .report import report_of, sheet_of
 
@@ -28,6 +29,8 @@ class Fit(Identified):
 
     Attributes
     ----------
+    scene : Scene
+        With the numbers that were found.
     unknown : tuple of str
         Paths of the numbers.
     status : {"trusted", "ambiguous", "refused"}
@@ -115,6 +118,7 @@ class Fit(Identified):
     seed: int
     cost: Cost
     candidates: Lazy[Candidates] = lazy(Candidates)
+    scene: Lazy[Scene] = lazy(Scene, KEPT_SCENE)
     bounds: Lazy[Real] = lazy(np.ndarray, axes("level", "unknown", "bound"))
     remarks: Lazy[Remarks] = lazy(Remarks)
     details: tuple[dict[str, Any], ...] = ()
@@ -199,9 +203,17 @@ class Fit(Identified):
         """
         return draw(self, "plot", ax, of=of)
 
-    @property
     def peaks(self) -> Table:
-        """One row for each peak."""
+        """Return one row for each peak: which mode it is, and how far off.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
+        >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
+        >>> fit.peaks().column("mode")
+        (1, 2, 3)
+        """
         columns: dict[str, Any] = {
             "measured [Hz]": self.measured,
             "std [Hz]": self.measured_std,

@@ -89,6 +89,7 @@ def _answer(response: Response, solution: Solution, std: Real, evaluations: int)
         chi_square=float(solution.off[0] / solution.noise[0] ** 2),
         cost=Cost("least squares", response.elements or 0, sought, factorisations=evaluations),
         bounds=partial(kept_bounds, known.interval),
+        scene=partial(getattr, known, "scene"),
         known=known,
         drive=measured.drive,
         response=measured.response,

@@ -142,6 +142,8 @@ class Fits(Answer, Sequence[Fit | None]):
     (2, [[1000.0], [1440.0]], ('trusted', 'trusted'))
     """
 
+    said = ("notes",)
+
     unknown: tuple[str, ...]
     value: Real = field(metadata=axes("rope", "unknown"))
     std: Real = field(metadata=axes("rope", "unknown"))
@@ -240,9 +242,12 @@ class Fits(Answer, Sequence[Fit | None]):
     def table(self) -> Table:
         """Return one row for each rope."""
         columns: dict[str, Any] = {"rope": np.arange(len(self))}
+        bounds = self.interval()
         for k, path in enumerate(self.unknown):
             columns[path] = numbers(self.value[:, k])
             columns[f"std of {path}"] = numbers(self.std[:, k])
+            columns[f"{path}, 95 % from"] = numbers(bounds[:, k, 0])
+            columns[f"{path}, to"] = numbers(bounds[:, k, 1])
         columns["rms residual [%]"] = numbers(100 * self.rms)
         columns["status"] = self.status
         if any(self.failure):

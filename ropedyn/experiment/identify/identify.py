@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike
 from ...base import check
 from ...base.array import Integer, Real
 from ...base.computed import changed, waited
-from ...base.errors import IdentifyWarning, SceneError
+from ...base.errors import IdentifyWarning, SceneError, warn
 from ...base.progress import Progress
 from ...curves.measured import Measured, above_zero
 from ...curves.peaks import Peaks
@@ -356,7 +355,7 @@ def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) ->
 
 def _warn(notes: Sequence[str]) -> None:
     for note in notes:
-        warnings.warn(note, IdentifyWarning, stacklevel=4)
+        warn(note, IdentifyWarning)
 
 
 # --- what was given ---------------------------------------------------------------------------

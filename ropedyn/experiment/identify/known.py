@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 
 from ...base import check
-from ...base.answer import Answer
+from ...base.answer import Answer, kept_as
 from ...base.array import Flags, Real
 from ...base.errors import SceneError
 from ...base.named import Named
 from ...base.table import Table, numbers
 from ...scene.scene import Scene
+from ...scene.toml import built, document
 from ..fitting.solution import Solution
+
+KEPT_SCENE = kept_as(document, partial(built, Scene))
+"""How a file keeps the scene of a fit."""
 
 LEVELS = (0.5, 0.68, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999)
 """Levels whose intervals a file keeps."""
@@ -107,19 +112,13 @@ class Identified(Answer):
     value: Named
     std: Named
     bounds: Real
+    scene: Scene
     known: Known | None
 
     def __post_init__(self) -> None:
         for name in ("value", "std"):
             object.__setattr__(self, name, Named(getattr(self, name), self.unknown))
         super().__post_init__()
-
-    @property
-    def scene(self) -> Scene:
-        """The scene with the numbers that were found."""
-        if self.known is None:
-            raise SceneError("a fit from a file has no scene: identify again")
-        return self.known.scene
 
     def interval(self, level: float = 0.95, *, method: str = "profile") -> Named:
         """Find confidence intervals.

@@ -292,6 +292,7 @@ class RopeTask:
             cost=Cost(told.method, how.elements or 0, k, factorisations=told.evaluations),
             candidates=decision.candidates,
             bounds=partial(kept_bounds, decision.known.interval),
+            scene=partial(getattr, decision.known, "scene"),
             known=decision.known,
             remarks=partial(self._remarks, told, orders),
             details=details_of(self.peaks),
@@ -384,11 +385,16 @@ class RopeTask:
             seed=how.seed,
             cost=Cost("evidence", how.elements or 0, k),
             candidates=empty,
+            scene=_no_scene,
             bounds=np.broadcast_to(blank, (len(LEVELS), p, 2)).copy(),
             remarks=Remarks(),
             details=details_of(self.peaks),
             record=self.record,
         )
+
+
+def _no_scene() -> Scene:
+    raise SceneError("a fit that is refused has no scene: its notes say why")
 
 
 def _why(decision: Decision, paths: Sequence[str], std: Real) -> tuple[str, ...]:

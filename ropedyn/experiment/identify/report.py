@@ -25,14 +25,14 @@ NEXT = 3
 def report_of(fit: Fit) -> str:
     """Return the report of a fit."""
     if fit.status == "refused":
-        return "\n".join(["refused", *fit.notes, "", str(fit.peaks)])
+        return "\n".join(["refused", *fit.notes, "", str(fit.peaks())])
     lines = [*_given_ends(fit), *_numbers(fit), *_budget(fit)]
     lines += [f"  ends {one}" for one in fit.said_of_ends if fit.ends == "unknown"]
     lines += _orders(fit)
     lines.append(f"  fit: {_goodness(fit)}; rms residual {100 * fit.rms:.3g} %")
     if fit.cross_checks:
         lines.append(f"  cross-checks: {', '.join(fit.cross_checks)}")
-    lines += ["", str(fit.table()), "", str(fit.peaks)]
+    lines += ["", str(fit.table()), "", str(fit.peaks())]
     lines += [f"assumed: {'; '.join(fit.assumed)}"] if fit.assumed else []
     notes = (*fit.left_out, *fit.notes[fit.status == "ambiguous" :])
     return "\n".join([*lines, *(f"note: {note}" for note in notes)])
@@ -134,7 +134,7 @@ def _goodness(fit: Fit) -> str:
 def sheet_of(fit: Fit) -> str:
     """Return a fit as JSON of `SCHEMA`."""
     refused = fit.status == "refused"
-    clusters = [] if refused else [_cluster(one) for one in fit.candidates]
+    clusters = [] if refused else [_cluster(one, fit.value[0]) for one in fit.candidates]
     sheet = {
         "schema": SCHEMA,
         "status": fit.status,
@@ -178,7 +178,7 @@ def _quantity(fit: Fit, path: str) -> dict[str, Any]:
     }
 
 
-def _cluster(one: Candidate) -> dict[str, Any]:
+def _cluster(one: Candidate, first: float) -> dict[str, Any]:
     bounds = one.interval()
     paths = one.value.paths or ()
     return {
@@ -186,6 +186,7 @@ def _cluster(one: Candidate) -> dict[str, Any]:
         "values": {p: _finite(one.value[p]) for p in paths},
         "interval95": {p: [_finite(x) for x in bounds[p].tolist()] for p in paths},
         "orders": one.orders.tolist(),
+        "times": _finite(one.value[0] / first),
     }
 
 
@@ -199,6 +200,7 @@ def _peak(fit: Fit, i: int) -> dict[str, Any]:
         "order": order or None,
         "p_order": min(sum(alike), 1.0) if fit.candidates else None,
         "calculated": _finite(fit.calculated[i]),
+        "residual": _finite(fit.residual[i]),
         "residual_std": _finite(fit.residual[i] / std) if std > 0 else None,
     }
 

@@ -14,7 +14,8 @@ from ...base.named import Named
 from ...base.table import Table
 from ...base.unit import label
 from ...chain.port import Point
-from .known import Identified, Known
+from ...scene.scene import Scene
+from .known import KEPT_SCENE, Identified, Known
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +24,8 @@ class ResponseFit(Identified):
 
     Attributes
     ----------
+    scene : Scene
+        With the numbers that were found.
     unknown : tuple of str
         Paths of the numbers; the last is ``"calibration"`` where that was sought.
     value, std : Named, shape (p,)
@@ -65,6 +68,8 @@ class ResponseFit(Identified):
     identified
     """
 
+    said = ("lines", "freedom", "chi_square", "notes")
+
     unknown: tuple[str, ...]
     value: Named = field(metadata=axes("unknown"))
     std: Named = field(metadata=axes("unknown"))
@@ -80,6 +85,7 @@ class ResponseFit(Identified):
     chi_square: float
     notes: tuple[str, ...]
     cost: Cost
+    scene: Lazy[Scene] = lazy(Scene, KEPT_SCENE)
     bounds: Lazy[Real] = lazy(np.ndarray, axes("level", "unknown", "bound"))
     known: Known | None = field(default=None, repr=False, metadata=TRANSIENT)
 

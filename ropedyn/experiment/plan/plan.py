@@ -65,6 +65,16 @@ class Plan(Answer):
     (True, None)
     """
 
+    said = (
+        "drive",
+        "response",
+        "record_length",
+        "line_spacing",
+        "reason",
+        "rate",
+        "highest",
+    )
+
     drive: tuple[str, float]
     response: tuple[tuple[str, float], ...]
     mode: Integer = field(metadata=axes("mode"))

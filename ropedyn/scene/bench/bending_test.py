@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import KW_ONLY
 from typing import Any
 
@@ -11,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ...base import check
 from ...base.answer import axes
-from ...base.errors import SceneError, UnitWarning
+from ...base.errors import SceneError, UnitWarning, warn
 from ...base.parameter import Description, depending, number, numbers, one_of
 from .static_test import StaticTest
 
@@ -147,10 +146,9 @@ class BendingTest(Description, StaticTest, eq=False):
         self._check_readings()
         moved = float(np.ptp(np.asarray(self.deflection)))
         if moved > LARGE * self.span:
-            warnings.warn(
+            warn(
                 f"deflection is up to {moved:.3g} m on a span of {self.span:g} m: is it in m?",
                 UnitWarning,
-                stacklevel=4,
             )
 
     @property

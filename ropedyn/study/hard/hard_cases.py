@@ -66,6 +66,8 @@ class HardCases(Answer):
     (True, 2, ())
     """
 
+    said = ("verdict", "failures")
+
     case: NDArray[np.str_] = field(metadata=axes("row"))
     hard: NDArray[np.str_] = field(metadata=axes("row"))
     decades: Real = field(metadata=axes("row"))

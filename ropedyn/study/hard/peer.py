@@ -50,9 +50,9 @@ def _eigsh(model: Model, case: HardCase) -> Real:
     shift = square[0] - 1e-3 * (abs(square[0]) or abs(square).max())
     start = np.random.default_rng(1).standard_normal(model.size)
     values = eigsh(
-        model.stiffness().tocsc(),
+        model.stiffness_matrix().tocsc(),
         number,
-        model.mass().tocsc(),
+        model.mass_matrix().tocsc(),
         sigma=shift,
         v0=start,
         return_eigenvectors=False,
@@ -65,7 +65,9 @@ def _eig(model: Model, case: HardCase) -> Complex:
     """Return the rates nearest to the known ones: the linearised problem, dense."""
     from scipy.linalg import eigvals
 
-    K, C, M = (of().toarray() for of in (model.stiffness, model.damping, model.mass))
+    K, C, M = (
+        of().toarray() for of in (model.stiffness_matrix, model.damping_matrix, model.mass_matrix)
+    )
     unit, none = np.eye(len(K)), np.zeros_like(K)
     rates = eigvals(np.block([[none, unit], [-K, -C]]), np.block([[unit, none], [none, M]]))
     rates = rates[np.isfinite(rates)]
@@ -80,7 +82,7 @@ def _solve_banded(model: Model, case: HardCase) -> Complex:
     ask = case.ask
     drive, response = (ask.get(name, ask.get("load")) for name in ("drive", "response"))
     b, c = (_vector(model, tuple(point)) for point in (drive, response))
-    K, M = model.stiffness(), model.mass()
+    K, M = model.stiffness_matrix(), model.mass_matrix()
     found = []
     for f in ask.get("frequency", [0.0]):
         diagonals = (K - (2 * np.pi * f) ** 2 * M).todia()
