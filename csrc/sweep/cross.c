@@ -20,6 +20,7 @@ void rd_sweep_begin(struct sweep *s)
     memset(s->rows, 0, 2 * s->carried * w * sizeof *s->rows);
     s->state.stretch = 0;
     s->state.absorbed = 0;
+    s->state.flat = 0;
     s->state.rows = 0;
     s->state.E = s->state.E_all = s->rows;
 }
@@ -31,8 +32,25 @@ static size_t term_at(struct sweep *s, size_t node)
     return (size_t)s->chain->term[s->state.stretch];
 }
 
+/* minors say what is behind the walk: while no row is carried */
+static void flatten(struct sweep *s)
+{
+    if (!s->state.flat)
+        s->kernel->flatten[s->undamped](&s->block, &s->state);
+    s->state.flat = 1;
+}
+
+/* U says it again */
+static void scatter(struct sweep *s)
+{
+    if (s->state.flat)
+        s->kernel->scatter[s->undamped](&s->block, &s->state);
+    s->state.flat = 0;
+}
+
 void rd_sweep_absorb(struct sweep *s, int way, size_t node)
 {
+    scatter(s);
     if (!s->state.absorbed)
         s->kernel->absorb(&s->walk[way], term_at(s, node), &s->state);
 }
@@ -62,7 +80,7 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
     struct sweep_table *table = &s->tabled;
     way = turns(s, run->term) ? way : 0;
     if (table->levels == levels && table->element == run->element && table->term == run->term &&
-        table->way == way && table->rest == rest)
+        table->way == way && table->rest == rest && table->flat == s->state.flat)
         return;
     s->whole.count = 0;
     cv *one = s->triple, *two = s->triple + s->coefs;
@@ -73,26 +91,54 @@ static void make_table(struct sweep *s, const struct rd_run *run, int way,
     else
         s->kernel->make_element(s->chain, &s->block, e, one);
     for (size_t k = 0; k < levels; k++) {
-        if (k + 1 == levels || rest >> k & 1)
-            s->kernel->make_coefficients(one, s->table + k * s->coefs);
+        if (k + 1 == levels || rest >> k & 1) {
+            cv *kept = s->table + k * s->coefs;
+            if (s->state.flat)
+                memcpy(kept, one, s->coefs * sizeof *one);
+            else
+                s->kernel->make_coefficients(one, kept);
+        }
         if (k + 1 < levels)
             s->kernel->join[s->undamped](s->chain, &s->way[way], run->term, one, one, two);
         cv *swap = one;
         one = two;
         two = swap;
     }
-    *table = (struct sweep_table){levels, rest, run->element, run->term, way};
+    *table = (struct sweep_table){levels, rest, run->element, run->term, way, s->state.flat};
 }
 
-/* the node term at the near end of the first piece may differ from the run's */
-static void first_piece(struct sweep *s, int way, const cv *piece, size_t node)
+/* across the node ahead, whose term may differ from the run's */
+static void cross_node(struct sweep *s, int way, size_t node)
 {
     const size_t term = term_at(s, node);
-    rd_sweep_absorb(s, way, node);
-    if (!way && (s->trait[term] & RD_HINGED))
-        s->kernel->open(&s->walk[way], term, &s->state);
-    s->kernel->walk_pieces(&s->walk[way], piece, -1, 1, &s->state);
+    const int apart = s->trait[term] & (way ? RD_COUPLED : RD_COUPLED | RD_HINGED);
+    if (s->state.flat && !apart) {
+        if (!s->state.absorbed)
+            s->kernel->walk_node(&s->walk[way], term, &s->state);
+    } else {
+        const int flat = s->state.flat;
+        rd_sweep_absorb(s, way, node);
+        if (!way && (s->trait[term] & RD_HINGED))
+            s->kernel->open(&s->walk[way], term, &s->state);
+        if (flat)
+            flatten(s);
+    }
     s->state.absorbed = 0;
+}
+
+/* count equal pieces of the table, with the run's term between them */
+static void walk_pieces(struct sweep *s, int way, const cv *piece, int32_t term, size_t count)
+{
+    if (s->state.flat)
+        s->kernel->walk_triples(&s->walk[way], piece, term, count, &s->state);
+    else
+        s->kernel->walk_pieces(&s->walk[way], piece, term, count, &s->state);
+}
+
+static void first_piece(struct sweep *s, int way, const cv *piece, size_t node)
+{
+    cross_node(s, way, node);
+    walk_pieces(s, way, piece, RD_NO_TERM, 1);
 }
 
 static void cross_each(struct sweep *s, int way, size_t node, size_t count)
@@ -100,10 +146,13 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
     if (count == 0)
         return;
     s->state.stretch = rd_stretch_of(s->chain, node, s->state.stretch);
-    if (s->planar && s->state.rows == 0)
+    if (s->planar && s->state.rows == 0) {
+        flatten(s);
         s->kernel->walk_plain[s->undamped](&s->walk[way], node, count, &s->state);
-    else
+    } else {
+        scatter(s);
         s->kernel->walk(&s->walk[way], node, count, &s->state);
+    }
     s->state.absorbed = 0;
     s->steps += (double)count;
 }
@@ -112,14 +161,47 @@ static void cross_each(struct sweep *s, int way, size_t node, size_t count)
 static void open_behind(struct sweep *s, int way, size_t node)
 {
     const size_t end = term_at(s, node);
-    if (way && (s->trait[end] & RD_HINGED))
+    if (way && (s->trait[end] & RD_HINGED)) {
+        scatter(s);
         s->kernel->open(&s->walk[way], end, &s->state);
+    }
+}
+
+/* whether real minors can go across joined pieces and whole spans: nothing is damped and no row
+   carried, of z with beta alone */
+static int goes_flat(const struct sweep *s)
+{
+    return s->planar && s->undamped && s->state.rows == 0 && s->kernel->walk_triples != NULL &&
+           s->block.bends;
+}
+
+/* The same as cross_plain by real minors. */
+static void cross_compound(struct sweep *s, int32_t element, int way, size_t node, size_t count)
+{
+    struct sweep_compound *own = &s->compound;
+    if (own->element != element || own->count != count) {
+        const double length = (double)count * s->chain->length[element];
+        s->kernel->make_compound(s->chain, &s->block, (size_t)element, length, &own->of);
+        own->element = element;
+        own->count = count;
+    }
+    flatten(s);
+    cross_node(s, way, node);
+    s->kernel->walk_compound(&own->of, &s->state);
+    open_behind(s, way, way ? node - count : node + count);
+    s->steps += (1.0 + own->of.radians) * (1.0 + own->of.radians);
+    s->radians = l_most(own->of.radians, s->radians);
 }
 
 /* Across count elements of a plain span, at once: rounding of its phase is that of so many steps. */
 static void cross_plain(struct sweep *s, int32_t element, int way, size_t node, size_t count)
 {
     struct sweep_whole *whole = &s->whole;
+    if (goes_flat(s) && s->waves) {
+        cross_compound(s, element, way, node, count);
+        return;
+    }
+    scatter(s);
     if (whole->element != element || whole->count != count) {
         const double length = (double)count * s->chain->length[element];
         s->kernel->make_whole(s->chain, &s->block, (size_t)element, length, s->table,
@@ -131,7 +213,7 @@ static void cross_plain(struct sweep *s, int32_t element, int way, size_t node, 
     first_piece(s, way, s->table, node);
     open_behind(s, way, way ? node - count : node + count);
     s->steps += (1.0 + whole->radians) * (1.0 + whole->radians);
-    s->radians = l_select(whole->radians > s->radians, whole->radians, s->radians);
+    s->radians = l_most(whole->radians, s->radians);
 }
 
 /* Across an element whose tension grows, by the pieces of its blocks, which are others the other way. */
@@ -148,6 +230,7 @@ static void cross_graded(struct sweep *s, size_t e, int way, size_t node)
     };
     const struct rd_sizes sizes = rd_sweep_sizes(s->extent);
     const size_t blocks = rd_blocks_of(s->chain, e, &sizes, way, block);
+    scatter(s);
     s->kernel->make_rate(s->chain, &s->block, e, &rate);
     s->tabled.levels = s->whole.count = 0;
     for (size_t k = 0; k < blocks; k++) {
@@ -158,7 +241,7 @@ static void cross_graded(struct sweep *s, size_t e, int way, size_t node)
             if (k + i == 0)
                 first_piece(s, way, s->table, node);
             else
-                s->kernel->walk_pieces(&s->walk[way], s->table, RD_NO_TERM, 1, &s->state);
+                walk_pieces(s, way, s->table, RD_NO_TERM, 1);
         }
         s->steps += (double)block[k].pieces * (double)block[k].pieces;
     }
@@ -187,6 +270,10 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
         cross_each(s, way, node, count);
         return;
     }
+    if (goes_flat(s) && (run->term < 0 || !(s->trait[run->term] & RD_COUPLED)))
+        flatten(s);
+    else
+        scatter(s);
     make_table(s, run, way, &all);
     int begun = 0;
     for (size_t left = all.count, top = all.level; left > 0; top--) {
@@ -201,7 +288,7 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
             begun = 1;
             pieces--;
         }
-        s->kernel->walk_pieces(&s->walk[way], piece, run->term, pieces, &s->state);
+        walk_pieces(s, way, piece, run->term, pieces);
     }
     open_behind(s, way, way ? node - count : node + count);
 }
@@ -236,6 +323,7 @@ void rd_sweep_forward(struct sweep *s, size_t a, size_t b, size_t *r)
         }
         accompany(s);
     }
+    scatter(s);
 }
 
 /* the same from b back to an earlier node a; *r - 1 is the last run that begins before b */
@@ -259,4 +347,5 @@ void rd_sweep_backward(struct sweep *s, size_t b, size_t a, size_t *r)
         }
         accompany(s);
     }
+    scatter(s);
 }

@@ -45,19 +45,52 @@ static bool is_same_rope(const struct rd_chain *chain, int32_t a, int32_t b)
            (!chain->sag || chain->sag[i] == chain->sag[j]);
 }
 
+/* whether inertia alone grows from frequency to frequency, so that waves become shorter */
+static bool is_growing(const struct sweep_extent *x, size_t count)
+{
+    bool growing = true;
+    for (size_t i = 1; i < count; i++)
+        growing = growing && x[i].section == x->section && x[i].tension == x->tension &&
+                  x[i].spring == x->spring && x[i].inertia >= x[i - 1].inertia &&
+                  x[i].dashpot >= x[i - 1].dashpot;
+    return growing;
+}
+
+/* waves of the frequencies of a block on one run, found when they are asked for */
+struct run_waves {
+    struct sweep_waves of[RD_LANES];
+    unsigned known; /* bits */
+};
+
+static struct sweep_pieces pieces_at(const struct rd_chain *chain, const struct rd_run *run,
+                                     const struct sweep_extent *extent, size_t lane,
+                                     struct run_waves *waves)
+{
+    if (!(waves->known >> lane & 1))
+        waves->of[lane] = rd_sweep_waves(chain, run, extent + lane);
+    waves->known |= 1u << lane;
+    return rd_sweep_pieces(chain, run, run->last - run->first, waves->of[lane]);
+}
+
 /* how many of the frequencies cross a run by as many pieces as the first does, 0 where those are more
    than are walked */
 static size_t alike(const struct rd_chain *chain, const struct rd_run *run,
-                    const struct sweep_waves *waves, size_t count)
+                    const struct sweep_extent *extent, size_t count, bool growing,
+                    struct run_waves *waves)
 {
-    const size_t n = run->last - run->first;
-    const struct sweep_pieces first = rd_sweep_pieces(chain, run, n, waves[0]);
+    const struct sweep_pieces first = pieces_at(chain, run, extent, 0, waves);
     if (chain->inertia && first.count >> first.level > RD_PIECES_MOST)
         return 0;
-    for (size_t i = 1; i < count; i++) {
-        const struct sweep_pieces own = rd_sweep_pieces(chain, run, n, waves[i]);
-        if (own.level != first.level || own.halvings != first.halvings)
+    /* between two frequencies that cross it alike all do */
+    size_t i = growing && count > 1 ? count - 1 : 1;
+    for (; i < count; i++) {
+        const struct sweep_pieces own = pieces_at(chain, run, extent, i, waves);
+        if (own.level == first.level && own.halvings == first.halvings)
+            continue;
+        if (!growing)
             return i;
+        growing = false;
+        i = 0;
     }
     return count;
 }
@@ -90,7 +123,8 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
     size_t used = factors->count - first < RD_LANES ? factors->count - first : RD_LANES;
     for (size_t lane = 0; lane < used; lane++)
         extent[lane] = rd_sweep_extent(factors, order[first + lane]);
-    struct sweep_waves waves[RD_LANES];
+    struct run_waves waves = {.known = 0};
+    const bool growing = is_growing(extent, used);
     for (size_t r = 0; r < runs->count && used > 0; r++) {
         const struct rd_run *run = runs->run + r;
         if (rd_span_is_plain(chain, (size_t)run->element))
@@ -99,11 +133,9 @@ size_t rd_sweep_block_from(const struct rd_chain *chain, const struct rd_runs *r
             used = alike_graded(chain, (size_t)run->element, extent, used);
             continue;
         }
-        const bool known =
-            r > 0 && chain->inertia && is_same_rope(chain, run[-1].element, run->element);
-        for (size_t lane = 0; lane < used && !known; lane++)
-            waves[lane] = rd_sweep_waves(chain, run, extent + lane);
-        used = alike(chain, run, waves, used);
+        if (r == 0 || !chain->inertia || !is_same_rope(chain, run[-1].element, run->element))
+            waves.known = 0;
+        used = alike(chain, run, extent, used, growing, &waves);
     }
     if (used == 0)
         return 0;

@@ -70,10 +70,12 @@ static double largest_shear(const struct rd_chain *chain)
 static uint8_t trait_of(const struct rd_chain *chain, size_t t)
 {
     const size_t w = chain->width;
-    int trait = 0;
+    int trait = RD_FIXED;
     for (size_t i = 0; i < w; i++) {
         if (chain->held[t * w + i])
             trait |= RD_COUPLED;
+        else
+            trait &= ~RD_FIXED;
         if (chain->hinge && chain->hinge[t * w + i] != 0.0)
             trait |= RD_HINGED;
         for (size_t j = 0; j < w; j++) {
@@ -160,6 +162,6 @@ struct sweep *rd_sweep_plan(const struct rd_chain *chain, const struct rd_factor
         s->trait[t] = trait_of(chain, t);
     for (size_t b = 0; b < 2; b++)
         s->walk[b] = (struct sweep_walk){chain,           &s->block, &s->way[b], s->trait,
-                                         s->coefficients, s->plain,  s->foot};
+                                         s->coefficients, s->plain,  &s->made,   s->foot};
     return s;
 }

@@ -13,6 +13,7 @@ struct sweep_table {
     size_t rest;   /* binary digits that have coefficients beside the largest piece */
     int32_t element, term;
     int way;
+    int flat; /* triples, not coefficients */
 };
 
 /* the plain span in the first place of the table */
@@ -20,6 +21,13 @@ struct sweep_whole {
     size_t count; /* elements, 0: none */
     int32_t element;
     lanes radians;
+};
+
+/* the same of real minors */
+struct sweep_compound {
+    size_t count;
+    int32_t element;
+    struct bent_compound of;
 };
 
 struct sweep {
@@ -34,6 +42,7 @@ struct sweep {
     double shear;   /* largest (S_cb/S_bb)^2 of a width of 3 */
     int planar;     /* this block's does */
     int undamped;   /* and with real numbers */
+    int waves;      /* spans have two real wavenumbers */
     struct taps carry, meet;
     size_t *rank;            /* (carried) */
     size_t records;          /* different nodes where parts meet */
@@ -54,6 +63,8 @@ struct sweep {
     size_t failed;           /* the first frequency without a response, or their count */
     struct sweep_table tabled;
     struct sweep_whole whole;
+    struct sweep_compound compound;
+    struct sweep_made made;
     struct sweep_block block;
     struct sweep_way way[2];
     struct sweep_extent extent[RD_LANES], most;

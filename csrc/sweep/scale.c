@@ -156,6 +156,7 @@ static RD_CLONES void fill(const struct rd_chain *chain, const struct factors *o
     const lane_mask real = (of->section.im == 0.0) & (of->tension.im == 0.0) &
                            (of->spring.im == 0.0) & (of->inertia.im == 0.0);
     block->undamped = rd_chain_is_dragged(chain) || is_lossy(chain) ? (lane_mask){0} : real;
+    block->waves = block->undamped & (of->inertia.re <= 0.0) & (of->section.re > 0.0);
     block->pull = times(of->tension, last * last);
     for (size_t i = 0, p = 0; i < w; i++)
         for (size_t j = i; j < w; j++, p++) {

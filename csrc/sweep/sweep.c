@@ -34,18 +34,17 @@ static enum rd_status begin_block(struct sweep *s, const struct rd_factors *fact
     rd_sweep_feet(s->chain, &s->block, s->foot);
     s->planar = is_planar(s, 0);
     s->undamped = s->block.undamped[0] != 0;
+    s->waves = s->block.waves[0] != 0;
     for (size_t lane = 1; lane < s->used; lane++)
-        if (is_planar(s, lane) != s->planar || (s->block.undamped[lane] != 0) != s->undamped)
+        if (is_planar(s, lane) != s->planar || (s->block.undamped[lane] != 0) != s->undamped ||
+            (s->block.waves[lane] != 0) != s->waves)
             s->used = lane;
     s->most = rd_sweep_most(s->extent, s->used);
     s->tabled.levels = 0;
-    s->whole.count = 0;
+    s->whole.count = s->compound.count = 0;
+    s->made = (struct sweep_made){0};
     s->steps = l_fill(1.0);
     s->radians = l_fill(0.0);
-    for (size_t e = 0; s->coefficients && e < s->chain->distinct; e++)
-        s->kernel->make_single(s->chain, &s->block, e, s->coefficients + e * s->coefs);
-    for (size_t e = 0; s->plain && s->planar && e < s->chain->distinct; e++)
-        s->kernel->make_plain(s->chain, &s->block, e, s->plain + e * RD_PLAIN);
     return RD_OK;
 }
 

@@ -40,12 +40,8 @@ def answers_at_nodes(solver: Solver) -> Solver:
     def solve(question: Question) -> tuple[Complex, Bound]:
         missing = np.zeros(len(question.frequency), dtype=np.bool_)
         lines: list[tuple[Flags, AtNode]] = []
+        rest = question
         while True:
-            rest = replace(
-                question,
-                frequency=question.frequency[~missing],
-                factor=np.ascontiguousarray(question.factor[:, ~missing]),
-            )
             try:
                 found, bound = solver(rest)
                 break
@@ -56,6 +52,11 @@ def answers_at_nodes(solver: Solver) -> Solver:
                     raise
                 lines.append((same, line))
                 missing |= same
+                rest = replace(
+                    question,
+                    frequency=question.frequency[~missing],
+                    factor=np.ascontiguousarray(question.factor[:, ~missing]),
+                )
         if not lines:
             return found, bound
         value = np.zeros((*found.shape[:2], len(missing)), dtype=np.complex128)

@@ -7,9 +7,13 @@
 #include "chain/elements.h"
 #include "element/shape.h"
 #include "element/strut.h"
+#include "span/compound.h"
 #include "span/rate_matrix.h"
 
-enum { RD_PLAIN = 9 }; /* complex lanes of an element in a walk without rows */
+enum {
+    RD_PLAIN = 9,   /* complex lanes of an element in a walk without rows */
+    RD_MINORS = 14, /* numbers of the plane behind such a walk, at most */
+};
 
 /* what a node term needs besides adding masses */
 enum rd_trait {
@@ -20,6 +24,7 @@ enum rd_trait {
     RD_CARRIES = 16, /* structures, see chain/attached.h; with RD_COUPLED */
     RD_MASSIVE = 32, /* it has mass */
     RD_DASHED = 64,  /* it has damping; with RD_COUPLED */
+    RD_FIXED = 128,  /* all coordinates are held; with RD_COUPLED */
 };
 
 enum { RD_PAIRS_MAX = RD_WIDTH_MAX * (RD_WIDTH_MAX + 1) / 2 };
@@ -39,6 +44,7 @@ struct sweep_block {
     cv dashpot;                 /* of node damping, 0 where the chain has none */
     int real;                   /* spring and inertia are */
     lane_mask undamped;         /* nothing takes energy away */
+    lane_mask waves;            /* nor adds any: inertia <= 0 too */
 };
 
 /* What depends on the direction of the walk as well: backward all is seen with u -> D u. */
@@ -65,10 +71,24 @@ struct sweep_walk {
     const struct sweep_block *block;
     const struct sweep_way *way;
     const uint8_t *trait;          /* (terms) enum rd_trait */
-    const cv *coefficients;        /* of each distinct element, or NULL: made on the way */
-    const cv *plain;               /* (distinct, RD_PLAIN) the same for a walk without rows */
+    cv *coefficients;              /* of each distinct element, or NULL: made on the way */
+    cv *plain;                     /* (distinct, RD_PLAIN) the same for a walk without rows */
+    struct sweep_made *made;       /* which of these there are */
     const struct sweep_foot *foot; /* (attached) */
 };
+
+/* bits of distinct elements */
+struct sweep_made {
+    uint64_t coefficients, plain;
+};
+
+/* whether an element's bit was not set, which it is then */
+RD_INLINE int sweep_is_first(uint64_t *made, int32_t e)
+{
+    const uint64_t before = *made;
+    *made |= (uint64_t)1 << e;
+    return before != *made;
+}
 
 /* A rigid element under so much compression is a string beside an element without it: below
    T S_bb l^2 = -1, a third of the critical load of its cantilever, which the chain does not know.
@@ -91,6 +111,8 @@ struct sweep_state {
     size_t rows;        /* of E that are under way */
     cv *E;              /* (rows, width), inside E_all: a port's row, its companion, .. */
     cv *E_all;          /* (all carried ports, 2, width) */
+    int flat;           /* minors say what is behind the walk, and not U */
+    cv minors[RD_MINORS]; /* of sweep/kernel/plane.h, as complex or as real numbers */
 };
 
 /* the largest of some sizes */
@@ -133,11 +155,21 @@ struct sweep_kernel {
     void (*make_coefficients)(const cv *triple, cv *coef);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
     void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);
-    /* these of complex numbers, and of real ones where nothing is damped */
+    /* these of complex numbers, and of real ones where nothing is damped; minors from U and U from
+       minors, and a walk by them */
+    void (*flatten[2])(const struct sweep_block *, struct sweep_state *);
+    void (*scatter[2])(const struct sweep_block *, struct sweep_state *);
     void (*walk_plain[2])(const struct sweep_walk *, size_t node, size_t count,
                           struct sweep_state *);
     void (*join[2])(const struct rd_chain *, const struct sweep_way *, int32_t term, const cv *one,
                     const cv *two, cv *joined);
+    /* by real minors: across a node, equal pieces and a whole span, in which nothing is damped */
+    void (*walk_node)(const struct sweep_walk *, size_t term, struct sweep_state *);
+    void (*walk_triples)(const struct sweep_walk *, const cv *triple, int32_t term, size_t count,
+                         struct sweep_state *);
+    void (*make_compound)(const struct rd_chain *, const struct sweep_block *, size_t e,
+                          double length, struct bent_compound *);
+    void (*walk_compound)(const struct bent_compound *, struct sweep_state *);
     void (*walk)(const struct sweep_walk *, size_t node, size_t count, struct sweep_state *);
     void (*walk_pieces)(const struct sweep_walk *, const cv *piece, int32_t term, size_t count,
                         struct sweep_state *);

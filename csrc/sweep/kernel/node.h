@@ -283,9 +283,37 @@ static void K_(free_part)(const struct sweep_walk *s, size_t t, const double *gi
             m[i * W + j] = held[i] || held[j] ? 0.0 : given[i * W + j];
 }
 
+/* c m of a diagonal m */
+static RD_CLONES void K_(absorb_diagonal)(const struct sweep_walk *s, const double *m, cv c,
+                                struct sweep_state *state)
+{
+    KEEP for (int i = 0; i < W; i++) {
+        lanes v[W] = {{0}};
+        if (m[i * (W + 1)] == 0.0)
+            continue;
+        v[i] = s->block->z[i];
+        K_(absorb_one)(v, i, c_scale(c, m[i * (W + 1)]), state->U, state->A, state->E,
+                       state->rows);
+    }
+}
+
+/* Nothing moves, and no row listens there. */
+static void K_(hold_still)(struct sweep_state *state)
+{
+    KEEP for (int i = 0; i < SYM; i++) {
+        state->U[i] = c_zero();
+        state->A[i] = (lanes){0};
+    }
+    state->absorbed = 1;
+}
+
 /* Take the node into the part behind it: heavy and eccentric masses by rank-one parts. */
 static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sweep_state *state)
 {
+    if (s->trait[t] & RD_FIXED && state->rows == 0) {
+        K_(hold_still)(state);
+        return;
+    }
     if (s->trait[t] & RD_COUPLED)
         K_(hold_all)(s->chain, t, state);
     const double *const all[] = {s->chain->stiffness, s->chain->mass, s->chain->damping};
@@ -296,6 +324,10 @@ static RD_CLONES void K_(absorb)(const struct sweep_walk *s, size_t t, struct sw
             continue;
         const double *given = all[part] + t * FULL;
         const cv factor = factors[part];
+        if (!(s->trait[t] & (RD_COUPLED | RD_SKEW))) {
+            K_(absorb_diagonal)(s, given, factor, state);
+            continue;
+        }
         double m[FULL], d[2 * W], row[2 * W][RD_WIDTH_MAX];
         int indefinite;
         K_(free_part)(s, t, given, m);

@@ -355,14 +355,39 @@ RD_INLINE void N_(plane_node)(const struct sweep_walk *s, size_t t, num own, str
         N_(load_skew)(p, n_(scale)(n_(of)(way->inertia[at(z, W - 1)]), m[z * W + W - 1]));
 }
 
+RD_INLINE struct N_(plane) N_(plane_in)(const struct sweep_state *state)
+{
+    struct N_(plane) p;
+    __builtin_memcpy(&p, state->minors, sizeof p);
+    return p;
+}
+RD_INLINE void N_(plane_out)(const struct N_(plane) * p, struct sweep_state *state)
+{
+    __builtin_memcpy(state->minors, p, sizeof *p);
+}
+
+static RD_CLONES void N_(flatten)(const struct sweep_block *block, struct sweep_state *state)
+{
+    const struct N_(plane) p = N_(plane_of)(block, state->U);
+    N_(plane_out)(&p, state);
+}
+
+static RD_CLONES void N_(unflatten)(const struct sweep_block *block, struct sweep_state *state)
+{
+    const struct N_(plane) p = N_(plane_in)(state);
+    N_(scatter)(block, &p, state->U);
+    KEEP for (int i = 0; i < SYM; i++)
+        state->A[i] = (lanes){0};
+}
+
 /* As K_(walk) over the chain's own elements and nodes, while no row is carried. */
 static RD_CLONES void N_(walk_plain)(const struct sweep_walk *s, size_t node, size_t count,
                                      struct sweep_state *state)
 {
     const struct rd_chain *chain = s->chain;
-    struct N_(plane) p = N_(plane_of)(s->block, state->U);
+    struct N_(plane) p = N_(plane_in)(state);
     cv own[RD_PLAIN];
-    const cv *plain = own;
+    cv *plain = own;
     const size_t backward = (size_t)s->way->backward;
     const int apart = backward ? RD_COUPLED : RD_COUPLED | RD_HINGED;
     size_t stretch = state->stretch;
@@ -372,10 +397,10 @@ static RD_CLONES void N_(walk_plain)(const struct sweep_walk *s, size_t node, si
         stretch -= backward && (size_t)chain->first[stretch] == i;
         const int32_t e = chain->element[stretch];
         stretch += !backward && (size_t)chain->first[stretch + 1] == i + 1;
-        if (s->plain) {
-            plain = s->plain + (size_t)e * RD_PLAIN;
-        } else if (e != made) {
-            K_(make_plain)(chain, s->block, (size_t)e, own);
+        if (e != made) {
+            plain = s->plain ? s->plain + (size_t)e * RD_PLAIN : own;
+            if (!s->plain || sweep_is_first(&s->made->plain, e))
+                K_(make_plain)(chain, s->block, (size_t)e, plain);
             made = e;
         }
         const int absorbed = k == 0 && state->absorbed;
@@ -400,7 +425,6 @@ static RD_CLONES void N_(walk_plain)(const struct sweep_walk *s, size_t node, si
         }
     }
     state->stretch = stretch;
-    N_(scatter)(s->block, &p, state->U);
-    KEEP for (int i = 0; count > 0 && i < SYM; i++)
-        state->A[i] = (lanes){0};
+    N_(plane_level)(&p);
+    N_(plane_out)(&p, state);
 }

@@ -28,7 +28,7 @@ static RD_CLONES void K_(walk)(const struct sweep_walk *s, size_t node, size_t c
     const size_t backward = (size_t)s->way->backward;
     const int apart = backward ? RD_COUPLED : RD_COUPLED | RD_HINGED;
     cv U[SYM], N[SYM], own[FULL + 2 * SYM];
-    const cv *coef = own;
+    cv *coef = own;
     size_t stretch = state->stretch;
     int32_t made = -1;
     UNROLL for (int i = 0; i < SYM; i++) {
@@ -40,10 +40,10 @@ static RD_CLONES void K_(walk)(const struct sweep_walk *s, size_t node, size_t c
         stretch -= backward && (size_t)chain->first[stretch] == i;
         const int32_t e = chain->element[stretch];
         stretch += !backward && (size_t)chain->first[stretch + 1] == i + 1;
-        if (s->coefficients) {
-            coef = s->coefficients + (size_t)e * (FULL + 2 * SYM);
-        } else if (e != made) {
-            K_(make_single)(chain, s->block, (size_t)e, own);
+        if (e != made) {
+            coef = s->coefficients ? s->coefficients + (size_t)e * (FULL + 2 * SYM) : own;
+            if (!s->coefficients || sweep_is_first(&s->made->coefficients, e))
+                K_(make_single)(chain, s->block, (size_t)e, coef);
             made = e;
         }
         const int absorbed = k == 0 && state->absorbed;

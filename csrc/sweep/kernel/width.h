@@ -66,6 +66,10 @@ RD_INLINE int K_(at)(int i, int j)
 #include "sweep/kernel/plane.h"
 #endif
 
+#if RD_WIDTH == 2
+#include "sweep/kernel/undamped.h"
+#endif
+
 const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_element = K_(make_element),
     .make_rate = K_(make_rate),
@@ -76,7 +80,15 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_single = K_(make_single),
 #if RD_WIDTH == 2 || RD_WIDTH == 3
     .make_plain = K_(make_plain),
+    .flatten = {K_(flatten), NAME(real_flatten, RD_WIDTH)},
+    .scatter = {K_(unflatten), NAME(real_unflatten, RD_WIDTH)},
     .walk_plain = {K_(walk_plain), NAME(real_walk_plain, RD_WIDTH)},
+#endif
+#if RD_WIDTH == 2
+    .walk_node = K_(walk_node),
+    .walk_triples = K_(walk_triples),
+    .make_compound = K_(make_compound),
+    .walk_compound = K_(walk_compound),
 #endif
     .join = {K_(join), NAME(real_join, RD_WIDTH)},
     .walk = K_(walk),
