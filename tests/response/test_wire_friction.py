@@ -319,7 +319,6 @@ def test_chains_are_refused():
         lambda model: model.transient([0.0, 0.1], start={DRIVE: 1.0}),
         lambda model: model.floquet(),
         lambda model: model.stability_map([1.0, 2.0], [0.0, 1.0]),
-        lambda model: model.scene.family(["tension"]).modes([[3e4]], 2),
         lambda model: rd.identify(model.scene, rd.Peaks([10.4, 21.1]), ["tension"], ends="given"),
         lambda model: rd.compare(model, rd.Peaks([10.4, 21.1])),
     ],

@@ -75,11 +75,11 @@ class Balance:
 
     def solved(self, start: Complex, share: float = 1.0) -> Complex | None:
         """Return the curvatures near some, under a share of the drive; None if none are found."""
-        kappa, n = start, len(start)
+        kappa = start
         for _ in range(NEWTON):
             missing, slope = self._about(kappa, share)
             step = np.linalg.solve(slope, -np.concatenate([missing.real, missing.imag]))
-            kappa = np.asarray(kappa + step[:n] + 1j * step[n:], dtype=np.complex128)
+            kappa = kappa + _whole(step)
             if np.abs(step).max() <= ENOUGH * np.abs(kappa).max():
                 return kappa
         return self._searched(start, share)
@@ -88,16 +88,16 @@ class Balance:
         """Return them where Newton's steps lead too far: those of Powell's method do not."""
         from scipy.optimize import root
 
-        n, scale = len(start), float(np.abs(start).max()) or 1.0
+        scale = float(np.abs(start).max()) or 1.0
 
         def gap(x: Real) -> tuple[Real, Real]:
-            missing, slope = self._about(scale * (x[:n] + 1j * x[n:]), share)
+            missing, slope = self._about(scale * _whole(x), share)
             return np.concatenate([missing.real, missing.imag]) / scale, slope
 
         x = np.concatenate([start.real, start.imag]) / scale
         found: Any = root(gap, x, jac=True, method="hybr", options={"xtol": ENOUGH})
         left = np.abs(found.fun).max() <= BALANCED * np.abs(found.x).max()
-        return scale * (found.x[:n] + 1j * found.x[n:]) if left else None
+        return scale * _whole(found.x) if left else None
 
     def sliding(self) -> Complex:
         """Return the curvatures where no layer holds anything."""
@@ -130,6 +130,12 @@ class Balance:
         by_imag = self.moved * (1j * g + found.slope * kappa * unit.imag)
         slope = np.block([[by_real.real, by_imag.real], [by_real.imag, by_imag.imag]])
         return missing, slope + np.eye(2 * len(kappa))
+
+
+def _whole(x: Real) -> Complex:
+    """Return complex numbers of their real and then their imaginary parts."""
+    real, imag = np.split(x, 2)
+    return np.asarray(real + 1j * imag, dtype=np.complex128)
 
 
 def _is_one(one: Complex, other: Complex) -> bool:
