@@ -32,6 +32,7 @@ from .parametric.stability import StabilityMap
 from .parametric.tongues import Boundary
 from .response.deflection import Deflection
 from .response.frf import FRF
+from .response.friction.answer import FrictionResponse
 from .response.second_harmonic import SecondHarmonic
 from .scene.bench.bending_test import BendingTest
 from .scene.bench.prior import Prior
@@ -46,6 +47,7 @@ from .scene.damping import (
     RayleighDamping,
     StiffnessDamping,
     ViscousDamping,
+    WireFriction,
 )
 from .scene.end import End
 from .scene.force import Chirp, Impulse, Sine, Step
@@ -95,6 +97,7 @@ __all__ = [
     "Fit",
     "Fits",
     "Floquet",
+    "FrictionResponse",
     "Gravity",
     "HardCases",
     "Hinge",
@@ -145,6 +148,7 @@ __all__ = [
     "UnitWarning",
     "ViscousDamping",
     "Wire",
+    "WireFriction",
     "WireShifts",
     "accuracy_cost",
     "ask",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Literal, overload
 
 from numpy.typing import ArrayLike
@@ -12,7 +11,7 @@ from numpy.typing import ArrayLike
 from .base import check
 from .base.computed import waited
 from .base.progress import Progress
-from .chain.compiled import Compiled, refuse_nonlinear
+from .chain.compiled import Compiled, refuse_nonlinear, refuse_rubbing, rubbing
 from .chain.port import Point
 from .eigen.damped.damped import solve_damped
 from .eigen.damped.damped_modes import DampedModes
@@ -31,6 +30,7 @@ from .parametric.floquet import Floquet, solve_floquet
 from .parametric.stability import StabilityMap, solve_stability
 from .response.deflection import Deflection, solve_static
 from .response.frf import FRF
+from .response.friction.solve import solve_rubbing
 from .response.second_harmonic import solver_of
 from .scene.scene import Scene
 from .space.model import compile_space
@@ -102,15 +102,15 @@ class Model(Compiled):
         number : int, optional
             How many of the lowest.
         below : float, optional
-            All below this frequency [Hz]; instead of `number`.
+            All below this frequency [Hz].
         solver : {"sweep", "lapack"}
             ``"sweep"``: isolated by counts, refined by inverse iteration along the chain, nothing
             assembled: right to the last digits whatever n, and certified (csrc/modes/certify);
-            clusters of eight modes and more within a relative 1e-8 are refused. ``"lapack"``:
-            assembles the matrices and reduces them to a dense symmetric problem (see
-            csrc/assembled). The assembled stiffness loses digits as n^4: of the first frequency of
-            a clamped beam about 11 are right with 64 elements, 7 with 512, 6 with 1024. Time grows
-            as n^3; more than 8000 unknowns are refused, and Ctrl-C waits for the dense solution.
+            clusters of eight modes and more within a relative 1e-8 are refused. ``"lapack"``: a
+            dense symmetric problem of assembled matrices (see csrc/assembled), whose stiffness
+            loses digits as n^4: of the first frequency of a clamped beam about 11 are right with
+            64 elements, 7 with 512, 6 with 1024. Time grows as n^3; more than 8000 unknowns are
+            refused, and Ctrl-C waits for the dense solution.
         points : int, optional
             Of continuous spans: shapes are given at the ends of so many equal parts of each span
             or element, exactly; 16 to a half wave of the highest mode where left out.
@@ -198,6 +198,7 @@ class Model(Compiled):
         threads: int | None = None,
         decay: float = 0.0,
         harmonic: int = 1,
+        amplitude: float | None = None,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment, or motion of an end.
 
@@ -223,17 +224,19 @@ class Model(Compiled):
             stiffness; loses digits with n as `modes` does. ``"band"``: that of the mixed form (see
             csrc/mixed/mixed.h), hundreds of times as long; its error grows as n at most.
         threads : int, optional
-            Of sweep and band: frequencies are shared out over so many threads; the environment
-            variable ROPEDYN_THREADS or all cores where left out. The bits do not depend on it.
+            Of sweep and band: how many share the frequencies; ROPEDYN_THREADS of the environment or
+            all cores where left out. The bits do not depend on it.
         decay : float, optional
             [1/s]: the response at i omega + decay, of force and motion both times exp(-decay t).
         harmonic : {1, 2}
             2: what slopes that stretch the rope cause at twice the frequency, per square of the
             force, such as ``("alpha", L)`` or ``("F_x", 0.0)``; see `SecondHarmonic`.
+        amplitude : float, optional
+            Of one drive [N, N m; m, rad of an end]: needed with `WireFriction`, else of no effect.
 
         Returns
         -------
-        FRF
+        FRF, with `WireFriction` a `FrictionResponse`
             Motion is Re(value exp(+i omega t)), times exp(decay t).
 
         Raises
@@ -258,9 +261,13 @@ class Model(Compiled):
         >>> print(model.frf([0.0], drive=("z", 0.5)).value[0, 0].real.round(6))
         0.0025
         """
+        given: Any = {"drive": drive, "response": response, "quantity": quantity}
+        given |= {"solver": solver, "threads": threads, "decay": decay}
+        if rubbing(self):
+            given |= {"amplitude": amplitude, "harmonic": harmonic}
+            return solve_rubbing(self, frequency, **given)
         refuse_nonlinear(self)
-        ask = partial(solver_of(harmonic), self, frequency, drive=drive, response=response)
-        return ask(quantity=quantity, solver=solver, threads=threads, decay=decay)
+        return solver_of(harmonic)(self, frequency, **given)
 
     @waited
     def static(
@@ -409,6 +416,7 @@ class Model(Compiled):
         asked |= {"start": start, "velocity": velocity, "snapshots": snapshots}
         asked |= {"method": method, "modes": modes, "step": step, "tolerance": tolerance}
         asked |= {"spectral_radius": spectral_radius, "partial": partial, "progress": progress}
+        refuse_rubbing(self, "over time it is a hysteresis along the whole rope; its steady motion")
         run = Run.of(self, time, **asked)
         return turned(run, follow_motion)
 
@@ -433,8 +441,8 @@ class Model(Compiled):
         TypeError
             If the number is not a whole one.
         SceneError
-            If the tension does not pulsate, the scene has gravity, a damping that is not in
-            proportion to velocity or a part that is not linear, or the number has no meaning.
+            If the tension does not pulsate, the scene has gravity or what is not linear, a damping
+            is not in proportion to velocity, or the number has no meaning.
         SolveError
             If there are fewer modes, or the numbers overflow.
 
@@ -467,10 +475,8 @@ class Model(Compiled):
 
         Parameters
         ----------
-        frequency : array_like, shape (f,)
-            Of the tension [Hz], increasing.
-        amplitude : array_like, shape (a,)
-            Of the tension [N], increasing, about the scene's mean.
+        frequency, amplitude : array_like, shape (f,) and (a,)
+            Of the tension [Hz; N about the scene's mean], increasing.
         modes : int, optional
             As in `floquet`.
         progress : None, True or callable
@@ -528,7 +534,8 @@ class Model(Compiled):
     ) -> FRF | Branches:
         """Find the steady motion under a sine whose frequency is stepped.
 
-        What has the frequency of the drive: of linear scenes `frf`, of others by harmonic balance.
+        What has the frequency of the drive: of linear scenes and with `WireFriction` as `frf`, of
+        others by harmonic balance.
         The first state is reached from rest, each other one along the branch from the one before,
         and where that ends on the next stable one it leads to.
 
@@ -540,7 +547,6 @@ class Model(Compiled):
         amplitude : float
             Of a sine [N, N m; m, rad of an end].
         response : point or list of points, optional
-            As in `frf`.
         branches : bool
             Whether all branches between the lowest and the highest frequency are followed.
         quantity : {"receptance", "mobility", "accelerance"}
@@ -575,9 +581,11 @@ class Model(Compiled):
         (array([[0.00343, 0.00516]]), array([ True,  True]))
         """
         check.instance(branches, "branches", bool, "True or False")
-        how: Any = {"quantity": quantity, "tolerance": tolerance, "progress": progress}
         ask: Any = {"drive": drive, "amplitude": amplitude, "response": response}
-        asked = SteppedSine.of(self, frequency, **ask, **how)
+        ask |= {"quantity": quantity, "tolerance": tolerance}
+        if rubbing(self):
+            return solve_rubbing(self, frequency, branches=branches, **ask)
+        asked = SteppedSine.of(self, frequency, progress=progress, **ask)
         refuse_steady(asked)
         return solve_branches(asked) if branches else solve_stepped(asked)
 

@@ -15,7 +15,7 @@ from ..base.array import Real
 from ..base.computed import computed
 from ..base.errors import SceneError
 from ..scene.card import Card, card, card_html, card_text
-from ..scene.damping import having, separable
+from ..scene.damping import WireFriction, having, separable
 from ..scene.parts.stretch import KINDS as STRETCHES
 from ..scene.rope import ACROSS, own_number
 from ..scene.scene import Scene
@@ -335,10 +335,27 @@ def least_of(model: Compiled, component: tuple[str, ...]) -> float:
     return model._least[component]
 
 
+def rubbing(model: Compiled) -> WireFriction | None:
+    """Return the friction between wires that a scene has, None where there is none."""
+    found = [one for one in model.scene.dampings if isinstance(one, WireFriction)]
+    return found[0] if found else None
+
+
 def refuse_nonlinear(model: Compiled) -> None:
-    """Refuse a scene with a part that only integration over time takes."""
+    """Refuse a scene with a part that only integration over time takes, or whose wires rub."""
+    refuse_rubbing(model, "that depends on the amplitude, which only")
     if model._nonlinear:
         raise SceneError(f"{model._nonlinear}: only integration over time takes others")
+
+
+def refuse_rubbing(model: Compiled, why: str) -> None:
+    """Refuse friction between wires."""
+    if rubbing(model):
+        raise SceneError(
+            f"damping must not be friction between wires here: {why} frf and stepped_sine with an "
+            'amplitude take. Say scene.without("wire friction") for motion in which nothing slips, '
+            "or Section.bending and Section.loss of an amplitude for B and a LossFactor"
+        )
 
 
 def _least_of_rod(chain: Chain) -> float:

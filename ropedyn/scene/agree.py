@@ -35,6 +35,7 @@ def agree(scene: Described) -> None:
         ropes(scene.rope, changing, ends)
     _check_gravity(scene)
     _check_stretching(scene)
+    _check_friction(scene)
 
 
 def refuse_axis(scene: Described, what: str) -> None:
@@ -226,4 +227,26 @@ def _check_stretching(scene: Described) -> None:
     if not all("x" in _end.end_of(end).term().held for end in scene.ends):
         raise SceneError(
             f"ends must hold x where the tension is stretching, got ends {check.shown(scene.ends)}"
+        )
+
+
+def _check_friction(scene: Described) -> None:
+    """Refuse friction between wires beside what it is not known with."""
+    found = [one for one in scene.dampings if isinstance(one, damping.WireFriction)]
+    if not found:
+        return
+    where = "where there is friction between wires"
+    refuse_axis(scene, "friction between wires")
+    if len(found) > 1 or damping.having(scene.dampings, "ratio"):
+        what = "a ModalDamping" if len(found) == 1 else f"{len(found)} of it"
+        raise SceneError(f"damping must hold one WireFriction and no ModalDamping, got {what}")
+    if scene.planes != "z":
+        raise SceneError(f'planes must be "z" {where}, which ties both, got "both"')
+    if scene.rope.lay_slope:
+        raise SceneError(f"lay_slope must be 0 or None {where}, got {scene.rope.lay_slope!r}")
+    B, layers = scene.rope.bending_stiffness, sum(found[0].stiffness)
+    if not isinstance(B, float) or layers >= B:
+        raise SceneError(
+            f"bending_stiffness must be that of wires that stick {where}, more than the "
+            f"{layers:g} N m^2 of its layers, got {B!r}"
         )

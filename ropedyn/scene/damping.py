@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..base import check
 from ..base.array import Complex, Real
 from ..base.errors import SceneError
-from ..base.parameter import Description, given, number
+from ..base.parameter import Description, depending, given, number
 from ..base.unit import is_quantity
 
 SECTION, TENSION, SPRING, INERTIA, DASHPOT = PARTS = range(5)
@@ -36,6 +36,7 @@ class DampingTerm(NamedTuple):
     loss: Mapping[int, float] = NOTHING  # times i, to factors of parts
     drag: float = 0.0  # along the rope, to C of transverse and axial motion [N s/m^2]
     ratio: float | tuple[float, ...] = 0.0  # to that of all modes, or of the lowest ones
+    slip: tuple[float, ...] = ()  # curvature per tension at which layers of wires slip [1/(m N)]
 
 
 class Damping(Protocol):
@@ -233,7 +234,69 @@ class ModalDamping(Description):
         return DampingTerm(ratio=self.ratio)
 
 
-KINDS = (StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping)
+def _checked_stiffness(value: Any) -> tuple[float, ...]:
+    return tuple(check.numbers(value, "stiffness", "N m^2", sign="positive").tolist())
+
+
+def _checked_slip(value: Any, name: str, friction: WireFriction) -> tuple[float, ...]:
+    slip = tuple(check.numbers(value, name, "1/(m N)", sign="nonnegative").tolist())
+    if len(slip) != len(friction.stiffness):
+        raise SceneError(
+            f"{name} must hold a number for each of the {len(friction.stiffness)} layers of "
+            f"stiffness, got {len(slip)}"
+        )
+    return slip
+
+
+class WireFriction(Description):
+    """Friction between wires in bending: layers stick until tension can hold them no longer.
+
+    Stiffness and loss depend on the amplitude of the curvature: `Model.frf` and
+    `Model.stepped_sine` find them at each place of the rope (`FrictionResponse`) for a force that
+    is given; what has no amplitude is refused. The rope has the stiffness of wires that stick.
+
+    Parameters
+    ----------
+    stiffness : sequence of float
+        What each layer adds to the bending stiffness while it sticks [N m^2].
+    slip : sequence of float
+        Curvature per tension from which each slips [1/(m N)].
+
+    Raises
+    ------
+    TypeError
+        If something is not a number.
+    SceneError
+        If there is no layer, not one number each, a stiffness is not positive or a slip negative.
+
+    Examples
+    --------
+    `Section.wire_friction` computes it:
+
+    >>> import ropedyn as rd
+    >>> made = rd.Construction.standard("1x7", diameter=12e-3)
+    >>> made.section().wire_friction(0.3).stiffness
+    (126.57...,)
+    """
+
+    kind: ClassVar[str] = "wire friction"
+
+    stiffness: tuple[float, ...] = given(_checked_stiffness)
+    slip: tuple[float, ...] = depending(_checked_slip)
+
+    def term(self) -> DampingTerm:
+        """On layers of wires, as far as they slip."""
+        return DampingTerm(slip=self.slip)
+
+
+KINDS = (
+    StiffnessDamping,
+    RayleighDamping,
+    LossFactor,
+    ViscousDamping,
+    ModalDamping,
+    WireFriction,
+)
 """Every kind of damping."""
 
 

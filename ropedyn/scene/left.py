@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.check import COORDINATES
 from ..base.unit import ROLE
 from .checked import checked_tension
+from .damping import WireFriction
 from .end import STANDING, End
 from .gravity import Gravity
 from .parts.node import Part
@@ -59,12 +60,13 @@ def left_of(scene: Described, effects: tuple[str, ...]) -> dict[str, Any]:
     if pulls(gravity):
         mean = scene.mean_tension
     present = coordinates_of(rope, mean, planes)
+    unbent = set() if "beta" in present else {WireFriction.kind}
     left = (_part(part, rope, present) for part in scene.parts if part.kind not in effects)
     return {
         "rope": rope,
         "tension": tension,
         "ends": tuple(_end(end, present, effects) for end in scene.ends),
-        "damping": tuple(d for d in scene.dampings if d.kind not in effects),
+        "damping": tuple(d for d in scene.dampings if d.kind not in {*effects, *unbent}),
         "gravity": gravity,
         "parts": tuple(part for part in left if part is not None),
         "planes": planes,

@@ -29,7 +29,8 @@ class Scene(Described):
         [N]; negative is compression, which needs bending stiffness.
     ends : pair of {"clamped", "pinned", "free"} or End
         Left and right end.
-    damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, optional
+    damping : StiffnessDamping, RayleighDamping, LossFactor, ViscousDamping, ModalDamping, \
+WireFriction, optional
         A tuple of them is their sum.
     parts : sequence of PointMass, Spring, Dashpot, Support, Hinge, Resonator, BrokenWire, \
 NodeForce, Stop, AddedMass, LocalChange

@@ -84,6 +84,7 @@ DESCRIBED = {
     rd.LossFactor: {"eta": (0.02, "", "percent")},
     rd.ViscousDamping: {"coefficient": (0.3, "N s/m^2", "Pa s")},
     rd.ModalDamping: {"ratio": (0.02, "", "percent")},
+    rd.WireFriction: {"stiffness": (3.0, "N m^2", "N cm^2"), "slip": (1e-4, "1/(m N)", "1/(m kN)")},
     rd.Tension: {
         "mean": (300.0, "N", "kgf"),
         "amplitude": (30.0, "N", "lbf"),

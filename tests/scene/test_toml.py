@@ -100,6 +100,7 @@ dampings = st.one_of(
     st.builds(rd.ViscousDamping, at_least_zero),
     st.builds(rd.ModalDamping, at_least_zero | st.lists(at_least_zero, min_size=1, max_size=4)),
 )
+RUBBING = rd.WireFriction([0.3, 0.2], [0.1, 0.0])
 
 
 @st.composite
@@ -186,7 +187,8 @@ def every_effect_but_a_law():
         natural="straight",
     )
     curved = rd.Scene(spring, planes="both")
-    return sagging, stretching, upright, sagging.replace(**plain), curved
+    rubbing = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1.0), tension=9.0, damping=RUBBING)
+    return sagging, stretching, upright, sagging.replace(**plain), curved, rubbing
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e != rd.NodeForce.kind])

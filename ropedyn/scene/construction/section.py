@@ -13,6 +13,7 @@ from ...base.answer import TRANSIENT, Answer
 from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
+from ..damping import WireFriction
 from . import stiffness
 from .broken import helix_of, path_of, without
 from .friction import Grip, grip
@@ -242,6 +243,38 @@ class Section(Answer):
         layers = self._grip(tension, friction, lateral)
         moment = self.bending_slip * kappa + layers.moment(kappa)
         return np.asarray(layers.loss(kappa) / (np.pi * moment * kappa))
+
+    def wire_friction(self, friction: float, *, lateral: float = LATERAL) -> WireFriction:
+        """Return friction between wires as a scene takes it, for motion of any amplitude.
+
+        Parameters
+        ----------
+        friction, lateral : float
+            As of `moment`.
+
+        Returns
+        -------
+        WireFriction
+            Of a rope with `bending_stick`, at whatever tension the scene has.
+
+        Raises
+        ------
+        TypeError, SceneError
+            As `moment` does; also if there is no layer that could slip.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> made = rd.Construction.standard("1x19", diameter=20e-3, lay="Z")
+        >>> damping = made.section().wire_friction(0.3)
+        >>> scene = rd.Scene(rd.Rope.from_construction(9.0, made), tension=3e4, damping=damping)
+        >>> scene.effects[-1]
+        'wire friction'
+        """
+        layers = self._grip(1.0, friction, lateral)
+        if not len(layers.stiffness):
+            raise SceneError("construction must have a layer whose wires could slip, got none")
+        return WireFriction(tuple(layers.stiffness.tolist()), tuple(layers.first.tolist()))
 
     def without(self, n: int = 1, *, layer: int | tuple[int, int] | None = None) -> Section:
         """Return the section where wires are broken and carry nothing.

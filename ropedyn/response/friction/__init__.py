@@ -1,0 +1,1 @@
+"""Steady motion with friction between wires: B and loss by the amplitude of the curvature."""
