@@ -10,25 +10,65 @@
    a symmetric matrix that has as many negative pivots as the stiffness of the nodes has, and six more a
    part; it exists where G is singular. Two parts of which only what is right of their joint is to
    move are joined by [[-G_1, 1], [1, Q_2 + N]]. */
+#include "base/fast.h"
 #include "base/lapack.h"
 
 #include <assert.h>
+#include <math.h>
 
 #define NUM double
+#define SIZE double
+#define EITHER int
 
-static inline double times(double a, double b)
+RD_INLINE double number(double a)
+{
+    return a;
+}
+RD_INLINE double add(double a, double b)
+{
+    return a + b;
+}
+RD_INLINE double subtract(double a, double b)
+{
+    return a - b;
+}
+RD_INLINE double times(double a, double b)
 {
     return a * b;
 }
-
-static inline double size(double a)
+RD_INLINE double scaled(double a, double s)
 {
-    return a < 0 ? -a : a;
+    return a * s;
 }
-
-static inline double over(double a)
+RD_INLINE double over(double a)
 {
     return 1 / a;
+}
+RD_INLINE double size(double a)
+{
+    return fabs(a);
+}
+RD_INLINE double larger_size(double a, double b)
+{
+    return a > b ? a : b;
+}
+RD_INLINE int is_zero(double a)
+{
+    return a == 0;
+}
+RD_INLINE int larger(double a, double b)
+{
+    return fabs(a) > fabs(b);
+}
+RD_INLINE int any(int either)
+{
+    return either;
+}
+RD_INLINE void exchange(double *a, double *b, int either)
+{
+    const double x = *a;
+    *a = either ? *b : *a;
+    *b = either ? x : *b;
 }
 
 #include "space/kernel.h"
@@ -39,18 +79,26 @@ enum {
     PAIR = 2 * RD_SIX,              /* unknowns of a joint */
     WORK = 64 * ALL,                /* of LAPACK */
     ODD = 9,                        /* first divisions of a piece that are tried, 1, 3 .. */
+    GRADED = 4096,                  /* parts of a piece along which tension or curvature change */
+    TRIED = 2,                      /* rooms of families: of the best and of the next */
     INNER = -1,                     /* a node that nothing stands at */
 };
+
+/* of joints of parts that are interpolated from others: far from the resonances of any */
+static const double STEADY = 4;
 
 /* of what no force stretches, so that its force is not left open */
 static const double COMPLIANT = 0x1p-50;
 
 struct counting {
     const struct rd_space *rope;
+    const double *z;
     double lambda, gentle;
     size_t parts;        /* so far, the last of which grows */
     double below;        /* eigenvalues of each part, its left end held */
     struct triple *part; /* (PARTS) */
+    struct triple *room; /* (TRIED + 1, RD_SPACE_NODES) of families */
+    double *E;           /* (fields, 3, 6, 6) of the piece, scaled */
     int node[PARTS];     /* on the left of each */
     double *A;           /* (ALL, ALL) */
     double *work;        /* (WORK) */
@@ -74,10 +122,28 @@ static int negative(struct counting *c, int n)
 static void node_fill(const struct counting *c, int node, double *N)
 {
     const size_t at = (size_t)node * RD_SIX * RD_SIX;
-    for (int i = 0; i < RD_SIX * RD_SIX; i++)
-        N[i] = node == INNER
-                   ? 0
-                   : c->rope->stiffness[at + (size_t)i] - c->lambda * c->rope->mass[at + (size_t)i];
+    for (size_t i = 0; i < RD_SIX * RD_SIX; i++)
+        N[i] = node == INNER ? 0
+                             : c->z[i / RD_SIX] * c->z[i % RD_SIX] *
+                                   (c->rope->stiffness[at + i] - c->lambda * c->rope->mass[at + i]);
+}
+
+/* Phi, S and q - lambda inertia of a piece, scaled */
+static void rates_of(const struct counting *c, size_t p, double *E)
+{
+    const struct rd_space *rope = c->rope;
+    const double *z = c->z, *from = rope->rates + p * rope->fields * RD_SPACE_TRIPLE;
+    for (size_t j = 0; j < rope->fields; j++)
+        for (size_t i = 0; i < RD_SIX; i++)
+            for (size_t k = 0; k < RD_SIX; k++) {
+                const size_t at = i * RD_SIX + k, all = RD_SIX * RD_SIX;
+                const double mass = rope->inertia[p * all + at];
+                const double *one = from + j * RD_SPACE_TRIPLE + at;
+                double *to = E + j * RD_SPACE_TRIPLE + at;
+                to[0] = one[0] * z[k] / z[i];
+                to[all] = one[all] / (z[i] * z[k]);
+                to[2 * all] = (one[2 * all] - c->lambda * mass) * z[i] * z[k];
+            }
 }
 
 /* whether G V < 1, so that no pivot of the joint 1 + G V is negative */
@@ -114,17 +180,16 @@ static int joint(struct counting *c, const struct triple *one, const struct trip
 }
 
 /* F <- F R, Q <- R^T Q R: what begins with a kink */
-static void turn(struct triple *t, const double *R)
+static void turn(const struct counting *c, struct triple *t, const double *R)
 {
     double by[RD_SIX][RD_SIX], DR[RD_SIX][RD_SIX], none[RD_SIX][RD_SIX] = {{0}};
-    memcpy(by, R, sizeof by);
-    for (int i = 0; i < RD_SIX; i++)
-        by[i][i] -= 1;
-    memcpy(DR, t->D, sizeof DR);
-    carry(DR, by); /* D R */
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++)
-            t->D[i][j] = by[i][j] + DR[i][j];
+            by[i][j] = R[i * RD_SIX + j] * c->z[j] / c->z[i] - (i == j);
+    memcpy(DR, t->D, sizeof DR);
+    carry(DR, by); /* D R */
+    memcpy(t->D, by, sizeof by);
+    increase(t->D, DR);
     add_congruent(none, t->Q, by, t->Q);
 }
 
@@ -156,57 +221,78 @@ static int is_held(const struct rd_space *rope, size_t node)
     return any;
 }
 
-/* Equal parts of a length: doubled as far as their joints are gentle, each has `below` eigenvalues.
-   Returns how often it is halved then. */
-static int doubled(struct counting *c, const struct rates *E, double length, int halvings,
-                   struct triple *t, double *below)
+/* One doubling of all parts while their joints are gentle; *below are the eigenvalues of each that are
+   alike, or of all that lie one after another. Between nodes of a polynomial no part may have any. */
+static int doubled(struct counting *c, struct family *f, double *below)
 {
     const double nothing[RD_SIX * RD_SIX] = {0};
-    struct triple longer;
-    int left = halvings;
-    *below = 0;
-    first(E, ldexp(length, -left), t);
-    for (; left > 0 && join(t, t, NULL, &longer) <= c->gentle; left--) {
-        *below = 2 * *below + joint(c, t, t, nothing);
-        *t = longer;
+    struct triple *longer = c->room, one, two;
+    const int count = next_count(f), alike = f->count == 1;
+    double more = 0;
+    for (int i = 0; i < count; i++) {
+        pair(f, i, &one, &two);
+        if (join(&one, &two, NULL, longer + i) > (f->poly ? STEADY : c->gentle))
+            return 0;
+        const int here = joint(c, &one, &two, nothing);
+        if (f->poly && here != 0)
+            return 0;
+        more += here;
     }
-    return left;
+    *below = (alike ? 2 : 1) * *below + more;
+    advance(f, count, longer);
+    return 1;
+}
+
+/* parts of one `odd`th of piece p, each of a series */
+static void family_fill(struct counting *c, size_t p, size_t row, int odd, struct family *f)
+{
+    const struct rd_space *rope = c->rope;
+    const struct rd_space_run run = {.halvings = rope->halvings[p], .nodes = rope->nodes[p]};
+    struct rates rates;
+    family_begin(&run, f->at, f);
+    for (int i = 0; i < f->count; i++) {
+        const double *series = rope->series + (row + (size_t)i) * rope->fields * RD_SPACE_ORDERS;
+        rates_fill(rope->fields, c->E, series, ldexp(rope->length[p] / odd, -f->left), &rates);
+        first(&rates, f->at + i);
+    }
 }
 
 /* Piece p. A joint of two halves near a resonance is that of all their equals: a piece of which one is
    met is divided by three first, or five .., whose halves resonate elsewhere. */
-static int piece_add(struct counting *c, size_t p)
+static int piece_add(struct counting *c, size_t p, size_t row)
 {
     const struct rd_space *rope = c->rope;
-    const size_t at = p * RD_SIX * RD_SIX;
-    struct rates E;
-    struct triple t, turned, tried;
+    struct family tried[TRIED];
     double below = 0, own;
-    int copies = PARTS + 1;
-    memcpy(E.phi, rope->phi + at, sizeof E.phi);
-    memcpy(E.soft, rope->soft + at, sizeof E.soft);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++) {
-            const size_t k = at + (size_t)(i * RD_SIX + j);
-            E.load[i][j] = rope->load[k] - c->lambda * rope->inertia[k];
-        }
-    for (int odd = 1, left = 1; odd <= ODD && left > 0; odd += 2) {
-        left = doubled(c, &E, rope->length[p] / odd, rope->halvings[p], &tried, &own);
+    const int each = rope->nodes[p] == 1, most = each ? PARTS : GRADED;
+    int copies = most + 1, best = 0;
+    rates_of(c, p, c->E);
+    for (int odd = 1, left = 1; odd <= (each ? ODD : 1) && left > 0; odd += 2) {
+        struct family *f = tried + !best;
+        f->at = c->room + (size_t)(1 + !best) * RD_SPACE_NODES;
+        own = 0;
+        family_fill(c, p, row, odd, f);
+        while (f->left > 0 && doubled(c, f, &own))
+            ;
+        left = f->left;
         if (left > 20 || odd << left >= copies)
             continue;
         copies = odd << left;
-        t = tried;
+        best = !best;
         below = own;
     }
-    if (copies > PARTS)
+    if (copies > most)
         return 0;
-    turned = t;
-    turn(&turned, rope->turn + at);
-    const int apart = p == 0 || is_held(rope, p);
-    int fits = part_add(c, &turned, below, (int)p, apart);
-    for (int k = 1; fits && k < copies; k++)
-        fits = part_add(c, &t, below, INNER, 0);
-    return fits;
+    struct triple t;
+    for (int k = 0; k < copies; k++) {
+        const int apart = k == 0 && (p == 0 || is_held(rope, p));
+        part_of(tried + best, each ? 0 : k, &t);
+        if (k == 0)
+            turn(c, &t, rope->turn + p * RD_SIX * RD_SIX);
+        if (!part_add(c, &t, each || k == 0 ? below : 0, k == 0 ? (int)p : INNER, apart))
+            return 0;
+    }
+    return 1;
 }
 
 /* The parts that are left, and all nodes between them and at the ends. */
@@ -252,23 +338,28 @@ static double count_one(struct counting *c, double lambda, double gentle)
     c->gentle = gentle;
     c->parts = 0;
     c->below = 0;
-    for (size_t p = 0; p < c->rope->pieces; p++)
-        if (!piece_add(c, p))
+    size_t row = 0;
+    for (size_t p = 0; p < c->rope->pieces; row += (size_t)c->rope->nodes[p], p++)
+        if (!piece_add(c, p, row))
             return NAN;
     return parts_count(c);
 }
 
 enum rd_status rd_space_count(const struct rd_space *rope, size_t count, const double *lambda,
-                              double *below, struct rd_workspace *workspace)
+                              const double *z, double *below, struct rd_workspace *workspace)
 {
     struct counting c = {.rope = rope};
     c.part = rd_take(workspace, PARTS, sizeof *c.part);
+    c.room = rd_take(workspace, (TRIED + 1) * RD_SPACE_NODES, sizeof *c.room);
+    c.E = rd_take(workspace, rope->fields * RD_SPACE_TRIPLE, sizeof *c.E);
     c.A = rd_take(workspace, (size_t)ALL * ALL, sizeof *c.A);
     c.work = rd_take(workspace, WORK, sizeof *c.work);
     if (!rd_workspace_fits(workspace))
         return RD_NO_MEMORY;
-    for (size_t k = 0; workspace->base && k < count; k++)
+    for (size_t k = 0; workspace->base && k < count; k++) {
+        c.z = z + k * RD_SIX;
         for (int i = 0; i == 0 || (i < RD_SPACE_GENTLE && isnan(below[k])); i++)
             below[k] = count_one(&c, lambda[k], rd_space_gentle[i]);
+    }
     return RD_OK;
 }

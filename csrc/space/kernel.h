@@ -1,137 +1,148 @@
-/* Triples of uniform pieces and their joints for numbers of one type, NUM: included by one source file
-   each. times(a, b) is their product, size(a) how large a number is. */
+/* Triples of short pieces and their joints for numbers of one type, NUM: included by one source file
+   each, which has add, subtract, times, scaled, over, number(double), size(a), how large a number is,
+   is_zero, and for exchanges of rows EITHER with larger(a, b), any and exchange(a, b, either). */
 #include "space/space.h"
 
 #include <math.h>
 #include <string.h>
 
 enum {
-    TERMS = 24
-}; /* of the series of a piece of up to half a radian, for all digits of all entries */
+    TERMS = 24, /* of the series of a piece of up to half a radian, for all digits of all entries */
+    ALL_SIX = 2 * RD_SIX,
+    ENTRIES = ALL_SIX * ALL_SIX,
+};
 
 struct triple {
     NUM D[RD_SIX][RD_SIX], G[RD_SIX][RD_SIX], Q[RD_SIX][RD_SIX]; /* D = F - I */
 };
 
+/* entries of l^(k+1) E_k, E = sum E_k s^k, that are not all 0 */
 struct rates {
-    NUM phi[RD_SIX][RD_SIX], soft[RD_SIX][RD_SIX], load[RD_SIX][RD_SIX];
+    int entries, orders;
+    unsigned char row[ENTRIES], column[ENTRIES];
+    NUM value[RD_SPACE_ORDERS][ENTRIES];
 };
 
-static void multiply(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
-                     NUM C[RD_SIX][RD_SIX])
+RD_INLINE void multiply(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
+                        NUM C[RD_SIX][RD_SIX])
 {
     for (int i = 0; i < RD_SIX; i++) {
-        NUM row[RD_SIX] = {0};
-        for (int k = 0; k < RD_SIX; k++)
+        NUM row[RD_SIX];
+        for (int j = 0; j < RD_SIX; j++)
+            row[j] = number(0);
+        for (int k = 0; k < RD_SIX; k++) {
+            const NUM a = A[i][k];
+            if (is_zero(a))
+                continue;
             for (int j = 0; j < RD_SIX; j++)
-                row[j] += times(A[i][k], B[k][j]);
+                row[j] = add(row[j], times(a, B[k][j]));
+        }
         memcpy(C[i], row, sizeof row);
     }
 }
 
-static void transpose(const NUM A[RD_SIX][RD_SIX], NUM B[RD_SIX][RD_SIX])
+RD_INLINE void transpose(const NUM A[RD_SIX][RD_SIX], NUM B[RD_SIX][RD_SIX])
 {
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++)
             B[i][j] = A[j][i];
 }
 
+/* A <- A + B */
+RD_INLINE void increase(NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX])
+{
+    for (int i = 0; i < RD_SIX; i++)
+        for (int j = 0; j < RD_SIX; j++)
+            A[i][j] = add(A[i][j], B[i][j]);
+}
+
 /* C = A + B, symmetric but for rounding */
-static void add_symmetric(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
-                          NUM C[RD_SIX][RD_SIX])
+RD_INLINE void add_symmetric(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
+                             NUM C[RD_SIX][RD_SIX])
 {
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j <= i; j++)
-            C[i][j] = C[j][i] = A[i][j] + (B[i][j] + B[j][i]) / 2;
+            C[i][j] = C[j][i] = add(A[i][j], scaled(add(B[i][j], B[j][i]), 0.5));
 }
 
 /* X (n columns, `wide` apart) <- A^-1 X by Gauss and Jordan with exchanges, A destroyed; the largest entry
    of A^-1 is at most that of X where X begins with the unit matrix */
-static void divide(NUM A[RD_SIX][RD_SIX], int n, int wide, NUM *X)
+RD_INLINE void divide(NUM A[RD_SIX][RD_SIX], int n, NUM *X)
 {
     for (int k = 0; k < RD_SIX; k++) {
-        int best = k;
-        for (int i = k + 1; i < RD_SIX; i++)
-            best = size(A[i][k]) > size(A[best][k]) ? i : best;
-        for (int j = 0; j < RD_SIX; j++) {
-            const NUM a = A[k][j];
-            A[k][j] = A[best][j];
-            A[best][j] = a;
-        }
-        for (int j = 0; j < n; j++) {
-            const NUM x = X[k * wide + j];
-            X[k * wide + j] = X[best * wide + j];
-            X[best * wide + j] = x;
+        for (int i = k + 1; i < RD_SIX; i++) {
+            const EITHER swap = larger(A[i][k], A[k][k]);
+            if (!any(swap))
+                continue;
+            for (int j = 0; j < RD_SIX; j++)
+                exchange(&A[k][j], &A[i][j], swap);
+            for (int j = 0; j < n; j++)
+                exchange(X + k * n + j, X + i * n + j, swap);
         }
         const NUM inverse = over(A[k][k]);
-        for (int j = 0; j < RD_SIX; j++)
+        for (int j = k; j < RD_SIX; j++)
             A[k][j] = times(A[k][j], inverse);
         for (int j = 0; j < n; j++)
-            X[k * wide + j] = times(X[k * wide + j], inverse);
+            X[k * n + j] = times(X[k * n + j], inverse);
         for (int i = 0; i < RD_SIX; i++) {
             const NUM a = A[i][k];
-            if (i == k || a == 0)
+            if (i == k || is_zero(a))
                 continue;
             for (int j = k; j < RD_SIX; j++)
-                A[i][j] -= times(a, A[k][j]);
+                A[i][j] = subtract(A[i][j], times(a, A[k][j]));
             for (int j = 0; j < n; j++)
-                X[i * wide + j] -= times(a, X[k * wide + j]);
+                X[i * n + j] = subtract(X[i * n + j], times(a, X[k * n + j]));
         }
     }
 }
 
-/* sum of A_ij x_j, rows and columns exchanged where flipped */
-static void add_product(const NUM A[RD_SIX][RD_SIX], int flipped, double h, const NUM *x, NUM *y)
+/* column c of the change of y along the piece, u over f: (k + 1) y_k+1 = sum E_j y_k-j */
+RD_INLINE void column(const struct rates *E, int c, NUM *sum)
 {
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++) {
-            const NUM a = flipped ? A[j][i] : A[i][j];
-            if (a != 0)
-                y[i] += h * times(a, x[j]);
-        }
-}
-
-/* column c of exp(l E) - I, u over f */
-static void column(const struct rates *E, double l, int c, NUM *sum)
-{
-    NUM term[2 * RD_SIX] = {0};
-    memset(sum, 0, 2 * RD_SIX * sizeof *sum);
-    term[c] = 1;
+    NUM term[TERMS + 1][ALL_SIX];
+    for (int i = 0; i < ALL_SIX; i++) {
+        sum[i] = number(0);
+        term[0][i] = number(i == c);
+    }
     for (int m = 1; m <= TERMS; m++) {
-        NUM next[2 * RD_SIX] = {0};
-        const double h = l / m;
-        add_product(E->phi, 0, h, term, next);
-        add_product(E->soft, 0, h, term + RD_SIX, next);
-        add_product(E->load, 0, h, term, next + RD_SIX);
-        add_product(E->phi, 1, -h, term + RD_SIX, next + RD_SIX);
-        for (int i = 0; i < 2 * RD_SIX; i++)
-            sum[i] += next[i];
-        memcpy(term, next, sizeof next);
+        NUM *next = term[m];
+        for (int i = 0; i < ALL_SIX; i++)
+            next[i] = number(0);
+        for (int k = 0; k < E->orders && k < m; k++)
+            for (int e = 0; e < E->entries; e++)
+                next[E->row[e]] =
+                    add(next[E->row[e]], times(E->value[k][e], term[m - 1 - k][E->column[e]]));
+        for (int i = 0; i < ALL_SIX; i++) {
+            next[i] = scaled(next[i], 1.0 / m);
+            sum[i] = add(sum[i], next[i]);
+        }
     }
 }
 
-/* F^T = E22^-1, G = E12 E22^-1 and Q = E22^-1 E21 of exp(l E) = [[E11, E12], [E21, E22]] */
-static void first(const struct rates *E, double l, struct triple *t)
+/* F^T = E22^-1, G = E12 E22^-1 and Q = E22^-1 E21 of what a piece carries, [[E11, E12], [E21, E22]] */
+RD_INLINE void first(const struct rates *E, struct triple *t)
 {
     enum { ALL = 3 * RD_SIX };
-    NUM A[RD_SIX][RD_SIX], X[RD_SIX][ALL], sum[2 * RD_SIX];
-    NUM soft[RD_SIX][RD_SIX], inverse[RD_SIX][RD_SIX], zero[RD_SIX][RD_SIX] = {{0}};
+    NUM A[RD_SIX][RD_SIX], X[RD_SIX][ALL], sum[ALL_SIX];
+    NUM soft[RD_SIX][RD_SIX], inverse[RD_SIX][RD_SIX], zero[RD_SIX][RD_SIX];
     for (int c = 0; c < RD_SIX; c++) {
-        column(E, l, c, sum);
+        column(E, c, sum);
         for (int i = 0; i < RD_SIX; i++)
             X[i][RD_SIX + c] = sum[RD_SIX + i];
-        column(E, l, RD_SIX + c, sum);
+        column(E, RD_SIX + c, sum);
         for (int i = 0; i < RD_SIX; i++) {
+            const NUM one = number(i == c);
+            zero[i][c] = number(0);
             soft[i][c] = sum[i];
-            A[i][c] = sum[RD_SIX + i] + (i == c);
+            A[i][c] = add(sum[RD_SIX + i], one);
             X[i][c] = sum[RD_SIX + i];
-            X[i][2 * RD_SIX + c] = i == c;
+            X[i][2 * RD_SIX + c] = one;
         }
     }
-    divide(A, ALL, ALL, &X[0][0]);
+    divide(A, ALL, &X[0][0]);
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++) {
-            t->D[j][i] = -X[i][j];
+            t->D[j][i] = scaled(X[i][j], -1);
             t->Q[i][j] = X[i][RD_SIX + j];
             inverse[i][j] = X[i][2 * RD_SIX + j];
         }
@@ -141,27 +152,23 @@ static void first(const struct rates *E, double l, struct triple *t)
 }
 
 /* A <- A + A D */
-static void carry(NUM A[RD_SIX][RD_SIX], const NUM D[RD_SIX][RD_SIX])
+RD_INLINE void carry(NUM A[RD_SIX][RD_SIX], const NUM D[RD_SIX][RD_SIX])
 {
     NUM AD[RD_SIX][RD_SIX];
     multiply(A, D, AD);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
-            A[i][j] += AD[i][j];
+    increase(A, AD);
 }
 
 /* C = A + (I + D)^T B (I + D) */
-static void add_congruent(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
-                          const NUM D[RD_SIX][RD_SIX], NUM C[RD_SIX][RD_SIX])
+RD_INLINE void add_congruent(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SIX],
+                             const NUM D[RD_SIX][RD_SIX], NUM C[RD_SIX][RD_SIX])
 {
     NUM BF[RD_SIX][RD_SIX], Dt[RD_SIX][RD_SIX], DtBF[RD_SIX][RD_SIX];
     memcpy(BF, B, sizeof BF);
     carry(BF, D);
     transpose(D, Dt);
     multiply(Dt, BF, DtBF);
-    for (int i = 0; i < RD_SIX; i++)
-        for (int j = 0; j < RD_SIX; j++)
-            BF[i][j] += DtBF[i][j];
+    increase(BF, DtBF);
     add_symmetric(A, BF, C);
 }
 
@@ -170,27 +177,28 @@ static void add_congruent(const NUM A[RD_SIX][RD_SIX], const NUM B[RD_SIX][RD_SI
        D = D1 + D2 + D2 D1 - F2 X V F1,  G = G2 + F2 X F2^T,  Q = Q1 + F1^T (V - V X V) F1
 
    Returns the largest entry of (I + G1 V)^-1. */
-static double join(const struct triple *one, const struct triple *two, const NUM *N,
-                   struct triple *joined)
+RD_INLINE SIZE join(const struct triple *one, const struct triple *two, const NUM *N,
+                    struct triple *joined)
 {
     enum { ALL = 2 * RD_SIX };
     NUM V[RD_SIX][RD_SIX], A[RD_SIX][RD_SIX], X[RD_SIX][RD_SIX], both[RD_SIX][ALL];
-    for (int i = 0; i < RD_SIX; i++)
+    memcpy(V, two->Q, sizeof V);
+    for (int i = 0; N && i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++)
-            V[i][j] = two->Q[i][j] + (N ? N[i * RD_SIX + j] : 0);
+            V[i][j] = add(V[i][j], N[i * RD_SIX + j]);
     multiply(one->G, V, A);
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++) {
-            A[i][j] += i == j;
-            both[i][j] = i == j;
+            both[i][j] = number(i == j);
+            A[i][j] = add(A[i][j], both[i][j]);
             both[i][RD_SIX + j] = one->G[i][j];
         }
-    divide(A, ALL, ALL, &both[0][0]);
-    double largest = 0;
+    divide(A, ALL, &both[0][0]);
+    SIZE largest = size(both[0][0]);
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++) {
-            largest = fmax(largest, size(both[i][j]));
-            X[i][j] = (both[i][RD_SIX + j] + both[j][RD_SIX + i]) / 2;
+            largest = larger_size(largest, size(both[i][j]));
+            X[i][j] = scaled(add(both[i][RD_SIX + j], both[j][RD_SIX + i]), 0.5);
         }
     NUM XV[RD_SIX][RD_SIX], S[RD_SIX][RD_SIX], Dt[RD_SIX][RD_SIX], T[RD_SIX][RD_SIX];
     struct triple found;
@@ -198,16 +206,145 @@ static double join(const struct triple *one, const struct triple *two, const NUM
     multiply(V, XV, S);
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++)
-            S[i][j] = V[i][j] - S[i][j];
+            S[i][j] = subtract(V[i][j], S[i][j]);
     carry(XV, one->D);
     multiply(two->D, XV, T);
     multiply(two->D, one->D, found.D);
     for (int i = 0; i < RD_SIX; i++)
         for (int j = 0; j < RD_SIX; j++)
-            found.D[i][j] += one->D[i][j] + two->D[i][j] - XV[i][j] - T[i][j];
+            found.D[i][j] = subtract(add(found.D[i][j], add(one->D[i][j], two->D[i][j])),
+                                     add(XV[i][j], T[i][j]));
     transpose(two->D, Dt);
     add_congruent(two->G, X, Dt, found.G);
     add_congruent(one->Q, S, one->D, found.Q);
     *joined = found;
     return largest;
+}
+
+/* The entries of a part of the length whose left end has the series (fields, RD_SPACE_ORDERS); (fields,
+   3, 6, 6) of E_j */
+RD_INLINE void rates_fill(size_t fields, const NUM *E, const double *series, double length,
+                          struct rates *rates)
+{
+    rates->entries = 0;
+    rates->orders = 1;
+    for (size_t j = 0; j < fields; j++)
+        for (int k = 1; k < RD_SPACE_ORDERS; k++)
+            if (series[j * RD_SPACE_ORDERS + (size_t)k] != 0 && rates->orders <= k)
+                rates->orders = k + 1;
+    for (int i = 0; i < ENTRIES; i++) {
+        const int row = i / ALL_SIX, col = i % ALL_SIX, r = row % RD_SIX, c = col % RD_SIX;
+        /* Phi S / q -Phi^T */
+        const int block = row < RD_SIX ? (col < RD_SIX ? 0 : 1) : (col < RD_SIX ? 2 : 0);
+        const int turned = row >= RD_SIX && col >= RD_SIX;
+        const size_t at =
+            (size_t)(block * RD_SIX * RD_SIX + (turned ? c * RD_SIX + r : r * RD_SIX + c));
+        int there = 0;
+        for (size_t j = 0; j < fields; j++)
+            there |= !is_zero(E[j * RD_SPACE_TRIPLE + at]);
+        if (!there)
+            continue;
+        double power = turned ? -length : length;
+        for (int k = 0; k < rates->orders; k++, power *= length) {
+            NUM sum = number(0);
+            for (size_t j = 0; j < fields; j++)
+                sum = add(sum, scaled(E[j * RD_SPACE_TRIPLE + at],
+                                      power * series[j * RD_SPACE_ORDERS + (size_t)k]));
+            rates->value[k][rates->entries] = sum;
+        }
+        rates->row[rates->entries] = (unsigned char)row;
+        rates->column[rates->entries++] = (unsigned char)col;
+    }
+}
+
+/* The parts of a piece, doubled so far as `left` halvings say: all alike, each as it is, or about nodes. */
+struct family {
+    int left, count;
+    int poly; /* nodes of the polynomial; 0: alike or as they are */
+    double node[RD_SPACE_NODES],
+        weight[RD_SPACE_NODES]; /* barycentric (Berrut and Trefethen 2004) */
+    struct triple *at;          /* (RD_SPACE_NODES) */
+};
+
+static inline void family_begin(const struct rd_space_run *run, struct triple *at, struct family *f)
+{
+    f->left = run->halvings;
+    f->count = run->nodes;
+    f->poly =
+        run->nodes > 1 && run->halvings < 30 && run->nodes < 1 << run->halvings ? run->nodes : 0;
+    f->at = at;
+    for (int j = 0; j < f->poly; j++) {
+        const double angle = (2 * j + 1) * 1.5707963267948966 / f->poly;
+        f->node[j] = cos(angle);
+        f->weight[j] = j % 2 ? -sin(angle) : sin(angle);
+    }
+}
+
+RD_INLINE void interpolate(const struct family *f, double x, struct triple *t)
+{
+    double weight[RD_SPACE_NODES], sum = 0;
+    const int n = f->poly;
+    int met = -1;
+    for (int j = 0; j < n; j++) {
+        const double far = x - f->node[j];
+        met = far == 0 ? j : met;
+        weight[j] = f->weight[j] / far;
+        sum += weight[j];
+    }
+    if (met >= 0) {
+        *t = f->at[met];
+        return;
+    }
+    NUM *to = &t->D[0][0];
+    for (int i = 0; i < RD_SPACE_TRIPLE; i++)
+        to[i] = number(0);
+    for (int j = 0; j < n; j++) {
+        const NUM *from = &f->at[j].D[0][0];
+        for (int i = 0; i < RD_SPACE_TRIPLE; i++)
+            to[i] = add(to[i], scaled(from[i], weight[j] / sum));
+    }
+}
+
+/* how many parts are kept after the next doubling, and whether they are those that lie there */
+RD_INLINE int next_count(const struct family *f)
+{
+    if (!f->poly)
+        return f->count == 1 ? 1 : f->count / 2;
+    return 1 << (f->left - 1) <= f->poly ? 1 << (f->left - 1) : f->poly;
+}
+
+/* the two that make part i of the next doubling; returns whether they are the same */
+RD_INLINE int pair(const struct family *f, int i, struct triple *one, struct triple *two)
+{
+    if (!f->poly) {
+        *one = f->at[f->count == 1 ? 0 : 2 * i];
+        *two = f->at[f->count == 1 ? 0 : 2 * i + 1];
+        return f->count == 1;
+    }
+    const double part = ldexp(1, -f->left);
+    const int apart = next_count(f) < f->poly || 1 << (f->left - 1) == f->poly;
+    const double x = apart ? (2 * i + 1) * 2 * part - 1 : f->node[i] * (1 - 2 * part);
+    interpolate(f, (x - part) / (1 - part), one);
+    interpolate(f, (x + part) / (1 - part), two);
+    return 0;
+}
+
+/* parts of which the next doubling consists take the place of those there are */
+RD_INLINE void advance(struct family *f, int count, const struct triple *longer)
+{
+    const int apart = f->poly && (count < f->poly || 1 << (f->left - 1) == f->poly);
+    memcpy(f->at, longer, (size_t)count * sizeof *longer);
+    f->count = count;
+    f->left--;
+    f->poly = apart ? 0 : f->poly;
+}
+
+/* part k of 2^left */
+RD_INLINE void part_of(const struct family *f, int k, struct triple *t)
+{
+    const double part = ldexp(1, -f->left);
+    if (f->poly)
+        interpolate(f, ((2 * k + 1) * part - 1) / (1 - part), t);
+    else
+        *t = f->at[f->count == 1 ? 0 : k];
 }

@@ -1,8 +1,9 @@
-/* A rope on an axis in space: uniform pieces one after another, all six coordinates at each node.
+/* A rope on an axis in space: pieces one after another, all six coordinates at each node.
 
    y = (u, f), f the force of the right part on the left in the undeformed frame, has y' = E y along a
    piece, E = [[Phi, S], [q, -Phi^T]] with S and q symmetric. Its triple is that of any element:
-   u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a. */
+   u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a. Where curvature or tension change along a piece
+   E(s) = sum phi_j(s) E_j, sum phi_j = 1: polynomials between samples, known by their series. */
 #ifndef RD_SPACE_H
 #define RD_SPACE_H
 
@@ -13,25 +14,41 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { RD_SIX = 6, RD_SPACE_TRIPLE = 3 * RD_SIX * RD_SIX };
+enum {
+    RD_SIX = 6,
+    RD_SPACE_TRIPLE = 3 * RD_SIX * RD_SIX,
+    RD_SPACE_BAND = 2 * RD_SIX - 1,        /* entries on either side of the diagonal */
+    RD_SPACE_ROWS = 3 * RD_SPACE_BAND + 1, /* of its columns as LAPACK factors them */
+    RD_SPACE_NODES = 24,                   /* of a piece's polynomials, at most */
+    RD_SPACE_ORDERS = 14,                  /* of the fields' series */
+};
 
 /* Joints whose inverse has larger entries are not joined: near a resonance of what is on their left. A
    larger one is taken where too many parts are left: it costs the count as many digits again. */
 enum { RD_SPACE_GENTLE = 2 };
 static const double rd_space_gentle[RD_SPACE_GENTLE] = {1e2, 1e4};
 
-/* coordinates scaled, u = z u^ and f = f^/z, so that entries of E times a piece's length are of a size */
+/* How fields run along a piece: 2^-halvings of it is summed as a series about its left end. With
+   nodes = 1 all such parts are alike; with 2^halvings of them they are those parts, one after another;
+   else parts about the nodes of a polynomial (Chebyshev's of the first kind, decreasing), from which
+   the others are interpolated. */
+struct rd_space_run {
+    double length; /* [m] */
+    int halvings, nodes;
+    size_t fields;
+    const double *series; /* (nodes, fields, RD_SPACE_ORDERS) of phi_j by powers of s - left end */
+};
+
 struct rd_space {
-    size_t pieces;
+    size_t pieces, fields;
     const double *length;    /* (pieces)          [m] */
-    const int32_t *halvings; /* (pieces)          2^-halvings of it is summed as a series */
-    const double *phi;       /* (pieces, 6, 6)    Phi */
-    const double *soft;      /* (pieces, 6, 6)    S */
-    const double *load;      /* (pieces, 6, 6)    q at lambda = 0 */
+    const int32_t *halvings; /* (pieces)  */
+    const int32_t *nodes;    /* (pieces)  */
+    const double *series;    /* (sum of nodes, fields, RD_SPACE_ORDERS) */
+    const double *rates;     /* (pieces, fields, 3, 6, 6)  Phi, S and q at lambda = 0 */
     const double *inertia;   /* (pieces, 6, 6)    per length */
-    const double
-        *turn; /* (pieces, 6, 6)    R: components on the left of the node where it begins to
-                                                  those on the right */
+    const double *turn; /* (pieces, 6, 6)    R: components on the left of the node where it begins
+                                                  to those on the right */
     const double
         *stiffness;      /* (pieces + 1, 6, 6) of nodes, in the frame on the left; at the first on
                                                   the right */
@@ -39,16 +56,32 @@ struct rd_space {
     const uint8_t *held; /* (pieces + 1, 6)   1: cannot move; as stiffness */
 };
 
-/* Pieces of `rates` = Phi, S, q (3, 6, 6) of the length: 2^-halvings of it is summed, and doubled
-   `doublings` times or, earlier, while no joint's inverse has an entry above `gentle`. triple: D = F - I,
-   G, Q. Returns how often it was doubled. */
-int rd_space_triple(const double _Complex *rates, double length, int halvings, int doublings,
-                    double gentle, double _Complex *triple);
+/* The parts of a piece at `lines` (lines, fields, 3, 6, 6) = Phi, S, q of each field, doubled
+   `doublings` times or, earlier, while no joint's inverse has an entry above `gentle`: *reached says
+   how often. triple (lines, parts, 3, 6, 6), parts = 2^(halvings - doublings) or 1 where they are
+   alike: D = F - I, G, Q; not written where not all were reached. Takes what it needs from the
+   workspace (with base NULL: counts it). RD_NO_MEMORY where that is too small. */
+enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
+                                const double _Complex *rates, int doublings, double gentle,
+                                double _Complex *triple, int *reached,
+                                struct rd_workspace *workspace);
 
-/* Eigenvalues below each lambda (count), NAN where joints between resonances leave more parts than
-   are counted together. Takes what it needs from the workspace (with base NULL: counts it). RD_NO_MEMORY
-   where that is too small. */
+/* Band matrices (lines, size, RD_SPACE_ROWS), by columns, factored in place as LAPACK does; pivot
+   (lines, size). Returns the first that is singular, or `lines`. */
+size_t rd_space_factor(size_t lines, size_t size, double *band, int32_t *pivot);
+size_t rd_space_factor_complex(size_t lines, size_t size, double _Complex *band, int32_t *pivot);
+
+/* x (lines, columns, size): right sides, solved in place */
+void rd_space_solve(size_t lines, size_t size, size_t columns, const double *band,
+                    const int32_t *pivot, double *x);
+void rd_space_solve_complex(size_t lines, size_t size, size_t columns, const double _Complex *band,
+                            const int32_t *pivot, double _Complex *x);
+
+/* Eigenvalues below each lambda (count), counted in coordinates scaled by z (count, 6), u = z u^ and
+   f = f^/z, so that entries of E times a piece's length are of a size. NAN where joints between
+   resonances leave more parts than are counted together. Takes what it needs from the workspace (with
+   base NULL: counts it). RD_NO_MEMORY where that is too small. */
 enum rd_status rd_space_count(const struct rd_space *rope, size_t count, const double *lambda,
-                              double *below, struct rd_workspace *workspace);
+                              const double *z, double *below, struct rd_workspace *workspace);
 
 #endif

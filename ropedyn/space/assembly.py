@@ -9,24 +9,26 @@ which exists where G is singular, and is symmetric.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import _core
 from ..base.array import Complex, Flags, Index, Real
+from ..base.computed import computed
 from ..base.errors import SolveError
 from .rope import Factors, SpaceRope, halvings, scaled_rates, size_of
+from .samples import series_of
 
-BAND = 11  # Entries on either side of the diagonal.
+BAND, ROWS = 11, 34  # Entries on either side of the diagonal, and of a column as LAPACK takes it.
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
 MOST_PARTS = 100_000
 
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """A rope at several lines; scaled by z, which is of all of them.
+    """A rope at several lines, each scaled by its z.
 
     Attributes
     ----------
@@ -37,7 +39,9 @@ class Assembly:
     held : ndarray of bool, shape (parts + 1, 6)
     node : ndarray of int, shape (pieces + 1,)
         Where the nodes of the rope are.
-    z : ndarray, shape (6,)
+    inner : ndarray of int, optional
+        Where those of equal parts are, if the rope was divided for them.
+    z : ndarray, shape (n, 6)
     """
 
     D: Complex
@@ -47,6 +51,7 @@ class Assembly:
     held: Flags
     node: Index
     z: Real
+    inner: Index | None = None
 
     @property
     def parts(self) -> int:
@@ -55,70 +60,106 @@ class Assembly:
 
     def shown(self, equal: int) -> Index:
         """Return the nodes at the ends of so many equal parts of each piece."""
+        if self.inner is not None:
+            return self.inner
         within = np.diff(self.node)[:, None] // equal * np.arange(equal)
         return np.append((self.node[:-1, None] + within).ravel(), self.node[-1])
 
-    def apply(self, u: Any, f: Any) -> tuple[Any, Any]:
-        """Return p and d of motion (n, parts + 1, 6, columns) and force (n, parts, 6, columns)."""
-        d = u[:, 1:] - u[:, :-1] - self.D @ u[:, :-1] - self.G @ f
-        p = self.N @ u
-        p[:, 1:] += f
-        p[:, :-1] += self.Q @ u[:, :-1] - f - self.D.swapaxes(2, 3) @ f
-        return np.where(self.held[:, :, None], 0, p), d
+    @computed
+    def real(self) -> Blocks:
+        """What multiplies real vectors, the real part."""
+        D, G, Q, N = (np.ascontiguousarray(a.real) for a in (self.D, self.G, self.Q, self.N))
+        return Blocks(D, G, Q, N, self.held, 1.0)
 
-    def band(self, k: int, real: bool) -> Any:
-        """Return the band matrix of line k as LAPACK takes it, rows and columns of held ones 1."""
+    @computed
+    def imag(self) -> Blocks:
+        """The imaginary part."""
+        D, G, Q, N = (np.ascontiguousarray(a.imag) for a in (self.D, self.G, self.Q, self.N))
+        return Blocks(D, G, Q, N, self.held, 0.0)
+
+    def band(self, real: bool) -> Any:
+        """Return band matrices (n, columns, ROWS) as LAPACK takes them, of held ones 1."""
         rows, columns, fixed = _pattern(self.parts, self.held)
-        F = np.eye(6) + self.D[k]
-        diagonal = self.N[k].copy()
-        diagonal[:-1] += self.Q[k]
+        F = np.eye(6) + self.D
+        diagonal = self.N.copy()
+        diagonal[:, :-1] += self.Q
         one = np.broadcast_to(np.eye(6), F.shape)
-        blocks = [diagonal, -F, -F.swapaxes(1, 2), -self.G[k], one, one]
-        values = np.concatenate([block.ravel() for block in blocks])
+        blocks = [diagonal, -F, -F.swapaxes(2, 3), -self.G, one, one]
+        values = np.concatenate([block.reshape(len(F), -1) for block in blocks], axis=1)
         size = (2 * self.parts + 1) * 6
-        band = np.zeros((3 * BAND + 1, size), dtype=np.float64 if real else np.complex128)
+        band = np.zeros((len(F), size, ROWS), dtype=np.float64 if real else np.complex128)
         free = ~(fixed[rows] | fixed[columns])
         rows, columns = rows[free], columns[free]
-        band[2 * BAND + rows - columns, columns] = (values.real if real else values)[free]
-        band[2 * BAND, fixed] = 1.0
+        band[:, columns, 2 * BAND + rows - columns] = (values.real if real else values)[:, free]
+        band[:, fixed, 2 * BAND] = 1.0
         return band
 
     def together(self, u: Any, f: Any) -> Any:
-        """Return rows in the order of the band, from (parts + 1, 6, c) and (parts, 6, c)."""
-        both = np.zeros((2 * self.parts + 1, 6, u.shape[-1]), dtype=np.result_type(u, f))
-        both[::2], both[1::2] = u, f
-        return both.reshape(-1, u.shape[-1])
+        """Return rows in the order of the band, from (n, parts + 1, 6, c) and (n, parts, 6, c)."""
+        both = np.zeros((len(u), 2 * self.parts + 1, *u.shape[2:]), dtype=np.result_type(u, f))
+        both[:, ::2], both[:, 1::2] = u, f
+        return both.reshape(len(u), -1, u.shape[-1])
 
     def apart(self, x: Any) -> tuple[Any, Any]:
         """Return motion and force."""
-        both = x.reshape(2 * self.parts + 1, 6, -1)
-        return both[::2], both[1::2]
+        both = x.reshape(len(x), 2 * self.parts + 1, 6, -1)
+        return both[:, ::2], both[:, 1::2]
 
-    def factored(self, k: int, *, real: bool = False) -> Factored:
-        """Return line k factored."""
-        from scipy.linalg import lapack
+    def factored(self, *, real: bool = False) -> Factored:
+        """Return all lines factored."""
+        lu, pivot, failed = _core.space_factor(self.band(real))
+        if failed < len(lu):
+            raise Singular(failed)
+        return Factored(lu, pivot)
 
-        factor = lapack.dgbtrf if real else lapack.zgbtrf
-        lu, pivot, info = factor(self.band(k, real), BAND, BAND)
-        if info > 0:
-            raise SolveError("singular")
-        return Factored(lu, pivot, real)
+
+class Blocks(NamedTuple):
+    """Real matrices of the parts, and what stands beside D."""
+
+    D: Real
+    G: Real
+    Q: Real
+    N: Real
+    held: Flags
+    one: float
+
+    def apply(self, u: Real, f: Real) -> tuple[Real, Real]:
+        """Return p and d of motion (n, parts + 1, 6, columns) and force (n, parts, 6, columns)."""
+        d = -(self.D @ u[:, :-1] + self.G @ f)
+        p = self.N @ u
+        p[:, :-1] += self.Q @ u[:, :-1] - self.D.swapaxes(2, 3) @ f
+        if self.one:
+            d += u[:, 1:] - u[:, :-1]
+            p[:, 1:] += f
+            p[:, :-1] -= f
+        p[:, self.held] = 0.0
+        return p, d
+
+
+class Singular(SolveError):
+    """A matrix that is singular.
+
+    Attributes
+    ----------
+    line : int
+    """
+
+    def __init__(self, line: int) -> None:
+        super().__init__("singular")
+        self.line = line
 
 
 @dataclass(frozen=True, eq=False)
 class Factored:
-    """A band matrix, factored."""
+    """Band matrices, factored."""
 
     lu: Any
     pivot: Any
-    real: bool
 
     def solve(self, right: Any) -> Any:
-        """Return the solutions of columns."""
-        from scipy.linalg import lapack
-
-        solve = lapack.dgbtrs if self.real else lapack.zgbtrs
-        return solve(self.lu, BAND, BAND, right, self.pivot)[0]
+        """Return the solutions of columns (n, rows, columns)."""
+        x: Any = _core.space_solve(self.lu, self.pivot, right.swapaxes(1, 2))
+        return x.swapaxes(1, 2)
 
 
 def _pattern(parts: int, held: Flags) -> tuple[Index, Index, Flags]:
@@ -135,36 +176,44 @@ def _pattern(parts: int, held: Flags) -> tuple[Index, Index, Flags]:
 
 def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> Assembly:
     """Return the parts at each line: so many equal ones of each piece, or more within them."""
+    if equal > 1 and rope.bend.shape[1] > 1:
+        divided = rope.divided(equal)
+        whole = assemble(divided, factors, z)
+        return replace(whole, node=whole.node[::equal], inner=whole.node)
     rates = scaled_rates(rope.rates(factors), z)
-    size = size_of(*rates.transpose(2, 0, 1, 3, 4)).max(axis=0)
-    turn = rope.turn * np.outer(1 / z, z) - np.eye(6)
+    size = size_of(rates).max(axis=(0, 2))
+    by = rope.turn * (z[:, None, None, :] / z[:, None, :, None]) - np.eye(6)
     triples, counts = [], []
     for p, length in enumerate(rope.length / equal):
         one = np.ascontiguousarray(rates[:, p])
-        triple, left = _equal(one, float(length), int(halvings(size[p] * length)))
-        counts.append(equal << left)
+        triple = parts_of(one, float(length), int(halvings(size[p] * length)))
+        many = equal * triple.shape[1]
+        counts.append(many)
         if sum(counts) > MOST_PARTS:
             raise SolveError("the waves are too short for the rope: more than 100000 parts")
-        many = np.repeat(triple[:, :, None], counts[-1], axis=2)
+        alike = np.repeat(triple, many // triple.shape[1], axis=1)
         # F R and R^T Q R of what begins with a kink
-        D, Q, by = many[:, 0, 0], many[:, 2, 0], turn[p]
-        many[:, 0, 0] = by + D + D @ by
-        many[:, 2, 0] = Q + by.T @ Q + Q @ by + by.T @ Q @ by
-        triples.append(many)
+        D, Q, turn = alike[:, 0, 0], alike[:, 0, 2], by[:, p]
+        back = turn.swapaxes(1, 2)
+        alike[:, 0, 0] = turn + D + D @ turn
+        alike[:, 0, 2] = Q + back @ Q + Q @ turn + back @ Q @ turn
+        triples.append(alike)
     node = np.concatenate([[0], np.cumsum(counts)])
     N = np.zeros((len(rates), node[-1] + 1, 6, 6), dtype=np.complex128)
-    N[:, node] = rope.nodes(factors) * np.outer(z, z)
+    N[:, node] = rope.nodes(factors) * (z[:, None, :, None] * z[:, None, None, :])
     held = np.zeros((node[-1] + 1, 6), dtype=bool)
     held[node] = rope.held
-    D, G, Q = np.concatenate(triples, axis=2).transpose(1, 0, 2, 3, 4)
+    D, G, Q = np.concatenate(triples, axis=1).transpose(2, 0, 1, 3, 4)
     return Assembly(D, G, Q, N, held, node, z)
 
 
-def _equal(rates: Complex, length: float, halved: int) -> tuple[Complex, int]:
-    """Return triples (n, 3, 6, 6) of equal parts of a length, and how often it is halved."""
+def parts_of(rates: Complex, length: float, halved: int) -> Complex:
+    """Return triples (n, parts, 3, 6, 6) of a piece, all below their own resonances."""
+    series = series_of(length, halved, rates.shape[1])
     most = halved
     while True:
-        triple, reached = _core.space_triples(rates, length, halved, most, GENTLE)
-        if reached.min() == most:
-            return triple, halved - most
-        most = int(reached.min())
+        triple, reached = _core.space_triples(rates, series, length, halved, most, GENTLE)
+        if reached == most:
+            alike = 1 << (halved - most) if len(series) == 1 else 1
+            return np.repeat(triple, alike, axis=1)
+        most = int(reached)

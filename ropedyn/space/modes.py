@@ -22,9 +22,9 @@ from ..eigen.spectrum import error_in_hertz
 from ..eigen.vectors import largest, within
 from ..scene import damping
 from ..scene.scene import Scene
-from .assembly import MOST_PARTS, assemble
+from .assembly import MOST_PARTS, Assembly, assemble
 from .rope import SIX, SpaceRope, unforced
-from .spectrum import BESIDE, STEP, TOGETHER, Lowest, lowest, ritz, start, unit_of
+from .spectrum import AT_ONCE, BESIDE, MORE, STEP, TOGETHER, Lowest, lowest, ritz, start
 
 SEEN = 1e-9  # Shares of kinetic energy above it are motion.
 
@@ -76,8 +76,7 @@ def check_points(rope: SpaceRope, points: int | None) -> None:
 
 def points_for(rope: SpaceRope, eigenvalue: Real) -> int:
     """Return how many parts of each piece show the highest mode."""
-    soft = np.diagonal(rope.soft, axis1=1, axis2=2)[:, 4:].max()
-    wave = (np.abs(eigenvalue).max(initial=0.0) * rope.inertia[:, 1, 1].max() * soft) ** 0.25
+    wave = rope.waves(np.abs(eigenvalue).max(initial=0.0))
     most = MOST_PARTS // len(rope.length)
     return int(min(max(32, math.ceil(16 * wave * rope.length.max() / math.pi)), most))
 
@@ -102,21 +101,37 @@ class SpaceShapes:
     def solved(self) -> tuple[Real, dict[str, Real]]:
         """Shapes of unit modal mass (k, nodes, 6), and twice the energies of each."""
         shape = np.zeros((len(self.eigenvalue), len(self.rope.length) * self.points + 1, 6))
-        energy = {name: np.zeros(len(self.eigenvalue)) for name in self.variants}
-        for cluster in self.clusters():
-            value, unit = self.eigenvalue[cluster], unit_of(self.rope)
-            mean = float(value.mean())
-            beside = max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), unit))
-            lines, z = unforced([mean + beside], STEP), self.rope.scale(mean)
-            system = assemble(self.rope, lines, z, equal=self.points)
-            x = start(system, len(cluster) + 3)
-            for _ in range(2):
-                _, _, own, x = ritz(system, x, len(cluster))
+        variants = self.variants
+        energy = {name: np.zeros(len(self.eigenvalue)) for name in variants}
+        every = list(self.clusters())
+        for first in range(0, len(every), AT_ONCE):
+            clusters = every[first : first + AT_ONCE]
+            means = np.array([self.eigenvalue[one].mean() for one in clusters])
+            spread = np.array([np.ptp(self.eigenvalue[one]) for one in clusters])
+            beside = np.maximum(8 * spread, BESIDE * np.maximum(np.abs(means), self.rope.unit))
+            z = self.rope.scale(means)
+            system = assemble(self.rope, unforced(means + beside, STEP), z, equal=self.points)
+            sizes = [len(one) for one in clusters]
+            own = self._found(system, sizes)
             u, _ = system.apart(own)
-            shape[cluster] = (z[:, None] * u[system.shown(self.points)]).transpose(2, 0, 1)
-            for name, varied in self.variants.items():
-                energy[name][cluster] = self._form(varied, mean, z, own)
+            u = z[:, None, :, None] * u[:, system.shown(self.points)]
+            forms = {k: self._form(one, means, z, own) for k, one in variants.items()}
+            for k, cluster in enumerate(clusters):
+                shape[cluster] = u[k, :, :, : len(cluster)].transpose(2, 0, 1)
+                for name, form in forms.items():
+                    energy[name][cluster] = form[k, : len(cluster)]
         return shape, energy
+
+    def _found(self, system: Assembly, sizes: list[int]) -> Real:
+        x = start(system, max(sizes) + MORE)
+        for again in range(2):
+            found = ritz(system, x, sizes)
+            for k, near in enumerate(found if again == 0 else []):
+                x[k, :, : near.around.shape[1]] = near.around
+        own = np.zeros((*x.shape[:2], max(sizes)))
+        for k, near in enumerate(found):
+            own[k, :, : near.own.shape[1]] = near.own
+        return own
 
     @property
     def variants(self) -> dict[str, SpaceRope]:
@@ -129,28 +144,32 @@ class SpaceShapes:
             if soft.any():
                 found[name] = replace(rope, soft=rope.soft - step * soft)
         found["tension"] = replace(
-            rope, stress=rope.stress * (1 + step), initial=rope.initial * (1 + step)
+            rope,
+            stress=rope.stress * (1 + step),
+            initial=rope.initial * (1 + step),
+            string=rope.string * (1 - step),
         )
         found["spring"] = replace(rope, springs=rope.springs * (1 + step))
         found["drag"] = replace(
-            rope, stress=rope.stress + step * rope.drag, springs=rope.springs + step * rope.dashpots
+            rope,
+            stress=rope.stress + step * rope.drag[:, None],
+            springs=rope.springs + step * rope.dashpots,
         )
         for k, name in enumerate(SIX):
             own = np.zeros((6, 6))
             own[k, k] = step.imag
             found[name] = replace(
                 rope,
-                stress=rope.stress + 1j * own * rope.inertia,
+                stress=rope.stress + 1j * own * rope.inertia[:, None],
                 springs=rope.springs + 1j * own * rope.masses,
             )
         return found
 
-    def _form(self, varied: SpaceRope, eigenvalue: float, z: Real, own: Real) -> Real:
-        """Return what an imaginary part adds to x^T A x of vectors."""
-        system = assemble(varied, unforced([eigenvalue]), z, equal=self.points)
-        u, f = system.apart(own)
-        p, d = system.apply(u[None], f[None])
-        form: Real = (own * system.together(p[0].imag, d[0].imag)).sum(0) / STEP
+    def _form(self, varied: SpaceRope, eigenvalue: Real, z: Real, own: Real) -> Real:
+        """Return what an imaginary part adds to x^T A x of vectors (n, rows, columns)."""
+        system = assemble(varied, unforced(eigenvalue), z, equal=self.points)
+        added = system.together(*system.imag.apply(*system.apart(own)))
+        form: Real = (own * added).sum(1) / STEP
         return form
 
     @property

@@ -97,21 +97,22 @@ def rope_of(axis: Axis, section: SpaceSection, tension: float, *, bent: bool = F
     """Return the pieces of an axis, nothing at their nodes; `bent`: from what is straight."""
     count = len(axis.pieces)
     S, mass = section.flexibility(), section.inertia()
-    bend, initial, stress = (np.zeros((count, 6, 6)) for _ in range(3))
+    bend, string, initial, stress = (np.zeros((count, 1, 6, 6)) for _ in range(4))
     turn = np.tile(np.eye(6), (count, 1, 1))
     joints = axis.joints
     for k, (tau, kz, ky) in enumerate(axis.rates(joints[:-1])):
-        bend[k] = bend_of(tau, kz, ky)
+        bend[k, 0] = bend_of(tau, kz, ky)
         across, moment = bent_from_straight(section, tau, kz) if bent else np.zeros((2, 3))
         pull = np.array([tension, 0.0, 0.0])
-        initial[k], stress[k] = initial_of(pull + across, moment)
+        initial[k, 0], stress[k, 0] = initial_of(pull + across, moment)
     for kink in axis.kinks:
         turn[np.abs(joints - kink.s).argmin()] = kink_of(kink.turn)
     springs, masses, dashpots = (np.zeros((count + 1, 6, 6)) for _ in range(3))
     return SpaceRope(
         length=np.array([piece.length for piece in axis.pieces]),
         bend=bend,
-        soft=np.tile(S, (count, 1, 1)),
+        soft=np.tile(S, (count, 1, 1, 1)),
+        string=string,
         initial=initial,
         stress=stress,
         inertia=np.tile(mass, (count, 1, 1)),

@@ -19,11 +19,11 @@ from ..chain.port import Point
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
 from ..scene.scene import Scene
-from .assembly import Assembly, assemble
+from .assembly import Assembly, Singular, assemble
 from .rope import SIX, Factors, SpaceRope
 from .spectrum import ROUNDINGS
 
-AT_ONCE = 64  # That are assembled together.
+AT_ONCE = 128  # That are assembled together.
 
 
 def checked_points(scene: Scene, given: Any, name: str) -> tuple[tuple[Point, ...], bool]:
@@ -111,56 +111,57 @@ class Request(NamedTuple):
         """Return motion per unit force, shape (drives, responses, f)."""
         shape = len(self.node[0]), len(self.node[1]), len(self.frequency)
         value = np.zeros(shape, dtype=np.complex128)
-        for line, system, k in self._systems():
-            motion, _ = self._solved(system, k, 0, float(self.frequency[line]))
-            value[:, :, line] = self._seen(system, motion).T
+        for lines, system in self._systems():
+            motion, _ = self._solved(system, lines, 0)
+            value[:, :, lines] = self._seen(system, motion).transpose(2, 1, 0)
         return value
 
     def rounding(self) -> Real:
-        """Bound what rounding does to it: |x|^T |dA| |y| of the motion by drives and responses."""
+        """Estimate what rounding does to it: |x|^T |dA| |y| of motion by drives and responses."""
         limit = np.zeros((len(self.node[0]), len(self.node[1]), len(self.frequency)))
-        for line, system, k in self._systems():
-            one, other = (self._solved(system, k, i, self.frequency[line]) for i in (0, 1))
-            limit[:, :, line] = bound(system, k, one, other)
+        for lines, system in self._systems():
+            one, other = (self._solved(system, lines, i) for i in (0, 1))
+            limit[:, :, lines] = bound(system, one, other).transpose(1, 2, 0)
         return limit
 
     def _systems(self) -> Any:
         for first in range(0, len(self.frequency), AT_ONCE):
             lines = slice(first, first + AT_ONCE)
             factors = Factors(*(one[lines] for one in self.factors))
-            z = self.rope.scale(float(np.abs(factors.inertia).max()))
-            system = assemble(self.rope, factors, z)
-            for k in range(len(factors.inertia)):
-                yield first + k, system, k
+            yield lines, assemble(self.rope, factors, self.rope.scale(np.abs(factors.inertia)))
 
-    def _solved(self, system: Assembly, k: int, side: int, f: float) -> tuple[Complex, Complex]:
+    def _solved(self, system: Assembly, lines: slice, side: int) -> tuple[Complex, Complex]:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
         node, along = system.node[self.node[side]], self.coordinate[side]
-        load = np.zeros((system.parts + 1, 6, len(node)), dtype=np.complex128)
-        load[node, along, np.arange(len(node))] = system.z[along]
-        load[system.held] = 0.0
-        none = np.zeros((system.parts, 6, len(node)))
+        n, f = len(system.D), self.frequency[lines]
+        load = np.zeros((n, system.parts + 1, 6, len(node)), dtype=np.complex128)
+        load[:, node, along, np.arange(len(node))] = system.z[:, along]
+        load[:, system.held] = 0.0
+        none = np.zeros((n, system.parts, 6, len(node)))
         try:
-            x = system.factored(k).solve(system.together(load, none))
-        except SolveError:
-            x = np.full(((2 * system.parts + 1) * 6, len(node)), np.nan + 0j)
-        if not np.isfinite(x).all():
-            raise SolveError(f"{f:g} Hz lies on an undamped resonance: there is no finite response")
+            x = system.factored().solve(system.together(load, none))
+            singular = np.flatnonzero(~np.isfinite(x).all(axis=(1, 2)))
+        except Singular as error:
+            singular = np.array([error.line])
+        if len(singular):
+            raise SolveError(
+                f"{f[singular[0]]:g} Hz lies on an undamped resonance: there is no finite response"
+            )
         return system.apart(x)
 
     def _seen(self, system: Assembly, motion: Complex) -> Complex:
         node, along = system.node[self.node[1]], self.coordinate[1]
-        seen: Complex = motion[node, along] * system.z[along][:, None]
+        seen: Complex = motion[:, node, along] * system.z[:, along][:, :, None]
         return seen
 
 
-def bound(system: Assembly, k: int, one: tuple[Any, Any], other: tuple[Any, Any]) -> Real:
-    """Bound x^T dA y, shape (columns of one, columns of other), by the largest entries of parts."""
-    (u, f), (v, g) = (tuple(np.linalg.norm(w, axis=1) for w in pair) for pair in (one, other))
-    D, G, Q = (np.abs(w[k]).max((1, 2)) for w in (system.D, system.G, system.Q))
-    N = np.abs(system.N[k]).max((1, 2))
-    size = np.einsum("nd,n,nr->dr", u, N, v)
-    size += np.einsum("nd,n,nr->dr", u[:-1], Q, v[:-1]) + np.einsum("nd,n,nr->dr", f, G, g)
-    size += np.einsum("nd,n,nr->dr", f, 1 + D, v[:-1]) + np.einsum("nd,n,nr->dr", u[:-1], 1 + D, g)
+def bound(system: Assembly, one: tuple[Any, Any], other: tuple[Any, Any]) -> Real:
+    """Estimate x^T dA y, shape (n, columns of one, of other), by the parts' largest entries."""
+    (u, f), (v, g) = (tuple(np.linalg.norm(w, axis=2) for w in pair) for pair in (one, other))
+    D, G, Q, N = (np.abs(w).max((2, 3)) for w in (system.D, system.G, system.Q, system.N))
+    left, right = u[:, :-1], v[:, :-1]
+    form = "lnd,ln,lnr->ldr"
+    size = np.einsum(form, u, N, v) + np.einsum(form, left, Q, right) + np.einsum(form, f, G, g)
+    size += np.einsum(form, f, 1 + D, right) + np.einsum(form, left, 1 + D, g)
     limit: Real = ROUNDINGS * np.finfo(float).eps * size
     return limit

@@ -1,15 +1,16 @@
-"""A rope on an axis as arrays: what changes motion and force along each of its uniform pieces."""
+"""A rope on an axis as arrays: what changes motion and force along each of its pieces."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..base.array import Complex, Flags, Index, Real
+from ..base.computed import computed
+from .samples import resampled, series_of
 
 SIX = ("x", "y", "z", "alpha", "beta", "gamma")
 
@@ -32,17 +33,21 @@ class Factors(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class SpaceRope:
-    """Uniform pieces one after another; matrices over the six coordinates.
+    """Pieces one after another; matrices over the six coordinates.
+
+    What may change along a piece is given at samples (`samples.py`), one where it does not.
 
     Attributes
     ----------
     length : ndarray, shape (pieces,)
         [m].
-    bend : ndarray, shape (pieces, 6, 6)
+    bend : ndarray, shape (pieces, samples, 6, 6)
         Of the axis: u' = bend u where nothing is strained.
-    soft : ndarray, shape (pieces, 6, 6)
+    soft : ndarray, shape (pieces, samples, 6, 6)
         Section flexibility.
-    initial, stress : ndarray, shape (pieces, 6, 6)
+    string : ndarray, shape (pieces, samples, 6, 6)
+        What a rope without bending gives way by across its tension.
+    initial, stress : ndarray, shape (pieces, samples, 6, 6)
         Gamma and K of the initial force and moment.
     inertia, drag : ndarray, shape (pieces, 6, 6)
         Per length.
@@ -56,6 +61,7 @@ class SpaceRope:
     length: Real
     bend: Matrices
     soft: Matrices
+    string: Matrices
     initial: Matrices
     stress: Matrices
     inertia: Matrices
@@ -89,7 +95,9 @@ class SpaceRope:
         stations = np.sort(np.concatenate([x, away]))
         piece = np.clip(np.searchsorted(x, stations[:-1] + near) - 1, 0, len(self.length) - 1)
         begins = np.isin(stations[:-1], x)
+        inside = (np.stack([stations[:-1], stations[1:]]) - x[piece]) / self.length[piece]
         arrays = {name: getattr(self, name)[piece] for name in PIECEWISE}
+        arrays |= {name: resampled(getattr(self, name)[piece], *inside) for name in SAMPLED}
         arrays["turn"] = np.where(begins[:, None, None], self.turn[piece], np.eye(6))
         at = np.searchsorted(stations, x - near)
         for name in NODAL:
@@ -100,49 +108,98 @@ class SpaceRope:
         cut = replace(self, length=np.diff(stations), **arrays)
         return cut, np.abs(stations - np.asarray(places)[:, None]).argmin(axis=1)
 
+    def divided(self, equal: int) -> SpaceRope:
+        """Return it with so many equal pieces in place of each."""
+        inside = (np.arange(equal) / equal)[None, :] * self.length[:, None]
+        x = (self.x[:-1, None] + inside).ravel()
+        return self.cut(x[1:], 0.1 * float(self.length.min()) / equal)[0]
+
     def rates(self, factors: Factors) -> Complex:
-        """Return Phi, S and q, shape (n, pieces, 3, 6, 6)."""
-        section, tension, _, inertia, drag = (of_lines(one) for one in factors)
-        initial, S = tension * self.initial, self.soft / section
+        """Return Phi, S and q, shape (n, pieces, samples, 3, 6, 6)."""
+        section, tension, _, inertia, drag = (of_lines(one)[..., None] for one in factors)
+        initial, S = tension * self.initial, self.soft / section + self.string / tension
         SH = S @ initial
-        q = tension * self.stress + inertia * self.inertia + drag * self.drag
-        q = q - initial.swapaxes(2, 3) @ SH
-        return np.stack(np.broadcast_arrays(self.bend + SH, S + 0j, q), axis=2)
+        q = tension * self.stress - initial.swapaxes(3, 4) @ SH
+        q = q + inertia * self.inertia[:, None] + drag * self.drag[:, None]
+        return np.stack(np.broadcast_arrays(self.bend + SH, S + 0j, q), axis=3)
 
     def nodes(self, factors: Factors) -> Complex:
         """Return the stiffness of what stands at the nodes, shape (n, pieces + 1, 6, 6)."""
         _, _, springs, inertia, drag = (of_lines(one) for one in factors)
         return springs * self.springs + inertia * self.masses + drag * self.dashpots
 
-    def scale(self, eigenvalue: float) -> Real:
-        """Return z (6,), u = z u^ and f = f^/z, so that what a wave does is of size 1."""
+    @computed
+    def softest(self) -> tuple[float, float]:
+        """Flexibilities of bending and of a string, the largest [1/N m^2, 1/N]."""
+        soft, string = (np.diagonal(one, axis1=2, axis2=3) for one in (self.soft, self.string))
+        return float(soft[..., 4:].max()), float(string[..., 1:3].max())
+
+    @computed
+    def unit(self) -> float:
+        """The eigenvalue that its stiffness gives a length like the rope's [rad^2/s^2]."""
+        bends, gives = self.softest
+        length, mass = self.length.sum(), self.inertia[:, 1, 1].max()
+        return float(1 / (mass * (bends * length**4 if bends > 0 else gives * length**2)))
+
+    def waves(self, eigenvalue: float) -> float:
+        """Return the wavenumber of a long straight rope [rad/m]."""
+        bends, gives = self.softest
+        load = abs(eigenvalue) * self.inertia[:, 1, 1].max()
+        return float((load * bends) ** 0.25 if bends > 0 else (load * gives) ** 0.5)
+
+    @computed
+    def stiffest(self) -> float:
+        """Flexibility of bending, the least [1/N m^2]."""
+        return float(np.diagonal(self.soft, axis1=2, axis2=3)[..., 4:].min())
+
+    @computed
+    def pull(self) -> float:
+        """The largest tension [N]."""
+        return float(self.stress[..., 4, 4].max())
+
+    @computed
+    def least(self) -> float:
+        """The square of what curvature and length tell of wavenumbers [rad^2/m^2]."""
+        return float(np.abs(self.bend[..., :3, :3]).max() ** 2 + 1 / self.length.sum() ** 2)
+
+    def scale(self, eigenvalue: ArrayLike) -> Real:
+        """Return z (n, 6), u = z u^ and f = f^/z, so that what a wave does is of size 1."""
         # z^2 is the receptance of a long straight beam of wavenumbers k and a, 1/(B k (k^2 + a^2))
-        # across it and 1/(B a) of rotation; none of both is less than curvature and length tell
-        soft = np.diagonal(self.soft, axis1=1, axis2=2)[:, 4:].min()
-        load = abs(eigenvalue) * self.inertia[:, 1, 1].max() * soft
-        half = soft * self.stress[:, 4, 4].max() / 2
-        least = np.abs(self.bend[:, :3, :3]).max() ** 2 + 1 / self.length.sum() ** 2
-        both = math.hypot(half, math.sqrt(load))
-        large, small = both + abs(half), load / (both + abs(half)) if load > 0 else 0.0
-        k2, a2 = ((small, large) if half >= 0 else (large, small)) + np.full(2, least)
-        across = 1 / math.sqrt(k2) / (k2 + a2)
-        return np.repeat(np.sqrt(soft * np.array([across, 1 / math.sqrt(a2)])), 3)
+        # across it and 1/(B a) of rotation, of a string 1/(T k); none of these wavenumbers is less
+        # than curvature and length tell
+        least = self.least
+        load = np.abs(np.asarray(eigenvalue)) * self.inertia[:, 1, 1].max()
+        if self.softest[0] > 0:
+            soft = self.stiffest
+            half = soft * self.pull / 2
+            large = np.hypot(half, np.sqrt(load * soft)) + abs(half)
+            small = np.divide(load * soft, large, where=large > 0, out=np.zeros_like(large))
+            k2, a2 = np.stack((small, large) if half >= 0 else (large, small)) + least
+            across, turned = soft / np.sqrt(k2) / (k2 + a2), soft / np.sqrt(a2)
+        else:
+            across = self.softest[1] / np.sqrt(load * self.softest[1] + least)
+            turned = np.ones_like(across)
+        return np.repeat(np.sqrt(np.stack([across, turned], axis=-1)), 3, axis=-1)
 
-    def core(self, eigenvalue: float) -> tuple[Any, ...]:
-        """Return what the core counts by, scaled for an eigenvalue."""
-        z = self.scale(eigenvalue)
-        phi, S, q = self.rates(unforced([0.0]))[0].real.swapaxes(0, 1) * _scaled(z)
-        both = np.outer(z, z)
-        mass = self.inertia * both
-        norm = size_of(phi, S, q - eigenvalue * mass)
-        nodes = (self.springs * both, self.masses * both)
-        arrays = (phi, S, q, mass, self.turn * np.outer(1 / z, z), *nodes)
-        whole = tuple(np.ascontiguousarray(one) for one in arrays)
-        held = np.ascontiguousarray(self.held.astype(np.uint8))
-        return (self.length, halvings(norm * self.length), *whole, held)
+    @computed
+    def at_rest(self) -> Real:
+        """Phi, S and q where nothing moves, shape (pieces, samples, 3, 6, 6)."""
+        return np.ascontiguousarray(self.rates(unforced([0.0]))[0].real)
+
+    def core(self, eigenvalues: Real) -> tuple[tuple[Any, ...], Real]:
+        """Return what the core counts at several eigenvalues by, and the scale of each."""
+        z, samples = self.scale(eigenvalues), self.bend.shape[1]
+        rates = np.tile(self.at_rest, (len(z), 1, 1, 1, 1, 1))
+        rates[:, :, :, 2] -= eigenvalues[:, None, None, None, None] * self.inertia[:, None]
+        halved = halvings(size_of(scaled_rates(rates, z)).max(axis=(0, 2)) * self.length)
+        series = [series_of(*one, samples) for one in zip(self.length, halved)]
+        nodes = np.array([len(one) for one in series], dtype=np.int32)
+        beside = (self.inertia, self.turn, self.springs, self.masses, self.held.astype(np.uint8))
+        return (self.length, halved, nodes, self.at_rest, np.concatenate(series), *beside), z
 
 
-PIECEWISE = ("bend", "soft", "initial", "stress", "inertia", "drag")
+SAMPLED = ("bend", "soft", "string", "initial", "stress")
+PIECEWISE = ("inertia", "drag")
 NODAL = ("springs", "masses", "dashpots", "held")
 
 
@@ -158,23 +215,20 @@ def of_lines(factor: Complex) -> Complex:
     return np.asarray(factor)[:, None, None, None]
 
 
-def _scaled(z: Real) -> Real:
-    """Return what scaling multiplies Phi, S and q by, shape (3, 1, 6, 6)."""
-    return np.stack([np.outer(1 / z, z), np.outer(1 / z, 1 / z), np.outer(z, z)])[:, None]
+def scaled_rates(rates: Matrices, z: Real) -> Matrices:
+    """Return Phi, S, q of scaled coordinates of each line."""
+    over, by = 1 / z[:, :, None], z[:, :, None]
+    other = z[:, None, :]
+    return rates * np.stack([over * other, over / other, by * other], axis=1)[:, None, None]
 
 
-def scaled_rates(rates: Complex, z: Real) -> Complex:
-    """Return Phi, S, q of scaled coordinates."""
-    return rates * _scaled(z).swapaxes(0, 1)
-
-
-def size_of(phi: Complex, S: Complex, q: Complex) -> Real:
-    """Return the largest singular value of each [[Phi, S], [q, -Phi^T]]."""
-    E = np.concatenate(
-        [np.concatenate([phi, S], axis=-1), np.concatenate([q, -phi.swapaxes(-1, -2)], axis=-1)],
-        axis=-2,
-    )
-    return np.linalg.norm(E, 2, axis=(-2, -1))
+def size_of(rates: Matrices) -> Real:
+    """Return a norm of each [[Phi, S], [q, -Phi^T]], the lesser of those by rows and by columns."""
+    phi, S, q = np.moveaxis(np.abs(rates), -3, 0)
+    rows, columns = phi.sum(-1), phi.sum(-2)
+    by_rows = np.maximum(rows + S.sum(-1), q.sum(-1) + columns).max(-1)
+    by_columns = np.maximum(columns + q.sum(-2), S.sum(-2) + rows).max(-1)
+    return np.minimum(by_rows, by_columns)
 
 
 def halvings(radians: Real) -> NDArray[np.int32]:

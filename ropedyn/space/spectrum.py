@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,20 +18,51 @@ from .rope import SpaceRope, unforced
 
 STEP = 2.0**-200  # Of derivatives by a complex step.
 TOGETHER = 1e-8  # Modes that are closer, relative, are found together.
+ALONE = 0.2  # So narrow, relative, is the bracket of a single mode that is sought.
 ROUNDS = 200  # Of counts.
 ITERATIONS = 12
 RIGID = 1e-14  # Less, in units of bending over the whole length, is none.
 NARROW = 1e-13  # Brackets that nothing is found in are an answer themselves.
 BESIDE = 3e-8  # Iteration is at so much from a mode, where solving still tells others from it.
+SETTLED = 4.0  # Shifts of so many times that are the last.
+AT_ONCE = 32  # Groups that are sought together.
 MORE = 3  # Vectors beside those of the modes that are sought.
 
 
 class Lowest(NamedTuple):
-    """Eigenvalues [rad^2/s^2] with bounds of what rounding does, and how many counts they took."""
+    """Eigenvalues [rad^2/s^2], estimates of what rounding does, and how many counts they took."""
 
     eigenvalue: Real
     error: Real
     counts: int
+
+
+class Bracket(NamedTuple):
+    """Values of which counts are known, and the modes between them."""
+
+    low: float
+    high: float
+    first: int
+    last: int
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return self.last - self.first
+
+    @property
+    def middle(self) -> float:
+        """Of the bracket."""
+        return (self.low + self.high) / 2
+
+    def is_narrow(self, unit: float) -> bool:
+        """Whether the bracket is an answer itself."""
+        return self.high - self.low <= NARROW * max(abs(self.low), abs(self.high), unit)
+
+    def has(self, value: Real, error: Real) -> bool:
+        """Whether values lie in it."""
+        inside = (value >= self.low - 4 * error) & (value <= self.high + 4 * error)
+        return bool(inside.all() and np.isfinite(value).all())
 
 
 class Counter:
@@ -37,113 +70,104 @@ class Counter:
 
     def __init__(self, rope: SpaceRope) -> None:
         self.rope = rope
-        self.known: dict[float, int] = {}
+        self.values: list[float] = []
+        self.counts: list[int] = []
         self.asked = 0
 
-    def ask(self, values: Any) -> None:
+    def ask(self, values: Any) -> list[int]:
         """Count at several."""
-        for value in {float(v) for v in values} - self.known.keys():
-            self.known[value] = self._one(value)
-
-    def _one(self, value: float) -> int:
+        new = np.array(sorted({float(v) for v in values} - set(self.values)))
         for nudge in range(8):
+            if not len(new):
+                return [self.counts[bisect_left(self.values, float(v))] for v in values]
             # joints at a resonance of a part are none a little aside
-            beside = value * (1 + nudge * 2.0**-48)
-            (count,) = _core.space_count(self.rope.core(value), np.array([beside]))
-            self.asked += 1
-            if not math.isnan(count):
-                return int(count)
+            arrays, z = self.rope.core(new)
+            counts = _core.space_count(arrays, new * (1 + nudge * 2.0**-48), z)
+            self.asked += len(new)
+            there = ~np.isnan(counts)
+            for value, count in zip(new[there].tolist(), counts[there].tolist()):
+                at = bisect_left(self.values, value)
+                self.values.insert(at, value)
+                self.counts.insert(at, int(count))
+            new = new[~there]
         raise SolveError("parts of the rope resonate too close to each other to be counted")
 
-    def bracket(self, i: int) -> tuple[float, float, int, int]:
+    def bracket(self, i: int) -> Bracket:
         """Return the closest values with count <= i and > i, and the counts."""
-        low = max(v for v, n in self.known.items() if n <= i)
-        high = min(v for v, n in self.known.items() if n > i)
-        if not low < high:
+        at = bisect_right(self.counts, i)
+        if any(a > b for a, b in pairwise(self.counts[max(at - 2, 0) : at + 2])):
             raise SolveError("counts contradict each other: rounding decides where modes are")
-        return low, high, self.known[low], self.known[high]
-
-
-def unit_of(rope: SpaceRope) -> float:
-    """Return the eigenvalue that bending gives a length like the rope's [rad^2/s^2]."""
-    length = rope.length.sum()
-    soft = np.diagonal(rope.soft, axis1=1, axis2=2)[:, 4:].max()
-    return float(1 / (soft * rope.inertia[:, 1, 1].max() * length**4))
+        low, high = self.values[at - 1 : at + 1]
+        return Bracket(low, high, *self.counts[at - 1 : at + 1])
 
 
 def count_below(rope: SpaceRope, eigenvalue: float) -> int:
     """Return how many eigenvalues lie below one."""
-    counter = Counter(rope)
-    counter.ask([eigenvalue])
-    return counter.known[eigenvalue]
+    return Counter(rope).ask([eigenvalue])[0]
 
 
 def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
     """Return the lowest eigenvalues, so many or all below one."""
-    counter, unit = Counter(rope), unit_of(rope)
+    counter, unit = Counter(rope), rope.unit
     wanted = _surround(counter, unit, wanted, below)
-    value, error = np.zeros(wanted), np.zeros(wanted)
+    value, error = np.full(wanted, math.nan), np.zeros(wanted)
     _isolate(counter, range(wanted), unit)
-    done = 0
-    while done < wanted:
-        low, high, first, last = counter.bracket(done)
-        group = Group(rope, low, high, last - first, unit)
-        found = group.refined()
-        if found is None and high - low > NARROW * max(abs(low), abs(high), unit):
-            _halve(counter, [done], unit)
-            continue
-        if found is None:
-            found = np.full(last - first, (low + high) / 2), np.full(last - first, high - low)
-        members = slice(done - first, wanted - first)
-        size = min(last, wanted) - done
-        value[done : done + size], error[done : done + size] = (one[members] for one in found)
-        done += size
+    while len(left := np.flatnonzero(np.isnan(value))):
+        groups = sorted({counter.bracket(int(i)) for i in left})
+        wide = []
+        for group, found in zip(groups, refined(rope, groups, unit)):
+            if found is None and not group.is_narrow(unit):
+                wide.append(group.first)
+                continue
+            size = min(group.last, wanted) - group.first
+            whole = found or (np.full(size, group.middle), np.full(size, group.high - group.low))
+            value[group.first :][:size], error[group.first :][:size] = (one[:size] for one in whole)
+        _divide(counter, wide, unit)
     return Lowest(value, error, counter.asked)
 
 
 def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -> int:
     """Count below all and above those that are wanted; return how many there are."""
     low = -unit * 1e-3
-    counter.ask([low])
-    while counter.known[low] > 0:
+    while counter.ask([low])[0] > 0:
         low *= 64
-        counter.ask([low])
         if not math.isfinite(low):
             raise SolveError("the stiffness has no lower bound: what is loaded has no mass")
     if math.isfinite(below):
-        counter.ask([below])
-        there = counter.known[below]
+        there = counter.ask([below])[0]
         return there if wanted is None else min(wanted, there)
     assert wanted is not None
-    high = unit
-    counter.ask([high])
-    while counter.known[high] < wanted:
-        high *= 4
+    high = unit * max(1.0, (wanted / 4) ** 2)
+    while counter.ask([high, 4 * high])[1] < wanted:
+        high *= 16
         if high > 1e150 * unit:
             raise SolveError(f"fewer than {wanted} modes are finite")
-        counter.ask([high])
     return wanted
 
 
 def _isolate(counter: Counter, modes: range, unit: float) -> None:
-    """Halve brackets until each has a single mode or modes that are found together."""
+    """Divide brackets until each has a single mode or modes that are found together."""
     for _ in range(ROUNDS):
         wide = [i for i in modes if not _is_done(counter.bracket(i), unit)]
         if not wide:
             return
-        _halve(counter, wide, unit)
+        _divide(counter, wide, unit)
     raise SolveError("modes lie closer together than counts tell apart")
 
 
-def _is_done(bracket: tuple[float, float, int, int], unit: float) -> bool:
-    low, high, first, last = bracket
-    near = 0.1 if last - first == 1 else TOGETHER
-    return high - low <= near * max(abs(low), abs(high)) or high - low <= 1e-6 * unit
+def _is_done(bracket: Bracket, unit: float) -> bool:
+    near = ALONE if bracket.size == 1 else TOGETHER
+    width = bracket.high - bracket.low
+    return width <= near * max(abs(bracket.low), abs(bracket.high)) or width <= 1e-6 * unit
 
 
-def _halve(counter: Counter, modes: list[int], unit: float) -> None:
-    brackets = {counter.bracket(i)[:2] for i in modes}
-    counter.ask([_middle(low, high, unit) for low, high in brackets])
+def _divide(counter: Counter, modes: list[int], unit: float) -> None:
+    """Count at three places in the bracket of each, which costs as much as at one."""
+    asked = set()
+    for low, high, _, _ in {counter.bracket(i) for i in modes}:
+        middle = _middle(low, high, unit)
+        asked |= {_middle(low, middle, unit), middle, _middle(middle, high, unit)} - {low, high}
+    counter.ask(asked)
 
 
 def _middle(low: float, high: float, unit: float) -> float:
@@ -156,100 +180,146 @@ def _middle(low: float, high: float, unit: float) -> float:
     return (low + high) / 2
 
 
-@dataclass(frozen=True, eq=False)
-class Group:
-    """Modes of one bracket, sought by inverse iteration in the space of a few vectors."""
+@dataclass(eq=False)
+class Search:
+    """Inverse iteration for the modes of a group, in the space of a few vectors."""
 
-    rope: SpaceRope
-    low: float
-    high: float
-    size: int
-    unit: float
+    group: Bracket
+    at: float
+    value: Real
+    before: float = math.inf
+    vectors: Any = None
+    error: Any = None
 
-    def refined(self) -> tuple[Real, Real] | None:
-        """Return eigenvalues and bounds of rounding, or None where they leave the bracket."""
-        at, value, before = (self.low + self.high) / 2, np.full(self.size, math.inf), math.inf
-        state = None
+    def take(self, nearby: Nearby, unit: float) -> bool:
+        """Go on from what was found at `at`; False where nothing is to come."""
+        value = self.at + nearby.shift
+        change = float(np.abs(value - self.value).max())
+        self.value, self.error, self.vectors = value, nearby.error, nearby.around
+        if change <= self.error.min() / 4 or change > self.before / 2:
+            return False
+        mean = float(value.mean())
+        near = max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), unit))
+        # at a shift like the least one the error of the second order is that of rounding
+        if np.abs(nearby.shift).max() <= SETTLED * near:
+            return False
+        self.before, self.at = change, mean + near
+        return True
+
+
+def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[Real, Real] | None]:
+    """Return eigenvalues and rounding errors of each, or None where they leave the bracket."""
+    searches = [Search(g, g.middle, np.full(g.size, math.inf)) for g in groups]
+    for first in range(0, len(searches), AT_ONCE):
+        left = searches[first : first + AT_ONCE]
         for _ in range(ITERATIONS):
-            system = assemble(self.rope, unforced([at], STEP), self.rope.scale(at))
-            if state is None or len(state) != (2 * system.parts + 1) * 6:
-                state = start(system, self.size + MORE)
-            shift, error, _, state = ritz(system, state, self.size)
-            change, value = float(np.abs(at + shift - value).max()), at + shift
-            if change <= error.min() / 4 or change > before / 2:
+            if not left:
                 break
-            before, mean = change, float(value.mean())
-            at = mean + max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), self.unit))
-        inside = (value >= self.low - 4 * error) & (value <= self.high + 4 * error)
-        # rigid motion strains nothing, and has a stiffness of rounding alone
-        error = np.maximum(error, RIGID * self.unit)
-        return (value, error) if inside.all() and np.isfinite(value).all() else None
+            at = np.array([one.at for one in left])
+            system = assemble(rope, unforced(at, STEP), rope.scale(at))
+            x = start(system, max(one.group.size for one in left) + MORE, left)
+            times = 3 if any(one.vectors is None for one in left) else 1
+            found = ritz(system, x, [one.group.size for one in left], times)
+            left = [one for one, near in zip(left, found) if one.take(near, unit)]
+    # rigid motion strains nothing, and has a stiffness of rounding alone
+    return [
+        (s.value, np.maximum(s.error, RIGID * unit)) if s.group.has(s.value, s.error) else None
+        for s in searches
+    ]
 
 
-def start(system: Assembly, columns: int) -> Real:
-    """Return vectors that no mode is free of, the same for every run."""
-    return np.random.default_rng(0).standard_normal(((2 * system.parts + 1) * 6, columns))
+def start(system: Assembly, columns: int, searches: Any = ()) -> Real:
+    """Return vectors (n, rows, columns): those found before, or some that no mode is free of."""
+    rows = (2 * system.parts + 1) * 6
+    fresh = np.random.default_rng(0).standard_normal((rows, columns))
+    x = np.tile(fresh, (len(system.D), 1, 1))
+    for k, search in enumerate(searches):
+        known = search.vectors
+        if known is not None and len(known) == rows:
+            x[k, :, : known.shape[1]] = known[:, :columns]
+    return x
 
 
 class Nearby(NamedTuple):
     """Vectors of the eigenvalues closest to an assembly's, and those around them."""
 
     shift: Real  # of the eigenvalues from the assembly's
-    error: Real  # bound of what rounding does to them
+    error: Real  # estimate of what rounding does to them
     own: Real  # (unknowns, size), of unit mass
     around: Real
 
 
-def ritz(system: Assembly, x: Real, size: int) -> Nearby:
-    """Iterate vectors, and combine those that an eigenvalue belongs to.
+def ritz(system: Assembly, x: Real, sizes: list[int], times: int = 3) -> list[Nearby]:
+    """Iterate vectors (n, rows, columns), and combine those that an eigenvalue belongs to.
 
     Of A(lambda) x = 0 about lambda: A x = shift M x with M = -dA/dlambda, which is what moves, so
     that the shifts of vectors between which nothing else lies are right to second order.
     """
-    from scipy.linalg import eigh, qr
-
-    factored = system.factored(0, real=True)
-    for _ in range(3):
-        x = factored.solve(mass(system, qr(x, mode="economic")[0]))
-    x = qr(x, mode="economic")[0]
-    A, M = x.T @ stiff(system, x), x.T @ mass(system, x)
-    # vectors that move next to nothing are no motion
-    weight, own = np.linalg.eigh(M)
-    moving = weight > 1e-8 * weight[-1]
-    own = own[:, moving] / np.sqrt(weight[moving])
-    shift, mix = eigh(own.T @ A @ own)
-    x = x @ (own @ mix)
+    factored, most = system.factored(real=True), max(sizes)
+    for _ in range(times):
+        x = factored.solve(mass(system, np.linalg.qr(x)[0]))
+    x = np.linalg.qr(x)[0]
+    own, around = np.zeros((*x.shape[:2], most)), []
+    for k, (shift, mix) in enumerate(_small(*_forms(system, x))):
+        around.append(x[k] @ mix)
+        near = np.abs(shift).argsort()[:most]
+        own[k, :, : len(near)] = around[k][:, near]
     # those that are sought alone: the others' shifts are so much larger that they round theirs
-    own = qr(x[:, np.abs(shift).argsort()[:size]], mode="economic")[0]
-    own = qr(factored.solve(mass(system, own)), mode="economic")[0]
-    shift, mix = eigh(own.T @ stiff(system, own), own.T @ mass(system, own))
-    own = own @ mix
-    return Nearby(shift, _rounding(system, own), own, x)
+    own = np.linalg.qr(factored.solve(mass(system, np.linalg.qr(own)[0])))[0]
+    found = []
+    A, M = _forms(system, own)
+    for k, size in enumerate(sizes):
+        ((shift, mix),) = _small(A[k : k + 1, :size, :size], M[k : k + 1, :size, :size])
+        own[k, :, : mix.shape[1]] = own[k, :, :size] @ mix
+        found.append((shift, mix.shape[1]))
+    error = _rounding(system, own)
+    return [
+        Nearby(shift, error[k, :size], own[k, :, :size], around[k])
+        for k, (shift, size) in enumerate(found)
+    ]
+
+
+def _forms(system: Assembly, x: Real) -> tuple[Real, Real]:
+    back = x.swapaxes(1, 2)
+    return back @ stiff(system, x), back @ mass(system, x)
+
+
+def _small(A: Real, M: Real) -> list[tuple[Real, Real]]:
+    """Return shifts and vectors of A x = shift M x; what moves next to nothing is no motion."""
+    weight, own = np.linalg.eigh(M)
+    moving = weight > 1e-8 * weight[:, -1:]
+    if moving.all():
+        own = own / np.sqrt(weight)[:, None]
+        shift, mix = np.linalg.eigh(own.swapaxes(1, 2) @ A @ own)
+        return list(zip(shift, own @ mix))
+    found = []
+    for k, there in enumerate(moving):
+        some = own[k][:, there] / np.sqrt(weight[k][there])
+        shift, mix = np.linalg.eigh(some.T @ A[k] @ some)
+        found.append((shift, some @ mix))
+    return found
 
 
 def stiff(system: Assembly, x: Real) -> Real:
     """Return A x."""
-    u, f = system.apart(x)
-    p, d = system.apply(u[None], f[None])
-    return system.together(p[0].real, d[0].real)
+    return system.together(*system.real.apply(*system.apart(x)))
 
 
 def mass(system: Assembly, x: Real) -> Real:
     """Return -dA/dlambda x, by the imaginary parts."""
-    u, f = system.apart(x)
-    p, d = system.apply(u[None], f[None])
-    return -system.together(p[0].imag, d[0].imag) / STEP
+    return system.together(*system.imag.apply(*system.apart(x))) / -STEP
 
 
 ROUNDINGS = 4.0  # Of entries of a part's matrices, in units of the largest one, scaled.
 
 
 def _rounding(system: Assembly, x: Real) -> Real:
-    """Bound what rounding of the parts does to the eigenvalues of vectors of unit mass."""
-    u, f = (np.linalg.norm(one, axis=1) for one in system.apart(x))
-    D, G, Q = (np.abs(one[0].real).max((1, 2))[:, None] for one in (system.D, system.G, system.Q))
-    N = np.abs(system.N[0].real).max((1, 2))[:, None]
-    moved, left = (N * u**2).sum(0), u[:-1]
-    size = moved + (Q * left**2 + 2 * (1 + D) * left * f + G * f**2).sum(0)
+    """Estimate what rounding of the parts does to the eigenvalues of vectors of unit mass."""
+    u, f = (np.linalg.norm(one, axis=2) for one in system.apart(x))
+    D, G, Q, N = (
+        np.abs(one.real).max((2, 3))[:, :, None] for one in (system.D, system.G, system.Q, system.N)
+    )
+    left = u[:, :-1]
+    size = (N * u**2).sum(1) + (Q * left**2 + 2 * (1 + D) * left * f + G * f**2).sum(1)
     bound: Real = ROUNDINGS * np.finfo(float).eps * size
     return bound

@@ -23,7 +23,7 @@ from .assembly import Assembly, assemble
 from .modes import check_points
 from .response import bound
 from .rope import SIX, SpaceRope, unforced
-from .spectrum import count_below, unit_of
+from .spectrum import count_below
 
 
 def solve_static(
@@ -32,7 +32,7 @@ def solve_static(
     """Find the static deflection; see `SpaceModel.static`."""
     loads = checked_loads(scene, load)
     check_points(rope, points)
-    critical = count_below(rope, -1e-13 * unit_of(rope))
+    critical = count_below(rope, -1e-13 * rope.unit)
     if critical and not unstable:
         raise SolveError(
             f"the rope does not stay at rest: {exceeds(critical)}; "
@@ -42,18 +42,19 @@ def solve_static(
     x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in loads]])
     cut, _ = rope.cut(x, near)
     x = cut.x
-    system = assemble(cut, unforced([0.0]), cut.scale(0.0))
+    system = assemble(cut, unforced([0.0]), cut.scale([0.0]))
+    z = system.z[0]
     right = np.zeros((system.parts + 1, 6, 1))
     for (coordinate, at), amount in loads.items():
         k = SIX.index(coordinate)
-        right[system.node[int(np.abs(x - at).argmin())], k] += amount * system.z[k]
+        right[system.node[int(np.abs(x - at).argmin())], k] += amount * z[k]
     u, f = _solved(system, right)
-    shown = u[system.node, :, 0]
+    shown = u[0, system.node, :, 0]
     return Deflection(
         coordinates=SIX,
         x=x,
-        displacement=shown * system.z,
-        force=_force(system, u, f) / system.z,
+        displacement=shown * z,
+        force=_force(system, u[0], f[0]) / z,
         load=tuple(loads.items()),
         critical_loads=critical,
         cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=1),
@@ -71,12 +72,12 @@ def _same(shape: tuple[int, ...], value: float) -> Real:
 
 def _solved(system: Assembly, right: Real) -> tuple[Real, Real]:
     """Return motion and force of columns of loads (parts + 1, 6, columns)."""
-    right = np.where(system.held[:, :, None], 0.0, right)
-    none = np.zeros((system.parts, 6, right.shape[2]))
+    right = np.where(system.held[:, :, None], 0.0, right)[None]
+    none = np.zeros((1, system.parts, 6, right.shape[3]))
     try:
-        x = system.factored(0, real=True).solve(system.together(right, none))
+        x = system.factored(real=True).solve(system.together(right, none))
     except SolveError:
-        x = np.full(1, np.nan)
+        x = np.full((1, 1, 1), np.nan)
     if not np.isfinite(x).all() or np.abs(x).max() > 1e14 * np.abs(right).max():
         raise SolveError(
             "the stiffness is singular to working precision: a rigid motion is free, or the "
@@ -99,7 +100,7 @@ def _rounding(system: Assembly, found: tuple[Real, Real]) -> Real:
     nodes = len(system.node)
     unit = np.zeros((system.parts + 1, 6, 6 * nodes))
     unit[np.repeat(system.node, 6), np.tile(np.arange(6), nodes), np.arange(6 * nodes)] = 1.0
-    limit = bound(system, 0, found, _solved(system, unit))[0].reshape(nodes, 6) * system.z
+    limit = bound(system, found, _solved(system, unit))[0, 0].reshape(nodes, 6) * system.z[0]
     limit[system.held[system.node]] = 0.0
     limit.setflags(write=False)
     return limit

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIX = RD_SIX, FULL = RD_SIX * RD_SIX };
+enum { SIX = RD_SIX, FULL = RD_SIX * RD_SIX, LINES = 9 };
 
 static const double PI = 3.14159265358979323846;
 
@@ -30,18 +30,31 @@ static void test_triple_of_a_beam_at_rest(void)
 {
     const double l = 3;
     double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
-    double _Complex rates[RD_SPACE_TRIPLE], triple[RD_SPACE_TRIPLE];
+    double _Complex rates[LINES * RD_SPACE_TRIPLE], triple[LINES * RD_SPACE_TRIPLE];
+    const double series[RD_SPACE_ORDERS] = {1};
+    struct rd_workspace workspace = {0};
     beam(phi, soft, load, inertia);
-    for (int i = 0; i < FULL; i++) {
-        rates[i] = phi[i];
-        rates[FULL + i] = soft[i];
-        rates[2 * FULL + i] = load[i];
+    for (int i = 0; i < LINES * FULL; i++) {
+        double _Complex *at = rates + i / FULL * RD_SPACE_TRIPLE + i % FULL;
+        at[0] = phi[i % FULL];
+        at[FULL] = soft[i % FULL];
+        at[2 * FULL] = load[i % FULL];
     }
     for (int doublings = 0; doublings <= 6; doublings += 3) {
-        const double length = ldexp(l, 6 - doublings);
-        CHECK_INT(rd_space_triple(rates, length, 6, doublings, 1e9, triple), doublings);
-        const double _Complex *G = triple + FULL, *Q = G + FULL;
-        CHECK_ABS(creal(triple[2 * SIX + 4]), l, 8 * EPS * l, "roundings");
+        const struct rd_space_run run = {ldexp(l, 6 - doublings), 6, 1, 1, series};
+        int reached = -1;
+        free(workspace.base);
+        workspace = (struct rd_workspace){0};
+        rd_space_triples(&run, 0, rates, doublings, 1e9, triple, &reached, &workspace);
+        workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+        CHECK_INT(
+            rd_space_triples(&run, LINES, rates, doublings, 1e9, triple, &reached, &workspace),
+            RD_OK);
+        CHECK_INT(reached, doublings);
+        /* of the last line, alone in its lanes */
+        const double _Complex *last = triple + (LINES - 1) * RD_SPACE_TRIPLE;
+        const double _Complex *G = last + FULL, *Q = G + FULL;
+        CHECK_ABS(creal(last[2 * SIX + 4]), l, 8 * EPS * l, "roundings");
         CHECK_ABS(creal(G[2 * SIX + 2]), l * l * l / 6, 64 * EPS * l * l * l, "roundings");
         CHECK_ABS(creal(G[1 * SIX + 5]), l * l / 4, 64 * EPS * l * l, "roundings");
         CHECK_ABS(creal(G[4 * SIX + 4]), l / 2, 64 * EPS * l, "roundings");
@@ -49,6 +62,7 @@ static void test_triple_of_a_beam_at_rest(void)
         for (int i = 0; i < FULL; i++)
             CHECK(Q[i] == 0);
     }
+    free(workspace.base);
 }
 
 /* Clamped at both ends: sin kl = 0 of stretch and cos kl cosh kl = 1 of bending in both planes, whose roots
@@ -66,9 +80,9 @@ static size_t expected(double lambda, double l)
 }
 
 struct rope {
-    double length[2], phi[2 * FULL], soft[2 * FULL], load[2 * FULL], inertia[2 * FULL];
-    double turn[2 * FULL], none[3 * FULL];
-    int32_t halvings[2];
+    double length[2], rates[2 * RD_SPACE_TRIPLE], inertia[2 * FULL];
+    double turn[2 * FULL], none[3 * FULL], series[2 * RD_SPACE_ORDERS], scale[8 * SIX];
+    int32_t halvings[2], nodes[2];
     uint8_t held[3 * SIX];
     struct rd_space space;
 };
@@ -79,21 +93,27 @@ static void rope_fill(struct rope *rope, size_t pieces, double l)
     memset(rope, 0, sizeof *rope);
     for (size_t p = 0; p < pieces; p++) {
         const size_t at = p * FULL;
-        beam(rope->phi + at, rope->soft + at, rope->load + at, rope->inertia + at);
+        double *own = rope->rates + p * RD_SPACE_TRIPLE;
+        beam(own, own + FULL, own + 2 * (size_t)FULL, rope->inertia + at);
+        rope->nodes[p] = 1;
+        rope->series[p * RD_SPACE_ORDERS] = 1;
         rope->length[p] = pieces == 1 ? l : p == 0 ? 0.3 * l : 0.7 * l;
         rope->halvings[p] = 8;
         for (int i = 0; i < SIX; i++)
             rope->turn[at + (size_t)(i * SIX + i)] = 1;
     }
+    for (int i = 0; i < 8 * SIX; i++)
+        rope->scale[i] = 1;
     memset(rope->held, 1, SIX);
     memset(rope->held + pieces * SIX, 1, SIX);
     rope->space = (struct rd_space){
         .pieces = pieces,
         .length = rope->length,
         .halvings = rope->halvings,
-        .phi = rope->phi,
-        .soft = rope->soft,
-        .load = rope->load,
+        .nodes = rope->nodes,
+        .fields = 1,
+        .series = rope->series,
+        .rates = rope->rates,
         .inertia = rope->inertia,
         .turn = rope->turn,
         .stiffness = rope->none,
@@ -110,18 +130,20 @@ static void test_counts_of_rods_and_beams(void)
     enum { COUNT = sizeof lambda / sizeof *lambda };
     double below[COUNT];
     rope_fill(&rope, 1, 4);
-    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, below, &workspace), RD_NO_MEMORY);
+    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, rope.scale, below, &workspace),
+              RD_NO_MEMORY);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
     for (size_t pieces = 1; pieces <= 2; pieces++) {
         rope_fill(&rope, pieces, 4);
         workspace.used = 0;
-        CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, below, &workspace), RD_OK);
+        CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, rope.scale, below, &workspace), RD_OK);
         for (size_t k = 0; k < COUNT; k++)
             CHECK_INT((long long)below[k], (long long)expected(lambda[k], 4));
     }
     workspace.size = workspace.used - 1;
     workspace.used = 0;
-    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, below, &workspace), RD_NO_MEMORY);
+    CHECK_INT(rd_space_count(&rope.space, COUNT, lambda, rope.scale, below, &workspace),
+              RD_NO_MEMORY);
     free(workspace.base);
 }
 
@@ -134,9 +156,9 @@ static void test_a_held_node_within_is_counted(void)
     rope_fill(&rope, 2, 4);
     memset(rope.held + SIX, 1, SIX);
     const double lambda = 3e3;
-    rd_space_count(&rope.space, 1, &lambda, &below, &workspace);
+    rd_space_count(&rope.space, 1, &lambda, rope.scale, &below, &workspace);
     workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
-    CHECK_INT(rd_space_count(&rope.space, 1, &lambda, &below, &workspace), RD_OK);
+    CHECK_INT(rd_space_count(&rope.space, 1, &lambda, rope.scale, &below, &workspace), RD_OK);
     CHECK_INT((long long)below, (long long)(expected(lambda, 1.2) + expected(lambda, 2.8)));
     free(workspace.base);
 }

@@ -201,8 +201,10 @@ SPANNED = (PAIRED[0], FIELD[:, : 2 * SHAPES[0, :4].size].copy(), PAIR, SLIP)
 
 
 ARC = rd.Rope(rd.Axis.arc(1.0, 2.0), 0.1, bending_stiffness=1.0, torsional_stiffness=0.4)
-SPACE = rd.Scene(ARC, planes="both").compile().rope.core(1e4)
-RATES = np.stack(SPACE[2:5], axis=1) + 0j
+SPACE, SCALE = rd.Scene(ARC, planes="both").compile().rope.core(np.array([1e4, 1e6]))
+RATES, SERIES = SPACE[3] + 0j, SPACE[4]
+BAND = np.zeros((2, 6, 34)) + np.eye(34)[22]
+SOLVED = np.ones((2, 3, 6))
 
 # every entry point that takes a chain
 ENTRIES = {
@@ -283,8 +285,10 @@ OTHERS = {
         np.array([0.6]),
     ),
     "divide": lambda _: _core.divide(*DIVIDED),
-    "space_triples": lambda _: _core.space_triples(RATES, 2.0, 6, 6, 1e4),
-    "space_count": lambda _: _core.space_count(SPACE, np.array([1e4, 1e6])),
+    "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 6, 6, 1e4),
+    "space_factor": lambda _: _core.space_factor(BAND),
+    "space_solve": lambda _: _core.space_solve(*_core.space_factor(BAND + 0j)[:2], SOLVED),
+    "space_count": lambda _: _core.space_count(SPACE, np.array([1e4, 1e6]), SCALE),
 }
 
 
@@ -590,39 +594,64 @@ REFUSED = {
     ),
     "span of the last node": (lambda: _core.local(CHAIN, 8, 0.0, 0.0), ValueError, "got 8"),
     "rates of another shape": (
-        lambda: _core.space_triples(RATES[:, :2], 2.0, 6, 6, 1e4),
+        lambda: _core.space_triples(RATES[:, :, :2], SERIES, 2.0, 6, 6, 1e4),
         ValueError,
-        "rates must have 3 entries along axis 1, got 2",
+        "rates must have 3 entries along axis 2, got 2",
     ),
     "halvings beyond": (
-        lambda: _core.space_triples(RATES, 2.0, 61, 6, 1e4),
+        lambda: _core.space_triples(RATES, SERIES, 2.0, 61, 6, 1e4),
         ValueError,
         "halvings must be from 0 to 60, got 61",
     ),
     "doublings below 0": (
-        lambda: _core.space_triples(RATES, 2.0, 6, -1, 1e4),
+        lambda: _core.space_triples(RATES, SERIES, 2.0, 6, -1, 1e4),
         ValueError,
         "doublings must be from 0 to 60, got -1",
     ),
     "halvings of a piece below 0": (
-        lambda: _core.space_count((SPACE[0], SPACE[1] - 100, *SPACE[2:]), np.ones(1)),
+        lambda: _core.space_count((SPACE[0], SPACE[1] - 100, *SPACE[2:]), np.ones(1), SCALE[:1]),
         ValueError,
         "halvings must be from 0 to 60, got -",
     ),
+    "nodes of a piece beyond its halvings": (
+        lambda: _core.space_count((*SPACE[:2], SPACE[2] + 24, *SPACE[3:]), np.ones(1), SCALE[:1]),
+        ValueError,
+        "nodes must be from 1 to 24 and at most 2^halvings, got 25",
+    ),
+    "series of more nodes than parts": (
+        lambda: _core.space_triples(RATES, np.tile(SERIES, (3, 1, 1)), 2.0, 1, 1, 1e4),
+        ValueError,
+        "series must be from 1 to 24 and at most 2^halvings, got 3",
+    ),
     "pieces without inertia": (
-        lambda: _core.space_count((*SPACE[:5], SPACE[5][1:], *SPACE[6:]), np.ones(1)),
+        lambda: _core.space_count((*SPACE[:5], SPACE[5][1:], *SPACE[6:]), np.ones(1), SCALE[:1]),
         ValueError,
         "inertia must have 1 entries along axis 0, got 0",
     ),
     "nodes without masses": (
-        lambda: _core.space_count((*SPACE[:8], SPACE[8][1:], SPACE[9]), np.ones(1)),
+        lambda: _core.space_count((*SPACE[:8], SPACE[8][1:], SPACE[9]), np.ones(1), SCALE[:1]),
         ValueError,
         "mass must have 2 entries along axis 0, got 1",
     ),
+    "a scale for each eigenvalue": (
+        lambda: _core.space_count(SPACE, np.ones(1), SCALE),
+        ValueError,
+        "scale must have 1 entries along axis 0, got 2",
+    ),
     "a rope of nine arrays": (
-        lambda: _core.space_count(SPACE[:9], np.ones(1)),
+        lambda: _core.space_count(SPACE[:9], np.ones(1), SCALE[:1]),
         TypeError,
         "10 arguments",
+    ),
+    "bands of another width": (
+        lambda: _core.space_factor(BAND[:, :, :33]),
+        ValueError,
+        "band must have 34 entries along axis 2, got 33",
+    ),
+    "right sides of fewer rows": (
+        lambda: _core.space_solve(*_core.space_factor(BAND)[:2], SOLVED[:, :, :5]),
+        ValueError,
+        "right must have 6 entries along axis 2, got 5",
     ),
     "element -1": (
         lambda: _core.triple(CHAIN, -1, FACTOR.T[:2].copy()),

@@ -1,0 +1,86 @@
+"""What changes along a piece, by a polynomial through its values at samples."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..base.array import Real
+
+SAMPLES = 14
+"""Of a piece along which something changes."""
+NODES = 14
+"""Between which triples of its parts are interpolated."""
+ORDERS = 14
+"""Of a part's series."""
+NOTHING = 1e-19
+"""Terms of a part's series that are less, relative, are none."""
+
+
+def sample_places(samples: int) -> Real:
+    """Return where they are, from 0 to 1: at Chebyshev's nodes, or the middle of one."""
+    found: Real = (1 - np.cos((2 * np.arange(samples) + 1) * np.pi / (2 * samples))) / 2
+    return found
+
+
+@lru_cache(64)
+def _fitted(samples: int) -> Real:
+    """Return Chebyshev coefficients, in x from -1 to 1, of what is 1 at one sample, in columns."""
+    found: Real = np.linalg.inv(chebyshev.chebvander(2 * sample_places(samples) - 1, samples - 1))
+    return found
+
+
+def weights(samples: int, places: Real) -> Real:
+    """Return what samples count for at places from 0 to 1, shape places + (samples,)."""
+    found: Real = chebyshev.chebvander(2 * places - 1, samples - 1) @ _fitted(samples)
+    return found
+
+
+def resampled(values: Real, begin: Real, end: Real) -> Real:
+    """Return the samples (pieces, samples, ..) of a part of each, begin and end from 0 to 1."""
+    samples = values.shape[1]
+    if samples == 1:
+        return values
+    places = begin[:, None] + (end - begin)[:, None] * sample_places(samples)
+    found: Real = np.einsum("pts,ps...->pt...", weights(samples, places), values)
+    return found
+
+
+def tail(values: Real) -> float:
+    """Return how large the last two coefficients are beside the largest value, of axis 0."""
+    coefficients = np.tensordot(_fitted(len(values)), values, axes=1)
+    size = np.abs(values).max(axis=0)
+    least = np.abs(coefficients[-2:]).max(axis=0)
+    return float(np.divide(least, size, where=size > 0, out=np.zeros_like(size)).max())
+
+
+def series_of(length: float, halved: int, samples: int) -> Real:
+    """Return the series of the parts of a piece that begin its doubling, as the core takes them.
+
+    Shape (nodes, samples, ORDERS): of what is 1 at one sample, by powers of s from the left end.
+    """
+    scale = float(length) ** -np.arange(ORDERS)
+    found: Real = _unit_series(int(halved), samples) * scale
+    return found
+
+
+@lru_cache(64)
+def _unit_series(halved: int, samples: int) -> Real:
+    if samples == 1:
+        return np.eye(1, ORDERS)[None]
+    part = 0.5**halved
+    few = halved < 30 and 2**halved <= NODES
+    node = np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))
+    begin = part * np.arange(2**halved) if few else (1 - part) * (1 + node) / 2
+    series = np.zeros((len(begin), samples, ORDERS))
+    own: Any = _fitted(samples)
+    factor = 1.0
+    for k in range(min(samples, ORDERS)):
+        # powers of s - begin, in lengths of the piece, where x runs twice as fast
+        value = factor * chebyshev.chebval(2 * begin - 1, own).T
+        series[:, :, k] = np.where(np.abs(value) * part**k > NOTHING, value, 0.0)
+        own, factor = chebyshev.chebder(own, axis=0), factor * 2 / (k + 1)
+    return series
