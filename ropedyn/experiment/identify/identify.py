@@ -324,7 +324,7 @@ def _many(
             refused[i] = error
             orders[i] = np.zeros(key[0], dtype=np.int64)
     numbered = [one for one in orders if one is not None]
-    alike = how.ends == "given" and not how.damping and not is_moved(scene)
+    alike = how.ends == "given" and not how.damping and not is_moved(scene) and not scene.sags
     if alike and len(numbered) == len(measured):
         return fits_of(find(scene, how, measured, numbered, refused, **workers), measured)
     tasks = [RopeTask(_guessed(scene, how, one), how, one, _teller(how)) for one in measured]

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.array import Flags, Index, Real
+from ...base.array import Flags, Index, Integer, Real
+from ...scene.scene import Scene
 from ..fitting.solution import Solution
 
 INVOLVED = 1e-6  # A number takes part in a direction from this share on.
@@ -126,3 +127,23 @@ def _noise(solution: Solution) -> list[str]:
         "of freedom; something else acts, the orders are wrong, or their std is larger: intervals "
         f"are {wider:.3g} times as wide as their std says, and of Student's t"
     ]
+
+
+def sag_note(scene: Scene, orders: Integer, relative: Real) -> str:
+    """Say which mode the parabola is off by more than its peak is known, nothing where none is."""
+    # `relative`, shape (k,): standard deviations of the peaks with that of the model
+    used = orders > 0
+    if not scene.sags or not used.any():
+        return ""
+    modes = scene.compile().modes(int(orders.max()))
+    off = (modes.model_error / modes.frequency)[orders[used] - 1]
+    worst = int((off / relative[used]).argmax())
+    if off[worst] <= relative[used][worst]:
+        return ""
+    mode = orders[used][worst]
+    if np.isinf(off[worst]):
+        return "how far the parabola of sag is off is not known here: give sag=False or a model_std"
+    return (
+        f"the parabola of sag is off by {off[worst]:.2g} of mode {mode}, more than its peak is: "
+        f"model_std={off.max():.1g} widens the intervals as far"
+    )

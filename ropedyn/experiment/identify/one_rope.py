@@ -32,6 +32,7 @@ from .cross_checks import cross_checks
 from .fit import Fit
 from .fit_peaks import Options
 from .known import LEVELS, METHODS, TOLD, Known, kept_bounds, without_end
+from .notes import sag_note
 from .other_ends import Remarks, other_ends
 from .peak_damping import PeakDamping, beside, damping_of_peaks
 from .report import shown
@@ -267,6 +268,9 @@ class RopeTask:
         alone = decision.status == "trusted" or bool(decision.unlimited)
         std = told.std if alone else np.full(p, np.nan)
         paths, value, correlation, notes = how.paths, told.value, told.correlation, told.notes
+        status, sagging = decision.status, self._sagging(decision.known.scene, told, orders)
+        if sagging:
+            notes, status = (*notes, sagging), status.replace("trusted", "ambiguous")
         if damped is not None:
             paths, value = (*paths, *damped.unknown), np.append(value, damped.value)
             std, notes = np.append(std, damped.std), (*notes, *damped.notes)
@@ -283,7 +287,7 @@ class RopeTask:
             freedom=told.freedom,
             chi_square=told.chi_square,
             probability=told.probability,
-            status=decision.status,
+            status=status,
             budget=told.budget,
             ends=how.ends,
             assumed=(*told.assumed, *self._assumed()),
@@ -298,6 +302,11 @@ class RopeTask:
             details=details_of(self.peaks),
             record=self.record,
         )
+
+    def _sagging(self, scene: Scene, told: Told, orders: Integer) -> str:
+        """Say where the parabola of sag is off by more than the peaks."""
+        relative = told.measured_std / np.asarray(self.peaks.frequency)
+        return sag_note(scene, orders, np.hypot(relative, self.how.model_std))
 
     def _weighs_guess(self) -> bool:
         """Whether the guess of the tension took part in the choice of orders."""
