@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base import check
-from ..base.array import Real
 from ..base.unit import place
 from ..curves.curves import Curves, named_curves
 from ..curves.peaks import Peaks
@@ -20,12 +19,13 @@ from ..parametric.floquet import Floquet
 from ..parametric.stability import StabilityMap
 from ..signal.ringdown import RingDown
 from ..signal.spectrum import Spectrum
-from .figure import BLUE, RED, amplitudes, below, colour, light_grid, plots
+from .figure import BLUE, RED, amplitudes, below, colour, light_grid, plots, unbroken, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LABELS = 32  # Height of the names of tongues [pt].
+APART = 0.02  # So much of the width they have at least.
 
 
 @plots(Curves)
@@ -37,7 +37,7 @@ def plot_curves(curves: Curves, ax: Axes, *, phase: bool = False) -> None:
         if curve.any():
             ax.semilogy(curves.frequency, np.abs(curve), label=name)
         if under is not None and curve.any():
-            under.plot(*_unbroken(curves.frequency, np.degrees(np.angle(curve))))
+            under.plot(*unbroken(curves.frequency, np.degrees(np.angle(curve))))
     ax.set_title(f"frequency response, driven in {', '.join(map(place, curves.drive))}")
     amplitudes(ax, curves.quantity)
     if under is not None:
@@ -46,12 +46,6 @@ def plot_curves(curves: Curves, ax: Axes, *, phase: bool = False) -> None:
         light_grid(under)
         under.set(xlabel="frequency [Hz]", ylabel="phase [degrees]", ylim=(-190.0, 190.0))
         under.set_yticks([-180, -90, 0, 90, 180])
-
-
-def _unbroken(frequency: Real, phase: Real) -> tuple[Real, Real]:
-    """Part a phase where it goes around, so that no line crosses the figure."""
-    around = np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1
-    return np.insert(frequency, around, np.nan), np.insert(phase, around, np.nan)
 
 
 @plots(Branches)
@@ -82,6 +76,7 @@ def plot_family_modes(found: FamilyModes, ax: Axes) -> None:
     for k, frequency in enumerate(found.frequency.T, start=1):
         ax.plot(frequency, ".-", label=k)
     ax.set(xlabel="row", ylabel="frequency [Hz]")
+    ax.xaxis.get_major_locator().set_params(integer=True)
     if ax.lines:
         ax.legend(title="mode", fontsize="small")
     light_grid(ax)
@@ -114,7 +109,7 @@ def plot_history(history: History, ax: Axes) -> None:
     """Plot the responses over time."""
     for name, value in zip(history.labels, history.value):
         ax.plot(history.time, value, linewidth=1.0, label=name)
-    ax.set(xlabel="time [s]", ylabel=history.quantity, title="motion over time")
+    ax.set(xlabel="time [s]", ylabel=with_unit(ax, history.quantity), title="motion over time")
     light_grid(ax)
     ax.legend(fontsize="small")
 
@@ -159,14 +154,17 @@ def plot_stability(stability: StabilityMap, ax: Axes) -> None:
     if shown.count():
         colours = ax.pcolormesh(f, a, shown, shading="nearest", cmap="Reds", vmin=0.0)
         ax.figure.colorbar(colours, ax=ax, label="growth [1/s]")
-    for tongue in stability.tongues:
+    named = -np.inf
+    for tongue in sorted(stability.tongues, key=lambda one: one.frequency):
         if tongue.order == 1:
             side = tongue.spread * a[-1]
             wedge = tongue.frequency + np.array([-side, 0.0, side])
             ax.plot(wedge, [a[-1], 0.0, a[-1]], color="0.4", linewidth=0.6, linestyle="--")
+            # no name stands on that of the tongue before
+            named = max(tongue.frequency, named + APART * (f[-1] - f[0]))
             ax.annotate(
                 tongue.label,
-                (tongue.frequency, 1.0),
+                (named, 1.0),
                 xycoords=("data", "axes fraction"),
                 textcoords="offset points",
                 xytext=(0, 3),

@@ -12,12 +12,13 @@ from ..base.errors import SceneError
 from ..experiment.compare.compare import Comparison
 from ..experiment.identify.fit import Fit
 from ..experiment.identify.fits import Fits
+from ..experiment.identify.report import shown
 from ..experiment.identify.response_fit import ResponseFit
 from ..experiment.plan.wire_shifts import WireShifts
 from ..experiment.track.track import Track
 from ..scene.bench.static_test import StaticTest
 from ..scene.path import unit_of
-from .figure import BLUE, GREEN, ORANGE, RED, colour, light_grid, plots
+from .figure import BLUE, GREEN, ORANGE, RED, colour, light_grid, plots, unbroken, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,13 +69,13 @@ def _amplitude(comparison: Comparison, ax: Axes) -> None:
     _both(comparison, ax, np.abs)
     ax.set_yscale("log")
     _mark_peaks(comparison, ax)
-    ax.set(ylabel="amplitude", title="measured and calculated response")
+    ax.set(ylabel=with_unit(ax, "amplitude"), title="measured and calculated response")
     ax.legend(fontsize="small")
 
 
 def _phase(comparison: Comparison, ax: Axes) -> None:
     """Plot phases."""
-    _both(comparison, ax, lambda value: np.degrees(np.angle(value)))
+    _both(comparison, ax, lambda value: np.degrees(np.angle(value)), unbroken)
     ax.set(ylabel="phase [deg]", title="measured and calculated response", yticks=PHASES)
     ax.legend(fontsize="small")
 
@@ -108,7 +109,12 @@ def _mac(comparison: Comparison, ax: Axes) -> None:
     ax.figure.colorbar(colours, ax=ax, label="MAC [1], pairs of peaks framed")
 
 
-def _both(comparison: Comparison, ax: Axes, of: Callable[[Any], Any]) -> None:
+def _both(
+    comparison: Comparison,
+    ax: Axes,
+    of: Callable[[Any], Any],
+    line: Callable[[Any, Any], Any] = lambda f, value: (f, value),
+) -> None:
     """Plot measured dots and calculated lines, a colour for each response."""
     f = comparison.frequency
     assert f is not None
@@ -118,7 +124,7 @@ def _both(comparison: Comparison, ax: Axes, of: Callable[[Any], Any]) -> None:
     for k, (name, measured, calculated) in enumerate(pairs):
         shade = colour(k)
         ax.plot(f, of(measured), ".", markersize=3, color=shade, label=f"measured {name}")
-        ax.plot(f, of(calculated), color=shade, label="" if k else "lines: calculated")
+        ax.plot(*line(f, of(calculated)), color=shade, label="" if k else "lines: calculated")
     ax.set_xlabel("frequency [Hz]")
     ax.grid(True, which="both", color="0.92")
 
@@ -219,7 +225,8 @@ def plot_fits(fits: Fits, ax: Axes, unknown: str | None) -> None:
     std = fits.std[:, at]
     error = np.where(np.isfinite(std), std, 0.0)
     ax.errorbar(np.arange(len(fits)), fits.value[:, at], yerr=error, fmt="o", capsize=3)
-    ax.set(xlabel="rope", ylabel=path)
+    ax.set(xlabel="rope", ylabel=f"{path} [{unit_of(path) or '1'}]")
+    ax.xaxis.get_major_locator().set_params(integer=True)
     light_grid(ax)
 
 
@@ -250,7 +257,7 @@ def plot_response_fit(fit: ResponseFit, ax: Axes) -> None:
     for name, measured, calculated in zip(fit.labels, fit.measured, fit.calculated):
         (line,) = ax.semilogy(fit.frequency, np.abs(calculated), label=name)
         ax.semilogy(fit.frequency, np.abs(measured), ".", color=line.get_color(), markersize=3)
-    ax.set(xlabel="frequency [Hz]", ylabel=f"amplitude of the {fit.quantity}")
+    ax.set(xlabel="frequency [Hz]", ylabel=with_unit(ax, f"amplitude of the {fit.quantity}"))
     ax.set_title(_found(fit))
     ax.legend(title="line calculated, dots measured", fontsize="small")
     light_grid(ax)
@@ -258,7 +265,9 @@ def plot_response_fit(fit: ResponseFit, ax: Axes) -> None:
 
 def _found(fit: Fit | ResponseFit) -> str:
     """Return what was found in a few digits."""
-    return "identified: " + ", ".join(f"{path} {value:.5g}" for path, value in fit.value.items())
+    if np.isnan(fit.value).all():
+        return "refused: the notes say why"
+    return "identified: " + ", ".join(f"{p} {shown(v, unit_of(p))}" for p, v in fit.value.items())
 
 
 @plots(StaticTest)

@@ -6,9 +6,13 @@ from collections.abc import Callable
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..base import check
+from ..base.array import Real
 from ..base.drawing import draws
 from ..base.errors import SceneError
+from ..base.table import Key
 from ..base.unit import NAME, UNIT
 
 if TYPE_CHECKING:
@@ -79,10 +83,22 @@ def along_the_rope(ax: Axes, coordinate: str) -> None:
 
 def amplitudes(ax: Axes, quantity: str) -> None:
     """Name the axes of logarithmic amplitudes over frequency, and what is drawn into them."""
-    ax.set(xlabel="frequency [Hz]", ylabel=f"{quantity}, amplitude")
+    ax.set(xlabel="frequency [Hz]", ylabel=with_unit(ax, f"{quantity}, amplitude"))
     ax.grid(True, which="both", color="0.92")
     if ax.lines:
         ax.legend(fontsize="small")
+
+
+def with_unit(ax: Axes, words: str) -> str:
+    """Return the name of an axis with the unit of what is drawn, where all has the same one."""
+    units = {Key.of(name).unit for name in ax.get_legend_handles_labels()[1]} - {""}
+    return f"{words} [{units.pop()}]" if len(units) == 1 else words
+
+
+def unbroken(frequency: Real, phase: Real) -> tuple[Real, Real]:
+    """Part a phase where it goes around [degrees], so that no line crosses the figure."""
+    around = np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1
+    return np.insert(frequency, around, np.nan), np.insert(phase, around, np.nan)
 
 
 def below(ax: Axes) -> Axes:

@@ -9,7 +9,7 @@ import numpy as np
 from ..base.unit import label
 from ..curves.record.record import Record
 from ..curves.record.spectrum import RecordSpectrum, segment_of
-from .figure import light_grid, plots
+from .figure import light_grid, plots, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +24,7 @@ def plot_record(record: Record, ax: Axes) -> None:
     for k, (name, row) in enumerate(zip(record.labels, record.value)):
         color, more = (None, "") if k in record.used else ("0.7", ", not used")
         ax.plot(record.time, row, linewidth=0.6, label=name + more, color=color)
-    ax.set(xlabel="time [s]", ylabel=record.quantity, title="record")
+    ax.set(xlabel="time [s]", ylabel=with_unit(ax, record.quantity), title="record")
     light_grid(ax)
     ax.legend(fontsize="small")
 
@@ -35,7 +35,7 @@ def plot_record_spectrum(spectrum: RecordSpectrum, ax: Axes) -> None:
     for name, psd in zip(spectrum.labels, spectrum.psd):
         if psd[1:].any():
             ax.semilogy(spectrum.frequency[1:], psd[1:], linewidth=0.8, label=name)
-    ax.set(xlabel="frequency [Hz]", ylabel="power spectral density")
+    ax.set(xlabel="frequency [Hz]", ylabel=with_unit(ax, "power spectral density"))
     ax.set_title(f"{spectrum.averages:g} averages, window {spectrum.window}")
     ax.grid(True, which="both", color="0.92")
     if ax.lines:

@@ -28,7 +28,7 @@ def answers(model):
     frf = model.frf(np.linspace(1, 200, 400), drive=("z", 0.3), response=[("z", 0.5)])
     return {
         "modes": (model.modes(3), "position along the rope [m]", "transverse displacement [m]"),
-        "frf": (frf, "frequency [Hz]", "receptance, amplitude"),
+        "frf": (frf, "frequency [Hz]", "receptance, amplitude [m/N]"),
         "static": (
             model.static({("z", 0.5): 1.0}),
             "position along the rope [m]",
@@ -46,10 +46,10 @@ def answers(model):
             "largest change of frequency without the effect [Hz]",
             "",
         ),
-        "history": (HISTORY, "time [s]", "displacement"),
-        "spectrum": (HISTORY.spectrum(), "frequency [Hz]", "displacement, amplitude"),
+        "history": (HISTORY, "time [s]", "displacement [m]"),
+        "spectrum": (HISTORY.spectrum(), "frequency [Hz]", "displacement, amplitude [m]"),
         "ring-down": (HISTORY.ring_down(since=0.0), "frequency [Hz]", "damping ratio [%]"),
-        "measured": (HISTORY.frf(), "frequency [Hz]", "receptance, amplitude"),
+        "measured": (HISTORY.frf(), "frequency [Hz]", "receptance, amplitude [m/N]"),
         "resonances": (frf.peaks()[0], "frequency [Hz]", "amplitude of z at 0.500 m [m/N]"),
     }
 
@@ -117,7 +117,10 @@ def test_phases_stand_below_and_no_line_crosses_where_they_go_around():
     scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ViscousDamping(1.0))
     frf = scene.compile().frf(np.linspace(1.0, 100.0, 500), drive=("z", 0.3), response=("z", 0.8))
     upper, lower = frf.plot(phase=True).figure.axes
-    assert (upper.get_ylabel(), lower.get_ylabel()) == ("receptance, amplitude", "phase [degrees]")
+    assert (upper.get_ylabel(), lower.get_ylabel()) == (
+        "receptance, amplitude [m/N]",
+        "phase [degrees]",
+    )
     (line,) = lower.lines
     steps = np.abs(np.diff(line.get_ydata()))
     around = np.abs(np.diff(np.degrees(np.angle(frf.value[0])))) > 180.0
@@ -142,3 +145,24 @@ def test_ends_do_not_hide_what_a_loss_changes_between_them():
 def test_colours_are_those_that_the_colour_blind_tell_apart(model):
     frf = model.frf([1.0, 2.0], drive=("z", 0.5), response=[("z", 0.3)] * 2)
     assert [line.get_color() for line in frf.plot().lines] == list(PALETTE[:2])
+
+
+def test_phases_of_a_comparison_cross_no_figure():
+    scene = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0, damping=rd.ViscousDamping(1.0))
+    point = {"drive": ("z", 0.3), "response": ("z", 0.8)}
+    frf = scene.compile().frf(np.linspace(1.0, 100.0, 500), **point)
+    measured = rd.Measured(frf.frequency, frf.value, **point)
+    ax = rd.compare(scene.compile(), measured).plot(of="phase")
+    (line,) = [one for one in ax.lines if one.get_linestyle() == "-"]
+    steps = np.abs(np.diff(line.get_ydata()))
+    assert np.nanmax(steps) <= 180.0 < np.ptp(np.degrees(np.angle(frf.value)))
+
+
+def test_names_of_tongues_stand_apart():
+    scene = rd.Scene(
+        rd.Rope(1.0, 0.1, bending_stiffness=2.0), tension=1000.0, ends=("pinned", "clamped")
+    )
+    ax = scene.compile().stability_map(np.linspace(80.0, 700.0, 50), [0.0, 300.0]).plot()
+    at = np.sort([text.xy[0] for text in ax.texts])
+    assert len(at) > 3
+    assert np.diff(at).min() >= 0.0199 * 620.0

@@ -12,7 +12,8 @@ from ropedyn.cli.command import main, parser
 ROOT = Path(__file__).parent.parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs/guide.md").read_text(encoding="utf-8")
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+TUTORIALS = sorted((ROOT / "docs/tutorials").glob("*.md"))
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *TUTORIALS]
 
 
 def blocks(text, language):
@@ -101,11 +102,34 @@ def test_blocks_of_other_pages_run(name, tmp_path):
     assert run((ROOT / f"docs/{name}.md").read_text(encoding="utf-8"), tmp_path)
 
 
+SHOWN = r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```)?"
+
+
+@pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
+def test_tutorials_print_what_they_show(path, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("tests").symlink_to(ROOT / "tests")
+    bound = {}
+    for block, shown in re.findall(SHOWN, path.read_text(encoding="utf-8"), flags=re.M | re.S):
+        exec(compile(block, path.name, "exec"), bound)
+        printed = capsys.readouterr().out
+        assert printed == ("" if shown.startswith("ropedyn ") else shown)
+
+
+def test_no_page_has_python_that_nothing_runs():
+    pages = [path for path in (ROOT / "docs").rglob("*.md") if "generated" not in path.parts]
+    having = {path.stem for path in pages if blocks(path.read_text(encoding="utf-8"), "python")}
+    ran = {"guide", "cannot_tell", "index", *(path.stem for path in TUTORIALS)}
+    assert having <= ran
+
+
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
 def test_links_lead_to_files(path):
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
         # notebooks are pages of the gallery on the site
-        at = path.parent / re.sub(r"^gallery/(\w+\.ipynb)", r"../notebooks/\1", target)
+        at = path.parent / re.sub(
+            r"^((?:\.\./)*)gallery/(\w+\.ipynb)", r"\1../notebooks/\2", target
+        )
         assert at.exists(), target
 
 

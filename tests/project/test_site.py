@@ -35,7 +35,8 @@ def test_every_page_of_the_reference_is_that_of_a_folder():
 def test_every_notebook_stands_in_the_gallery():
     pages = (ROOT / "docs/gallery/index.md").read_text()
     notebooks = [path.stem for path in (ROOT / "notebooks").glob("*.ipynb")]
-    assert [name for name in notebooks if f"({name}.ipynb)" not in pages] == []
+    assert [name for name in notebooks if f"[![]({name}.png)]({name}.ipynb)" not in pages] == []
+    assert [name for name in notebooks if not (ROOT / f"docs/gallery/{name}.png").exists()] == []
 
 
 def test_page_of_scene_files_is_that_of_the_declarations():
