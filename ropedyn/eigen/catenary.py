@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,38 +17,51 @@ from ..scene.parts.part import places, standing, stretches
 from ..scene.parts.stretch import ropes
 from ..scene.scene import Scene
 from ..scene.stations import nearest, stations_at
-from .fewest import solve_components
 from .modes import OnCatenary
-from .spectrum import in_hertz, merged
+from .spectrum import in_hertz, spectrum
 from .vectors import later_within, within
 
-IN_PLANE = {"x", "z", "beta"}
-"""What moves together with z where the error of the parabola is known."""
+ALONE = {"z": {"x", "z", "beta"}, "y": {"y", "gamma"}}
+"""What moves together in each plane where the error of the parabola is known."""
 MORE = 12
 """Modes of the straight rope beyond those asked, of which the curved one's are made."""
 HALF_WAVE = 10
 """Points on the shortest half wave, where shapes are looked at."""
 RESTS = 1e-10
 """Of the span: so far from its end a rope that rests may end."""
-STRAIGHT = ("sag", "stretch", "lay", "twist", "polar inertia", "second plane")
-"""Effects that the straight rope in one plane does not have."""
+STRAIGHT = ("sag", "stretch", "lay", "twist", "polar inertia")
+"""Effects that the straight rope does not have."""
 
 
 def on_catenary(model: Compiled, which: Index, frequency: Real) -> OnCatenary:
     """Compare modes of a parabola with as many of the rope on its true curve."""
     error, true = np.zeros(len(frequency)), frequency.copy()
-    across = [k for k, component in enumerate(model.components) if "z" in component]
-    if not model.scene.sags or not across:
-        return OnCatenary(error, true)
-    mine = np.flatnonzero(which == across[0])
-    error[mine], true[mine] = np.inf, np.nan
-    if set(model.components[across[0]]) <= IN_PLANE and _is_held_along(model.scene):
-        with suppress(SceneError, SolveError, MemoryError):
-            parabola, curve, rest = _both(model.scene, len(mine))
-            rest += np.abs(parabola - frequency[mine])
-            error[mine] = np.abs(curve - parabola) + rest
-            true[mine] = frequency[mine] + curve - parabola
+    for k, component in enumerate(model.components if model.scene.sags else ()):
+        mine = which == k
+        error[mine], true[mine] = _compared(model.scene, component, frequency[mine])
     return OnCatenary(error, true)
+
+
+def _compared(
+    scene: Scene, component: tuple[str, ...], frequency: Real
+) -> tuple[Real | float, Real | float]:
+    """Return the errors of a component's modes and their frequencies on the curve [Hz]."""
+    own = next((c for c in ALONE if c in component), None)
+    known = own is None or ({*component} <= ALONE[own] and (own == "y" or _is_held_along(scene)))
+    if not known:
+        return math.inf, math.nan
+    try:
+        rest = _Loaded.of(scene).rest()
+        if own is None:
+            return rest.turned * frequency, frequency
+        straight = _Straight.of(scene, len(frequency) + MORE, own)
+        both = (_in_plane if own == "z" else _aside)(scene, straight, rest)
+        found = both.solved(len(frequency), rest.turned * straight.bent)
+    except (SceneError, SolveError, MemoryError):
+        return math.inf, math.nan
+    parabola, curve, left = found
+    error = np.abs(curve - parabola) + left + np.abs(parabola - frequency)
+    return error, frequency + curve - parabola
 
 
 def _is_held_along(scene: Described) -> bool:
@@ -59,33 +71,53 @@ def _is_held_along(scene: Described) -> bool:
     return held and not any("x" in {*term.held, *term.stiffness} for term in between)
 
 
-def _both(scene: Scene, number: int) -> tuple[Real, Real, Real]:
-    """Return frequencies of the parabola and of the true curve, made of the same shapes [Hz]."""
-    # and what those of the curve leave: with half of the shapes that are more than asked, and by
-    # bending, which is that of the straight rope
-    from scipy.linalg import eigh
+class _Both(NamedTuple):
+    """Stiffness and mass of the parabola and of the curve, for the same shapes."""
 
+    parabola: tuple[Real, Real]
+    curve: tuple[Real, Real]
+
+    def solved(self, number: int, bent: Real) -> tuple[Real, Real, Real]:
+        """Return frequencies of both, and what those of the curve leave [Hz]."""
+        # that is what they change with half of the shapes that are more than asked, and a share
+        # by bending, which is that of the straight rope
+        from scipy.linalg import eigh
+
+        parabola = in_hertz(eigh(*self.parabola, eigvals_only=True)[:number])
+        curve = in_hertz(eigh(*self.curve, eigvals_only=True)[:number])
+        many = len(self.parabola[0])
+        few = np.flatnonzero(np.arange(len(self.curve[0])) % many < (number + many) // 2)
+        some = (matrix[np.ix_(few, few)] for matrix in self.curve)
+        rough = in_hertz(eigh(*some, eigvals_only=True)[:number])
+        return parabola, curve, np.abs(rough - curve) + bent[:number] * curve
+
+
+def _in_plane(scene: Scene, straight: _Straight, rest: _Rest) -> _Both:
+    """In the plane of the curve: the straight rope's tension and mass give way to its own."""
     gravity, rope, tension = scene.gravity, scene.rope, scene.mean_tension
     assert gravity is not None
-    straight = _Straight.of(scene, number + MORE)
-    rest = _Loaded.of(scene).rest()
     shapes = straight.on(rest)
     many = len(straight.eigenvalue)
     slope, across = shapes.slope[:many], shapes.across[:many]
     pulled = gravity.curvature(rope, tension) * shapes.integral(across)
     give = gravity.lengthening(rope, tension) * shapes.integral(1 / rest.stiffness[:, None])
-    stiffness, mass = np.diag(straight.eigenvalue * straight.mass), np.diag(straight.mass)
-    parabola = eigh(stiffness + np.outer(pulled, pulled) / give, mass, eigvals_only=True)
-    # on the curve the straight rope's tension and mass give way to its own; the rest stays
+    stiffness, mass = straight.matrices
     stiff, heavy = shapes.energies(rest)
     stiff[:many, :many] += stiffness - tension * shapes.product(slope, slope)
     heavy[:many, :many] += mass - shapes.product(across, across, rest.density[:, None])
-    curve = eigh(stiff, heavy, eigvals_only=True)[:number]
-    few = np.arange(2 * many) % many < (number + many) // 2
-    rough = eigh(stiff[np.ix_(few, few)], heavy[np.ix_(few, few)], eigvals_only=True)
-    true = in_hertz(curve)
-    left = np.abs(in_hertz(rough[:number]) - true) + rest.turned * straight.bent[:number] * true
-    return in_hertz(parabola[:number]), true, left
+    return _Both((stiffness + np.outer(pulled, pulled) / give, mass), (stiff, heavy))
+
+
+def _aside(scene: Scene, straight: _Straight, rest: _Rest) -> _Both:
+    """Across that plane: the tension and the length of the curve in place of the chord's."""
+    shapes = straight.on(rest)
+    many = len(straight.eigenvalue)
+    slope, across = shapes.slope[:many], shapes.across[:many]
+    more = rest.at(shapes.x)[0] / rest.longer - scene.mean_tension
+    stiffness, mass = straight.matrices
+    longer = rest.density[:, None] * (rest.longer - 1)
+    stiff = stiffness + shapes.product(slope, slope, more)
+    return _Both(straight.matrices, (stiff, mass + shapes.product(across, across, longer)))
 
 
 class _Loaded(NamedTuple):
@@ -183,25 +215,30 @@ class _Straight(NamedTuple):
     spline: list[Any]
 
     @classmethod
-    def of(cls, scene: Scene, number: int) -> _Straight:
+    def of(cls, scene: Scene, number: int, own: str) -> _Straight:
         from scipy.interpolate import CubicSpline
 
         left = {*STRAIGHT} | {damping.kind for damping in scene.dampings}
         model = compile_scene(scene.without(*(left & {*scene.effects})))
-        found = solve_components(model, "sweep", number, math.inf, shaped=False)
-        eigenvalue, _, order = merged(found, number)
+        k = next(k for k, component in enumerate(model.components) if own in component)
+        eigenvalue, _ = spectrum(model, model.components[k], number)
         longest = np.diff(model.x).max() / model.x[-1]
         points = max(8, math.ceil(HALF_WAVE * number * longest))
-        which = np.zeros(len(order), dtype=np.intp)
+        which = np.full(len(eigenvalue), k)
         vectors = later_within(model, which, math.inf, eigenvalue, points)
-        z = vectors.shape[:, :, model.coordinates.index("z")]
+        shape = vectors.shape[:, :, model.coordinates.index(own)]
         x = within(model.x, points)
         first = range(0, len(x) - 1, points)
         cut = [slice(k, k + points + 1) for k in first]
-        spline = [CubicSpline(x[one], z[:, one], axis=1) for one in cut]
-        bent = vectors.energy.get("bending", np.zeros(len(order)))
+        spline = [CubicSpline(x[one], shape[:, one], axis=1) for one in cut]
+        bent = vectors.energy.get("bending", np.zeros(len(which)))
         across = np.stack([x[one] for one in cut])
         return cls(eigenvalue, vectors.modal_mass, bent, across, spline)
+
+    @property
+    def matrices(self) -> tuple[Real, Real]:
+        """Stiffness and mass for these shapes."""
+        return np.diag(self.eigenvalue * self.mass), np.diag(self.mass)
 
     def on(self, rest: _Rest) -> _Shapes:
         """Return these shapes on a curve, and as many motions along it."""

@@ -81,9 +81,9 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     model_error : ndarray, shape (k,)
         Absolute error of the frequency that the parabola of a rope that sags causes [Hz]: the
         distance to the mode of the same number on the curve that the rope, and the masses on it,
-        really rest on, by Ritz's method with the shapes of the straight rope. 0 without sag,
-        infinite where it is not known: beside lay, and where ends do not hold x or something
-        between them does.
+        really rest on, by Ritz's method with the shapes of the straight rope; of twist the square
+        of the largest slope. 0 without sag, infinite where it is not known: in the plane of a laid
+        rope, and where ends do not hold x or something between them does.
     catenary : ndarray, shape (k,)
         The frequency on that curve [Hz]; NaN where it is not known.
     certified : bool

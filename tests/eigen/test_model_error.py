@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import scipy.optimize
-from catenary_elements import elements, of_catenary
+from catenary_elements import aside, elements, of_catenary
 from random_scene import log_uniform
 
 import ropedyn as rd
@@ -81,6 +81,20 @@ def test_error_of_the_parabola_is_that_against_the_catenary(seed, claim):
     modes, exact = scene.compile().modes(NUMBER), of_catenary(scene, number=NUMBER)
     check(modes, exact)
     claim((np.abs(modes.catenary - exact) / modes.model_error).max())
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_out_of_its_plane_the_curve_is_a_longer_string(seed):
+    rng = np.random.default_rng((2033, seed))
+    scene = hanging(rng, steep=1.2 * (seed % 2)).replace(planes="both")
+    modes = scene.compile().modes(2 * NUMBER)
+    exact = of_catenary(scene, number=NUMBER, solve=aside)
+    own = np.flatnonzero(modes.plane == "y")[: NUMBER - 2]
+    exact = exact[: len(own)]
+    true = np.abs(modes.frequency[own] - exact)
+    assert len(own) > 1
+    assert (true <= modes.model_error[own] + 1e-9 * exact).all()
+    assert (modes.model_error[own] <= 1.1 * true + 1e-6 * exact).all()
 
 
 @pytest.mark.parametrize(("sag", "off"), [(0.06, 0.018), (0.12, 0.072)])

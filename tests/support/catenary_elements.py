@@ -46,7 +46,25 @@ def elements(edges, rest, mass=(), *, number, degree=12):
     return np.sqrt(value) / (2 * math.pi)
 
 
-def of_catenary(scene, *, number, count=4):
+def aside(edges, rest, *, number, degree=12):
+    """Frequencies [Hz] of the same string out of that plane, where the tension alone pulls back."""
+    at, weight = legendre.leggauss(degree + 6)
+    value, rate = integrated(degree, at)
+    nodes = (len(edges) - 1) * degree + 1
+    stiff, heavy = np.zeros((2, nodes, nodes))
+    for k in range(len(edges) - 1):
+        half = (edges[k + 1] - edges[k]) / 2
+        tension, _, density, _ = rest(edges[k] + half * (1 + at))
+        own = np.array([k * degree, (k + 1) * degree, *(k * degree + np.arange(1, degree))])
+        stiff[np.ix_(own, own)] += (rate * tension * weight) @ rate.T / half
+        heavy[np.ix_(own, own)] += half * (value * density * weight) @ value.T
+    free = np.setdiff1d(np.arange(nodes), [0, nodes - 1])
+    pair = stiff[np.ix_(free, free)], heavy[np.ix_(free, free)]
+    value = scipy.linalg.eigh(*pair, eigvals_only=True, subset_by_index=[0, number - 1])
+    return np.sqrt(value) / (2 * math.pi)
+
+
+def of_catenary(scene, *, number, count=4, solve=elements):
     """Frequencies on the catenary between the ends, in closed form."""
     rope, gravity = scene.rope, scene.gravity
     turned, w = gravity.inclination, rope.linear_density * gravity.g
@@ -60,4 +78,4 @@ def of_catenary(scene, *, number, count=4):
         return np.hypot(level, w * s), np.arctan(w * s / level), rope.linear_density, axial
 
     axial = rope.axial_stiffness
-    return elements(np.linspace(start, stop, count + 1), rest, number=number)
+    return solve(np.linspace(start, stop, count + 1), rest, number=number)
