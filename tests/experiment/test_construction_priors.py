@@ -6,7 +6,6 @@ from constructed_ropes import UNKNOWN, constructed, told
 
 import ropedyn as rd
 
-
 SAID = pytest.mark.filterwarnings("ignore::ropedyn.IdentifyWarning")
 
 
