@@ -477,10 +477,8 @@ class Model(Compiled):
         ----------
         frequency, amplitude : array_like, shape (f,) and (a,)
             Of the tension [Hz; N about the scene's mean], increasing.
-        modes : int, optional
-            As in `floquet`.
-        progress : None, True or callable
-            True: a line on stderr; a callable takes the fraction that is done.
+        modes, progress : optional
+            As in `floquet` and `transient`.
 
         Returns
         -------
@@ -553,8 +551,7 @@ class Model(Compiled):
             Displacement, velocity or acceleration, per amplitude.
         tolerance : float, optional
             By which part of the motion more harmonics change it, 1e-5; 1e-3 where friction slips.
-        progress : None, True or callable
-            True: a line on stderr; a callable takes the fraction that is done.
+        progress : None, True or callable, as in `transient`
 
         Returns
         -------

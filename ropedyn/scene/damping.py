@@ -275,8 +275,8 @@ class WireFriction(Description):
 
     >>> import ropedyn as rd
     >>> made = rd.Construction.standard("1x7", diameter=12e-3)
-    >>> made.section().wire_friction(0.3).stiffness
-    (126.57...,)
+    >>> round(made.section().wire_friction(0.3).stiffness[0], 3)
+    111.461
     """
 
     kind: ClassVar[str] = "wire friction"

@@ -84,7 +84,7 @@ DESCRIBED = {
     rd.LossFactor: {"eta": (0.02, "", "percent")},
     rd.ViscousDamping: {"coefficient": (0.3, "N s/m^2", "Pa s")},
     rd.ModalDamping: {"ratio": (0.02, "", "percent")},
-    rd.WireFriction: {"stiffness": (3.0, "N m^2", "N cm^2"), "slip": (1e-4, "1/(m N)", "1/(m kN)")},
+    rd.WireFriction: {},
     rd.Tension: {
         "mean": (300.0, "N", "kgf"),
         "amplitude": (30.0, "N", "lbf"),
@@ -114,6 +114,7 @@ DESCRIBED = {
 OTHERS = {
     rd.Stop: {"side": 1},
     rd.NodeForce: {"law": lambda t, u, v: 0.0},
+    rd.WireFriction: {"stiffness": [3.0], "slip": [1e-4]},
 }
 """Arguments without a unit that must be given."""
 ARGUMENTS = [
@@ -436,7 +437,8 @@ EVERYTHING = rd.Scene(
         ),
         "clamped",
     ),
-    damping=[described(kind) for kind in DESCRIBED if kind in damping.KINDS],
+    # friction between wires, which has no number of its own, stands beside no ratio
+    damping=[described(kind) for kind in damping.KINDS if kind is not rd.WireFriction],
     parts=[described(kind) for kind in DESCRIBED if kind in part.KINDS],
 )
 

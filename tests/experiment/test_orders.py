@@ -87,6 +87,22 @@ def test_a_prior_is_log_normal_by_its_moments():
     assert weight @ (tension - 8e4) ** 2 == pytest.approx(4e4**2, rel=1e-10)
 
 
+def test_what_a_prior_says_of_numbers_together_is_said_in_the_search():
+    std = np.array([4e4, 300.0])
+    known = {"tension": (8e4, 4e4), "bending_stiffness": (2e3, 300.0)}
+    prior = rd.Prior(known, covariance=[[1, 0.8], [0.8, 1]] * np.outer(std, std))
+    standardised = Standardised.of(SCENE, BOTH, prior, any_ends=True)
+    S = standardised.mixing @ standardised.mixing.T
+    of_prior = prior.law.spread @ prior.law.spread.T
+    np.testing.assert_allclose(S[:2, :2], of_prior, rtol=1e-12)
+    # of springs c sqrt(T B) half of it
+    np.testing.assert_allclose(S[2:, :2], [of_prior.sum(axis=0) / 2] * 2, rtol=1e-12)
+    weight = np.random.default_rng(6).standard_normal((200_000, 4))
+    rows = standardised.value(weight)
+    # standard errors of 2e5 draws, 5 of them
+    np.testing.assert_allclose(np.corrcoef(rows[:, :2].T)[0, 1], 0.8, atol=5 * 0.6 / 447)
+
+
 # --- chances ----------------------------------------------------------------------------------
 
 

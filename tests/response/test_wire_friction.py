@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 import ropedyn as rd
 from ropedyn.response.friction import cells, solve
-from ropedyn.response.friction.balance import Balance, Layers
+from ropedyn.response.friction.balance import Layers, SlipBalance
 from ropedyn.response.friction.loops import harmonics, loops
 from ropedyn.scene.construction.friction import Grip
 
@@ -231,16 +231,16 @@ def test_stepped_sine_is_the_same_and_ends_may_move():
 def test_other_steady_motion_is_said():
     # one cell that takes energy: 1 + G g passes 0, and three amplitudes balance the drive
     layers = Layers(np.ones((1, 1)), np.ones((1, 1)))
-    several = Balance(layers, np.array([1.0 + 0j]), np.array([[1.2 + 0.25j]])).found(
+    several = SlipBalance(layers, np.array([1.0 + 0j]), np.array([[1.2 + 0.25j]])).found(
         [], alone=False
     )
     assert several is not None and several.several
-    passive = Balance(layers, np.array([1.0 + 0j]), np.array([[0.3 - 0.1j]]))
+    passive = SlipBalance(layers, np.array([1.0 + 0j]), np.array([[0.3 - 0.1j]]))
     assert not passive.found([], alone=False).several
 
 
 def test_motion_that_is_not_found_is_an_error(monkeypatch):
-    monkeypatch.setattr(Balance, "found", lambda *_, **__: None)
+    monkeypatch.setattr(SlipBalance, "found", lambda *_, **__: None)
     with pytest.raises(rd.SolveError, match=r"frequency 9.0 Hz: no steady motion was found"):
         asked(RUBBING, 9.0, 1.0)
 

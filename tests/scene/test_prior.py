@@ -171,7 +171,7 @@ def test_a_table_has_the_correlations():
             {"covariance": np.outer(STD, STD)},
             "covariance must be positive definite, got one whose correlations have the eigenvalue",
         ),
-        ({"distribution": "flat"}, 'distribution must be one of "normal", "log-normal", got'),
+        ({"distribution": "flat"}, 'distribution must be one of "normal", "log-normal", "laid"'),
         ({"distribution": {"tension": "flat"}}, "distribution['tension'] must be one of"),
         ({"distribution": {"mass": "normal"}}, "key of distribution must be one of"),
         (
@@ -216,3 +216,80 @@ def test_what_cannot_be_asked_is_refused(kind, call, message):
     with pytest.raises(kind) as caught:
         call(CORRELATED)
     assert message in str(caught.value)
+
+
+LAID_KNOWN = {
+    "axial_stiffness": (9e6, 1.5e6),
+    "tension": (3e4, 3e3),
+    "lay_coupling": (-1.2e4, 2.1e3),
+    "torsional_stiffness": (25.0, 5.0),
+}
+LAID = dict.fromkeys(("axial_stiffness", "lay_coupling", "torsional_stiffness"), "laid")
+
+
+def laid():
+    """Return a prior of a laid rope, its tension among the numbers."""
+    std = np.array([std for _, std in LAID_KNOWN.values()])
+    share = np.array(
+        [[1, 0.2, -0.9, 0.8], [0.2, 1, -0.1, 0.1], [-0.9, -0.1, 1, -0.85], [0.8, 0.1, -0.85, 1]]
+    )
+    return rd.Prior(LAID_KNOWN, covariance=share * np.outer(std, std), distribution=LAID)
+
+
+def test_laid_numbers_have_the_moments_that_were_given():
+    prior = laid()
+    rows = prior.draw(np.random.default_rng(3), 400_000)
+    EA, _, D, C = rows.T
+    assert (EA * C > D**2).all() and (D < 0).any()
+    # standard errors as of log-normal numbers, 4 of them
+    np.testing.assert_allclose((rows.mean(axis=0) - prior.mean) / prior.std, 0, atol=4 / 632)
+    np.testing.assert_allclose(np.corrcoef(rows.T), prior.correlation, atol=4 * 2 * 2.3 / 632)
+    np.testing.assert_allclose(rows.std(axis=0) / prior.std, 1, atol=4 * 2 / 632)
+
+
+def test_laid_numbers_have_residuals_slopes_and_a_density():
+    prior = laid()
+    rows = prior.draw(np.random.default_rng(4), 5)
+    z, slope = prior.residual(rows)
+    step = 1e-6 * rows[0]
+    up, down = (prior.residual(rows[0] + way * np.diag(step))[0] for way in (1, -1))
+    # central differences over 1e-6, of residuals of size 1
+    assert np.abs((up - down).T / (2 * step) - slope[0]).max() / np.abs(slope[0]).max() < 1e-8
+    # the density of z times that of z by the numbers
+    size = np.log(np.abs(np.linalg.det(slope)))
+    exact = -(z**2).sum(axis=1) / 2 - 2 * math.log(2 * math.pi) + size
+    assert np.abs(prior.log_density(rows) - exact).max() < 1e-9
+    beyond = rows[:1].copy()
+    beyond[0, 3] = beyond[0, 2] ** 2 / beyond[0, 0] / 2
+    assert prior.log_density(beyond)[0] == -math.inf
+
+
+def test_some_laid_numbers_keep_their_moments_alone():
+    prior = laid()
+    assert prior.marginal(["tension", *LAID]).distribution == {"tension": "log-normal"} | LAID
+    part = prior.marginal(["lay_coupling", "torsional_stiffness"])
+    assert part.distribution == {"lay_coupling": "normal", "torsional_stiffness": "log-normal"}
+    assert part.std.tolist() == prior.std[2:].tolist()
+    assert (prior | {"length": (2.0, 0.1)}).distribution["lay_coupling"] == "laid"
+    np.testing.assert_array_equal(prior.apart.covariance, prior.covariance)
+    assert eval(repr(prior), {"Prior": rd.Prior}) == prior
+    assert pickle.loads(pickle.dumps(prior)) == prior
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"lay_coupling": "laid"}, "together and of nothing else"),
+        (LAID | {"tension": "laid"}, "together and of nothing else"),
+        (LAID | {"tension": "normal"}, 'must be "log-normal" of what stands beside laid numbers'),
+    ],
+)
+def test_laid_numbers_stand_together(words, message):
+    with pytest.raises(rd.SceneError, match=message):
+        rd.Prior(LAID_KNOWN, distribution=words)
+
+
+def test_moments_that_no_laid_rope_has_are_refused():
+    known = LAID_KNOWN | {"torsional_stiffness": (15.0, 5.0)}
+    with pytest.raises(rd.SceneError, match="covariance must be one of which ln EA"):
+        rd.Prior(known, distribution=LAID)

@@ -69,6 +69,8 @@ class Fit(Identified):
         What the peaks say of the ends, and what other ends would give.
     cross_checks : tuple of str
         Tensions by closed formulas of the field, for what they are worth.
+    said_of_prior : tuple of str
+        What the same peaks tell without the prior of what is unknown: orders and intervals.
     assumed : tuple of str
         All that was taken to be known beforehand.
     notes : tuple of str
@@ -127,6 +129,7 @@ class Fit(Identified):
 
     said_of_ends = Read[tuple[str, ...]]("remarks", "What the peaks, or other ends, say of ends.")
     cross_checks = Read[tuple[str, ...]]("remarks", "Tensions by closed formulas of the field.")
+    said_of_prior = Read[tuple[str, ...]]("remarks", "What the peaks tell without the prior.")
 
     @property
     def residual(self) -> Real:

@@ -71,10 +71,11 @@ class SideBySide:
         how = identification.how._replace(orders=self.found.ropes["orders"][i, :k])
         return RopeTask(identification.scene, how, peaks, partial(self._tell, i)).fit()
 
-    def _tell(self, i: int, peaks: Peaks, orders: Any, scene: Any) -> Told:
-        if scene is self.found.identification.scene:
+    def _tell(self, i: int, how: Any, peaks: Peaks, orders: Any, scene: Any) -> Told:
+        found = self.found.identification
+        if scene is found.scene and how.prior is found.how.prior:
             return self.found.told(i)
-        return by_peaks_alone(self.found.identification.how, peaks, orders, scene)
+        return by_peaks_alone(how, peaks, orders, scene)
 
     def errors(self) -> Mapping[int, RopedynError]:
         """Return why ropes have none, by their number."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from functools import partial
 from typing import Any, overload
 
 import numpy as np
@@ -331,9 +330,9 @@ def _many(
     return each_alone(tasks, refused, **workers)
 
 
-def _teller(how: Options) -> Callable[[Peaks, Integer, Scene], Told]:
+def _teller(how: Options) -> Callable[[Options, Peaks, Integer, Scene], Told]:
     """Return what tells the numbers of one rope by its peaks, their orders and a scene."""
-    return partial(by_peaks_alone if how.ends == ENDS[1] else by_posterior, how)
+    return by_peaks_alone if how.ends == ENDS[1] else by_posterior
 
 
 def _response(scene: Scene, measured: Measured, how: Options, *, scale: bool) -> ResponseFit:

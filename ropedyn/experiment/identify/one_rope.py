@@ -16,6 +16,7 @@ from ...base.computed import computed, waited
 from ...base.errors import RopedynError, SceneError
 from ...base.named import Named
 from ...curves.peaks import Peaks
+from ...scene.bench.prior import Prior
 from ...scene.path import value_at, with_values
 from ...scene.scene import Scene
 from ..compare.unit_slips import slip_of_tension, slips_of_peaks
@@ -35,7 +36,7 @@ from .known import LEVELS, METHODS, TOLD, Known, kept_bounds, without_end
 from .notes import sag_note
 from .other_ends import Remarks, other_ends
 from .peak_damping import PeakDamping, beside, damping_of_peaks
-from .report import shown
+from .report import changed_by_prior, shown
 from .told import Told
 
 MOST = 6
@@ -114,7 +115,7 @@ class RopeTask:
     scene: Scene
     how: Options
     peaks: Peaks
-    tell: Callable[[Peaks, Integer, Scene], Told]  # what peaks of given orders tell of a scene
+    tell: Callable[[Options, Peaks, Integer, Scene], Told]  # what peaks of given orders tell
     record: dict[str, Any] | None = None  # what the peaks are of
 
     @computed
@@ -159,7 +160,7 @@ class RopeTask:
 
     def _told(self, orders: Integer) -> Told:
         """Return what peaks tell whose natural frequencies damping has moved."""
-        told = self.tell(self.peaks, orders, self.scene)
+        told = self.tell(self.how, self.peaks, orders, self.scene)
         if not is_moved(self.scene):
             return told
         frequency, used = np.asarray(self.peaks.frequency), orders > 0
@@ -170,7 +171,7 @@ class RopeTask:
             if np.abs(shift - before).max() < SETTLED:
                 return told
             undamped = replace(self.peaks, frequency=frequency * np.exp(-shift))
-            told = self.tell(undamped, orders, self.scene)
+            told = self.tell(self.how, undamped, orders, self.scene)
         left = float(np.abs(shift - before).max())
         note = f"frequencies that damping moves did not settle: they still change by {left:.1g}"
         return replace(told, notes=(*told.notes, note))
@@ -298,7 +299,7 @@ class RopeTask:
             bounds=partial(kept_bounds, decision.known.interval),
             scene=partial(getattr, decision.known, "scene"),
             known=decision.known,
-            remarks=partial(self._remarks, told, orders),
+            remarks=partial(self._remarks, told, orders, decision),
             details=details_of(self.peaks),
             record=self.record,
         )
@@ -340,14 +341,32 @@ class RopeTask:
             "are others, say so by a prior; frequencies in rad/s would be such a slip",
         )
 
-    def _remarks(self, told: Told, orders: Integer) -> Remarks:
+    def _remarks(self, told: Told, orders: Integer, decision: Decision) -> Remarks:
         """Return what costs something to say."""
         ends = told.ends
         if self.how.ends == "given":
-            ends = tuple(
-                other_ends(self.scene, self.how.paths, partial(self.tell, self.peaks, orders))
-            )
-        return Remarks(ends, self._cross_checks(orders), *told.fixity)
+            tell = partial(self.tell, self.how, self.peaks, orders)
+            ends = tuple(other_ends(self.scene, self.how.paths, tell))
+        prior = self._said_of_prior(orders, decision)
+        return Remarks(ends, self._cross_checks(orders), prior, *told.fixity)
+
+    def _said_of_prior(self, orders: Integer, decision: Decision) -> tuple[str, ...]:
+        """Say what the same peaks tell where the prior says nothing of what is unknown."""
+        prior, paths = self.how.prior, self.how.paths
+        known = [path for path in paths if path in prior]
+        if not known:
+            return ()
+        rest: Any = [path for path in prior if path not in paths]
+        rest = prior.marginal(rest) if rest and isinstance(prior, Prior) else {}
+        said = f"without the prior of {' and '.join(known)}: "
+        try:
+            fit = replace(self, how=self.how._replace(prior=rest)).fit()
+        except RopedynError as error:
+            return (f"{said}{error}",)
+        same = (one.probability for one in fit.candidates if (one.orders == orders).all())
+        probability = next(same, 0.0)
+        bounds = decision.known.interval(TOLD, METHODS[0])
+        return (said + changed_by_prior(fit, probability, bounds),)
 
     def _cross_checks(self, orders: Integer) -> tuple[str, ...]:
         """Say what closed formulas give, of one rope alone."""

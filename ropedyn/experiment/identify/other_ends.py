@@ -26,6 +26,7 @@ class Remarks(Frozen):
 
     said_of_ends: tuple[str, ...] = ()
     cross_checks: tuple[str, ...] = ()
+    said_of_prior: tuple[str, ...] = ()
     fixity: Real | None = field(default=None, metadata=axes("fixity"))
     likelihood_of_fixity: Real | None = field(default=None, metadata=axes("end", "fixity"))
 

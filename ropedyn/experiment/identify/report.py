@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.array import Real
 from ...scene.path import unit_of
 from .candidates import Candidate
 
@@ -28,7 +29,7 @@ def report_of(fit: Fit) -> str:
         return "\n".join(["refused", *fit.notes, "", str(fit.peaks())])
     lines = [*_given_ends(fit), *_numbers(fit), *_budget(fit)]
     lines += [f"  ends {one}" for one in fit.said_of_ends if fit.ends == "unknown"]
-    lines += _orders(fit)
+    lines += [*_orders(fit), *(f"  {one}" for one in fit.said_of_prior)]
     lines.append(f"  fit: {_goodness(fit)}; rms residual {100 * fit.rms:.3g} %")
     if fit.cross_checks:
         lines.append(f"  cross-checks: {', '.join(fit.cross_checks)}")
@@ -105,6 +106,22 @@ def _budget(fit: Fit) -> list[str]:
         return []
     said = [f"{CAUSES.get(cause, cause)} {100 * size:.2g} %" for size, cause in parts]
     return [f"  of which  {', '.join(said)}"]
+
+
+def changed_by_prior(without: Fit, probability: float, bounds: Real) -> str:
+    """Say what a fit without a prior tells of the same orders, and how wide its intervals are.
+
+    `bounds` are those of 95 % with the prior.
+    """
+    if without.status == "refused":
+        return "the peaks show no modes"
+    said = f"orders {without.status}, these with p = {_share(probability)}"
+    wide = np.diff(without.interval(0.95))[:, 0] / np.diff(bounds)[: len(without.unknown), 0]
+    each = [
+        f"of {path} {times:.3g} times as wide" if np.isfinite(times) else f"of {path} without end"
+        for path, times in zip(without.unknown, wide.tolist())
+    ]
+    return f"{said}; 95 % {', '.join(each)}"
 
 
 def _orders(fit: Fit) -> list[str]:

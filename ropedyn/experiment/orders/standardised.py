@@ -14,6 +14,7 @@ import numpy as np
 
 from ...base.array import Flags, Real
 from ...base.errors import RopedynError, SceneError
+from ...scene.bench.prior import Prior
 from ...scene.end import end_of
 from ...scene.path import unit_of, value_at
 from ...scene.scene import Scene
@@ -63,10 +64,10 @@ class Standardised:
         unknowns = Unknowns.of(scene, (*unknown, *beside, *ends))
         paths = unknowns.paths
         mean, spread = np.array([_told(unknowns, i, prior) for i in range(len(paths))]).T
-        mixing = np.diag(spread)
+        mixing = _mixing(paths, spread, prior)
         for i in range(len(paths) - len(ends), len(paths)):
             for j in (k for k, path in enumerate(paths) if path in (TENSION, BENDING)):
-                mixing[i, j] = 0.5 * spread[j]
+                mixing[i] += 0.5 * mixing[j]
                 mean[i] += 0.5 * mean[j]
         spring = np.array([path.endswith(".spring.beta") for path in paths])
         stiff = np.array([unit_of(path).startswith("N") for path in paths]) & ~spring
@@ -147,6 +148,18 @@ def _told(unknowns: Unknowns, i: int, prior: Known) -> tuple[float, float]:
         )
     square = math.log1p((std / mean) ** 2)
     return math.log(mean / start) - square / 2, math.sqrt(square)
+
+
+def _mixing(paths: Sequence[str], spread: Real, prior: Known) -> Real:
+    """Return du/dv: what a prior says of numbers together they have together."""
+    mixing = np.diag(spread)
+    if isinstance(prior, Prior) and prior.covariance is not None:
+        at = [i for i, path in enumerate(paths) if path in prior]
+        law = prior.apart.marginal([paths[i] for i in at]).law if at else None
+        if law is not None:
+            size = np.linalg.norm(law.spread, axis=1)
+            mixing[np.ix_(at, at)] = law.spread * (spread[at] / size)[:, None]
+    return mixing
 
 
 def _felt(scene: Scene, path: str) -> bool:

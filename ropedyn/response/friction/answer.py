@@ -60,7 +60,7 @@ class FrictionResponse(FRF):
     ...     found = model.frf([6.0], drive=("z", 3.0), amplitude=force)
     ...     print(found.mean_bending_stiffness.round(), found.mean_loss_factor.round(2))
     [1020.] [0.]
-    [278.] [0.71]
+    [62.] [0.37]
     """
 
     drive_amplitude: float = field(kw_only=True)

@@ -41,7 +41,7 @@ class Layers(NamedTuple):
         return np.asarray(self.stiffness.sum(axis=1))
 
 
-class Found(NamedTuple):
+class SlipMotion(NamedTuple):
     """The motion at one frequency."""
 
     kappa: Complex  # (cells,)
@@ -49,7 +49,7 @@ class Found(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
+class SlipBalance:
     """One frequency."""
 
     layers: Layers
@@ -60,7 +60,7 @@ class Balance:
         """Return the moments that lack, g kappa [N m]."""
         return (self.layers.at(np.abs(kappa)).first - self.layers.whole) * kappa
 
-    def found(self, near: list[Complex], *, alone: bool) -> Found | None:
+    def found(self, near: list[Complex], *, alone: bool) -> SlipMotion | None:
         """Return the motion that is reached from rest, and whether there is another.
 
         Looked for from neighbouring motion and, unless that is enough alone, from wires that all
@@ -69,9 +69,9 @@ class Balance:
         starts = near if alone else [*near, self.driven, self.sliding()]
         reached = [one for one in map(self.solved, starts) if one is not None]
         if reached and all(_is_one(one, reached[0]) for one in reached[1:]):
-            return Found(reached[0], False)
+            return SlipMotion(reached[0], False)
         raised = self.raised()
-        return None if raised is None else Found(raised, bool(reached))
+        return None if raised is None else SlipMotion(raised, bool(reached))
 
     def solved(self, start: Complex, share: float = 1.0) -> Complex | None:
         """Return the curvatures near some, under a share of the drive; None if none are found."""

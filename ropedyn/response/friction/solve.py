@@ -25,7 +25,7 @@ from ...scene.tension import Tension
 from ..frf import MeshOfResponse, RoundingOfResponse
 from ..harmonic import solve_harmonic
 from .answer import FrictionResponse
-from .balance import Balance, Layers
+from .balance import Layers, SlipBalance
 from .cells import edges, wave_number
 
 BLOCK = 32  # Frequencies whose transfer functions are kept at once.
@@ -108,7 +108,7 @@ class Rubbing:
         return own
 
 
-class Course:
+class CellCourse:
     """The frequencies of one size of cells, one after another."""
 
     def __init__(self, asked: Rubbing, step: int) -> None:
@@ -121,7 +121,7 @@ class Course:
         """Find the motion at some frequencies, near some where that is given."""
         A = self.asked.amplitude
         for k, (f, driven, moved, free, felt) in enumerate(zip(frequency.tolist(), *parts)):
-            balance = Balance(self.layers, A * driven, moved)
+            balance = SlipBalance(self.layers, A * driven, moved)
             start = self.kappa[-1:] if near is None else [near[k]]
             found = balance.found(start, alone=near is not None)
             if found is None:
@@ -155,7 +155,7 @@ def solve_rubbing(
             )
     f = check.frequencies(frequency)
     asked = _asked(model, f, drive, amplitude, response=response, threads=threads)
-    fine, coarse = Course(asked, 1), Course(asked, 2)
+    fine, coarse = CellCourse(asked, 1), CellCourse(asked, 2)
     third: list[float] = []
     for block in np.split(f, range(BLOCK, len(f), BLOCK)):
         begin, (small, large) = len(fine.kappa), asked.parts(block, (1, 2))
@@ -234,7 +234,7 @@ def _refuse(model: Compiled) -> None:
         raise SceneError(f"{model._nonlinear} {where}: nothing else may be nonlinear beside it")
 
 
-def _third(asked: Rubbing, coarse: Course, f: Real, kappas: list[Complex]) -> list[float]:
+def _third(asked: Rubbing, coarse: CellCourse, f: Real, kappas: list[Complex]) -> list[float]:
     """Return the curvature at three times the frequency that is left out, relative."""
     try:
         (parts,) = asked.parts(3 * f, (2,))
@@ -253,7 +253,7 @@ def _third(asked: Rubbing, coarse: Course, f: Real, kappas: list[Complex]) -> li
     return found
 
 
-def _equivalent(asked: Rubbing, course: Course) -> dict[str, Any]:
+def _equivalent(asked: Rubbing, course: CellCourse) -> dict[str, Any]:
     """Return curvature, B and loss factor in each cell, (cells, f)."""
     kappa = np.abs(np.array(course.kappa)).T
     layers = np.array([course.layers.at(one).first for one in kappa.T]).T

@@ -19,10 +19,12 @@ from ..path import signs_of, unit_of
 from .bending_test import BendingTest
 from .given import given_tests
 from .joint_normal import EPS, JointNormal
+from .laid import PATHS as laid_paths
+from .laid import Laid
 from .static_test import StaticTest
 from .torsion_test import TorsionTest
 
-NORMAL, LOG_NORMAL = DISTRIBUTIONS = ("normal", "log-normal")
+NORMAL, LOG_NORMAL, LAID = DISTRIBUTIONS = ("normal", "log-normal", "laid")
 
 POSITIVE = {"positive", "nonnegative", "nonzero"}  # Signs of what is positive by its nature.
 MOST_FACTOR = 1e10  # Of what is known to a factor.
@@ -101,6 +103,12 @@ def _distribution(value: Any, name: str, prior: Prior) -> dict[str, str]:
                 f"prior[{path!r}] must have a mean > 0 and a std between {SIZES[0]:g} and "
                 f"{SIZES[1]:g} of it to be log-normal, got {prior[path]}"
             )
+    laid = [path for path in laid_paths if said.get(path) == LAID]
+    if LAID in said.values() and (len(laid) < 3 or list(said.values()).count(LAID) > 3):
+        raise SceneError(
+            f'{name} must be "laid" of axial_stiffness, lay_coupling and torsional_stiffness '
+            f"together and of nothing else, got {check.shown(dict(said))}"
+        )
     return {path: said.get(path, _natural(path, pair)) for path, pair in prior.items()}
 
 
@@ -128,9 +136,11 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
     covariance : array_like, shape (p, p), optional
         Of the numbers, in the order of the paths, with the squares of the standard deviations on
         its diagonal; independent where left out.
-    distribution : {"normal", "log-normal"}, or mapping of it by path, optional
+    distribution : {"normal", "log-normal", "laid"}, or mapping of it by path, optional
         Where left out log-normal of what is positive by its nature, as tension, stiffness, mass,
         length and damping, if its mean is; normal of the others, as positions and inclinations.
+        "laid" of axial_stiffness EA, lay_coupling D and torsional_stiffness C together: ln EA, D/EA
+        and ln(C - D^2/EA) are normal, so that none is a rope that cannot be.
 
     Raises
     ------
@@ -308,9 +318,17 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         >>> rd.Prior({"tension": (300.0, 15.0)}).law.by_log.tolist()
         [True]
         """
-        by_log = np.array([self.distribution[path] == LOG_NORMAL for path in self])
+        by_log = np.array([self._by_log(path) for path in self])
+        laid = None
+        if LAID in self.distribution.values():
+            laid = Laid(*(list(self).index(path) for path in laid_paths))
         correlation = None if self.covariance is None else self.correlation
-        return JointNormal.of(self.mean, self.std, by_log, correlation)
+        return JointNormal.of(self.mean, self.std, by_log, correlation, laid)
+
+    def _by_log(self, path: str) -> bool:
+        """Whether a variable of the law is the logarithm of a number, or of C - D^2/EA."""
+        word = self.distribution[path]
+        return word == LOG_NORMAL or (word == LAID and path != "lay_coupling")
 
     def table(self) -> Table:
         """Return one row for each number, with correlations where there are any.
@@ -357,11 +375,21 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         """
         paths = [check.one_of(path, "path", tuple(self)) for path in paths]
         at = np.array([list(self).index(path) for path in paths], dtype=np.intp)
+        # of some laid numbers no law is known but their moments
+        whole = set(laid_paths) <= set(paths)
+        words = {path: self.distribution[path] for path in paths}
+        words = {path: word for path, word in words.items() if whole or word != LAID}
         return Prior(
             {path: self[path] for path in paths},
             covariance=None if self.covariance is None else self.covariance[np.ix_(at, at)],
-            distribution={path: self.distribution[path] for path in paths},
+            distribution=words,
         )
+
+    @property
+    def apart(self) -> Prior:
+        """The same moments with a variable for each number, as `Prior` takes them by nature."""
+        words = {path: word for path, word in self.distribution.items() if word != LAID}
+        return Prior(self.known, covariance=self.covariance, distribution=words)
 
     def residual(self, values: ArrayLike) -> tuple[Real, Real]:
         """Return independent residuals of variance 1, as least squares add them, and their slopes.

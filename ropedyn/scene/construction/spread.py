@@ -12,6 +12,8 @@ from ...base.answer import Answer, axes
 from ...base.array import Real
 from ...base.errors import SceneError
 from ...base.table import Table
+from ..bench.laid import PATHS as LAID_PATHS
+from ..bench.laid import Laid, moments_of_laid
 from .draws import Scatter, sections
 from .strand import Bar, Strand
 
@@ -21,7 +23,6 @@ DIAMETER = (1.0, 1.05)  # Ropes are made up to 5 % thicker than their name.
 FIBRE, STRAND, WIRES = (0.01, 0.1), (0.03, 1.0), (1.0, 100.0)
 """Stiffness of a core of fibre, of one of strands and of layers of wires, see `Section.spread`."""
 
-PATHS = ("axial_stiffness", "lay_coupling", "torsional_stiffness", "bending_stiffness")
 LEAST_DRAWS = 100
 MOST_DRAWS = 1_000_000
 
@@ -123,18 +124,13 @@ class SectionSpread(Answer):
     def prior(self) -> Any:
         """Return what the draws say of the properties of a rope, with their covariance.
 
-        Of ln EA, D, ln C and ln B the means and covariances are those of the draws.
+        Of ln EA, D/EA, ln(C - D^2/EA) and ln B the means and covariances are those of the draws.
 
         Returns
         -------
         Prior
-            Of axial_stiffness, lay_coupling, torsional_stiffness and bending_stiffness.
-
-        Notes
-        -----
-        D and C are correlated, by up to 0.99 where the core is hard, and C - D^2/EA is small beside
-        C. The joint normal distribution gives some weight to EA C <= D^2, which no rope has:
-        below 0.1 % with steel cores, 2 % of six and 10 % of eight strands around fibre.
+            Of axial_stiffness, lay_coupling, torsional_stiffness and bending_stiffness, the first
+            three "laid": no rope of it has EA C <= D^2.
 
         Examples
         --------
@@ -146,23 +142,22 @@ class SectionSpread(Answer):
         >>> print(prior.correlation[1, 2].round(2))
         0.78
         """
-        by_log = np.array([path != "lay_coupling" for path in PATHS])
-        rows = np.stack([getattr(self, path) for path in PATHS])
-        g = np.where(by_log[:, None], np.log(np.where(by_log[:, None], rows, 1.0)), rows)
-        S, centre = np.cov(g), g.mean(axis=1)
-        # of g_i = ln p_i: E p_i = exp(m + S_ii/2), cov = E p_i E p_j (exp S_ij - 1); S_ij of others
-        mean = np.where(by_log, np.exp(np.where(by_log, centre + np.diag(S) / 2, 0.0)), centre)
-        size = np.where(by_log, mean, 1.0)
-        both = np.outer(by_log, by_log)
-        share = np.where(both, np.expm1(np.where(both, S, 0.0)), S)
-        covariance = np.outer(size, size) * share
+        plain = {
+            "axial_stiffness": np.log(self.axial_stiffness),
+            "lay_coupling": self.twist_per_stretch,
+            "torsional_stiffness": np.log(self.free_torsional_stiffness),
+            "bending_stiffness": np.log(self.bending_stiffness),
+        }
+        g = np.stack(list(plain.values()))
+        by_log = np.array([path != "lay_coupling" for path in plain])
+        mean, covariance = moments_of_laid(g.mean(axis=1), np.cov(g), by_log, Laid(0, 1, 2))
         std = np.sqrt(np.diag(covariance))
         # a prior knows the scene, which knows its rope and this
         Prior: Any = answer.named("Prior")
         return Prior(
-            {path: (float(m), float(s)) for path, m, s in zip(PATHS, mean, std)},
+            {path: (float(m), float(s)) for path, m, s in zip(plain, mean, std)},
             covariance=covariance,
-            distribution=dict(zip(PATHS, np.where(by_log, "log-normal", "normal").tolist())),
+            distribution=dict.fromkeys(LAID_PATHS, "laid"),
         )
 
     def table(self) -> Table:
