@@ -24,7 +24,7 @@ from ..scene.toml import built, document
 SCHEMA = "ropedyn.sweep/1"
 SHEET = "sweep.json"
 PLAIN = (bool, int, float, str, type(None))
-WHAT = "answers, scenes, numbers, texts, arrays, or lists and dictionaries of these"
+WHAT = "answers, scenes, numbers, texts, arrays, lists, tuples, dictionaries"
 
 
 class ArchiveWriter:

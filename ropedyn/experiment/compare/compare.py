@@ -105,17 +105,7 @@ class Comparison(Answer):
     array([ 2., -5.])
     """
 
-    said = (
-        "status",
-        "reason",
-        "factor",
-        "response",
-        "frac",
-        "mac",
-        "band",
-        "notes",
-        "hint",
-    )
+    said = ("frac", "mac")
 
     order: Integer = field(metadata=axes("peak"))
     measured: Real = field(metadata=axes("peak", unit="Hz"))

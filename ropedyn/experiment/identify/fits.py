@@ -142,8 +142,6 @@ class Fits(Answer, Sequence[Fit | None]):
     (2, [[1000.0], [1440.0]], ('trusted', 'trusted'))
     """
 
-    said = ("notes",)
-
     unknown: tuple[str, ...]
     value: Real = field(metadata=axes("rope", "unknown"))
     std: Real = field(metadata=axes("rope", "unknown"))
