@@ -123,14 +123,21 @@ def test_no_page_has_python_that_nothing_runs():
     assert having <= ran
 
 
+def slugs(text):
+    """Return the anchors of the headings of a page."""
+    headings = re.findall(r"^#+ (.+)$", text, flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", one.lower()).strip().replace(" ", "-") for one in headings}
+
+
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
-def test_links_lead_to_files(path):
-    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
+def test_links_lead_to_files_and_headings(path):
+    text = path.read_text(encoding="utf-8")
+    for target, anchor in re.findall(r"\]\(([^)#:]*)(?:#([^)]*))?\)", text):
         # notebooks are pages of the gallery on the site
-        at = path.parent / re.sub(
-            r"^((?:\.\./)*)gallery/(\w+\.ipynb)", r"\1../notebooks/\2", target
-        )
+        to_gallery = r"^((?:\.\./)*)gallery/(\w+\.ipynb)"
+        at = path.parent / re.sub(to_gallery, r"\1../notebooks/\2", target) if target else path
         assert at.exists(), target
+        assert not anchor or anchor in slugs(at.read_text(encoding="utf-8")), anchor
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
