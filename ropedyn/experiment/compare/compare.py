@@ -170,8 +170,8 @@ class Comparison(Answer):
             "difference [Hz]": self.residual,
             "difference [%]": self.difference,
             "difference/std": self.score,
-            "damping measured": self.damping_ratio,
-            "damping calculated": self.calculated_damping_ratio,
+            "damping ratio measured": self.damping_ratio,
+            "damping ratio calculated": self.calculated_damping_ratio,
         }
         always = ("measured [Hz]", "calculated [Hz]", "difference [Hz]", "difference [%]")
         columns = {
