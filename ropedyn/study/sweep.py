@@ -148,7 +148,7 @@ class Sweep(Sequence[Result | None], Generic[Result]):
         >>> found = rd.sweep(lambda scene: scene.compile().modes(2), [string, "no scene"])
         >>> with NamedTemporaryFile() as file:
         ...     found.save(file.name)
-        ...     again = rd.load(file.name)
+        ...     again = rd.Sweep.load(file.name)
         >>> again[0].frequency.round(9), again.failed
         (array([25., 50.]), {1: AttributeError("'str' object has no attribute 'compile'")})
         """
@@ -157,17 +157,7 @@ class Sweep(Sequence[Result | None], Generic[Result]):
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Sweep[Any]:
-        """Read a sweep that was saved; as `ropedyn.load`, which does so too.
-
-        Examples
-        --------
-        >>> from tempfile import NamedTemporaryFile
-        >>> import ropedyn as rd
-        >>> with NamedTemporaryFile() as file:
-        ...     rd.sweep(abs, [-1, 2]).save(file.name)
-        ...     list(rd.Sweep.load(file.name))
-        [1, 2]
-        """
+        """Read a sweep that was saved, as `ropedyn.load` does too."""
         return Sweep(**unpacked(check.path(path)))
 
 
