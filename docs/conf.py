@@ -44,5 +44,8 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 # code of notebooks needs the width
 html_theme_options = {"secondary_sidebar_items": {"gallery/*": [], "[!g]**": ["page-toc"]}}
+# pages that have none below them need no list of these
+html_sidebars = {path.stem: [] for path in Path(__file__).parent.glob("*.md")}
+html_sidebars["tutorials/*"] = []  # code needs the width
 html_copy_source = False
 html_show_sourcelink = False

@@ -148,7 +148,7 @@ class Answer(Frozen):
     """
 
     kinds: ClassVar[dict[str, type[Answer]]] = {}
-    said: ClassVar[tuple[str, ...]] = ()  # Attributes that the report tells beside the table.
+    said: ClassVar[tuple[str, ...]] = ()  # What a report tells beside table and plain fields.
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -223,12 +223,7 @@ class Answer(Frozen):
         return self.table().to_dataframe()
 
     def to_json(self) -> str:
-        """Return the table, and all that the report says beside it, as JSON.
-
-        Returns
-        -------
-        str
-            Of the schema "ropedyn.table/1", which ``ropedyn schema table`` prints.
+        """Return the table, and all that is said beside it, as JSON of "ropedyn.table/1".
 
         Examples
         --------
@@ -239,7 +234,9 @@ class Answer(Frozen):
         >>> sheet["rows"][1]["mode"], sheet["details"]["status"]
         (2, 'ambiguous')
         """
-        details = {name: getattr(self, name) for name in self.said}
+        kept = {"axes", "nested", "sheet", "transient"}
+        plain = [one.name for one in fields(self) if kept.isdisjoint(one.metadata)]  # type: ignore[arg-type]
+        details = {name: getattr(self, name) for name in (*plain, *self.said) if name != "cost"}
         return self.table().to_json({k: v for k, v in details.items() if v is not None})
 
     def to_xarray(self) -> xr.Dataset:

@@ -94,10 +94,6 @@ for _error in (RopedynError, SceneError, SolveError, IdentifyWarning, UnitWarnin
 def warn(message: str, category: type[Warning]) -> None:
     """Warn at the line of whoever called the package, through however many of its functions."""
     frame, level = sys._getframe(1), 2
-    while frame.f_back is not None and _is_ours(frame.f_globals):
+    while frame.f_back and f"{frame.f_globals.get('__name__')}.".startswith("ropedyn."):
         frame, level = frame.f_back, level + 1
     warnings.warn(message, category, stacklevel=level)
-
-
-def _is_ours(names: dict[str, Any]) -> bool:
-    return str(names.get("__name__", "")).partition(".")[0] == "ropedyn"

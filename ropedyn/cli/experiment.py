@@ -6,7 +6,6 @@ import argparse
 import json
 import sys
 import warnings
-from functools import partial
 from typing import Any
 
 from ..base.errors import IdentifyWarning
@@ -25,6 +24,7 @@ from .options import (
     Command,
     OptionGroup,
     compiled,
+    draw,
     option,
     refuse,
     repeated,
@@ -169,15 +169,13 @@ def _identify(options: argparse.Namespace) -> int:
     if options.csv:
         for note in found.notes:
             print(f"ropedyn: {note}", file=sys.stderr)
-    show(options, found, found.report(), partial(_sheet, found))
+    if options.json and isinstance(found, Fit):
+        # the table, and beside it all that `tension` prints
+        print(found.table().to_json(json.loads(found.to_json())))
+        draw(options, found)
+    else:
+        show(options, found, found.report())
     return 0 if whole else STATUS[found.status]
-
-
-def _sheet(found: Any) -> str:
-    """Return the table as JSON; beside that of a fit of peaks all that `tension` would print."""
-    if not isinstance(found, Fit):
-        return str(found.to_json())
-    return found.table().to_json(json.loads(found.to_json()))
 
 
 IDENTIFY = Command(

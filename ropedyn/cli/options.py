@@ -140,15 +140,10 @@ def shown_fit(options: argparse.Namespace, fit: Fit, peaks: Peaks | None = None)
     return STATUS[fit.status]
 
 
-def show(
-    options: argparse.Namespace,
-    answer: Answer,
-    report: str | None = None,
-    sheet: Callable[[], str] | None = None,
-) -> None:
+def show(options: argparse.Namespace, answer: Answer, report: str | None = None) -> None:
     """Print an answer, as its report or its table, and draw it where that is asked."""
     if options.json:
-        print(answer.to_json() if sheet is None else sheet())
+        print(answer.to_json())
     else:
         show_table(options, answer.table(), report)
     draw(options, answer)

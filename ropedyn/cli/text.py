@@ -108,7 +108,7 @@ def peaks(text: str, option: str) -> dict[str, list[Any]]:
     rows = [row for row in rows if row[0] and not row[0].startswith("#")]
     if len(rows) == 1 and len(rows[0]) > 2:
         rows = [[one] for one in rows[0]]
-    named = bool(rows) and not _is_number(rows[0][0])
+    named = bool(rows) and rows[0][0][0].isalpha()
     names = rows.pop(0) if named else ["frequency", "std"][: len(rows[0]) if rows else 0]
     if "frequency" not in names or {len(row) for row in rows} != {len(names)}:
         raise SceneError(
@@ -116,26 +116,9 @@ def peaks(text: str, option: str) -> dict[str, list[Any]]:
             f"line, or columns of these names, got {shown(text)}"
         )
     known = {"frequency": float, "std": float, "order": int}
-    return {
-        name: [_entry(one, known[name], option) for one in column]
-        for name, column in zip(names, zip(*rows))
-        if name in known
-    }
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def _entry(text: str, kind: Callable[[str], _Number], option: str) -> _Number:
-    try:
-        return kind(text)
-    except ValueError:
-        raise SceneError(f"{option} must be a file of numbers, got {shown(text)} in it") from None
+    columns = {name: column for name, column in zip(names, zip(*rows)) if name in known}
+    expected = f"{option} must be a file of numbers"
+    return {name: _listed(",".join(one), known[name], expected) for name, one in columns.items()}
 
 
 def whole_numbers(text: str, option: str) -> list[int]:

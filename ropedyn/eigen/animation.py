@@ -19,7 +19,7 @@ SMALL = 1e-6
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Animation(Frozen):
-    """One period of a mode, Re(shape e^(i omega t)): a notebook shows it, `save` writes it.
+    """One period of a mode, Re(shape e^(i omega t)): a notebook shows it, `write` keeps it.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Animation(Frozen):
             draw(self, "film", file)
             return file.read_text(encoding="utf-8")
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def write(self, path: str | os.PathLike[str]) -> None:
         """Write the animation as a file, whole or not at all.
 
         Parameters
@@ -92,7 +92,7 @@ class Animation(Frozen):
         >>> import ropedyn as rd
         >>> modes = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0).compile(elements=4).modes(1)
         >>> with TemporaryDirectory() as folder:
-        ...     modes.animate(0, frames=2).save(Path(folder, "mode.gif"))
+        ...     modes.animate(0, frames=2).write(Path(folder, "mode.gif"))
         ...     Path(folder, "mode.gif").read_bytes()[:6]
         b'GIF89a'
         """

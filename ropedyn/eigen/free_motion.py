@@ -122,7 +122,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
             seconds=duration,
         )
         if path is not None:
-            animation.save(path)
+            animation.write(path)
         return animation
 
     @property

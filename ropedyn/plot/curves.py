@@ -76,7 +76,7 @@ def plot_family_modes(found: FamilyModes, ax: Axes) -> None:
     for k, frequency in enumerate(found.frequency.T, start=1):
         ax.plot(frequency, ".-", label=k)
     ax.set(xlabel="row", ylabel="frequency [Hz]")
-    ax.xaxis.get_major_locator().set_params(integer=True)
+    ax.locator_params(axis="x", integer=True)
     if ax.lines:
         ax.legend(title="mode", fontsize="small")
     light_grid(ax)

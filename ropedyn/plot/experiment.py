@@ -226,7 +226,7 @@ def plot_fits(fits: Fits, ax: Axes, unknown: str | None) -> None:
     error = np.where(np.isfinite(std), std, 0.0)
     ax.errorbar(np.arange(len(fits)), fits.value[:, at], yerr=error, fmt="o", capsize=3)
     ax.set(xlabel="rope", ylabel=f"{path} [{unit_of(path) or '1'}]")
-    ax.xaxis.get_major_locator().set_params(integer=True)
+    ax.locator_params(axis="x", integer=True)
     light_grid(ax)
 
 

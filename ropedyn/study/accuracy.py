@@ -95,8 +95,6 @@ class AccuracyCost(Answer):
     4 Take
     """
 
-    said = ("verdict",)
-
     question: str
     reference: str
     element: NDArray[np.str_] = field(metadata=axes("row"))

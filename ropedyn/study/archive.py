@@ -24,7 +24,7 @@ from ..scene.toml import built, document
 SCHEMA = "ropedyn.sweep/1"
 SHEET = "sweep.json"
 PLAIN = (bool, int, float, str, type(None))
-WHAT = "answers, scenes, numbers, texts, arrays, or lists and dictionaries of these"
+WHAT = "answers, scenes, numbers, texts, arrays, lists, tuples, dictionaries"
 
 
 class ArchiveWriter:
@@ -92,36 +92,27 @@ def _told(error: BaseException) -> tuple[str, list[Any], list[str]]:
 def unpacked(path: Path) -> dict[str, Any]:
     """Return the fields of the sweep in a file."""
     with reading(path, "a file that Sweep.save wrote"), zipfile.ZipFile(path) as file:
-        sheet, reader = json.loads(file.read(SHEET)), ArchiveReader(file, path)
-        return {
-            "results": reader.value(sheet["results"]),
-            "seconds": reader.value(sheet["seconds"]),
-            "failed": {k: _error(*told) for k, *told in sheet["failed"]},
-            "cost": Cost(**sheet["cost"]),
-        }
-
-
-class ArchiveReader:
-    """What makes values of what the sheet of a file says."""
-
-    def __init__(self, file: zipfile.ZipFile, path: Path) -> None:
-        self.kinds: dict[str, Callable[[Any], Any]] = {
+        kinds: dict[str, Callable[[Any], Any]] = {
             "complex": lambda parts: complex(*parts),
-            "list": lambda each: [self.value(one) for one in each],
-            "tuple": lambda each: tuple(self.value(one) for one in each),
-            "dict": lambda pairs: {self.value(k): self.value(v) for k, v in pairs},
+            "list": lambda each: [value(one) for one in each],
+            "tuple": lambda each: tuple(value(one) for one in each),
+            "dict": lambda pairs: {value(k): value(v) for k, v in pairs},
             "scene": partial(built, Scene),
             "answer": lambda name: unsealed(file.read(name), path),
             "array": lambda name: np.load(io.BytesIO(file.read(name)), allow_pickle=False),
-            "scalar": lambda name: self.kinds["array"](name)[()],
+            "scalar": lambda name: kinds["array"](name)[()],
         }
 
-    def value(self, said: Any) -> Any:
-        """Return it."""
-        if not isinstance(said, dict):
-            return said
-        [(kind, content)] = said.items()
-        return self.kinds[kind](content)
+        def value(said: Any) -> Any:
+            if not isinstance(said, dict):
+                return said
+            [(kind, content)] = said.items()
+            return kinds[kind](content)
+
+        sheet = json.loads(file.read(SHEET))
+        failed = {k: _error(*told) for k, *told in sheet["failed"]}
+        found = {name: value(sheet[name]) for name in ("results", "seconds")}
+        return {**found, "failed": failed, "cost": Cost(**sheet["cost"])}
 
 
 def _error(kind: str, given: list[Any], notes: list[str]) -> BaseException:

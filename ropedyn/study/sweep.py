@@ -130,9 +130,8 @@ class Sweep(Sequence[Result | None], Generic[Result]):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the sweep, every result whole, as one file that `load` reads.
 
-        Answers are kept as `Answer.save` keeps them, scenes as `Scene.save` does; numbers, texts,
-        arrays, and lists, tuples and dictionaries of all these as they are. Of what failed kind,
-        words and notes are kept; kinds that Python and ropedyn do not know become `RopedynError`.
+        Results are answers, scenes, numbers, texts, arrays, or lists, tuples and dictionaries of
+        these. Of what failed kind, words and notes are kept; unknown kinds are `RopedynError`.
 
         Raises
         ------
@@ -143,14 +142,13 @@ class Sweep(Sequence[Result | None], Generic[Result]):
 
         Examples
         --------
-        >>> from pathlib import Path
-        >>> from tempfile import TemporaryDirectory
+        >>> from tempfile import NamedTemporaryFile
         >>> import ropedyn as rd
         >>> string = rd.Scene(rd.Rope(2.0, 0.1), tension=1000.0)
         >>> found = rd.sweep(lambda scene: scene.compile().modes(2), [string, "no scene"])
-        >>> with TemporaryDirectory() as folder:
-        ...     found.save(Path(folder, "sweep.zip"))
-        ...     again = rd.load(Path(folder, "sweep.zip"))
+        >>> with NamedTemporaryFile() as file:
+        ...     found.save(file.name)
+        ...     again = rd.Sweep.load(file.name)
         >>> again[0].frequency.round(9), again.failed
         (array([25., 50.]), {1: AttributeError("'str' object has no attribute 'compile'")})
         """
@@ -159,25 +157,7 @@ class Sweep(Sequence[Result | None], Generic[Result]):
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Sweep[Any]:
-        """Read a sweep that was saved; `ropedyn.load` does so too.
-
-        Raises
-        ------
-        OSError
-            If the file cannot be read.
-        SceneError
-            If it holds no sweep.
-
-        Examples
-        --------
-        >>> from pathlib import Path
-        >>> from tempfile import TemporaryDirectory
-        >>> import ropedyn as rd
-        >>> with TemporaryDirectory() as folder:
-        ...     rd.sweep(abs, [-1, 2]).save(Path(folder, "sweep.zip"))
-        ...     list(rd.Sweep.load(Path(folder, "sweep.zip")))
-        [1, 2]
-        """
+        """Read a sweep that was saved, as `ropedyn.load` does too."""
         return Sweep(**unpacked(check.path(path)))
 
 

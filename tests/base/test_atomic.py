@@ -123,8 +123,8 @@ ways = {
     "old.csv": frf.write,
     "old.uff": frf.write,
     "old.unv": lambda path: frf.write(path, binary=True),
-    "old.gif": lambda path: modes.animate(0, frames=2).save(path),
-    "old.html": lambda path: modes.animate(0, frames=2).save(path),
+    "old.gif": lambda path: modes.animate(0, frames=2).write(path),
+    "old.html": lambda path: modes.animate(0, frames=2).write(path),
     "old.png": lambda path: drawn(path),
 }
 for path in ways:

@@ -115,7 +115,14 @@ def test_every_rope_says_what_became_of_it(monkeypatch, tmp_path):
     fits.save(tmp_path / "fits.nc")
     again = rd.load(tmp_path / "fits.nc")
     assert again.status == fits.status and again.report() == fits.report()
-    with pytest.raises(rd.SceneError, match="fits from a file have no scene"):
+    assert (again[0].report(), again[0].scene) == (fits[0].report(), fits[0].scene)
+    assert again[1] is None and str(again.failed[1]) == str(fits.failed[1])
+    monkeypatch.setattr("ropedyn.experiment.identify.fits.MOST_KEPT", 2)
+    fits = fitted(GUESS, given, BOTH)
+    fits.save(tmp_path / "many.nc")
+    again = rd.load(tmp_path / "many.nc")
+    np.testing.assert_array_equal(again.interval(), fits.interval())
+    with pytest.raises(rd.SceneError, match="a file keeps 2 fits at most, got 3: identify again"):
         again[0]
 
 

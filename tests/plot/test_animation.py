@@ -67,7 +67,7 @@ def test_a_notebook_shows_the_frames(modes, tmp_path):
     html = animation._repr_html_()
     assert html.count("data:image/png;base64") == 3
     assert 'value="loop"' in html
-    animation.save(tmp_path / "mode.html")
+    animation.write(tmp_path / "mode.html")
     assert (tmp_path / "mode.html").read_text().count("data:image/png;base64") == 3
     assert repr(animation).startswith("<Animation of mode 1: ")
 
@@ -80,7 +80,7 @@ def test_a_file_that_cannot_be_written_leaves_what_was_there(modes, tmp_path, mo
         "matplotlib.animation.PillowWriter.finish", lambda writer: (_ for _ in ()).throw(OSError)
     )
     with pytest.raises(OSError):
-        animation.save(file)
+        animation.write(file)
     assert [one.name for one in tmp_path.iterdir()] == ["mode.gif"]
     assert file.read_text() == "old"
 

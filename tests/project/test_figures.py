@@ -22,7 +22,7 @@ def test_every_figure_that_is_shown_has_its_script(drawn):
     shown = {
         (page.parent / path).resolve().relative_to(ROOT).as_posix()
         for page in PAGES
-        for path in re.findall(r"![[^]]+]\(([^)]+\.png)\)", page.read_text(encoding="utf-8"))
+        for path in re.findall(r"!\[[^]]+\]\(([^)]+\.png)\)", page.read_text(encoding="utf-8"))
     }
     assert shown == drawn["FIGURES"].keys() | drawn["TIMED"].keys()
     assert all((ROOT / script).is_file() for script in drawn["TIMED"].values())

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dataset58 import function
 
+import ropedyn as rd
 from ropedyn.cli.command import main, parser
 
 ROOT = Path(__file__).parent.parent.parent
@@ -123,20 +125,67 @@ def test_no_page_has_python_that_nothing_runs():
     assert having <= ran
 
 
+def slugs(text):
+    """Return the anchors of the headings of a page."""
+    headings = re.findall(r"^#+ (.+)$", text, flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", one.lower()).strip().replace(" ", "-") for one in headings}
+
+
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
-def test_links_lead_to_files(path):
-    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
+def test_links_lead_to_files_and_headings(path):
+    text = path.read_text(encoding="utf-8")
+    for target, anchor in re.findall(r"\]\(([^)#:]*)(?:#([^)]*))?\)", text):
         # notebooks are pages of the gallery on the site
-        at = path.parent / re.sub(
-            r"^((?:\.\./)*)gallery/(\w+\.ipynb)", r"\1../notebooks/\2", target
-        )
+        to_gallery = r"^((?:\.\./)*)gallery/(\w+\.ipynb)"
+        at = path.parent / re.sub(to_gallery, r"\1../notebooks/\2", target) if target else path
         assert at.exists(), target
+        assert not anchor or anchor in slugs(at.read_text(encoding="utf-8")), anchor
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
-def test_commands_have_the_options_they_are_shown_with(path):
+def test_commands_have_the_options_they_are_shown_with(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("peaks.txt").write_text("2.110\n", encoding="utf-8")  # read where options are
     for line in commands(path.read_text(encoding="utf-8")):
         parser().parse_args(shlex.split(line)[1:])
+
+
+@pytest.fixture
+def measured(tmp_path, monkeypatch):
+    """The files that the commands are shown with: two scenes, a record, peaks and a response."""
+    monkeypatch.chdir(tmp_path)
+    rope = rd.Rope(1.35, 0.1017, bending_stiffness=1.54)
+    scene = rd.Scene(rope, tension=2830.0, damping=rd.RayleighDamping(4.0, 1e-5))
+    scene.save("rope.toml")
+    time, lines = np.arange(12_000) / 100.0, np.linspace(20.0, 400.0, 400)
+    how = {"drive": ("z", 20.0), "modes": 10, "quantity": "acceleration"}
+    wind = np.random.default_rng(1).normal(0.0, 30.0, len(time))
+    cable = rd.Scene(rd.Rope(60.0, 80.0, bending_stiffness=1e6), tension=5e6)
+    damped = cable.replace(damping=rd.ModalDamping(0.003)).compile()
+    response = [("z", x) for x in (3.5, 6.0, 9.0)]
+    np.savetxt("record.csv", damped.transient(time, force=wind, response=response, **how).value.T)
+    Path("peaks.txt").write_text("2.110 0.003\n4.226 0.003\n6.349 0.003\n", encoding="utf-8")
+    frf = scene.compile().frf(lines, drive=("z", 0.5), response=("z", 0.8))
+    kinds = {"kinds": (8, 13), "response": (2, 3), "drive": (1, 3), "labels": ("m", "N")}
+    Path("run1.uff").write_text(function(frf.value[0], **kinds, uneven=lines), encoding="ascii")
+
+
+def test_commands_of_the_page_run_and_say_something(measured, capsys):
+    page = (ROOT / "docs/command_line.md").read_text(encoding="utf-8")
+    for line in re.findall(r"^ropedyn (.*)$", page, flags=re.M):
+        command, _, file = line.partition(" > ")
+        if command.startswith("hard"):
+            continue  # takes half a minute: tests/study/test_hard_cases.py
+        assert main(shlex.split(command)) in (0, 3), line
+        said = capsys.readouterr().out
+        assert len(said) > 50, line
+        if file:
+            Path(file).write_text(said, encoding="utf-8")
+    assert {path.name for path in Path().glob("*.png")} >= {
+        "modes.png",
+        "overlay.png",
+        "section.png",
+    }
 
 
 def test_the_first_screen_stays_short():

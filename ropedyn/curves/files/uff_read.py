@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -109,13 +109,14 @@ def _ask_at_once(
     """Refuse in one error all that a file does not say and nobody has said."""
     if all(OWN.match(record.fields["id2"]) for record in records):
         return
-    asked = []
-    codes = {r.fields[side] for r in records for side in ("rsp_dir", "ref_dir")}
-    for part in (
+    code = min(r.fields[side] for r in records for side in ("rsp_dir", "ref_dir"))
+    parts: tuple[Callable[[], Any], ...] = (
         partial(_positions, positions, records, file),
-        *(partial(_turned, code, coordinate, records, file) for code in sorted(codes)[:1]),
+        partial(_turned, code, coordinate, records, file),
         partial(_refuse_without_unit, records, file, unit),
-    ):
+    )
+    asked = []
+    for part in parts:
         try:
             part()
         except SceneError as error:

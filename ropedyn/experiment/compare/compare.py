@@ -101,21 +101,11 @@ class Comparison(Answer):
     >>> found = rd.compare(model.modes(3), rd.Peaks([24.8, 75.5], std=0.1))
     >>> found.order, found.residual.round(3), found.missed
     (array([1, 3]), array([ 0.2, -0.5]), array([2]))
-    >>> found.score.round(1)
-    array([ 2., -5.])
+    >>> found.score.round(1), found.peaks().column("mode")
+    (array([ 2., -5.]), (1, 3))
     """
 
-    said = (
-        "status",
-        "reason",
-        "factor",
-        "response",
-        "frac",
-        "mac",
-        "band",
-        "notes",
-        "hint",
-    )
+    said = ("frac", "mac")
 
     order: Integer = field(metadata=axes("peak"))
     measured: Real = field(metadata=axes("peak", unit="Hz"))
@@ -162,15 +152,7 @@ class Comparison(Answer):
         return np.setdiff1d(number[within], self.order)
 
     def peaks(self) -> Table:
-        """Return the pairs with their differences, of what is known of any.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=90.0).compile()
-        >>> print(rd.compare(model, rd.Peaks([15.3, 30.0])).peaks().column("mode"))
-        (1, 2)
-        """
+        """Return the pairs with their differences, of what is known of any."""
         none = self.order == 0
         columns: dict[str, Any] = {
             "measured [Hz]": self.measured,
@@ -180,8 +162,8 @@ class Comparison(Answer):
             "difference [Hz]": self.residual,
             "difference [%]": self.difference,
             "difference/std": self.score,
-            "damping measured": self.damping_ratio,
-            "damping calculated": self.calculated_damping_ratio,
+            "damping ratio measured": self.damping_ratio,
+            "damping ratio calculated": self.calculated_damping_ratio,
         }
         always = ("measured [Hz]", "calculated [Hz]", "difference [Hz]", "difference [%]")
         columns = {

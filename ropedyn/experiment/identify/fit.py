@@ -95,8 +95,8 @@ class Fit(Identified):
     ('trusted', array([ 995.2, 1003.6]), False)
     >>> fit.residual.round(3), round(fit.rms, 4)
     (array([-0.107,  0.086, -0.021]), 0.0027)
-    >>> round(fit.scene.tension, 1)
-    999.4
+    >>> round(fit.scene.tension, 1), fit.peaks().column("mode")
+    (999.4, (1, 2, 3))
     >>> print(fit.report().splitlines()[0])
     tension  999.4 N   95 %: 995.2 to 1004 N
     """
@@ -207,16 +207,7 @@ class Fit(Identified):
         return draw(self, "plot", ax, of=of)
 
     def peaks(self) -> Table:
-        """Return one row for each peak: which mode it is, and how far off.
-
-        Examples
-        --------
-        >>> import ropedyn as rd
-        >>> scene = rd.Scene(rd.Rope(2.0, 0.1), tension=900.0)
-        >>> fit = rd.identify(scene, rd.Peaks([25.1, 49.9, 75.0], std=0.1), "tension")
-        >>> fit.peaks().column("mode")
-        (1, 2, 3)
-        """
+        """Return one row for each peak: which mode it is, and how far off."""
         columns: dict[str, Any] = {
             "measured [Hz]": self.measured,
             "std [Hz]": self.measured_std,

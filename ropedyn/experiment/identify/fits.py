@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...base.answer import TRANSIENT, Answer, Cost, axes
+from ...base.answer import TRANSIENT, Answer, Cost, axes, sealed, unsealed
 from ...base.array import Flags, Real
 from ...base.computed import Lazy, computed, lazy
 from ...base.drawing import draw
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 CLEAR = 0.1  # Of itself: a number with less of a standard deviation has an interval with two ends.
+MOST_KEPT = 100  # Fits of one rope each take 50 kB of a file, and as many milliseconds.
 NAMED = 5  # Ropes of which the same is noted are named up to so many.
 
 
@@ -143,8 +147,6 @@ class Fits(Answer, Sequence[Fit | None]):
     (2, [[1000.0], [1440.0]], ('trusted', 'trusted'))
     """
 
-    said = ("notes",)
-
     unknown: tuple[str, ...]
     value: Real = field(metadata=axes("rope", "unknown"))
     std: Real = field(metadata=axes("rope", "unknown"))
@@ -154,6 +156,7 @@ class Fits(Answer, Sequence[Fit | None]):
     notes: tuple[str, ...]
     cost: Cost
     bounds: Lazy[Real] = lazy(np.ndarray, axes("level", "rope", "unknown", "bound"))
+    whole: Lazy[NDArray[np.str_]] = lazy(np.ndarray, axes("rope"))
     batch: Batch | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @computed
@@ -161,11 +164,13 @@ class Fits(Answer, Sequence[Fit | None]):
         """Why ropes have no solution, by their number from 0."""
         return self._batch.errors()
 
-    @property
+    @computed
     def _batch(self) -> Batch:
-        if self.batch is None:
-            raise SceneError("fits from a file have no scene: identify again")
-        return self.batch
+        if self.batch is not None:
+            return self.batch
+        each = (base64.b64decode(one) for one in self.whole.tolist())
+        fits = [unsealed(one, Path("fits")) if one else None for one in each]
+        return EachAlone(fits, {i: RopedynError(why) for i, why in enumerate(self.failure) if why})
 
     def __len__(self) -> int:
         return len(self.rms)
@@ -175,7 +180,7 @@ class Fits(Answer, Sequence[Fit | None]):
     @overload
     def __getitem__(self, at: slice) -> tuple[Fit | None, ...]: ...
     def __getitem__(self, at: int | slice) -> Fit | tuple[Fit | None, ...] | None:
-        """Return the fit of a rope; those of a file have only what the table shows."""
+        """Return the fit of a rope; a file keeps those of 100 ropes at most."""
         if isinstance(at, slice):
             return tuple(self._batch.fit(i) for i in range(len(self))[at])
         return self._batch.fit(range(len(self))[at])
@@ -285,8 +290,17 @@ def fits_of(found: Found, measured: Sequence[Peaks]) -> Fits:
         notes=_notes(solution),
         cost=Cost("least squares", elements, n * p, factorisations=evaluations),
         bounds=partial(kept_bounds, batch.interval),
+        whole=partial(_whole, batch, n),
         batch=batch,
     )
+
+
+def _whole(batch: Batch, n: int) -> NDArray[np.str_]:
+    """Return the file of each fit as text, empty where there is none."""
+    if n > MOST_KEPT:
+        raise SceneError(f"a file keeps {MOST_KEPT} fits at most, got {n}: identify again")
+    fits = (batch.fit(i) for i in range(n))
+    return np.array(["" if one is None else base64.b64encode(sealed(one)).decode() for one in fits])
 
 
 def _without_end(solution: Solution) -> Flags:
@@ -340,6 +354,7 @@ def each_alone(
             factorisations=sum(one.factorisations for one in costs),
         ),
         bounds=partial(kept_bounds, batch.interval),
+        whole=partial(_whole, batch, n),
         batch=batch,
     )
 

@@ -68,7 +68,7 @@ class ResponseFit(Identified):
     identified
     """
 
-    said = ("lines", "freedom", "chi_square", "notes")
+    said = ("lines",)
 
     unknown: tuple[str, ...]
     value: Named = field(metadata=axes("unknown"))

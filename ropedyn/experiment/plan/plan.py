@@ -65,15 +65,7 @@ class Plan(Answer):
     (True, None)
     """
 
-    said = (
-        "drive",
-        "response",
-        "record_length",
-        "line_spacing",
-        "reason",
-        "rate",
-        "highest",
-    )
+    said = ("record_length", "rate")
 
     drive: tuple[str, float]
     response: tuple[tuple[str, float], ...]

@@ -77,15 +77,6 @@ class Track(Answer):
     temperature -0.397 % per K
     """
 
-    said = (
-        "step",
-        "step_interval",
-        "scatter",
-        "coefficient",
-        "coefficient_interval",
-        "notes",
-    )
-
     time: Real = field(metadata=axes("record", unit="day"))
     since: str
     status: tuple[str, ...]

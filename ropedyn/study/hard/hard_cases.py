@@ -66,7 +66,7 @@ class HardCases(Answer):
     (True, 2, ())
     """
 
-    said = ("verdict", "failures")
+    said = ("failures",)
 
     case: NDArray[np.str_] = field(metadata=axes("row"))
     hard: NDArray[np.str_] = field(metadata=axes("row"))
