@@ -154,7 +154,6 @@ struct sweep_kernel {
                        cv *coef, lanes *radians);
     void (*make_coefficients)(const cv *triple, cv *coef);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
-    void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);
     /* these of complex numbers, and of real ones where nothing is damped; minors from U and U from
        minors, and a walk by them */
     void (*flatten[2])(const struct sweep_block *, struct sweep_state *);
