@@ -40,6 +40,7 @@ struct sweep_block {
     struct shape_series series; /* of phi = tension/section */
     cv pull;                    /* tension z_beta^2 */
     cv slack;                   /* 1/(tension z_z^2) */
+    cv soft, tension;           /* 1/section and the factor on tension themselves */
     cv spring, inertia;         /* factors of node stiffness and mass */
     cv dashpot;                 /* of node damping, 0 where the chain has none */
     int real;                   /* spring and inertia are */
