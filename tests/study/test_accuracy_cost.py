@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 from exact_waves import beam_eigenvalue
+from scipy.optimize import least_squares
 
 import ropedyn as rd
 from ropedyn.base import stopwatch
@@ -546,6 +547,27 @@ def test_every_stated_error_is_that_of_the_answers(name):
     seen = max(apart(found, exact) for found in cuts)
     stated = answer.error[answer.element == "continuous"][0]
     assert stated == pytest.approx(max(seen, EPS / 2), rel=64 * EPS, abs=64 * EPS)
+
+
+@pytest.mark.filterwarnings("ignore::ropedyn.IdentifyWarning")
+@pytest.mark.parametrize("elements", [16, 24])
+def test_the_error_of_a_tension_from_a_chain_is_that_of_its_closed_form(elements):
+    peaks = rd.Peaks([16.0, 31.9, 47.9], std=[0.8, 1.2, 2.0], order=[1, 2, 3])
+    question = rd.ask.identify(peaks, "tension", ends="given")
+    answer = cost(STRING, question, elements=elements, element="rigid")
+    k, each = np.arange(1, 4), 2 * elements / np.sqrt(STRING.rope.linear_density)
+
+    def tension(per_root):
+        """Weighted least squares: f = g sqrt(T), so sqrt(T) = (g . f)/(g . g)."""
+        fit = least_squares(
+            lambda T: (per_root * np.sqrt(T) - peaks.frequency) / peaks.std, 100.0, xtol=1e-15
+        )
+        return fit.x[0]
+
+    right = tension(k / 2 / np.sqrt(STRING.rope.linear_density))
+    lumped = tension(each * np.sin(k * np.pi / 2 / elements) / (2 * np.pi))
+    # both fits end where steps are below 1e-8 of the number
+    assert answer.error[0] == pytest.approx(abs(lumped / right - 1), rel=1e-5)
 
 
 def uneven(scene):
