@@ -23,6 +23,11 @@
 
 #include "span/plain_triple.h"
 
+/* what a span is known by: theta and K [1/m^2, 1/m^4], S' > 0 and r */
+struct bent_numbers {
+    lanes theta, K, soft, lever, length;
+};
+
 struct bent_compound {
     lanes dd, db, de, da, ad, ae, bb, bc, bd, ed, Cc, sg, K;
     lanes units[4], back[4]; /* of d, b, c and e, and what undoes them */
@@ -42,12 +47,12 @@ RD_INLINE void real_wavenumbers(lanes theta, lanes K, lanes *k2, lanes *a2)
     *a2 = l_select(tensed, large, small);
 }
 
-RD_INLINE void compound_brief(lanes soft, lanes load_z, lanes load_beta, lanes r, lanes length,
-                              struct bent_compound *x)
+RD_INLINE void compound_brief(const struct bent_numbers *of, struct bent_compound *x)
 {
-    const cv load[2] = {{load_z, (lanes){0}}, {load_beta, (lanes){0}}};
+    const lanes r = of->lever, none = {0};
+    const cv load[2] = {{-of->K / (of->soft * r * r), none}, {of->theta / of->soft, none}};
     struct bent_triple t;
-    bent_triple_brief((cv){soft, (lanes){0}}, load, r, length, &t);
+    bent_triple_brief((cv){of->soft, none}, load, r, of->length, &t);
     for (int i = 0; i < 4; i++)
         x->triple[i] = t.D[i].re;
     for (int i = 0; i < 3; i++) {
@@ -56,11 +61,10 @@ RD_INLINE void compound_brief(lanes soft, lanes load_z, lanes load_beta, lanes r
     }
 }
 
-/* of S' > 0 and q_z <= 0 */
-RD_INLINE void bent_compound_fill(lanes soft, lanes load_z, lanes load_beta, lanes r, lanes length,
-                                  struct bent_compound *x)
+/* K >= 0 */
+RD_INLINE void bent_compound_fill(const struct bent_numbers *of, struct bent_compound *x)
 {
-    const lanes theta = soft * load_beta, K = -(soft * load_z) * (r * r);
+    const lanes theta = of->theta, K = of->K, soft = of->soft, r = of->lever, length = of->length;
     lanes k2, a2, e;
     real_wavenumbers(theta, K, &k2, &a2);
     const lanes E = k2 + a2, per = 1.0 / E, k = l_root(k2), alpha = l_root(a2);
@@ -95,7 +99,7 @@ RD_INLINE void bent_compound_fill(lanes soft, lanes load_z, lanes load_beta, lan
     }
     x->some_brief = some(x->brief);
     if (x->some_brief) {
-        compound_brief(soft, load_z, load_beta, r, length, x);
+        compound_brief(of, x);
         x->radians = l_select(x->brief, l_fill(BENT_BRIEF), x->radians);
     }
 }

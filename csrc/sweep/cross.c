@@ -9,6 +9,9 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
+/* fewer elements are crossed by real minors one by one in the time that it takes to join them */
+enum { JOINED_LEAST = 16 };
+
 /* at a free end nothing is behind the walk: U = I */
 void rd_sweep_begin(struct sweep *s)
 {
@@ -257,6 +260,10 @@ static void cross_run(struct sweep *s, const struct rd_run *run, int way, size_t
     }
     if (rd_is_graded(s->chain, (size_t)run->element)) {
         cross_graded(s, (size_t)run->element, way, node);
+        return;
+    }
+    if (!s->chain->inertia && count < JOINED_LEAST && goes_flat(s)) {
+        cross_each(s, way, node, count);
         return;
     }
     struct sweep_pieces all =

@@ -147,6 +147,8 @@ static RD_CLONES void fill(const struct rd_chain *chain, const struct factors *o
         if (c == RD_Z)
             block->slack = times(c_inverse(of->tension), 1.0 / (block->z[i] * block->z[i]));
     }
+    block->soft = soft;
+    block->tension = of->tension;
     block->spring = of->spring;
     block->inertia = of->inertia;
     block->dashpot = of->dashpot;

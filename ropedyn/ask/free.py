@@ -15,10 +15,16 @@ from ..base.errors import SceneError
 from ..eigen.damped.damped_modes import DampedModes
 from ..eigen.modes import Modes
 from ..eigen.spectrum import SOLVERS
-from ..experiment.compare.difference import OF_MODES, AnswerChange, change_of_modes, relative
+from ..experiment.compare.difference import (
+    OF_MODES,
+    AnswerChange,
+    change_of_modes,
+    partners,
+    relative,
+)
 from ..model import Model
 from ..parametric.floquet import MOST_MODES, Floquet
-from .question import AnyQuestion, nearest
+from .question import AnyQuestion, change_of_pairs
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,8 @@ class ModesQuestion(AnyQuestion):
     below : float, optional
         All below this frequency [Hz]; instead of `number`.
     damped : bool
-        Rates of damped motion, each compared with the nearest one.
+        Rates of damped motion, paired so that all together are as near as can be; where another
+        pairing would be less than twice as far, error bars have both.
 
     Raises
     ------
@@ -102,15 +109,17 @@ class ModesQuestion(AnyQuestion):
 
     def apart(self, found: NDArray[Any], right: NDArray[Any]) -> Real:
         """Return how far values are from right ones, relative to these."""
-        return relative(nearest(found, right) if self.damped else found, right)
+        return relative(found[partners(found, right)[0]] if self.damped else found, right)
 
     def change(
         self, answer: Modes | DampedModes, model: Model, *, solver: str | None = None
     ) -> AnswerChange:
         """Compare modes with those of the same motion of a model that has less."""
+        solver = solver or self.solvers[0]
         if isinstance(answer, DampedModes):
-            return super().change(answer, model, solver=solver)
-        return change_of_modes(answer, model, solver or self.solvers[0])
+            left = self.of(model, solver=solver)
+            return change_of_pairs(self, answer, left, model.element == "continuous")
+        return change_of_modes(answer, model, solver)
 
     def work(self, model: Model, solver: str) -> float:
         """Return the seconds, by their order: n^3 of the assembled solver, n of damped modes."""
@@ -211,4 +220,9 @@ class FloquetQuestion(AnyQuestion):
 
     def apart(self, found: NDArray[Any], right: NDArray[Any]) -> Real:
         """Return how far the nearest multipliers are from right ones, relative to these."""
-        return relative(nearest(found, right), right)
+        return relative(found[partners(found, right)[0]], right)
+
+    def change(self, answer: Floquet, model: Model, *, solver: str | None = None) -> AnswerChange:
+        """Compare multipliers with those that they are next to of a model that has less."""
+        left = self.of(model, solver=solver or self.solvers[0])
+        return change_of_pairs(self, answer, left, model.element == "continuous")

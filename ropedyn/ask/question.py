@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,7 +10,13 @@ from numpy.typing import NDArray
 
 from ..base.answer import Frozen
 from ..base.array import Real
-from ..experiment.compare.difference import OF_VALUES, AnswerChange, change_of_values, relative
+from ..experiment.compare.difference import (
+    OF_VALUES,
+    AnswerChange,
+    change_of_values,
+    partners,
+    relative,
+)
 from ..model import Model
 from ..scene.scene import Scene
 
@@ -108,9 +115,15 @@ def relative_to(values: NDArray[Any], error: Real | float) -> Real:
     return np.divide(error, size, out=at_zero, where=size > 0)
 
 
-def nearest(found: NDArray[Any], right: NDArray[Any]) -> NDArray[Any]:
-    """Return values in the order of right ones that they are next to, each of them once."""
-    from scipy.optimize import linear_sum_assignment
-
-    away = np.abs(np.subtract.outer(right, found))
-    return found[linear_sum_assignment(away)[1]]
+def change_of_pairs(question: AnyQuestion, answer: Any, left: Any, spans: bool) -> AnswerChange:
+    """Compare values that have no order with those of another answer that they are next to."""
+    before, after = question.values(answer), question.values(left)
+    if len(after) < len(before):
+        return AnswerChange.lost_some(question.measures, len(before) - len(after))
+    which, open_ = partners(after, before)
+    error = question.rounding(answer) + question.rounding(left)[which]
+    if not spans:
+        error = error + question.mesh(answer) + question.mesh(left)[which]
+    apart = relative(after[which], before)
+    change = change_of_values(apart, error + relative_to(before, open_), question.measures)
+    return replace(change, unsure=int(np.count_nonzero(open_)))

@@ -68,6 +68,9 @@ class EffectCost(Answer):
         Which other effects leave with it, as lay, rotary inertia and hinges with bending.
     only_with : ndarray of int, shape (rows,)
         How many of the modes are only there with the effect; how many responses are 0 without.
+    unsure : ndarray of int, shape (rows,)
+        How many damped modes or multipliers could have another partner without the effect; error
+        bars have both.
     seconds_with, lower_quartile_with, upper_quartile_with : float
         Processor time from the scene to the answer, `Scene.compile` and the question, one thread:
         the median and, of the question, the quartiles [s]; of modes that of frequencies.
@@ -108,6 +111,7 @@ class EffectCost(Answer):
     seen: Flags = field(metadata=axes("row"))
     goes_along: NDArray[np.str_] = field(metadata=axes("row"))
     only_with: Integer = field(metadata=axes("row"))
+    unsure: Integer = field(metadata=axes("row"))
     seconds_with: float
     lower_quartile_with: float
     upper_quartile_with: float
@@ -202,6 +206,7 @@ class EffectCost(Answer):
             **{name: (None, *numbers(change)) for name, change in self.change.items()},
             f"error bars {unit}": (None, *numbers(self.error)),
             "only with it": (None, *_where(asked, self.only_with)),
+            "partner open": (None, *_where(asked, self.unsure)),
             "effect costs": (None, *(text or None for text in self.costs.tolist())),
             "share of time [%]": (None, *numbers((100 * self.share).round(1))),
             "time [s]": (self.seconds_with, *numbers(self.seconds_without)),
@@ -339,6 +344,7 @@ def _numbers(change: AnswerChange, unknowns: int) -> dict[str, Any]:
         "changed": ", ".join(change.changed),
         "beyond_error": change.beyond_error,
         "only_with": change.lost,
+        "unsure": change.unsure,
         "unknowns_without": unknowns,
     }
 

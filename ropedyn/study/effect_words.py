@@ -25,6 +25,8 @@ def matters(cost: EffectCost, row: int) -> str:
     if np.isinf(cost.error[row]):
         told = f"probably: {what}; not all" if what else "not told: not all"
         return f"{told} error bars are known"
+    if cost.unsure[row]:
+        return "not told: modes could have other partners"
     return f"none beyond {'' if cost.way.startswith('continuous') else 'mesh and '}rounding"
 
 
@@ -70,7 +72,8 @@ def _size(cost: EffectCost, row: int) -> str:
 def _idle(cost: EffectCost) -> str:
     """Say what is paid for nothing, what costs nothing, and what is not told."""
     open_ = (cost.refusal == "") & ~cost.beyond_error
-    idle = open_ & cost.seen & np.isfinite(cost.error)
+    told = np.isfinite(cost.error) & (cost.unsure == 0)
+    idle = open_ & cost.seen & told
     paid = np.flatnonzero(idle & (cost.costs == "more"))
     free = cost.effect[idle & (cost.costs != "more")]
     said = ["nothing is paid for nothing"]
@@ -82,7 +85,7 @@ def _idle(cost: EffectCost) -> str:
     unseen = cost.effect[open_ & ~cost.seen]
     if len(unseen):
         said.append(f"it cannot tell {_listed(unseen, 'or')}, which motion can")
-    blurred = cost.effect[open_ & cost.seen & ~np.isfinite(cost.error) & (cost.changed == "")]
+    blurred = cost.effect[open_ & cost.seen & ~told & (cost.changed == "")]
     if len(blurred):
         said.append(f"of {_listed(blurred)} it is not told")
     text = "; ".join(said)

@@ -30,11 +30,12 @@ def verdict_of(cost: AccuracyCost) -> str:
         row = row if faster is None else faster
         taken.setdefault(row, []).insert(0, power(tolerance))
     parts = [
-        f"{_in_words(cost, row)} for {_and(of)} ({_told(cost, row)})"
-        for row, of in reversed(taken.items())
+        f"for {'' if k else 'a relative error of '}{_and(of)}{'' if k else ' take'} "
+        f"{_in_words(cost, row)} ({_told(cost, row)})"
+        for k, (row, of) in enumerate(reversed(taken.items()))
     ]
     least = f"; nothing that was tried is right to {' or '.join(missed)}" if missed else ""
-    return f"Take {_and(parts)}{least}. {_cheaper(cost, best)}"
+    return f"{_capital(_and(parts))}{least}. {_cheaper(cost, best)}"
 
 
 def _quicker(cost: AccuracyCost, row: int, tolerance: float) -> int | None:

@@ -126,7 +126,7 @@ def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, qu
     cost = rd.accuracy_cost(scene, question, elements=[16, 32], repeat=1)
     # the verdict stands first; its times are those of another run
     verdict, about = printed["title"].split("\n\n")
-    assert verdict.startswith("Take ")
+    assert verdict.startswith("For a relative error of ")
     assert about == cost.table().title.split("\n\n")[1]
     for column in ("element", "elements", "solver", "true error", "estimated error"):
         assert column_of(printed, column) == list(cost.table().column(column))
@@ -135,7 +135,7 @@ def test_accuracy_prints_the_errors_of_every_way(scene_file, capsys, options, qu
 def test_accuracy_of_damped_modes_begins_with_what_to_take(scene_file, capsys):
     assert main(["accuracy", str(scene_file), "--modes", "2", "--damped", "--elements", "16"]) == 0
     verdict, blank, about = capsys.readouterr().out.splitlines()[:3]
-    assert verdict.startswith("Take ")
+    assert verdict.startswith("For a relative error of ")
     assert (blank, about[:15]) == ("", "2 damped modes:")
     lines = ["--damped", "--frequency", "5", "--drive", "z@0.3"]
     assert main(["accuracy", str(scene_file), *lines]) == 2

@@ -210,6 +210,56 @@ def test_what_an_effect_left_behind_is_executed_as_often_as_without_it(counted):
         assert one == other, effect
 
 
+SPACE = {
+    **ROPE, "torsional_stiffness": 0.4, "axial_stiffness": 4e3, "polar_inertia": 1e-6,
+}  # fmt: skip
+IN_SPACE = rd.Scene(rd.Rope(**SPACE), tension=250.0, planes="both")
+APART = {
+    "second plane": (BARE, BARE.replace(planes="both")),
+    "own weight": (BARE, BARE.replace(gravity=rd.Gravity(9.81, inclination=0.5))),
+    "pulsating tension": (
+        BARE,
+        BARE.replace(tension=rd.Tension(250.0, amplitude=10.0, frequency=30.0)),
+    ),
+    "stop": (BARE, BARE.replace(parts=[rd.Stop(0.5, 1e3, gap=1e-3)])),
+    "axis": (
+        IN_SPACE,
+        IN_SPACE.replace(rope=rd.Rope(**SPACE | {"length": rd.Axis.arc(2.0, 0.6)})),
+    ),
+}
+"""Effects that not every scene can have beside the others: the scene without and with each."""
+
+
+@pytest.mark.parametrize("effect", APART)
+def test_an_effect_apart_leaves_the_scene_that_was_never_given_it(effect):
+    never, given = APART[effect]
+    assert set(given.effects) == {*never.effects, effect}
+    left = given.without(effect)
+    assert left == never
+    assert left.coordinates == never.coordinates
+
+
+def ask_of_motion(scene):
+    """Ask a scene in the plane or in space what both answer."""
+    model = scene.compile()
+    model.modes(4)
+    model.frf([7.0, 90.0], drive=("z", 0.33))
+    model.static({("z", 0.33): 1.0})
+
+
+@with_gcov
+def test_what_an_effect_apart_left_behind_is_executed_as_often_as_without_it(counted):
+    scenes = [f"APART[{e!r}][0]" for e in APART]
+    scenes += [f"APART[{e!r}][1].without({e!r})" for e in APART]
+    found = counted(scenes, "ask_of_motion")
+    for k, effect in enumerate(APART):
+        one, other = (
+            {line: n for line, n in found[at].items() if not UNEVEN.search(line[0])}
+            for at in (k, len(APART) + k)
+        )
+        assert one == other, effect
+
+
 @with_gcov
 def test_what_does_nothing_is_solved_as_often_as_what_is_not_there(counted):
     bare, idle = counted(["BARE", f"BARE.replace({IDLE})"], "ask_of_lines")

@@ -422,6 +422,7 @@ def made(*times, lower=None, upper=None):
         seen=np.ones(size, dtype=bool),
         goes_along=np.full(size, ""),
         only_with=np.array([0, 0, 1, 2])[:size],
+        unsure=np.zeros(size, dtype=int),
         seconds_with=times[0],
         lower_quartile_with=lower[0],
         upper_quartile_with=upper[0],

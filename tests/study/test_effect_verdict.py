@@ -1,12 +1,15 @@
 """What effects matter, in words: against what two scenes answer, computed here once more."""
 
+import dataclasses
 import itertools
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
 import ropedyn as rd
+from ropedyn.experiment.compare.difference import partners
 
 STRING = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0)
 BEAM = rd.Rope(1.2, 0.1, bending_stiffness=1.5, rotary_inertia=2e-5)
@@ -94,6 +97,68 @@ def test_changes_are_those_of_two_scenes(name):
         for measure, right in again(scene, scene.without(effect), question).items():
             # levels of a response near a node of it, and what lies below rounding
             assert answer.change[measure][k] == pytest.approx(right, rel=1e-9, abs=1e-9)
+
+
+def rates_of_a_string(dashpot, place, steps=50):
+    """Rates of a string followed from c = 0: T/v sinh kL + c sinh ka sinh kb = 0, b = L - a."""
+    T, L = mpmath.mpf(STRING.tension), mpmath.mpf(STRING.rope.length)
+    speed = mpmath.sqrt(T / mpmath.mpf(STRING.rope.linear_density))
+
+    def rate(order):
+        k = mpmath.mpc(0, order * mpmath.pi / L)
+        for step in range(1, steps + 1):
+            c = mpmath.mpf(dashpot) * step / steps
+            k = mpmath.findroot(
+                lambda k, c=c: (
+                    T / speed * mpmath.sinh(k * L)
+                    + c * mpmath.sinh(k * place) * mpmath.sinh(k * (L - place))
+                ),
+                k,
+            )
+        return complex(speed * k)
+
+    return np.array([rate(order) for order in (1, 2, 3)])
+
+
+@pytest.mark.parametrize(("c", "unsure"), [(0.5, 0), (2.0, 0), (5.0, 2)])
+def test_a_change_of_damped_modes_is_that_of_rates_that_are_followed(c, unsure):
+    scene = STRING.replace(parts=[rd.Dashpot(0.3, c)])
+    answer = cost(scene, rd.ask.modes(3, damped=True))
+    at = row(answer, "dashpot")
+    with_it, without = rates_of_a_string(c, 0.3), rates_of_a_string(0.0, 0.3, 1)
+    right = 100 * abs((without - with_it) / with_it).max()
+    assert answer.unsure[at] == unsure
+    # rates are right to a few eps, of which percent make a hundred; beside it what is left open
+    off = abs(answer.change["largest [%]"][at] - right)
+    assert off < (answer.error[at] if unsure else 1e-10 * right)
+
+
+def test_partners_are_as_near_as_can_be_all_together():
+    # the first one's nearest is the second one's too
+    which, left_open = partners(np.array([10.0, 14.0]), np.array([9.9, 10.4]))
+    np.testing.assert_array_equal(which, [0, 1])
+    np.testing.assert_allclose(left_open, [4.0, 3.2])  # |14 - 9.9| - 0.1, |10 - 10.4| - 3.6
+
+
+def test_partners_that_are_far_from_all_others_are_sure():
+    found, right = np.array([1.0, 2.0, 3.0, 4.0]) + 0.1, np.array([1.0, 2.0, 3.0])
+    which, left_open = partners(found, right)
+    np.testing.assert_array_equal(which, [0, 1, 2])
+    assert not left_open.any()
+
+
+def test_a_change_that_could_be_of_other_modes_is_not_told():
+    answer = cost(STRING.replace(parts=[rd.Dashpot(0.3, 0.5)]), rd.ask.modes(3, damped=True))
+    at = row(answer, "dashpot")
+    where = np.arange(len(answer.effect)) == at
+    doubtful = dataclasses.replace(
+        answer,
+        unsure=answer.unsure + 2 * where,
+        beyond_error=answer.beyond_error & ~where,
+        changed=np.where(where, "", answer.changed),
+    )
+    assert doubtful.matters[at] == "not told: modes could have other partners"
+    assert "of dashpot it is not told" in doubtful.verdict.lower()
 
 
 # --- the verdict ---------------------------------------------------------------------------------

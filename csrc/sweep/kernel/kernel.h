@@ -40,6 +40,7 @@ struct sweep_block {
     struct shape_series series; /* of phi = tension/section */
     cv pull;                    /* tension z_beta^2 */
     cv slack;                   /* 1/(tension z_z^2) */
+    cv soft, tension;           /* 1/section and the factor on tension themselves */
     cv spring, inertia;         /* factors of node stiffness and mass */
     cv dashpot;                 /* of node damping, 0 where the chain has none */
     int real;                   /* spring and inertia are */
@@ -154,7 +155,6 @@ struct sweep_kernel {
                        cv *coef, lanes *radians);
     void (*make_coefficients)(const cv *triple, cv *coef);
     void (*make_single)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *coef);
-    void (*make_plain)(const struct rd_chain *, const struct sweep_block *, size_t e, cv *plain);
     /* these of complex numbers, and of real ones where nothing is damped; minors from U and U from
        minors, and a walk by them */
     void (*flatten[2])(const struct sweep_block *, struct sweep_state *);

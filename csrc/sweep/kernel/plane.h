@@ -255,44 +255,6 @@ static void K_(scatter)(const struct sweep_block *block, const struct K_(plane) 
 
 #endif
 
-/* x, y, yy, G_zz, G_zbeta, G_betabeta, Q_betabeta, g, r of an element: see sweep/kernel/element.h
-   for the triple. g and r take the other channel o apart:
-       G_oo = g + r^2 G_betabeta,  G_zo = r G_zbeta,  G_obeta = r G_betabeta,  D_obeta = r y */
-static RD_CLONES void K_(make_plain)(const struct rd_chain *chain, const struct sweep_block *b,
-                                     size_t e, cv *plain)
-{
-    const double l = chain->length[e], T = chain->tension[e];
-    const double *S = chain->flexibility + 9 * e;
-    const double Sbb = S[3 * RD_BENDING + RD_BENDING], s = T * Sbb * l * l;
-#if RD_WIDTH == 2
-    const int z = 0;
-    if (!b->bends) {
-        cv triple[FULL + 2 * SYM];
-        K_(element)(chain, e, b, triple);
-        for (int i = 0; i < RD_PLAIN; i++)
-            plain[i] = i < 3 || i > 5 ? c_zero() : triple[i + 1];
-        return;
-    }
-#else
-    const int z = b->arm[0] ? 0 : 1, o = 1 - z, c = b->channel[o];
-    const double rho = S[3 * c + RD_BENDING] / Sbb;
-    plain[7] = c_scale(b->flex[at(o, o)], l * (S[4 * c] - rho * rho * Sbb));
-    plain[8] = (cv){rho * b->ratio[o], (lanes){0}};
-#endif
-    struct shape_lanes p;
-    shape_functions(chain->kind, &b->series, s, &p);
-    const cv y = c_mul(c_scale(b->series.phi, -s), p.P1);
-    cv twice = y;
-    twice.re += 2.0;
-    plain[0] = c_scale_lanes(p.tau, l * b->ratio[z]);
-    plain[1] = y;
-    plain[2] = c_mul(y, twice);
-    plain[3] = c_mul(b->flex[at(z, z)], c_scale(p.P2, Sbb * l * l * l));
-    plain[4] = c_mul(b->flex[at(z, W - 1)], c_scale(p.P1, Sbb * l * l));
-    plain[5] = c_mul(b->flex[at(W - 1, W - 1)], c_scale(p.P0, Sbb * l));
-    plain[6] = c_mul(b->pull, c_scale(p.tau, T * l));
-}
-
 #else /* RD_REAL */
 
 /* the largest of some numbers and what was the largest before */
@@ -332,6 +294,47 @@ RD_INLINE void N_(scatter)(const struct sweep_block *block, const struct N_(plan
 }
 
 #endif
+
+/* x, y, yy, G_zz, G_zbeta, G_betabeta, Q_betabeta, g, r of an element: see sweep/kernel/element.h
+   for the triple. g and r take the other channel o apart:
+       G_oo = g + r^2 G_betabeta,  G_zo = r G_zbeta,  G_obeta = r G_betabeta,  D_obeta = r y */
+static RD_CLONES void N_(make_plain)(const struct rd_chain *chain, const struct sweep_block *b,
+                                     size_t e, cv *plain)
+{
+    const double l = chain->length[e], T = chain->tension[e];
+    const double *S = chain->flexibility + 9 * e;
+    const double Sbb = S[3 * RD_BENDING + RD_BENDING], s = T * Sbb * l * l;
+#if RD_WIDTH == 2
+    const int z = 0;
+    if (!b->bends) {
+        cv triple[FULL + 2 * SYM];
+        K_(element)(chain, e, b, triple);
+        for (int i = 0; i < RD_PLAIN; i++)
+            plain[i] = i < 3 || i > 5 ? c_zero() : triple[i + 1];
+        return;
+    }
+#else
+    const int z = b->arm[0] ? 0 : 1, o = 1 - z, c = b->channel[o];
+    const double rho = S[3 * c + RD_BENDING] / Sbb;
+    plain[7] = c_scale(b->flex[at(o, o)], l * (S[4 * c] - rho * rho * Sbb));
+    plain[8] = (cv){rho * b->ratio[o], (lanes){0}};
+#endif
+    struct shape_lanes p;
+    shape_functions(chain->kind, &b->series, s, &p);
+    const num tau = n_(of)(p.tau), P1 = n_(of)(p.P1);
+    const num y = n_(mul)(n_(scale)(n_(of)(b->series.phi), -s), P1);
+    const num all[7] = {
+        n_(scale_lanes)(tau, l * b->ratio[z]),
+        y,
+        n_(mul)(y, n_(plus)(y, 2.0)),
+        n_(mul)(n_(of)(b->flex[at(z, z)]), n_(scale)(n_(of)(p.P2), Sbb * l * l * l)),
+        n_(mul)(n_(of)(b->flex[at(z, W - 1)]), n_(scale)(P1, Sbb * l * l)),
+        n_(mul)(n_(of)(b->flex[at(W - 1, W - 1)]), n_(scale)(n_(of)(p.P0), Sbb * l)),
+        n_(mul)(n_(of)(b->pull), n_(scale)(tau, T * l)),
+    };
+    UNROLL for (int i = 0; i < 7; i++)
+        plain[i] = n_(as_complex)(all[i]);
+}
 
 /* inertia and springs of a node, and the element's own stiffness on beta */
 RD_INLINE void N_(plane_node)(const struct sweep_walk *s, size_t t, num own, struct N_(plane) * p)
@@ -400,7 +403,7 @@ static RD_CLONES void N_(walk_plain)(const struct sweep_walk *s, size_t node, si
         if (e != made) {
             plain = s->plain ? s->plain + (size_t)e * RD_PLAIN : own;
             if (!s->plain || sweep_is_first(&s->made->plain, e))
-                K_(make_plain)(chain, s->block, (size_t)e, plain);
+                N_(make_plain)(chain, s->block, (size_t)e, plain);
             made = e;
         }
         const int absorbed = k == 0 && state->absorbed;

@@ -53,12 +53,18 @@ static RD_CLONES void K_(walk_triples)(const struct sweep_walk *s, const cv *tri
 static RD_CLONES void K_(make_compound)(const struct rd_chain *chain, const struct sweep_block *b,
                                         size_t e, double length, struct bent_compound *x)
 {
-    const double *S = chain->flexibility + 9 * e, *p = chain->inertia + e * W;
-    const lanes inertia = b->inertia.re, last = b->z[1] * b->z[1];
-    bent_compound_fill(b->flex[SYM - 1].re * S[3 * RD_BENDING + RD_BENDING],
-                       inertia * (b->z[0] * b->z[0]) * p[0],
-                       inertia * last * p[1] + b->pull.re * chain->tension[e], b->ratio[0],
-                       l_fill(length), x);
+    const double Sbb = chain->flexibility[9 * e + 3 * RD_BENDING + RD_BENDING];
+    const double *p = chain->inertia + e * W;
+    const lanes inertia = b->inertia.re, soft = b->soft.re * Sbb;
+    /* wavenumbers without the scales, whose rounding would turn the phase */
+    const struct bent_numbers numbers = {
+        .theta = soft * (b->tension.re * chain->tension[e] + inertia * p[1]),
+        .K = -inertia * p[0] * soft,
+        .soft = b->flex[SYM - 1].re * Sbb,
+        .lever = b->ratio[0],
+        .length = l_fill(length),
+    };
+    bent_compound_fill(&numbers, x);
 }
 
 static RD_CLONES void K_(walk_compound)(const struct bent_compound *x, struct sweep_state *state)

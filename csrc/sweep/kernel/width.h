@@ -79,7 +79,6 @@ const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_coefficients = K_(make_coefficients),
     .make_single = K_(make_single),
 #if RD_WIDTH == 2 || RD_WIDTH == 3
-    .make_plain = K_(make_plain),
     .flatten = {K_(flatten), NAME(real_flatten, RD_WIDTH)},
     .scatter = {K_(unflatten), NAME(real_unflatten, RD_WIDTH)},
     .walk_plain = {K_(walk_plain), NAME(real_walk_plain, RD_WIDTH)},

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.array import Real
+from ...base.array import Index, Real
 from ...chain.chain import CARRIED
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
@@ -51,6 +51,7 @@ class AnswerChange:
     lost: int  # modes or responses that are only there with it
     changed: tuple[str, ...] = ()  # what changes by more than the error bars that are known
     relative: float = math.inf  # how far the answer is off without it, with its error bars
+    unsure: int = 0  # values whose partner another one could be; error bars have both
 
     @staticmethod
     def unknown(measures: Sequence[str]) -> AnswerChange:
@@ -271,6 +272,26 @@ def change_of_motion(whole: History, left: History) -> AnswerChange:
 
 
 # --- other values -------------------------------------------------------------------------------
+
+
+def partners(found: NDArray[Any], right: NDArray[Any]) -> tuple[Index, Real]:
+    """Return which values right ones are next to, each once at most, and how far that is open.
+
+    All together are as near as can be. Where another choice, or two that change places, would be
+    less than twice as far, the distance is open by as much.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    away = np.abs(np.subtract.outer(right, found))
+    which = linear_sum_assignment(away)[1]
+    own = away[np.arange(len(right)), which]
+    other = np.setdiff1d(np.arange(len(found)), which)
+    across = away[:, which]
+    alike = across + across.T < 2 * np.add.outer(own, own)
+    np.fill_diagonal(alike, False)
+    apart = np.abs(np.hstack([across, away[:, other]]) - own[:, None])
+    could = np.hstack([alike, away[:, other] < 2 * own[:, None]])
+    return which, np.where(could, apart, 0.0).max(axis=1, initial=0.0)
 
 
 def change_of_values(apart: Real, error: Real, measures: Sequence[str]) -> AnswerChange:
