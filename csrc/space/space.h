@@ -3,7 +3,7 @@
    y = (u, f), f the force of the right part on the left in the undeformed frame, has y' = E y along a
    piece, E = [[Phi, S], [q, -Phi^T]] with S and q symmetric. Its triple is that of any element:
    u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a. Where curvature or tension change along a piece
-   E(s) = sum phi_j(s) E_j, sum phi_j = 1: polynomials between samples, known by their series. */
+   E(s) = sum phi_j(s) E_j, phi_0 = 1, fields that are known by their series. */
 #ifndef RD_SPACE_H
 #define RD_SPACE_H
 

@@ -19,7 +19,7 @@ from ..base.array import Complex, Flags, Index, Real
 from ..base.computed import computed
 from ..base.errors import SolveError
 from .rope import Factors, SpaceRope, halvings, scaled_rates, size_of
-from .samples import series_of
+from .samples import coefficients, series_of
 
 BAND, ROWS = 11, 34  # Entries on either side of the diagonal, and of a column as LAPACK takes it.
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
@@ -37,6 +37,7 @@ class Assembly:
     N : ndarray of complex, shape (n, parts + 1, 6, 6)
         Of the nodes.
     held : ndarray of bool, shape (parts + 1, 6)
+    absent : ndarray of bool, shape (6,)
     node : ndarray of int, shape (pieces + 1,)
         Where the nodes of the rope are.
     inner : ndarray of int, optional
@@ -49,6 +50,7 @@ class Assembly:
     Q: Complex
     N: Complex
     held: Flags
+    absent: Flags
     node: Index
     z: Real
     inner: Index | None = None
@@ -79,7 +81,7 @@ class Assembly:
 
     def band(self, real: bool) -> Any:
         """Return band matrices (n, columns, ROWS) as LAPACK takes them, of held ones 1."""
-        rows, columns, fixed = _pattern(self.parts, self.held)
+        rows, columns, fixed = _pattern(self.parts, self.held, self.absent)
         F = np.eye(6) + self.D
         diagonal = self.N.copy()
         diagonal[:, :-1] += self.Q
@@ -162,7 +164,7 @@ class Factored:
         return x.swapaxes(1, 2)
 
 
-def _pattern(parts: int, held: Flags) -> tuple[Index, Index, Flags]:
+def _pattern(parts: int, held: Flags, absent: Flags) -> tuple[Index, Index, Flags]:
     """Return rows and columns of the blocks' entries, and which unknowns are held."""
     i, j = np.divmod(np.arange(36), 6)
     u, f = 12 * np.arange(parts + 1)[:, None], 12 * np.arange(parts)[:, None] + 6
@@ -170,7 +172,7 @@ def _pattern(parts: int, held: Flags) -> tuple[Index, Index, Flags]:
     rows = np.concatenate([(row + i).ravel() for row, _ in places])
     columns = np.concatenate([(column + j).ravel() for _, column in places])
     fixed = np.zeros((2 * parts + 1, 6), dtype=bool)
-    fixed[::2] = held
+    fixed[::2], fixed[1::2] = held, absent
     return rows, columns, fixed.ravel()
 
 
@@ -185,8 +187,9 @@ def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> A
     by = rope.turn * (z[:, None, None, :] / z[:, None, :, None]) - np.eye(6)
     triples, counts = [], []
     for p, length in enumerate(rope.length / equal):
-        one = np.ascontiguousarray(rates[:, p])
-        triple = parts_of(one, float(length), int(halvings(size[p] * length)))
+        one = np.ascontiguousarray(coefficients(rates[:, p]))
+        halved = int(halvings(max(size[p] * length, rope.least_radians[p])))
+        triple = parts_of(one, float(length), halved)
         many = equal * triple.shape[1]
         counts.append(many)
         if sum(counts) > MOST_PARTS:
@@ -203,8 +206,9 @@ def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> A
     N[:, node] = rope.nodes(factors) * (z[:, None, :, None] * z[:, None, None, :])
     held = np.zeros((node[-1] + 1, 6), dtype=bool)
     held[node] = rope.held
+    held[:, rope.absent] = True
     D, G, Q = np.concatenate(triples, axis=1).transpose(2, 0, 1, 3, 4)
-    return Assembly(D, G, Q, N, held, node, z)
+    return Assembly(D, G, Q, N, held, rope.absent, node, z)
 
 
 def parts_of(rates: Complex, length: float, halved: int) -> Complex:

@@ -23,7 +23,7 @@ from ..scene.scene import Scene
 from .compile import rope_of_scene
 from .modes import solve_modes
 from .response import solve_frf
-from .rope import SIX, SpaceRope
+from .rope import SpaceRope
 from .spectrum import count_below
 from .static import solve_static
 
@@ -46,7 +46,7 @@ class SpaceModel(Frozen):
     scene : Scene
         What was compiled.
     coordinates : tuple of str
-        x, y, z, alpha, beta, gamma.
+        x, y, z, alpha, beta, gamma; of a string x, y and z.
     rope : SpaceRope
         Its pieces as arrays.
 
@@ -78,7 +78,7 @@ class SpaceModel(Frozen):
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Of every place."""
-        return SIX
+        return self.rope.coordinates
 
     @property
     def components(self) -> tuple[tuple[str, ...], ...]:
@@ -92,7 +92,7 @@ class SpaceModel(Frozen):
         >>> rd.Scene(rope, planes="both").compile().components
         (('x', 'y', 'z', 'alpha', 'beta', 'gamma'),)
         """
-        return (SIX,)
+        return (self.coordinates,)
 
     @property
     def element(self) -> str:
@@ -117,7 +117,7 @@ class SpaceModel(Frozen):
 
     @property
     def _card(self) -> tuple[str, Card]:
-        pieces = f"{len(self.rope.length)} uniform pieces"
+        pieces = f"{len(self.rope.length)} pieces"
         return "Model of a rope on an axis", card(self.scene) | {"model": pieces}
 
     def __getattr__(self, name: str) -> NoReturn:

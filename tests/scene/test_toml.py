@@ -186,7 +186,9 @@ def every_effect_but_a_law():
         natural="straight",
     )
     curved = rd.Scene(spring, planes="both")
-    return sagging, stretching, upright, sagging.replace(**plain), curved
+    strip = rd.Rope(1.0, 0.1, bending_stiffness=(1.0, 2.0), principal_angle=0.3)
+    twisted = rd.Scene(strip, planes="both", torque=0.1)
+    return sagging, stretching, upright, sagging.replace(**plain), curved, twisted
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e != rd.NodeForce.kind])

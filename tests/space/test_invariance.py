@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 import ropedyn as rd
 from ropedyn.space.compile import rope_of_scene, section_of
-from ropedyn.space.pieces import SpaceSection, rope_of
+from ropedyn.space.pieces import Rest, SpaceSection, rope_of
 from ropedyn.space.spectrum import count_below, lowest
 
 SAME = 1e-12
@@ -115,7 +115,7 @@ def test_two_kinks_out_of_one_plane_tell_a_rotation_from_its_inverse():
 
 def straight(section, tension=0.0, length=1.35):
     """A straight rope by the pieces of a curved one."""
-    rope = rope_of(rd.Axis.line(length), section, tension)
+    rope = rope_of(rd.Axis.line(length), section, Rest(tension))
     rope.held[[0, -1]] = True
     return rope
 
@@ -178,11 +178,11 @@ def test_nearly_double_modes_are_told_apart(apart):
 def test_an_arc_of_no_curvature_is_straight():
     length = 1.0
     wanted = lowest(straight(round_section(), length=length), 5, math.inf).eigenvalue
-    rope = rope_of(rd.Axis.arc(1e9, length / 1e9), round_section(), 0.0)
+    rope = rope_of(rd.Axis.arc(1e9, length / 1e9), round_section(), Rest())
     rope.held[[0, -1]] = True
     assert lowest(rope, 5, math.inf).eigenvalue == pytest.approx(wanted, rel=1e-9)
     steep = rd.Axis.helix(1.0, math.pi / 2 - 1e-6, length / (2 * math.pi) * 1e-6)
-    rope = rope_of(steep, round_section(), 0.0)
+    rope = rope_of(steep, round_section(), Rest())
     rope.held[[0, -1]] = True
     assert lowest(rope, 5, math.inf).eigenvalue == pytest.approx(wanted, rel=1e-5)
 
