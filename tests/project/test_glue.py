@@ -204,7 +204,7 @@ ARC = rd.Rope(rd.Axis.arc(1.0, 2.0), 0.1, bending_stiffness=1.0, torsional_stiff
 SPACE, SCALE = rd.Scene(ARC, planes="both").compile().rope.core(np.array([1e4, 1e6]))
 RATES, SERIES = SPACE[3] + 0j, SPACE[4]
 BAND = np.zeros((2, 6, 34)) + np.eye(34)[22]
-SOLVED = np.ones((2, 3, 6))
+SOLVED, FACTORED = np.ones((2, 3, 6)), _core.space_factor(BAND + 0j)[:2]
 
 # every entry point that takes a chain
 ENTRIES = {
@@ -287,7 +287,7 @@ OTHERS = {
     "divide": lambda _: _core.divide(*DIVIDED),
     "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 6, 6, 1e4),
     "space_factor": lambda _: _core.space_factor(BAND),
-    "space_solve": lambda _: _core.space_solve(*_core.space_factor(BAND + 0j)[:2], SOLVED),
+    "space_solve": lambda _: _core.space_solve(*FACTORED, SOLVED),
     "space_count": lambda _: _core.space_count(SPACE, np.array([1e4, 1e6]), SCALE),
 }
 
@@ -616,12 +616,12 @@ REFUSED = {
     "nodes of a piece beyond its halvings": (
         lambda: _core.space_count((*SPACE[:2], SPACE[2] + 24, *SPACE[3:]), np.ones(1), SCALE[:1]),
         ValueError,
-        "nodes must be from 1 to 24 and at most 2^halvings, got 25",
+        r"nodes must be from 1 to 24 and at most 2\^halvings, got 25",
     ),
     "series of more nodes than parts": (
         lambda: _core.space_triples(RATES, np.tile(SERIES, (3, 1, 1)), 2.0, 1, 1, 1e4),
         ValueError,
-        "series must be from 1 to 24 and at most 2^halvings, got 3",
+        r"series must be from 1 to 24 and at most 2\^halvings, got 3",
     ),
     "pieces without inertia": (
         lambda: _core.space_count((*SPACE[:5], SPACE[5][1:], *SPACE[6:]), np.ones(1), SCALE[:1]),
@@ -649,7 +649,7 @@ REFUSED = {
         "band must have 34 entries along axis 2, got 33",
     ),
     "right sides of fewer rows": (
-        lambda: _core.space_solve(*_core.space_factor(BAND)[:2], SOLVED[:, :, :5]),
+        lambda: _core.space_solve(*FACTORED, SOLVED[:, :, :5]),
         ValueError,
         "right must have 6 entries along axis 2, got 5",
     ),
