@@ -21,7 +21,6 @@ from ..base.errors import SolveError
 from .rope import Factors, SpaceRope, halvings, scaled_rates, size_of
 from .samples import coefficients, series_of
 
-BAND, ROWS = 11, 34  # Entries on either side of the diagonal, and of a column as LAPACK takes it.
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
 MOST_PARTS = 100_000
 
@@ -79,23 +78,6 @@ class Assembly:
         D, G, Q, N = (np.ascontiguousarray(a.imag) for a in (self.D, self.G, self.Q, self.N))
         return Blocks(D, G, Q, N, self.held, 0.0)
 
-    def band(self, real: bool) -> Any:
-        """Return band matrices (n, columns, ROWS) as LAPACK takes them, of held ones 1."""
-        rows, columns, fixed = _pattern(self.parts, self.held, self.absent)
-        F = np.eye(6) + self.D
-        diagonal = self.N.copy()
-        diagonal[:, :-1] += self.Q
-        one = np.broadcast_to(np.eye(6), F.shape)
-        blocks = [diagonal, -F, -F.swapaxes(2, 3), -self.G, one, one]
-        values = np.concatenate([block.reshape(len(F), -1) for block in blocks], axis=1)
-        size = (2 * self.parts + 1) * 6
-        band = np.zeros((len(F), size, ROWS), dtype=np.float64 if real else np.complex128)
-        free = ~(fixed[rows] | fixed[columns])
-        rows, columns = rows[free], columns[free]
-        band[:, columns, 2 * BAND + rows - columns] = (values.real if real else values)[:, free]
-        band[:, fixed, 2 * BAND] = 1.0
-        return band
-
     def together(self, u: Any, f: Any) -> Any:
         """Return rows in the order of the band, from (n, parts + 1, 6, c) and (n, parts, 6, c)."""
         both = np.zeros((len(u), 2 * self.parts + 1, *u.shape[2:]), dtype=np.result_type(u, f))
@@ -109,7 +91,10 @@ class Assembly:
 
     def factored(self, *, real: bool = False) -> Factored:
         """Return all lines factored."""
-        lu, pivot, failed = _core.space_factor(self.band(real))
+        D, G, Q, N = self.real[:4] if real else (self.D, self.G, self.Q, self.N)
+        fixed = np.zeros((2 * self.parts + 1, 6), dtype=np.uint8)
+        fixed[::2], fixed[1::2] = self.held, self.absent
+        lu, pivot, failed = _core.space_factor(D, G, Q, N, fixed.ravel())
         if failed < len(lu):
             raise Singular(failed)
         return Factored(lu, pivot)
@@ -162,18 +147,6 @@ class Factored:
         """Return the solutions of columns (n, rows, columns)."""
         x: Any = _core.space_solve(self.lu, self.pivot, right.swapaxes(1, 2))
         return x.swapaxes(1, 2)
-
-
-def _pattern(parts: int, held: Flags, absent: Flags) -> tuple[Index, Index, Flags]:
-    """Return rows and columns of the blocks' entries, and which unknowns are held."""
-    i, j = np.divmod(np.arange(36), 6)
-    u, f = 12 * np.arange(parts + 1)[:, None], 12 * np.arange(parts)[:, None] + 6
-    places = [(u, u), (f, u[:-1]), (u[:-1], f), (f, f), (f, u[1:]), (u[1:], f)]
-    rows = np.concatenate([(row + i).ravel() for row, _ in places])
-    columns = np.concatenate([(column + j).ravel() for _, column in places])
-    fixed = np.zeros((2 * parts + 1, 6), dtype=bool)
-    fixed[::2], fixed[1::2] = held, absent
-    return rows, columns, fixed.ravel()
 
 
 def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> Assembly:

@@ -265,8 +265,10 @@ def ritz(system: Assembly, x: Real, sizes: list[int], times: int = 3) -> list[Ne
     own = np.linalg.qr(factored.solve(mass(system, np.linalg.qr(own)[0])))[0]
     found = []
     A, M = _forms(system, own)
+    alike = _small(A, M) if min(sizes) == most else None
     for k, size in enumerate(sizes):
-        ((shift, mix),) = _small(A[k : k + 1, :size, :size], M[k : k + 1, :size, :size])
+        few = slice(k, k + 1), slice(size), slice(size)
+        shift, mix = alike[k] if alike else _small(A[few], M[few])[0]
         own[k, :, : mix.shape[1]] = own[k, :, :size] @ mix
         found.append((shift, mix.shape[1]))
     error = _rounding(system, own)
