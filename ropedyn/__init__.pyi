@@ -63,6 +63,7 @@ from .scene.tension import Tension
 from .signal.ringdown import RingDown
 from .signal.spectrum import Spectrum
 from .space.model import SpaceModel
+from .space.wire import wound_wire
 from .study.accuracy import AccuracyCost, accuracy_cost
 from .study.effect import EffectCost, effect_cost
 from .study.hard.hard_cases import HardCases, hard_cases
@@ -162,4 +163,5 @@ __all__ = [
     "study2015",
     "sweep",
     "track",
+    "wound_wire",
 ]

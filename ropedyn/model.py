@@ -589,7 +589,7 @@ class Model(Compiled):
 
 def compile_model(scene: Scene, **how: Any) -> Any:
     """Compile a scene; see `Scene.compile`."""
-    if scene.rope.axis is not None:
+    if scene.is_spatial:
         return compile_space(scene, **how)
     model = object.__new__(Model)
     vars(model).update(vars(compile_within(scene, **how)))

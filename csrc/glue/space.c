@@ -77,36 +77,47 @@ done:
     return result;
 }
 
-/* bands (lines, size, RD_SPACE_ROWS) of the type and their pivots, factored; ValueError where one is
-   singular says which */
+/* bands of D, G, Q, N and what is fixed, of the type of D; which line is singular, or how many there are */
 PyObject *py_space_factor(PyObject *module, PyObject *arguments)
 {
     (void)module;
-    PyObject *object, *factor = NULL, *pivot = NULL, *result = NULL;
-    if (!PyArg_ParseTuple(arguments, "O", &object))
+    PyObject *o[5], *factor = NULL, *pivot = NULL, *result = NULL;
+    struct py_kept kept = {0};
+    const double *blocks[4];
+    static const char *const names[] = {"D", "G", "Q", "N"};
+    if (!PyArg_ParseTuple(arguments, "OOOOO", o, o + 1, o + 2, o + 3, o + 4))
         return NULL;
-    const int real = PyArray_Check(object) && PyArray_TYPE((PyArrayObject *)object) == NPY_DOUBLE;
-    PyArrayObject *band = py_array(object, real ? NPY_DOUBLE : NPY_CDOUBLE, 3,
-                                   (npy_intp[]){-1, -1, RD_SPACE_ROWS}, "band");
-    if (band == NULL)
-        return NULL;
-    const npy_intp *shape = PyArray_DIMS(band);
-    factor = (PyObject *)PyArray_NewCopy(band, NPY_CORDER);
-    pivot = py_new(NPY_INT32, 2, shape);
+    const int real = PyArray_Check(o[0]) && PyArray_TYPE((PyArrayObject *)o[0]) == NPY_DOUBLE;
+    const int type = real ? NPY_DOUBLE : NPY_CDOUBLE;
+    npy_intp shape[] = {-1, -1, RD_SIX, RD_SIX};
+    for (int k = 0; k < 4; k++) {
+        if ((blocks[k] = py_keep(&kept, o[k], type, 4, shape, names[k])) == NULL)
+            goto done;
+        shape[0] = py_kept_length(&kept, 0);
+        shape[1] = py_kept_length(&kept, 1) + (k == 2);
+    }
+    const npy_intp lines = shape[0], parts = shape[1] - 1, size = (2 * parts + 1) * RD_SIX;
+    const uint8_t *fixed = py_keep(&kept, o[4], NPY_UINT8, 1, &size, "fixed");
+    if (fixed == NULL)
+        goto done;
+    factor = py_new(type, 3, (npy_intp[]){lines, size, RD_SPACE_ROWS});
+    pivot = py_new(NPY_INT32, 2, (npy_intp[]){lines, size});
     if (factor == NULL || pivot == NULL)
         goto done;
     void *at = PyArray_DATA((PyArrayObject *)factor);
     int32_t *rows = PyArray_DATA((PyArrayObject *)pivot);
     size_t failed;
     Py_BEGIN_ALLOW_THREADS
-    failed = real ? rd_space_factor((size_t)shape[0], (size_t)shape[1], at, rows)
-                  : rd_space_factor_complex((size_t)shape[0], (size_t)shape[1], at, rows);
+    rd_space_band((size_t)lines, (size_t)parts, real ? 1 : 2, blocks[0], blocks[1], blocks[2],
+                  blocks[3], fixed, at);
+    failed = real ? rd_space_factor((size_t)lines, (size_t)size, at, rows)
+                  : rd_space_factor_complex((size_t)lines, (size_t)size, at, rows);
     Py_END_ALLOW_THREADS
     result = Py_BuildValue("OOn", factor, pivot, (Py_ssize_t)failed);
 done:
     Py_XDECREF(factor);
     Py_XDECREF(pivot);
-    Py_DECREF(band);
+    py_kept_release(&kept);
     return result;
 }
 

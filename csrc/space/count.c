@@ -137,7 +137,7 @@ static void rates_of(const struct counting *c, size_t p, double *E)
         for (size_t i = 0; i < RD_SIX; i++)
             for (size_t k = 0; k < RD_SIX; k++) {
                 const size_t at = i * RD_SIX + k, all = RD_SIX * RD_SIX;
-                const double mass = rope->inertia[p * all + at];
+                const double mass = j == 0 ? rope->inertia[p * all + at] : 0;
                 const double *one = from + j * RD_SPACE_TRIPLE + at;
                 double *to = E + j * RD_SPACE_TRIPLE + at;
                 to[0] = one[0] * z[k] / z[i];

@@ -3,7 +3,7 @@
    y = (u, f), f the force of the right part on the left in the undeformed frame, has y' = E y along a
    piece, E = [[Phi, S], [q, -Phi^T]] with S and q symmetric. Its triple is that of any element:
    u_b = F u_a + G f_b, f_a = F^T f_b - Q u_a. Where curvature or tension change along a piece
-   E(s) = sum phi_j(s) E_j, sum phi_j = 1: polynomials between samples, known by their series. */
+   E(s) = sum phi_j(s) E_j, phi_0 = 1, fields that are known by their series. */
 #ifndef RD_SPACE_H
 #define RD_SPACE_H
 
@@ -66,7 +66,17 @@ enum rd_status rd_space_triples(const struct rd_space_run *run, size_t lines,
                                 double _Complex *triple, int *reached,
                                 struct rd_workspace *workspace);
 
-/* Band matrices (lines, size, RD_SPACE_ROWS), by columns, factored in place as LAPACK does; pivot
+/* The matrix of motion u at the nodes and force f at the right end of each part, u_0, f_0, u_1 ..,
+
+       f_i-1 - F^T f_i + (Q + N) u_i = p_i,   u_i+1 - F u_i - G f_i = d_i,
+
+   as LAPACK's band by columns (lines, size, RD_SPACE_ROWS), size = 12 parts + 6, of entries of `numbers`
+   doubles, 1 or 2: D, G, Q (lines, parts, 6, 6), N (lines, parts + 1, 6, 6); rows and columns that
+   are fixed (size) are those of 1. */
+void rd_space_band(size_t lines, size_t parts, size_t numbers, const double *D, const double *G,
+                   const double *Q, const double *N, const uint8_t *fixed, double *band);
+
+/* Such bands, factored in place as LAPACK does; pivot
    (lines, size). Returns the first that is singular, or `lines`. */
 size_t rd_space_factor(size_t lines, size_t size, double *band, int32_t *pivot);
 size_t rd_space_factor_complex(size_t lines, size_t size, double _Complex *band, int32_t *pivot);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,10 @@ class UniformPiece(NamedTuple):
     def rates(self, s: Real) -> Real:
         """Return (tau, kz, ky) at arc lengths, shape (s, 3) [rad/m]."""
         return np.tile([self.torsion, self.curvature, 0.0], (len(s), 1))
+
+    def bending(self, s: Real) -> Real:
+        """Return how curvature changes along it [rad/m^2]."""
+        return 0 * s
 
     def travel(self, s: Real) -> tuple[Real, Real]:
         """Return positions and frames there in the frame of the start, (s, 3) and (s, 3, 3)."""
@@ -56,6 +60,27 @@ class CatenaryPiece(NamedTuple):
         """Return (tau, kz, ky) at arc lengths, shape (s, 3) [rad/m]."""
         kz = self.parameter / (self.parameter**2 + (self.begin + s) ** 2)
         return np.stack([0 * s, kz, 0 * s], axis=1)
+
+    def bending(self, s: Real) -> Real:
+        """Return how curvature changes along it [rad/m^2]."""
+        along: Real = self.begin + s
+        return -2 * self.parameter * along / (self.parameter**2 + along**2) ** 2
+
+    def pull(self, s: Any) -> Any:
+        """Return the tension over weight per length there [m]."""
+        return np.hypot(self.parameter, self.begin + np.asarray(s))
+
+    @property
+    def mean_pull(self) -> float:
+        """Its mean along the piece [m]."""
+        c = self.parameter
+        whole = [u * math.hypot(c, u) + c**2 * math.asinh(u / c) for u in (self.begin, self.end)]
+        return (whole[1] - whole[0]) / (2 * self.length)
+
+    @property
+    def end(self) -> float:
+        """How far behind its lowest point it ends [m]."""
+        return self.begin + self.length
 
     def travel(self, s: Real) -> tuple[Real, Real]:
         """Return positions and frames there in the frame of the start, (s, 3) and (s, 3, 3)."""

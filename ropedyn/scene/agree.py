@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ..axis.piece import CatenaryPiece
 from ..base import check
 from ..base.errors import SceneError
 from ..base.parameter import positions
@@ -13,10 +16,10 @@ from . import end as _end
 from .parts import part as _part
 from .parts.broken_wire import BrokenWire
 from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
-from .rope import ACROSS
+from .rope import ACROSS, own_number
 from .stations import stations_at
 from .tension import Tension
-from .weight import refuse_slack
+from .weight import hanging, place_of, refuse_slack
 
 if TYPE_CHECKING:
     from .described import Described
@@ -42,32 +45,97 @@ def refuse_axis(scene: Described, what: str) -> None:
     """Refuse what is known of straight ropes alone."""
     if scene.rope.axis is not None:
         raise SceneError(f"rope must be straight for {what}, got one on an axis")
+    if scene.is_spatial:
+        raise SceneError(f"torque and principal_angle must be left out for {what}")
 
 
 def _check_on_axis(scene: Described) -> None:
-    """Refuse what is not carried where the rope follows an axis."""
-    axis = scene.rope.axis
-    if axis is None:
+    """Refuse what is not carried where six coordinates are solved at once."""
+    if not scene.is_spatial:
         return
+    axis, hangs = scene.rope.axis, hanging(scene.rope, scene.gravity)
+    what = "a rope on an axis" if axis else "a rope with torque or turned principal axes"
     if scene.planes != "both":
-        raise SceneError('planes must be "both" for a rope on an axis, got "z"')
+        raise SceneError(f'planes must be "both" for {what}, got "z"')
+    heavy = scene.gravity is not None and hangs is None
     absent = {
         "parts": check.shown(scene.parts) if scene.parts else "",
-        "gravity": check.shown(scene.gravity) if scene.gravity is not None else "",
+        "gravity": check.shown(scene.gravity) if heavy else "",
         "damping": "a ModalDamping" if damping.having(scene.dampings, "ratio") else "",
     }
     for name, got in absent.items():
         if got:
-            raise SceneError(f"{name} must be left out for a rope on an axis, got {got}")
-    if isinstance(scene.tension, Tension):
+            raise SceneError(f"{name} must be left out for {what}, got {got}")
+    if hangs is not None:
+        _check_hanging(scene, hangs)
+    elif isinstance(scene.tension, Tension):
         got = check.shown(scene.tension)
-        raise SceneError(f"tension must be one number for a rope on an axis [N], got {got}")
-    corners = [kink.s for kink in axis.kinks if abs(kink.turn[0, 0] - 1) > check.NEAR]
-    if scene.tension != 0 and corners:
+        raise SceneError(f"tension must be one number for {what} [N], got {got}")
+    is_string = axis is not None and scene.rope.bending_stiffness is None
+    if is_string and not scene.mean_tension > 0:
         raise SceneError(
-            "tension must be 0 on an axis with corners, where nothing balances it: give them a "
-            f"fillet, got {scene.tension:g} N at the corner at {corners[0]:g} m"
+            "bending_stiffness must be given of a rope on an axis without tension, got None"
         )
+    if scene.torque and scene.rope.bending_stiffness is None:
+        raise SceneError(
+            f"torque must be 0 without bending_stiffness of the rope, got {scene.torque:g} N m"
+        )
+    _check_corners(scene)
+
+
+def _check_corners(scene: Described) -> None:
+    """Refuse what nothing balances at a corner."""
+    kinks = scene.rope.axis.kinks if scene.rope.axis else ()
+    corners = [kink.s for kink in kinks if abs(kink.turn[0, 0] - 1) > check.NEAR]
+    for name, value, unit in (("tension", scene.tension, "N"), ("torque", scene.torque, "N m")):
+        if value != 0 and corners:
+            raise SceneError(
+                f"{name} must be 0 on an axis with corners, where nothing balances it: give them a "
+                f"fillet, got {value:g} {unit} at the corner at {corners[0]:g} m"
+            )
+
+
+UNBALANCED = 1e-3
+"""Of the weight: more that the forces of bending leave of it is no equilibrium."""
+
+
+def _check_hanging(scene: Described, piece: CatenaryPiece) -> None:
+    """Refuse what is not at rest in a catenary."""
+    gravity = scene.gravity
+    assert gravity is not None
+    if not (gravity.g > 0 and gravity.inclination == 0):
+        raise SceneError(
+            "gravity must have g > 0 and inclination = 0 of a rope that hangs in a catenary, whose "
+            f"ends say how it is inclined, got {check.shown(gravity)}"
+        )
+    mean, wanted, changes = scene.tension, scene.mean_tension, False
+    if isinstance(mean, Tension):
+        changes = mean.pulsates or mean.stretching
+        wanted = float(scene.tension_at(place_of(mean, scene.rope.length)))
+        mean = mean.mean
+    if changes or (mean != 0 and abs(mean - wanted) > 1e-9 * wanted):
+        raise SceneError(
+            f"tension must be left out, or {wanted!r} N as the catenary and its weight have, got "
+            f"{check.shown(scene.tension)}"
+        )
+    left = _unbalanced(scene, piece)
+    if left > UNBALANCED:
+        raise SceneError(
+            'natural must be "axis": a rope that is straight when nothing loads it does not hang '
+            f"in a catenary, its bending leaves {left:.2g} of its weight"
+        )
+
+
+def _unbalanced(scene: Described, piece: CatenaryPiece) -> float:
+    """Return what bending leaves of the weight: B kz kz' along, B kz'' across."""
+    if scene.rope.natural != "straight" or scene.gravity is None:
+        return 0.0
+    s = np.linspace(0.0, piece.length, 257)
+    along, c = piece.begin + s, piece.parameter
+    r, kz = c**2 + along**2, piece.rates(s)[:, 1]
+    force = np.maximum(np.abs(kz * piece.bending(s)), np.abs(c * (6 * along**2 - 2 * c**2) / r**3))
+    bending = own_number(scene.rope, "bending_stiffness") or 0.0
+    return float(bending * force.max() / (scene.rope.linear_density * scene.gravity.g))
 
 
 def _check_coordinates(scene: Described) -> None:
@@ -187,7 +255,7 @@ def _is_bare(scene: Described, end: int) -> bool:
 
 
 def _check_gravity(scene: Described) -> None:
-    if scene.gravity is None:
+    if scene.gravity is None or scene.is_spatial:
         return
     if scene.gravity.sag and scene.rope.axial_stiffness is None and not scene.is_graded:
         raise SceneError("gravity needs axial_stiffness of the rope [N], got None")

@@ -10,7 +10,7 @@ import numpy as np
 from ..base import check
 from ..base.array import Real
 from ..base.computed import computed
-from ..base.parameter import Description, given, instance, one_of
+from ..base.parameter import Description, given, instance, number, one_of
 from . import damping as _damping
 from . import end as _end
 from . import left
@@ -24,7 +24,7 @@ from .parts.node import Part
 from .parts.stretch import Stretch
 from .rope import Rope
 from .tension import Tension
-from .weight import Grade, curves, grade, pulls
+from .weight import Grade, curves, grade, hanging, pulls
 
 EFFECTS = (
     "tension",
@@ -43,6 +43,7 @@ EFFECTS = (
     SECOND_PLANE,
     "axis",
     "initial moment",
+    "turned section",
     "shear",
 )
 """The effects that a scene can have, in their fixed order."""
@@ -59,6 +60,19 @@ class Described(Description):
     parts: tuple[Part | Stretch, ...] = given(checked_parts, default=())
     gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
     planes: str = one_of(("z", "both"), default="z")
+    torque: float = number("N m", default=0.0)
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether its six coordinates are solved at once: a `SpaceModel`.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).is_spatial
+        False
+        """
+        return self.rope.axis is not None or self.torque != 0 or self.rope.is_turned
 
     @property
     def is_graded(self) -> bool:
@@ -117,6 +131,8 @@ class Described(Description):
         places = check.numbers(np.atleast_1d(x), "x", "m")
         for place in places:
             check.position(float(place), "x", self.rope.length)
+        if hangs := hanging(self.rope, self.gravity):
+            return self._hung(hangs.pull(np.asarray(x, dtype=np.float64)))
         return self.grade.at(places).reshape(np.shape(x))
 
     @property
@@ -130,9 +146,15 @@ class Described(Description):
         >>> rd.Scene(rd.Rope(1.0, 0.1), tension=tension).mean_tension
         1000.0
         """
+        if hangs := hanging(self.rope, self.gravity):
+            return float(self._hung(hangs.mean_pull))
         if self.is_graded:
             return self.grade.mean
         return self.tension.mean if isinstance(self.tension, Tension) else self.tension
+
+    def _hung(self, pull: Any) -> Any:
+        assert self.gravity is not None
+        return self.gravity.g * self.rope.linear_density * pull
 
     @computed
     def coordinates(self) -> tuple[str, ...]:
@@ -182,10 +204,11 @@ class Described(Description):
             and rope.rotary_inertia not in (None, 0.0, (0.0, 0.0)),
             "polar inertia": bool(rope.polar_inertia and rope.torsional_stiffness),
             Gravity.kind: self.sags,
-            Gravity.grading: self.is_graded,
+            Gravity.grading: self.is_graded or hanging(rope, self.gravity) is not None,
             SECOND_PLANE: self.planes == "both",
             "axis": rope.axis is not None,
-            "initial moment": rope.axis is not None and rope.natural == "straight",
+            "initial moment": rope.natural == "straight" or self.torque != 0,
+            "turned section": rope.is_turned,
             "shear": rope.shear_stiffness is not None,
         }
         return tuple(effect for effect in EFFECTS if acts.get(effect, effect in stands))

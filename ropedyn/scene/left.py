@@ -15,7 +15,7 @@ from .parts.node import Part
 from .parts.stretch import Stretch, changeable
 from .rope import ACROSS, Rope, own_number
 from .tension import Tension
-from .weight import curves, pulls
+from .weight import curves, hanging, pulls
 
 if TYPE_CHECKING:
     from .described import Described
@@ -29,6 +29,7 @@ PROPERTIES = {
     "polar inertia": ("polar_inertia",),
     "shear": ("shear_stiffness",),
     "axis": ("axis", "shear_stiffness"),
+    "turned section": ("principal_angle",),
 }
 """What a rope never had that never had one of these effects."""
 
@@ -37,9 +38,9 @@ SECOND_PLANE = "second plane"  # The effect that a scene moves in the plane of y
 
 def coordinates_of(rope: Rope, mean_tension: float, planes: str) -> tuple[str, ...]:
     """Return the coordinates that a rope under a tension has."""
-    if rope.axis is not None:
-        return COORDINATES
     bends = rope.bending_stiffness is not None
+    if rope.axis is not None:
+        return COORDINATES if bends else COORDINATES[:3]
     present = {
         "x": rope.axial_stiffness is not None,
         "z": bends or mean_tension != 0,
@@ -70,6 +71,7 @@ def left_of(scene: Described, effects: tuple[str, ...]) -> dict[str, Any]:
         "gravity": gravity,
         "parts": tuple(part for part in left if part is not None),
         "planes": planes,
+        "torque": 0.0 if "initial moment" in effects else scene.torque,
     }
 
 
@@ -92,7 +94,7 @@ def _gravity(gravity: Gravity | None, rope: Rope, effects: tuple[str, ...]) -> G
         gravity = dataclasses.replace(gravity, sag=False)
     if Gravity.grading in effects:
         gravity = dataclasses.replace(gravity, own_weight=False)
-    return gravity if curves(gravity, rope) or pulls(gravity) else None
+    return gravity if curves(gravity, rope) or pulls(gravity) or hanging(rope, gravity) else None
 
 
 def _tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tension:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..axis.axis import Axis
+from ..axis.piece import CatenaryPiece
 from ..base import check
 from ..base.errors import SceneError
 from ..base.parameter import Description, Pair, given, instance, number, pair
@@ -35,6 +36,24 @@ def own_number(rope: Rope, name: str) -> float | None:
     return found
 
 
+Angle = float | tuple[tuple[float, ...], tuple[float, ...]]  # A number, or places and angles there.
+
+
+def _checked_angle(value: Any) -> Angle | None:
+    """Return an angle, or places and angles there; None where it is 0 everywhere."""
+    if value is None or isinstance(value, (int, float)):
+        angle = check.optional(value, "principal_angle", "rad")
+        return angle or None
+    expected = "principal_angle must be a number, or places (s) [m] and angles there [rad]"
+    try:
+        places, angles = (check.numbers(one, "principal_angle", "m, rad") for one in value)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{expected}, got {check.shown(value)}") from error
+    if len(places) != len(angles) or len(places) < 2 or (np.diff(places) <= 0).any():
+        raise SceneError(f"{expected}, two or more that increase, got {check.shown(value)}")
+    return tuple(map(float, places)), tuple(map(float, angles))
+
+
 def _checked_natural(value: Any) -> str | None:
     return None if value is None else check.one_of(value, "natural", ("axis", "straight"))
 
@@ -46,8 +65,8 @@ class Rope(Description):
     ----------
     length : float or Axis
         Between the two ends [m], or the line that the rope follows in space; a scene of such a rope
-        has all six coordinates, and needs ``planes="both"``, bending and torsional stiffness. On a
-        straight axis it is a straight rope.
+        has all six coordinates, and needs ``planes="both"``, bending and torsional stiffness, or
+        under tension neither: a string, of x, y and z. On a straight axis it is a straight rope.
     linear_density : float
         Mass per length [kg/m].
     bending_stiffness : float or pair of float, optional
@@ -74,9 +93,12 @@ class Rope(Description):
     shear_stiffness : float, optional
         k G A [N], of a rope on an axis.
     natural : {"axis", "straight"}, optional
-        What a rope on an axis is when nothing loads it: as its axis, like a spring, where this is
-        left out, or straight, so that it is bent by the moment B times the curvature, which counts
-        across its plane. None of a straight rope.
+        What a rope on an axis is when nothing loads it: as its axis, like a spring, or straight, so
+        that it is bent by the moment B times the curvature, which counts across its plane. Left
+        out: straight on a catenary, else as its axis. None of a straight rope.
+    principal_angle : float or pair of sequences, optional
+        By which the principal axes of a pair of `bending_stiffness` are turned about x from z
+        towards -y [rad], everywhere, or at places s [m], linear between them: a twisted strip.
     axis : Axis, optional
         That was given as `length`.
 
@@ -123,6 +145,7 @@ class Rope(Description):
     polar_inertia: float | None = number("kg m", sign="nonnegative", default=None)
     shear_stiffness: float | None = number("N", sign="positive", default=None)
     natural: str | None = given(_checked_natural, default=None)
+    principal_angle: Angle | None = given(_checked_angle, default=None)
     axis: Axis | None = instance(Axis, "an Axis", default=None)
 
     def __post_init__(self) -> None:
@@ -132,7 +155,19 @@ class Rope(Description):
         if isinstance(self.axis, Axis) and self.axis.is_straight:
             own["axis"] = None
         super().__post_init__()
-        own["natural"] = None if self.axis is None else self.natural or "axis"
+        own["natural"] = None if self.axis is None else self.natural or _natural(self, self.axis)
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether the principal axes of its section are turned.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.Rope(1.0, 0.4, bending_stiffness=(2.0, 1.0), principal_angle=0.3).is_turned
+        True
+        """
+        return self.principal_angle is not None
 
     def _agree(self) -> None:
         if self.axis is not None:
@@ -140,6 +175,12 @@ class Rope(Description):
         elif self.shear_stiffness is not None:
             got = check.shown(self.shear_stiffness)
             raise SceneError(f"shear_stiffness must be None of a straight rope, got {got}")
+        if self.is_turned and not isinstance(self.bending_stiffness, tuple):
+            got = check.shown(self.bending_stiffness)
+            raise SceneError(f"bending_stiffness must be a pair with a principal_angle, got {got}")
+        if isinstance(self.principal_angle, tuple):
+            for place in self.principal_angle[0]:
+                check.position(place, "principal_angle", self.length)
         needs = {
             "lay_coupling": ("axial_stiffness", "torsional_stiffness"),
             "lay_slope": ("bending_stiffness", "torsional_stiffness"),
@@ -289,18 +330,25 @@ class Rope(Description):
         return dataclasses.replace(self, **changes)
 
 
+def _natural(rope: Rope, axis: Axis) -> str:
+    """Return what a rope on an axis is if nothing is said."""
+    bends = rope.bending_stiffness is not None
+    return "straight" if bends and isinstance(axis.pieces[0], CatenaryPiece) else "axis"
+
+
 def _agree_on(rope: Rope, axis: Axis) -> None:
     """Refuse what a rope on an axis cannot be."""
     if abs(rope.length - axis.length) > check.NEAR * axis.length:
         raise SceneError(f"length must be that of the axis, {axis.length!r} m, got {rope.length!r}")
-    if not axis.is_uniform:
-        raise SceneError(
-            "axis must have constant curvature and torsion in each piece for a rope, as a line, "
-            "an arc, a helix or points have, got a catenary"
-        )
-    for name in ("bending_stiffness", "torsional_stiffness"):
-        if getattr(rope, name) is None:
-            raise SceneError(f"{name} must be given of a rope on an axis, got None")
+    if rope.bending_stiffness is None:
+        for name in ("torsional_stiffness", "shear_stiffness", "rotary_inertia", "polar_inertia"):
+            if (value := getattr(rope, name)) is not None:
+                raise SceneError(
+                    f"bending_stiffness must be given of a rope on an axis with {name}, got None "
+                    f"and {check.shown(value)}"
+                )
+    elif rope.torsional_stiffness is None:
+        raise SceneError("torsional_stiffness must be given of a rope on an axis, got None")
     if rope.natural == "straight" and len({piece[1:] for piece in axis.pieces}) > 1:
         raise SceneError(
             'natural must be "axis" where curvature or torsion jump, at which a rope that is bent '

@@ -39,9 +39,12 @@ NodeForce, Stop, AddedMass, LocalChange
         The rope's own weight: of an inclined rope its change of tension, of one with axial
         stiffness sag, which needs tension > 0 and something that holds the rope along x; the rope
         has no inertia along x then. Sag acts in the plane of z; in that of y the rope is straight.
+        A rope on a catenary has the tension that its weight gives it, and needs no other.
     planes : {"z", "both"}
         Whether the rope moves across in one plane, or in that of y too, with the coordinates y and
-        gamma = dy/dx; nothing ties the planes to each other.
+        gamma = dy/dx; only a torque, turned principal axes and an axis tie the planes.
+    torque : float
+        M_alpha that the rope carries at rest [N m], dead (semitangential) where an end turns.
 
     Raises
     ------
@@ -200,7 +203,8 @@ NodeForce, Stop, AddedMass, LocalChange
         Returns
         -------
         Model
-            Of a rope on an axis a `SpaceModel`, which takes no arguments here.
+            Of a rope on an axis, with torque or turned principal axes a `SpaceModel`, which takes
+            no arguments here.
 
         Raises
         ------

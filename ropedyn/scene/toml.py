@@ -69,6 +69,8 @@ def document(scene: Any) -> dict[str, Any]:
     }
     if scene.planes != "z":
         found["planes"] = scene.planes
+    if scene.torque:
+        found["torque"] = scene.torque
     if scene.gravity is not None:
         found["gravity"] = _plain(scene.gravity)
     if scene.dampings:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..axis.piece import CatenaryPiece
 from ..base.array import Real
 from ..base.errors import SceneError
 from .gravity import Gravity
@@ -38,9 +39,17 @@ def pulls(gravity: Gravity | None) -> float:
     return gravity.g * math.sin(gravity.inclination)
 
 
+def hanging(rope: Rope, gravity: Gravity | None) -> CatenaryPiece | None:
+    """Return the catenary that a rope with weight hangs in."""
+    if rope.axis is None or gravity is None or not gravity.own_weight:
+        return None
+    piece = rope.axis.pieces[0]
+    return piece if isinstance(piece, CatenaryPiece) else None
+
+
 def curves(gravity: Gravity | None, rope: Rope) -> bool:
     """Say whether the weight curves a rope, if it can stretch and does not stand upright."""
-    if gravity is None or not gravity.sag or rope.axial_stiffness is None:
+    if gravity is None or not gravity.sag or rope.axial_stiffness is None or rope.axis is not None:
         return False
     return abs(gravity.inclination) != math.pi / 2
 

@@ -19,9 +19,8 @@ from ..base.array import Complex, Flags, Index, Real
 from ..base.computed import computed
 from ..base.errors import SolveError
 from .rope import Factors, SpaceRope, halvings, scaled_rates, size_of
-from .samples import series_of
+from .samples import coefficients, series_of
 
-BAND, ROWS = 11, 34  # Entries on either side of the diagonal, and of a column as LAPACK takes it.
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
 MOST_PARTS = 100_000
 
@@ -37,6 +36,7 @@ class Assembly:
     N : ndarray of complex, shape (n, parts + 1, 6, 6)
         Of the nodes.
     held : ndarray of bool, shape (parts + 1, 6)
+    absent : ndarray of bool, shape (6,)
     node : ndarray of int, shape (pieces + 1,)
         Where the nodes of the rope are.
     inner : ndarray of int, optional
@@ -49,6 +49,7 @@ class Assembly:
     Q: Complex
     N: Complex
     held: Flags
+    absent: Flags
     node: Index
     z: Real
     inner: Index | None = None
@@ -77,23 +78,6 @@ class Assembly:
         D, G, Q, N = (np.ascontiguousarray(a.imag) for a in (self.D, self.G, self.Q, self.N))
         return Blocks(D, G, Q, N, self.held, 0.0)
 
-    def band(self, real: bool) -> Any:
-        """Return band matrices (n, columns, ROWS) as LAPACK takes them, of held ones 1."""
-        rows, columns, fixed = _pattern(self.parts, self.held)
-        F = np.eye(6) + self.D
-        diagonal = self.N.copy()
-        diagonal[:, :-1] += self.Q
-        one = np.broadcast_to(np.eye(6), F.shape)
-        blocks = [diagonal, -F, -F.swapaxes(2, 3), -self.G, one, one]
-        values = np.concatenate([block.reshape(len(F), -1) for block in blocks], axis=1)
-        size = (2 * self.parts + 1) * 6
-        band = np.zeros((len(F), size, ROWS), dtype=np.float64 if real else np.complex128)
-        free = ~(fixed[rows] | fixed[columns])
-        rows, columns = rows[free], columns[free]
-        band[:, columns, 2 * BAND + rows - columns] = (values.real if real else values)[:, free]
-        band[:, fixed, 2 * BAND] = 1.0
-        return band
-
     def together(self, u: Any, f: Any) -> Any:
         """Return rows in the order of the band, from (n, parts + 1, 6, c) and (n, parts, 6, c)."""
         both = np.zeros((len(u), 2 * self.parts + 1, *u.shape[2:]), dtype=np.result_type(u, f))
@@ -107,7 +91,10 @@ class Assembly:
 
     def factored(self, *, real: bool = False) -> Factored:
         """Return all lines factored."""
-        lu, pivot, failed = _core.space_factor(self.band(real))
+        D, G, Q, N = self.real[:4] if real else (self.D, self.G, self.Q, self.N)
+        fixed = np.zeros((2 * self.parts + 1, 6), dtype=np.uint8)
+        fixed[::2], fixed[1::2] = self.held, self.absent
+        lu, pivot, failed = _core.space_factor(D, G, Q, N, fixed.ravel())
         if failed < len(lu):
             raise Singular(failed)
         return Factored(lu, pivot)
@@ -162,18 +149,6 @@ class Factored:
         return x.swapaxes(1, 2)
 
 
-def _pattern(parts: int, held: Flags) -> tuple[Index, Index, Flags]:
-    """Return rows and columns of the blocks' entries, and which unknowns are held."""
-    i, j = np.divmod(np.arange(36), 6)
-    u, f = 12 * np.arange(parts + 1)[:, None], 12 * np.arange(parts)[:, None] + 6
-    places = [(u, u), (f, u[:-1]), (u[:-1], f), (f, f), (f, u[1:]), (u[1:], f)]
-    rows = np.concatenate([(row + i).ravel() for row, _ in places])
-    columns = np.concatenate([(column + j).ravel() for _, column in places])
-    fixed = np.zeros((2 * parts + 1, 6), dtype=bool)
-    fixed[::2] = held
-    return rows, columns, fixed.ravel()
-
-
 def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> Assembly:
     """Return the parts at each line: so many equal ones of each piece, or more within them."""
     if equal > 1 and rope.bend.shape[1] > 1:
@@ -185,8 +160,9 @@ def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> A
     by = rope.turn * (z[:, None, None, :] / z[:, None, :, None]) - np.eye(6)
     triples, counts = [], []
     for p, length in enumerate(rope.length / equal):
-        one = np.ascontiguousarray(rates[:, p])
-        triple = parts_of(one, float(length), int(halvings(size[p] * length)))
+        one = np.ascontiguousarray(coefficients(rates[:, p]))
+        halved = int(halvings(max(size[p] * length, rope.least_radians[p])))
+        triple = parts_of(one, float(length), halved)
         many = equal * triple.shape[1]
         counts.append(many)
         if sum(counts) > MOST_PARTS:
@@ -203,8 +179,9 @@ def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> A
     N[:, node] = rope.nodes(factors) * (z[:, None, :, None] * z[:, None, None, :])
     held = np.zeros((node[-1] + 1, 6), dtype=bool)
     held[node] = rope.held
+    held[:, rope.absent] = True
     D, G, Q = np.concatenate(triples, axis=1).transpose(2, 0, 1, 3, 4)
-    return Assembly(D, G, Q, N, held, node, z)
+    return Assembly(D, G, Q, N, held, rope.absent, node, z)
 
 
 def parts_of(rates: Complex, length: float, halved: int) -> Complex:

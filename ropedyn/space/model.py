@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from numpy.typing import ArrayLike
 
@@ -13,6 +13,7 @@ from ..base import check
 from ..base.answer import Frozen
 from ..base.array import Real
 from ..base.computed import waited
+from ..base.drawing import draw
 from ..base.errors import SceneError
 from ..chain.port import Point
 from ..eigen.modes import Modes
@@ -23,9 +24,13 @@ from ..scene.scene import Scene
 from .compile import rope_of_scene
 from .modes import solve_modes
 from .response import solve_frf
-from .rope import SIX, SpaceRope
+from .rope import SpaceRope
+from .shape import VIEWS, ShapeInSpace
 from .spectrum import count_below
 from .static import solve_static
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 ELSEWHERE = (
     *("transient", "floquet", "stability_map", "stepped_sine", "matrices", "triples"),
@@ -36,17 +41,18 @@ ELSEWHERE = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SpaceModel(Frozen):
-    """A rope on an axis in space: uniform pieces, exact at each frequency, all six coordinates.
+    """A rope on an axis in space, or with torque: all six coordinates, exact at each frequency.
 
-    Made by `Scene.compile`. Coordinates at s, the arc length from the left end, are along the frame
-    of the axis there; at a joint of two pieces along that on its left.
+    Made by `Scene.compile`. Along a catenary or a twisted strip blocks are followed by polynomials.
+    Coordinates at s, the arc length from the left end, are along the frame of the axis there; at a
+    joint of two pieces along that on its left.
 
     Attributes
     ----------
     scene : Scene
         What was compiled.
     coordinates : tuple of str
-        x, y, z, alpha, beta, gamma.
+        x, y, z, alpha, beta, gamma; of a string x, y and z.
     rope : SpaceRope
         Its pieces as arrays.
 
@@ -78,7 +84,7 @@ class SpaceModel(Frozen):
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Of every place."""
-        return SIX
+        return self.rope.coordinates
 
     @property
     def components(self) -> tuple[tuple[str, ...], ...]:
@@ -92,7 +98,7 @@ class SpaceModel(Frozen):
         >>> rd.Scene(rope, planes="both").compile().components
         (('x', 'y', 'z', 'alpha', 'beta', 'gamma'),)
         """
-        return (SIX,)
+        return (self.coordinates,)
 
     @property
     def element(self) -> str:
@@ -117,7 +123,7 @@ class SpaceModel(Frozen):
 
     @property
     def _card(self) -> tuple[str, Card]:
-        pieces = f"{len(self.rope.length)} uniform pieces"
+        pieces = f"{len(self.rope.length)} pieces"
         return "Model of a rope on an axis", card(self.scene) | {"model": pieces}
 
     def __getattr__(self, name: str) -> NoReturn:
@@ -126,6 +132,56 @@ class SpaceModel(Frozen):
                 f"{name} is not carried for a rope on an axis: the rope must be straight"
             )
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def plot(
+        self,
+        modes: Modes | None = None,
+        k: int = 0,
+        *,
+        view: str = "isometric",
+        scale: float | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Plot the axis in space, and a mode on it.
+
+        Parameters
+        ----------
+        modes : Modes, optional
+            Of this model.
+        k : int
+            Which of them, from 0.
+        view : {"isometric", "front", "top", "side"}
+            Into a corner of space, or X and Z, X and Y, Y and Z.
+        scale : float, optional
+            By which the shape is multiplied; the farthest moves by a tenth of the axis' extent
+            where left out.
+        ax : Axes, optional
+            Where to; of an isometric view one of the projection "3d".
+
+        Raises
+        ------
+        TypeError
+            If an argument is of the wrong type.
+        SceneError
+            If there is no such mode or view, or the modes are another model's.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rope = rd.Rope(
+        ...     rd.Axis.arc(1.0, 2.0), 0.5, bending_stiffness=50.0, torsional_stiffness=30.0
+        ... )
+        >>> model = rd.Scene(rope, planes="both").compile()
+        >>> model.plot(model.modes(2), 1, view="front").get_xlabel()
+        'X [m]'
+        """
+        check.one_of(view, "view", VIEWS)
+        shape = None
+        if modes is not None:
+            check.instance(modes, "modes", Modes, "modes of this model")
+            check.count(k, "k", least=0, most=len(modes.frequency) - 1)
+            shape = ShapeInSpace.of(self.scene, modes, k, scale)
+        return draw(self, "plot", ax, shape=shape, view=view)
 
     @waited
     def modes(
@@ -157,6 +213,8 @@ class SpaceModel(Frozen):
         -------
         Modes
             Double modes, those closer than a relative 1e-8 among them, are found together.
+            `rounding_error` is an estimate; `mesh_error` is 0, or where curvature, tension or
+            section change along a piece how far shorter blocks are away.
 
         Raises
         ------
@@ -225,6 +283,7 @@ class SpaceModel(Frozen):
         response: Point | Sequence[Point] | None = None,
         quantity: str = "receptance",
         solver: str = "sweep",
+        threads: int | None = None,
     ) -> FRF:
         """Compute the frequency response to a harmonic force or moment.
 
@@ -241,6 +300,8 @@ class SpaceModel(Frozen):
             Displacement, velocity or acceleration per force.
         solver : "sweep"
             There is no other.
+        threads : int, optional
+            One finds it whatever is given.
 
         Returns
         -------
@@ -270,6 +331,8 @@ class SpaceModel(Frozen):
         True
         """
         _only_sweep(solver)
+        if threads is not None:
+            check.count(threads, "threads", most=1024)
         return solve_frf(
             self.scene, self.rope, frequency, drive=drive, response=response, quantity=quantity
         )

@@ -17,12 +17,13 @@ from ..base.computed import Late, computed
 from ..base.errors import SceneError
 from ..base.unit import FAMILY
 from ..eigen.eigen import check_asked, no_mesh
-from ..eigen.modes import Modes, OnCatenary, UndampedVectors
+from ..eigen.modes import Modes, OnCatenary, UndampedMesh, UndampedVectors
 from ..eigen.spectrum import error_in_hertz
 from ..eigen.vectors import largest, within
 from ..scene import damping
 from ..scene.scene import Scene
 from .assembly import MOST_PARTS, Assembly, assemble
+from .compile import finer_rope
 from .rope import SIX, SpaceRope, unforced
 from .spectrum import AT_ONCE, BESIDE, MORE, STEP, TOGETHER, Lowest, lowest, ritz, start
 
@@ -45,7 +46,7 @@ def solve_modes(
     shapes = SpaceShapes(scene, rope, value, found, points or points_for(rope, value))
     frequency = np.sqrt(np.maximum(value, 0.0)) / (2 * math.pi)
     return Modes(
-        coordinates=SIX,
+        coordinates=rope.coordinates,
         certified=True,
         x=within(rope.x, shapes.points),
         frequency=frequency,
@@ -55,9 +56,21 @@ def solve_modes(
         plane=Late(lambda: shapes.plane),
         cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=found.counts),
         vectors=Late(partial(vectors_of, shapes)),
-        mesh=partial(no_mesh, frequency),
+        mesh=partial(_mesh, scene, rope, value, frequency),
         hanging=partial(OnCatenary, np.zeros_like(frequency), frequency),
         solve_shapes=refuse_derivatives,
+    )
+
+
+def _mesh(scene: Scene, rope: SpaceRope, eigenvalue: Real, frequency: Real) -> UndampedMesh:
+    """Hold frequencies against those of shorter pieces."""
+    finer = finer_rope(scene, rope)
+    if finer is None or not len(eigenvalue):
+        return no_mesh(frequency)
+    other = lowest(finer, len(eigenvalue), math.inf).eigenvalue
+    limit = np.sqrt(np.maximum(other, 0.0)) / (2 * math.pi)
+    return UndampedMesh(
+        mesh_error=error_in_hertz(eigenvalue, np.abs(other - eigenvalue)), limit=limit
     )
 
 
@@ -77,8 +90,11 @@ def check_points(rope: SpaceRope, points: int | None) -> None:
 def points_for(rope: SpaceRope, eigenvalue: Real) -> int:
     """Return how many parts of each piece show the highest mode."""
     wave = rope.waves(np.abs(eigenvalue).max(initial=0.0))
-    most = MOST_PARTS // len(rope.length)
-    return int(min(max(32, math.ceil(16 * wave * rope.length.max() / math.pi)), most))
+    most, least = MOST_PARTS // len(rope.length), 32
+    if rope.changes:
+        # blocks that polynomials follow are shorter than the pieces of the axis
+        least = math.ceil(2 * least / len(rope.length))
+    return int(min(max(least, math.ceil(16 * wave * rope.length.max() / math.pi)), most))
 
 
 class SpaceShapes:
@@ -209,7 +225,7 @@ def vectors_of(shapes: SpaceShapes) -> UndampedVectors:
         damping_ratio=_damping_ratio(shapes, energy, kinetic),
         family=np.array([FAMILY[SIX[k]] for k in own], dtype=np.str_),
         modal_mass=kinetic.sum(axis=1) / size**2,
-        shape=shape / size[:, None, None],
+        shape=(shape / size[:, None, None])[:, :, ~shapes.rope.absent],
         energy=_fractions(shapes, energy, kinetic),
     )
 
@@ -233,4 +249,5 @@ def _fractions(shapes: SpaceShapes, energy: dict[str, Real], kinetic: Real) -> d
     moves = (shapes.eigenvalue != 0) & (total != 0)
     none = np.zeros_like(total)
     found = {k: np.divide(v, total, where=moves, out=none.copy()) for k, v in stored.items()}
-    return found | {c: kinetic[:, k] / kinetic.sum(axis=1) for k, c in enumerate(SIX)}
+    own = [(k, c) for k, c in enumerate(SIX) if not shapes.rope.absent[k]]
+    return found | {c: kinetic[:, k] / kinetic.sum(axis=1) for k, c in own}

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import _core
 from ..axis.axis import Axis
+from ..axis.piece import CatenaryPiece, Piece
 from ..base.array import Real
-from .rope import SIGN, SpaceRope
+from .rope import SAMPLED, SIGN, SIX, SpaceRope
+from .samples import SAMPLES, sample_places, tail
+
+FOLLOWED = 1e-11
+"""The last two coefficients of what changes along a piece, relative, which a polynomial is cut at.
+
+Frequencies of catenaries and strips were 5e-14 off with them at most."""
+FINER = 1e-14  # The same of a rope that others are held against.
 
 
 class SpaceSection(NamedTuple):
     """What a rope in space is made of; infinite stiffnesses are absent effects."""
 
-    bending: tuple[float, float]  # of beta and of gamma [N m^2]
-    torsion: float  # [N m^2]
+    bending: tuple[float, float] | None  # of beta and of gamma [N m^2]; None: a string
+    torsion: float | None  # [N m^2]
     density: float  # [kg/m]
     axial: float | None = None  # [N]
     shear: float | None = None  # k_s G A [N]
@@ -24,18 +33,26 @@ class SpaceSection(NamedTuple):
     slope: float = 0.0  # of the lay
     rotary: tuple[float, float] = (0.0, 0.0)  # of beta and of gamma [kg m]
     polar: float = 0.0  # [kg m]
+    angle: tuple[tuple[float, ...], tuple[float, ...]] = ((0.0,), (0.0,))  # of principal axes, by s
 
-    def flexibility(self) -> Real:
-        """Return S over the six forces, shape (6, 6)."""
+    def flexibility(self, s: Real) -> Real:
+        """Return S over the six forces, shape (s, 6, 6)."""
         S, own = np.zeros((6, 6)), [0, 3, 4]
+        if self.bending is None:
+            S[0, 0] = 1 / self.axial if self.axial else 0.0
+            return np.tile(S, (len(s), 1, 1))
         across, other = self.bending
         S[np.ix_(own, own)] = _core.section(
-            self.axial or 0.0, self.torsion, across, self.coupling, self.slope
+            self.axial or 0.0, self.torsion or 0.0, across, self.coupling, self.slope
         )
         S[5, 5] = 1 / other
         if self.shear is not None:
             S[1, 1] = S[2, 2] = 1 / self.shear
-        return S
+        turn = np.tile(np.eye(6), (len(s), 1, 1))
+        angle = np.interp(s, *self.angle)
+        turn[:, 4, 4] = turn[:, 5, 5] = np.cos(angle)
+        turn[:, 4, 5], turn[:, 5, 4] = np.sin(angle), -np.sin(angle)
+        return turn @ S @ turn.swapaxes(1, 2)
 
     def inertia(self) -> Real:
         """Return the inertia per length, shape (6, 6)."""
@@ -77,13 +94,18 @@ def initial_of(force: Real, moment: Real) -> tuple[Real, Real]:
     return SIGN @ gamma @ SIGN, SIGN @ stress @ SIGN
 
 
-def bent_from_straight(section: SpaceSection, tau: float, kz: float) -> tuple[Real, Real]:
-    """Return the shear and the moment of what is straight when nothing loads it.
+def moment_at_rest(
+    section: SpaceSection, bent: bool, torque: float, rates: tuple[float, float, float]
+) -> tuple[Real, Real]:
+    """Return the shear and the moment that a torque and bending from straight leave in a rope.
 
-    m = (C tau, -B kz, 0), and the balance m' + omega x m + t x n = 0 asks for V_y.
+    m = (M + C tau, -B kz, 0), of what is naturally as its axis (M, 0, 0), and with kz' the balance
+    m' + omega x m + t x n = 0 asks for V = (0, kz tau (B - C) - kz M, -B kz').
     """
-    B, C = section.bending[0], section.torsion
-    return np.array([0.0, kz * tau * (B - C), 0.0]), np.array([C * tau, -B * kz, 0.0])
+    tau, kz, slope = rates
+    B, C = (section.bending or (0.0,))[0] * bent, (section.torsion or 0.0) * bent
+    shear = np.array([0.0, kz * (tau * (B - C) - torque), -B * slope])
+    return shear, np.array([torque + C * tau, -B * kz, 0.0])
 
 
 def kink_of(turn: Real) -> Real:
@@ -93,33 +115,95 @@ def kink_of(turn: Real) -> Real:
     return SIGN @ both @ SIGN
 
 
-def rope_of(axis: Axis, section: SpaceSection, tension: float, *, bent: bool = False) -> SpaceRope:
-    """Return the pieces of an axis, nothing at their nodes; `bent`: from what is straight."""
-    count = len(axis.pieces)
-    S, mass = section.flexibility(), section.inertia()
-    bend, string, initial, stress = (np.zeros((count, 1, 6, 6)) for _ in range(4))
+class Rest(NamedTuple):
+    """The state about which a rope moves."""
+
+    tension: float = 0.0  # [N], but where it hangs
+    weight: float = 0.0  # along catenaries [N/m]
+    torque: float = 0.0  # [N m]
+    bent: bool = False  # from what is straight when nothing loads it
+
+    def pull(self, piece: Piece, s: Real) -> Real:
+        """Return the tension at arc lengths of a piece [N]."""
+        if self.weight and isinstance(piece, CatenaryPiece):
+            return np.asarray(self.weight * piece.pull(s))
+        return np.full(len(s), self.tension)
+
+
+def rope_of(
+    axis: Axis,
+    section: SpaceSection,
+    rest: Rest,
+    absent: tuple[str, ...] = (),
+    *,
+    followed: float = FOLLOWED,
+) -> SpaceRope:
+    """Return the pieces of an axis, nothing at their nodes."""
+    along = range(len(axis.pieces))
+    pieces = [one for k in along for one in _blocks(axis, k, section, rest, followed)]
+    begins, ends = (np.array([one[k] for one in pieces]) for k in (1, 2))
+    starts = np.array([axis.joints[one[0]] for one in pieces])
+    count, samples = len(pieces), SAMPLES if any(one[3] for one in pieces) else 1
+    arrays = {name: np.zeros((count, samples, 6, 6)) for name in SAMPLED}
+    for k, (own, begin, end, _) in enumerate(pieces):
+        s = begin + (end - begin) * sample_places(samples)
+        for name, value in _along(axis.pieces[own], s, starts[k], section, rest).items():
+            arrays[name][k] = value
     turn = np.tile(np.eye(6), (count, 1, 1))
-    joints = axis.joints
-    for k, (tau, kz, ky) in enumerate(axis.rates(joints[:-1])):
-        bend[k, 0] = bend_of(tau, kz, ky)
-        across, moment = bent_from_straight(section, tau, kz) if bent else np.zeros((2, 3))
-        pull = np.array([tension, 0.0, 0.0])
-        initial[k, 0], stress[k, 0] = initial_of(pull + across, moment)
     for kink in axis.kinks:
-        turn[np.abs(joints - kink.s).argmin()] = kink_of(kink.turn)
+        turn[np.abs(starts + begins - kink.s).argmin()] = kink_of(kink.turn)
     springs, masses, dashpots = (np.zeros((count + 1, 6, 6)) for _ in range(3))
+    gone = np.array([c in absent for c in SIX])
     return SpaceRope(
-        length=np.array([piece.length for piece in axis.pieces]),
-        bend=bend,
-        soft=np.tile(S, (count, 1, 1, 1)),
-        string=string,
-        initial=initial,
-        stress=stress,
-        inertia=np.tile(mass, (count, 1, 1)),
+        length=ends - begins,
+        share=np.ones(count),
+        inertia=np.tile(section.inertia(), (count, 1, 1)),
         drag=np.zeros((count, 6, 6)),
         turn=turn,
         springs=springs,
         masses=masses,
         dashpots=dashpots,
-        held=np.zeros((count + 1, 6), dtype=bool),
+        held=np.tile(gone, (count + 1, 1)),
+        absent=gone,
+        **arrays,
     )
+
+
+def _blocks(
+    axis: Axis, k: int, section: SpaceSection, rest: Rest, followed: float
+) -> list[tuple[int, float, float, bool]]:
+    """Return the parts of piece k, by arc length of it, that polynomials follow, and if any do."""
+    piece, start = axis.pieces[k], axis.joints[k]
+    corners = np.array(section.angle[0]) - start
+    inside = corners[(corners > 1e-9 * piece.length) & (corners < (1 - 1e-9) * piece.length)]
+    left = list(itertools.pairwise([0.0, *inside, piece.length]))[::-1]
+    found: list[tuple[int, float, float, bool]] = []
+    while left:
+        begin, end = left.pop()
+        s = begin + (end - begin) * sample_places(SAMPLES)
+        given = _along(piece, s, start, section, rest)
+        missed = max(tail(values) for values in given.values())
+        if missed > followed and end - begin > 1e-6 * piece.length:
+            left += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
+            continue
+        changes = any((values != values[0]).any() for values in given.values())
+        found.append((k, begin, end, changes))
+    return found
+
+
+def _along(
+    piece: Piece, s: Real, start: float, section: SpaceSection, rest: Rest
+) -> dict[str, Real]:
+    """Return what belongs to arc lengths of a piece, arrays (s, 6, 6)."""
+    tension, rates = rest.pull(piece, s), piece.rates(s)
+    bend = np.array([bend_of(*one) for one in rates])
+    string, initial, stress = (np.zeros((len(s), 6, 6)) for _ in range(3))
+    if section.bending is None:
+        bend[:, 3:] = bend[:, :, 3:] = 0.0
+        string[:, 1, 1] = string[:, 2, 2] = 1 / tension
+    else:
+        for k, (pull, (tau, kz, _), slope) in enumerate(zip(tension, rates, piece.bending(s))):
+            own = moment_at_rest(section, rest.bent, rest.torque, (tau, kz, slope))
+            initial[k], stress[k] = initial_of(np.array([pull, 0.0, 0.0]) + own[0], own[1])
+    soft = section.flexibility(start + s)
+    return {"bend": bend, "soft": soft, "string": string, "initial": initial, "stress": stress}

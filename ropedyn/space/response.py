@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
 from ..scene.scene import Scene
 from .assembly import Assembly, Singular, assemble
+from .compile import finer_rope
 from .rope import SIX, Factors, SpaceRope
 from .spectrum import ROUNDINGS
 
@@ -34,7 +34,7 @@ def checked_points(scene: Scene, given: Any, name: str) -> tuple[tuple[Point, ..
         called = f"{name}[{k}]" if several else name
         if check.is_end(one):
             raise SceneError(f"{called} must not be the motion of an end on an axis, got {one!r}")
-        found.append(check.point(one, called, SIX, scene.rope.length))
+        found.append(check.point(one, called, scene.coordinates, scene.rope.length))
     return tuple(found), several
 
 
@@ -48,13 +48,23 @@ def solve_frf(
     given = response is not None
     responses = checked_points(scene, response, "response")[0] if given else drives
     asked = Request.of(scene, rope, f, drives, responses)
-    value = asked.receptance()
+    receptance = asked.receptance()
     power = (2j * math.pi * f) ** QUANTITIES[quantity]
-    value = (value * power)[slice(None) if several else 0]
+    value = (receptance * power)[slice(None) if several else 0]
 
     def rounding() -> RoundingOfResponse:
         limit = (asked.rounding() * np.abs(power))[slice(None) if several else 0]
         return RoundingOfResponse.of(value, limit)
+
+    def mesh() -> MeshOfResponse:
+        finer = finer_rope(scene, rope)
+        if finer is None:
+            return MeshOfResponse(np.zeros(value.shape))
+        other = Request.of(scene, finer, f, drives, responses).receptance()
+        size = np.abs(other)
+        off = np.abs(receptance - other)
+        error = np.divide(off, size, where=size > 0, out=np.where(off > 0, np.inf, 0.0))
+        return MeshOfResponse(error[slice(None) if several else 0])
 
     return FRF(
         drive=drives,
@@ -69,7 +79,7 @@ def solve_frf(
             factorisations=len(f),
         ),
         rounding=Late(rounding),
-        mesh=partial(MeshOfResponse, np.zeros(value.shape)),
+        mesh=mesh,
         solve_rates=_refuse_rates,
     )
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.array import Complex, Flags, Index, Real
 from ..base.computed import computed
-from .samples import resampled, series_of
+from .samples import coefficients, resampled, series_of
 
 SIX = ("x", "y", "z", "alpha", "beta", "gamma")
 
@@ -41,6 +41,8 @@ class SpaceRope:
     ----------
     length : ndarray, shape (pieces,)
         [m].
+    share : ndarray, shape (pieces,)
+        Of what was cut into pieces, along which a polynomial has few waves.
     bend : ndarray, shape (pieces, samples, 6, 6)
         Of the axis: u' = bend u where nothing is strained.
     soft : ndarray, shape (pieces, samples, 6, 6)
@@ -56,9 +58,12 @@ class SpaceRope:
     springs, masses, dashpots : ndarray, shape (pieces + 1, 6, 6)
         At nodes.
     held : ndarray of bool, shape (pieces + 1, 6)
+    absent : ndarray of bool, shape (6,)
+        Coordinates that it does not have anywhere.
     """
 
     length: Real
+    share: Real
     bend: Matrices
     soft: Matrices
     string: Matrices
@@ -71,11 +76,22 @@ class SpaceRope:
     masses: Matrices
     dashpots: Matrices
     held: Flags
+    absent: Flags
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Those it has."""
+        return tuple(c for c, gone in zip(SIX, self.absent) if not gone)
 
     @property
     def x(self) -> Real:
         """Where the nodes stand [m]."""
         return np.concatenate([[0.0], np.cumsum(self.length)])
+
+    @property
+    def changes(self) -> bool:
+        """Whether something changes along a piece."""
+        return self.bend.shape[1] > 1
 
     @property
     def unknowns(self) -> int:
@@ -105,7 +121,9 @@ class SpaceRope:
             new = np.zeros((len(stations), *old.shape[1:]), dtype=old.dtype)
             new[at] = old
             arrays[name] = new
-        cut = replace(self, length=np.diff(stations), **arrays)
+        arrays["held"] |= self.absent
+        share = self.share[piece] * (inside[1] - inside[0])
+        cut = replace(self, length=np.diff(stations), share=share, **arrays)
         return cut, np.abs(stations - np.asarray(places)[:, None]).argmin(axis=1)
 
     def divided(self, equal: int) -> SpaceRope:
@@ -142,10 +160,14 @@ class SpaceRope:
         return float(1 / (mass * (bends * length**4 if bends > 0 else gives * length**2)))
 
     def waves(self, eigenvalue: float) -> float:
-        """Return the wavenumber of a long straight rope [rad/m]."""
+        """Return the largest wavenumber of a long straight rope [rad/m]."""
         bends, gives = self.softest
         load = abs(eigenvalue) * self.inertia[:, 1, 1].max()
-        return float((load * bends) ** 0.25 if bends > 0 else (load * gives) ** 0.5)
+        if bends == 0:
+            return float(np.sqrt(load * gives))
+        half = bends * max(float(self.stress[..., 4, 4].min()), 0.0) / 2
+        large = half + np.hypot(half, np.sqrt(load * bends))
+        return float(np.sqrt(load * bends / large)) if large > 0 else 0.0
 
     @computed
     def stiffest(self) -> float:
@@ -186,16 +208,23 @@ class SpaceRope:
         """Phi, S and q where nothing moves, shape (pieces, samples, 3, 6, 6)."""
         return np.ascontiguousarray(self.rates(unforced([0.0]))[0].real)
 
+    @computed
+    def least_radians(self) -> Real:
+        """What pieces count as at least, so that the series of what changes converge, (pieces,)."""
+        return self.share * (RADIANS * PARTS if self.changes else 0.0)
+
     def core(self, eigenvalues: Real) -> tuple[tuple[Any, ...], Real]:
         """Return what the core counts at several eigenvalues by, and the scale of each."""
         z, samples = self.scale(eigenvalues), self.bend.shape[1]
         rates = np.tile(self.at_rest, (len(z), 1, 1, 1, 1, 1))
         rates[:, :, :, 2] -= eigenvalues[:, None, None, None, None] * self.inertia[:, None]
-        halved = halvings(size_of(scaled_rates(rates, z)).max(axis=(0, 2)) * self.length)
+        radians = size_of(scaled_rates(rates, z)).max(axis=(0, 2)) * self.length
+        halved = halvings(np.maximum(radians, self.least_radians))
         series = [series_of(*one, samples) for one in zip(self.length, halved)]
         nodes = np.array([len(one) for one in series], dtype=np.int32)
+        fields = coefficients(self.at_rest)
         beside = (self.inertia, self.turn, self.springs, self.masses, self.held.astype(np.uint8))
-        return (self.length, halved, nodes, self.at_rest, np.concatenate(series), *beside), z
+        return (self.length, halved, nodes, fields, np.concatenate(series), *beside), z
 
 
 SAMPLED = ("bend", "soft", "string", "initial", "stress")
@@ -236,4 +265,5 @@ def halvings(radians: Real) -> NDArray[np.int32]:
     return np.maximum(np.ceil(np.log2(np.maximum(radians, 1e-300) / RADIANS)), 0).astype(np.int32)
 
 
+PARTS = 8  # Of a block that changes: terms of their series fall by 8 each.
 RADIANS = 0.5  # Of the first piece that is summed as a series.

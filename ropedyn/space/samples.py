@@ -16,21 +16,23 @@ NODES = 14
 """Between which triples of its parts are interpolated."""
 ORDERS = 14
 """Of a part's series."""
+ROUNDED = 1e-15
+"""Coefficients that are less, of the largest value, are none."""
 NOTHING = 1e-19
 """Terms of a part's series that are less, relative, are none."""
 
 
 def sample_places(samples: int) -> Real:
     """Return where they are, from 0 to 1: at Chebyshev's nodes, or the middle of one."""
-    found: Real = (1 - np.cos((2 * np.arange(samples) + 1) * np.pi / (2 * samples))) / 2
-    return found
+    angle = (2 * np.arange(samples) + 1) * np.pi / (2 * samples)
+    return np.array((1 - np.cos(angle)) / 2, dtype=np.float64)
 
 
 @lru_cache(64)
 def _fitted(samples: int) -> Real:
     """Return Chebyshev coefficients, in x from -1 to 1, of what is 1 at one sample, in columns."""
-    found: Real = np.linalg.inv(chebyshev.chebvander(2 * sample_places(samples) - 1, samples - 1))
-    return found
+    at_samples = chebyshev.chebvander(2 * sample_places(samples) - 1, samples - 1)
+    return np.array(np.linalg.inv(at_samples), dtype=np.float64)
 
 
 def weights(samples: int, places: Real) -> Real:
@@ -57,10 +59,25 @@ def tail(values: Real) -> float:
     return float(np.divide(least, size, where=size > 0, out=np.zeros_like(size)).max())
 
 
+def coefficients(values: Any) -> Any:
+    """Return Chebyshev coefficients of samples, axis -4 of matrices (3, 6, 6); none of rounding.
+
+    Their series about an end would multiply what is of rounding by up to 3 + sqrt(8) to the order.
+    """
+    samples = values.shape[-4]
+    if samples == 1:
+        return values
+    found = np.einsum("kj,...jabc->...kabc", _fitted(samples), values)
+    parts = [found.real, found.imag] if np.iscomplexobj(found) else [found]
+    for part, given in zip(parts, [values.real, values.imag]):
+        part[np.abs(part) <= ROUNDED * np.abs(given).max(axis=-4, keepdims=True)] = 0.0
+    return found
+
+
 def series_of(length: float, halved: int, samples: int) -> Real:
     """Return the series of the parts of a piece that begin its doubling, as the core takes them.
 
-    Shape (nodes, samples, ORDERS): of what is 1 at one sample, by powers of s from the left end.
+    Shape (nodes, samples, ORDERS): of Chebyshev's polynomials, by powers of s from the left end.
     """
     scale = float(length) ** -np.arange(ORDERS)
     found: Real = _unit_series(int(halved), samples) * scale
@@ -76,7 +93,7 @@ def _unit_series(halved: int, samples: int) -> Real:
     node = np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))
     begin = part * np.arange(2**halved) if few else (1 - part) * (1 + node) / 2
     series = np.zeros((len(begin), samples, ORDERS))
-    own: Any = _fitted(samples)
+    own: Any = np.eye(samples)
     factor = 1.0
     for k in range(min(samples, ORDERS)):
         # powers of s - begin, in lengths of the piece, where x runs twice as fast

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -180,16 +179,15 @@ def _middle(low: float, high: float, unit: float) -> float:
     return (low + high) / 2
 
 
-@dataclass(eq=False)
-class Search:
-    """Inverse iteration for the modes of a group, in the space of a few vectors."""
+class Pursuit:
+    """Inverse iteration for the modes of a bracket, in the space of a few vectors."""
 
-    group: Bracket
-    at: float
-    value: Real
-    before: float = math.inf
-    vectors: Any = None
-    error: Any = None
+    def __init__(self, bracket: Bracket) -> None:
+        self.bracket, self.at = bracket, bracket.middle
+        self.value = np.full(bracket.size, math.inf)
+        self.before = math.inf
+        self.vectors: Any = None
+        self.error: Any = None
 
     def take(self, nearby: Nearby, unit: float) -> bool:
         """Go on from what was found at `at`; False where nothing is to come."""
@@ -209,34 +207,33 @@ class Search:
 
 def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[Real, Real] | None]:
     """Return eigenvalues and rounding errors of each, or None where they leave the bracket."""
-    searches = [Search(g, g.middle, np.full(g.size, math.inf)) for g in groups]
-    for first in range(0, len(searches), AT_ONCE):
-        left = searches[first : first + AT_ONCE]
+    pursuits = [Pursuit(group) for group in groups]
+    for first in range(0, len(pursuits), AT_ONCE):
+        left = pursuits[first : first + AT_ONCE]
         for _ in range(ITERATIONS):
             if not left:
                 break
             at = np.array([one.at for one in left])
             system = assemble(rope, unforced(at, STEP), rope.scale(at))
-            x = start(system, max(one.group.size for one in left) + MORE, left)
+            x = start(system, max(one.bracket.size for one in left) + MORE, left)
             times = 3 if any(one.vectors is None for one in left) else 1
-            found = ritz(system, x, [one.group.size for one in left], times)
+            found = ritz(system, x, [one.bracket.size for one in left], times)
             left = [one for one, near in zip(left, found) if one.take(near, unit)]
     # rigid motion strains nothing, and has a stiffness of rounding alone
     return [
-        (s.value, np.maximum(s.error, RIGID * unit)) if s.group.has(s.value, s.error) else None
-        for s in searches
+        (s.value, np.maximum(s.error, RIGID * unit)) if s.bracket.has(s.value, s.error) else None
+        for s in pursuits
     ]
 
 
-def start(system: Assembly, columns: int, searches: Any = ()) -> Real:
+def start(system: Assembly, columns: int, known: Any = ()) -> Real:
     """Return vectors (n, rows, columns): those found before, or some that no mode is free of."""
     rows = (2 * system.parts + 1) * 6
     fresh = np.random.default_rng(0).standard_normal((rows, columns))
     x = np.tile(fresh, (len(system.D), 1, 1))
-    for k, search in enumerate(searches):
-        known = search.vectors
-        if known is not None and len(known) == rows:
-            x[k, :, : known.shape[1]] = known[:, :columns]
+    for k, one in enumerate(known):
+        if one.vectors is not None and len(one.vectors) == rows:
+            x[k, :, : one.vectors.shape[1]] = one.vectors[:, :columns]
     return x
 
 
@@ -268,8 +265,10 @@ def ritz(system: Assembly, x: Real, sizes: list[int], times: int = 3) -> list[Ne
     own = np.linalg.qr(factored.solve(mass(system, np.linalg.qr(own)[0])))[0]
     found = []
     A, M = _forms(system, own)
+    alike = _small(A, M) if min(sizes) == most else None
     for k, size in enumerate(sizes):
-        ((shift, mix),) = _small(A[k : k + 1, :size, :size], M[k : k + 1, :size, :size])
+        few = slice(k, k + 1), slice(size), slice(size)
+        shift, mix = alike[k] if alike else _small(A[few], M[few])[0]
         own[k, :, : mix.shape[1]] = own[k, :, :size] @ mix
         found.append((shift, mix.shape[1]))
     error = _rounding(system, own)

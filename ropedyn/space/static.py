@@ -20,6 +20,7 @@ from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection
 from ..scene.scene import Scene
 from .assembly import Assembly, assemble
+from .compile import finer_rope
 from .modes import check_points
 from .response import bound
 from .rope import SIX, SpaceRope, unforced
@@ -38,30 +39,44 @@ def solve_static(
             f"the rope does not stay at rest: {exceeds(critical)}; "
             "unstable=True answers all the same"
         )
-    near = check.NEAR * scene.rope.length
+    own, near = ~rope.absent, check.NEAR * scene.rope.length
     x = np.concatenate([within(rope.x, points or POINTS), [at for _, at in loads]])
     cut, _ = rope.cut(x, near)
     x = cut.x
-    system = assemble(cut, unforced([0.0]), cut.scale([0.0]))
+    system, u, f = _under(cut, loads)
     z = system.z[0]
-    right = np.zeros((system.parts + 1, 6, 1))
-    for (coordinate, at), amount in loads.items():
-        k = SIX.index(coordinate)
-        right[system.node[int(np.abs(x - at).argmin())], k] += amount * z[k]
-    u, f = _solved(system, right)
-    shown = u[0, system.node, :, 0]
+    shown = u[0, system.node, :, 0][:, own]
+
+    def mesh() -> Real:
+        finer = finer_rope(scene, rope)
+        if finer is None:
+            return _same(shown.shape, 0.0)
+        other, node = finer.cut(x, near)
+        whole, v, _ = _under(other, loads)
+        return np.abs(shown * z[own] - v[0, whole.node[node], :, 0][:, own] * whole.z[0][own])
+
     return Deflection(
-        coordinates=SIX,
+        coordinates=rope.coordinates,
         x=x,
-        displacement=shown * z,
-        force=_force(system, u[0], f[0]) / z,
+        displacement=shown * z[own],
+        force=(_force(system, u[0], f[0]) / z)[:, own],
         load=tuple(loads.items()),
         critical_loads=critical,
         cost=Cost("sweep", len(rope.length), rope.unknowns, sweeps=1, factorisations=1),
         rounding_error=Late(partial(_rounding, system, (u, f))),
         force_rounding_error=_same(shown.shape, np.inf),
-        mesh_error=_same(shown.shape, 0.0),
+        mesh_error=Late(mesh),
     )
+
+
+def _under(rope: SpaceRope, loads: dict[Point, float]) -> tuple[Assembly, Real, Real]:
+    """Return the parts, their motion and force under loads at nodes."""
+    system = assemble(rope, unforced([0.0]), rope.scale([0.0]))
+    right = np.zeros((system.parts + 1, 6, 1))
+    for (coordinate, at), amount in loads.items():
+        k = SIX.index(coordinate)
+        right[system.node[int(np.abs(rope.x - at).argmin())], k] += amount * system.z[0, k]
+    return system, *_solved(system, right)
 
 
 def _same(shape: tuple[int, ...], value: float) -> Real:
@@ -102,6 +117,7 @@ def _rounding(system: Assembly, found: tuple[Real, Real]) -> Real:
     unit[np.repeat(system.node, 6), np.tile(np.arange(6), nodes), np.arange(6 * nodes)] = 1.0
     limit = bound(system, found, _solved(system, unit))[0, 0].reshape(nodes, 6) * system.z[0]
     limit[system.held[system.node]] = 0.0
+    limit = limit[:, ~system.absent]
     limit.setflags(write=False)
     return limit
 
@@ -114,7 +130,7 @@ def checked_loads(scene: Scene, load: Any) -> dict[Point, float]:
         raise SceneError(f"load must be {what} with at least one entry, got {{}}")
     loads: dict[Point, float] = {}
     for key, value in load.items():
-        point = check.point(key, "load point", SIX, scene.rope.length)
+        point = check.point(key, "load point", scene.coordinates, scene.rope.length)
         amount = check.number(value, f"load[{key}]", FORCE_UNIT[point[0]])
         loads[point] = loads.get(point, 0.0) + amount
     return loads

@@ -163,10 +163,97 @@ static void test_a_held_node_within_is_counted(void)
     free(workspace.base);
 }
 
+/* the same tension all along, told by a straight line through its ends: parts about nodes, or as they
+   are, are those of a uniform beam */
+static void test_parts_of_what_only_seems_to_change(void)
+{
+    enum { FIELDS = 2, NODES = 14, HALVINGS = 6 };
+    static double _Complex rates[FIELDS * RD_SPACE_TRIPLE], one[RD_SPACE_TRIPLE];
+    static double _Complex many[8 * RD_SPACE_TRIPLE];
+    static double series[NODES * FIELDS * RD_SPACE_ORDERS];
+    double phi[FULL], soft[FULL], load[FULL], inertia[FULL];
+    const double flat[RD_SPACE_ORDERS] = {1};
+    struct rd_workspace workspace = {0};
+    int reached;
+    beam(phi, soft, load, inertia);
+    for (int i = 0; i < FULL; i++) {
+        /* E = E_0 + x E_1 with E_1 = E_0/2, of which a series that takes it away is left */
+        rates[i] = phi[i];
+        rates[FULL + i] = soft[i];
+        rates[2 * FULL + i] = -3 * inertia[i];
+        for (int k = 0; k < 3; k++)
+            rates[RD_SPACE_TRIPLE + k * FULL + i] = 0.5 * rates[k * FULL + i];
+    }
+    for (int node = 0; node < NODES; node++) {
+        double *at = series + node * FIELDS * RD_SPACE_ORDERS;
+        at[0] = 2;
+        at[1] = 0.25;
+        at[RD_SPACE_ORDERS] = -2;
+        at[RD_SPACE_ORDERS + 1] = -0.5;
+    }
+    const struct rd_space_run plain = {1, HALVINGS, 1, 1, flat};
+    const struct rd_space_run about = {1, HALVINGS, NODES, FIELDS, series};
+    rd_space_triples(&about, 0, rates, 3, 1e9, many, &reached, &workspace);
+    workspace = (struct rd_workspace){.base = malloc(workspace.used), .size = workspace.used};
+    CHECK_INT(rd_space_triples(&plain, 1, rates, 3, 1e9, one, &reached, &workspace), RD_OK);
+    workspace.used = 0;
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &workspace), RD_OK);
+    CHECK_INT(reached, 3);
+    for (int part = 0; part < 8; part++)
+        for (int i = 0; i < RD_SPACE_TRIPLE; i++)
+            CHECK_ABS(creal(many[part * RD_SPACE_TRIPLE + i]), creal(one[i]),
+                      256 * EPS * (1e-3 + fabs(creal(one[i]))), "roundings of nodes");
+    workspace.used = 0;
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1 + 1e-9, many, &reached, &workspace), RD_OK);
+    CHECK(reached < 3);
+    workspace.size--;
+    workspace.used = 0;
+    CHECK_INT(rd_space_triples(&about, 1, rates, 3, 1e9, many, &reached, &workspace), RD_NO_MEMORY);
+    free(workspace.base);
+}
+
+/* one part held at its left: u_1 = G p of a force p at its right */
+static void test_bands_of_numbers_of_both_kinds(void)
+{
+    enum { SIZE = 3 * SIX };
+    double D[FULL] = {0}, G[FULL] = {0}, none[2 * FULL] = {0}, band[SIZE * RD_SPACE_ROWS];
+    double x[SIZE] = {0};
+    static double _Complex cD[FULL], cG[FULL], cnone[2 * FULL], cband[SIZE * RD_SPACE_ROWS];
+    double _Complex cx[SIZE] = {0};
+    uint8_t fixed[SIZE] = {1, 1, 1, 1, 1, 1};
+    int32_t pivot[SIZE];
+    for (int i = 0; i < SIX; i++) {
+        cG[i * SIX + i] = G[i * SIX + i] = 2 + i;
+        x[2 * SIX + i] = 1;
+        cx[2 * SIX + i] = CMPLX(0, 1);
+    }
+    rd_space_band(1, 1, 1, D, G, none, none, fixed, band);
+    CHECK_INT((long long)rd_space_factor(1, SIZE, band, pivot), 1);
+    rd_space_solve(1, SIZE, 1, band, pivot, x);
+    rd_space_band(1, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed,
+                  (double *)cband);
+    CHECK_INT((long long)rd_space_factor_complex(1, SIZE, cband, pivot), 1);
+    rd_space_solve_complex(1, SIZE, 1, cband, pivot, cx);
+    for (int i = 0; i < SIX; i++) {
+        CHECK_ABS(x[2 * SIX + i], 2 + i, 8 * EPS * (2 + i), "roundings");
+        CHECK_ABS(cimag(cx[2 * SIX + i]), 2 + i, 8 * EPS * (2 + i), "roundings");
+        CHECK(x[i] == 0 && x[SIX + i] == 1);
+    }
+    /* nothing holds it */
+    memset(fixed, 0, sizeof fixed);
+    rd_space_band(1, 1, 1, D, G, none, none, fixed, band);
+    CHECK_INT((long long)rd_space_factor(1, SIZE, band, pivot), 0);
+    rd_space_band(1, 1, 2, (double *)cD, (double *)cG, (double *)cnone, (double *)cnone, fixed,
+                  (double *)cband);
+    CHECK_INT((long long)rd_space_factor_complex(1, SIZE, cband, pivot), 0);
+}
+
 int main(void)
 {
     test_triple_of_a_beam_at_rest();
     test_counts_of_rods_and_beams();
     test_a_held_node_within_is_counted();
+    test_parts_of_what_only_seems_to_change();
+    test_bands_of_numbers_of_both_kinds();
     return check_report("space");
 }

@@ -312,3 +312,18 @@ def test_a_reader_that_has_seen_enough_is_left_quietly(scene_file):
         running.stdout.close()
         complaint = running.stderr.read()
     assert (running.returncode, complaint) == (0, b"")
+
+
+def test_a_spring_from_a_file(tmp_path, capsys):
+    axis = rd.Axis.helix(5e-3, 0.15, 10)
+    wire = rd.Rope(axis, 6.2e-3, bending_stiffness=0.0101, torsional_stiffness=0.0078)
+    scene, path = rd.Scene(wire, planes="both"), tmp_path / "spring.toml"
+    scene.save(path)
+    assert main(["modes", str(path), "--modes", "3", "--json"]) == 0
+    found = [row["frequency"] for row in json.loads(capsys.readouterr().out)["rows"]]
+    assert found == scene.compile().modes(3).frequency.tolist()
+    assert main(["frf", str(path), "--frequency", "10:40:3", "--drive", "y@0.1", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["rows"]) == 3
+    figure = tmp_path / "spring.png"
+    assert main(["modes", str(path), "--modes", "1", "--plot", str(figure)]) == 0
+    assert figure.stat().st_size > 0

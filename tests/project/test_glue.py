@@ -203,8 +203,10 @@ SPANNED = (PAIRED[0], FIELD[:, : 2 * SHAPES[0, :4].size].copy(), PAIR, SLIP)
 ARC = rd.Rope(rd.Axis.arc(1.0, 2.0), 0.1, bending_stiffness=1.0, torsional_stiffness=0.4)
 SPACE, SCALE = rd.Scene(ARC, planes="both").compile().rope.core(np.array([1e4, 1e6]))
 RATES, SERIES = SPACE[3] + 0j, SPACE[4]
-BAND = np.zeros((2, 6, 34)) + np.eye(34)[22]
-SOLVED = np.ones((2, 3, 6))
+BLOCKS = [np.tile(np.eye(6), (2, n, 1, 1)) for n in (1, 1, 1, 2)]
+FIXED = np.zeros(18, dtype=np.uint8)
+SOLVED = np.ones((2, 3, 18))
+FACTORED = _core.space_factor(*(one + 0j for one in BLOCKS), FIXED)[:2]
 
 # every entry point that takes a chain
 ENTRIES = {
@@ -286,8 +288,8 @@ OTHERS = {
     ),
     "divide": lambda _: _core.divide(*DIVIDED),
     "space_triples": lambda _: _core.space_triples(RATES, SERIES, 2.0, 6, 6, 1e4),
-    "space_factor": lambda _: _core.space_factor(BAND),
-    "space_solve": lambda _: _core.space_solve(*_core.space_factor(BAND + 0j)[:2], SOLVED),
+    "space_factor": lambda _: _core.space_factor(*BLOCKS, FIXED),
+    "space_solve": lambda _: _core.space_solve(*FACTORED, SOLVED),
     "space_count": lambda _: _core.space_count(SPACE, np.array([1e4, 1e6]), SCALE),
 }
 
@@ -616,12 +618,12 @@ REFUSED = {
     "nodes of a piece beyond its halvings": (
         lambda: _core.space_count((*SPACE[:2], SPACE[2] + 24, *SPACE[3:]), np.ones(1), SCALE[:1]),
         ValueError,
-        "nodes must be from 1 to 24 and at most 2^halvings, got 25",
+        r"nodes must be from 1 to 24 and at most 2\^halvings, got 25",
     ),
     "series of more nodes than parts": (
         lambda: _core.space_triples(RATES, np.tile(SERIES, (3, 1, 1)), 2.0, 1, 1, 1e4),
         ValueError,
-        "series must be from 1 to 24 and at most 2^halvings, got 3",
+        r"series must be from 1 to 24 and at most 2\^halvings, got 3",
     ),
     "pieces without inertia": (
         lambda: _core.space_count((*SPACE[:5], SPACE[5][1:], *SPACE[6:]), np.ones(1), SCALE[:1]),
@@ -643,15 +645,20 @@ REFUSED = {
         TypeError,
         "10 arguments",
     ),
-    "bands of another width": (
-        lambda: _core.space_factor(BAND[:, :, :33]),
+    "nodes of other parts": (
+        lambda: _core.space_factor(*BLOCKS[:3], BLOCKS[0], FIXED),
         ValueError,
-        "band must have 34 entries along axis 2, got 33",
+        "N must have 2 entries along axis 1, got 1",
+    ),
+    "fixed rows of other parts": (
+        lambda: _core.space_factor(*BLOCKS, FIXED[1:]),
+        ValueError,
+        "fixed must have 18 entries along axis 0, got 17",
     ),
     "right sides of fewer rows": (
-        lambda: _core.space_solve(*_core.space_factor(BAND)[:2], SOLVED[:, :, :5]),
+        lambda: _core.space_solve(*FACTORED, SOLVED[:, :, :5]),
         ValueError,
-        "right must have 6 entries along axis 2, got 5",
+        "right must have 18 entries along axis 2, got 5",
     ),
     "element -1": (
         lambda: _core.triple(CHAIN, -1, FACTOR.T[:2].copy()),

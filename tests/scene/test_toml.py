@@ -188,7 +188,9 @@ def every_effect_but_a_law():
     )
     curved = rd.Scene(spring, planes="both")
     rubbing = rd.Scene(rd.Rope(1.0, 0.1, bending_stiffness=1.0), tension=9.0, damping=RUBBING)
-    return sagging, stretching, upright, sagging.replace(**plain), curved, rubbing
+    strip = rd.Rope(1.0, 0.1, bending_stiffness=(1.0, 2.0), principal_angle=0.3)
+    twisted = rd.Scene(strip, planes="both", torque=0.1)
+    return sagging, stretching, upright, sagging.replace(**plain), curved, rubbing, twisted
 
 
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if e != rd.NodeForce.kind])
