@@ -304,6 +304,15 @@ def test_what_is_not_known_with_friction_is_refused_by_name(changes, how, messag
         RUBBING.replace(**changes).compile().frf([9.0], **given)
 
 
+def test_a_drive_that_bends_nothing_is_refused_and_one_on_a_support_moves_nothing():
+    twisting = RUBBING.replace(rope=ROPE.replace(torsional_stiffness=30.0, polar_inertia=1e-4))
+    with pytest.raises(rd.SceneError, match="drive must bend the rope"):
+        twisting.compile().frf([9.0], drive=("alpha", 2.0), amplitude=1.0)
+    held = RUBBING.compile().frf([9.0], drive=("z", 0.0), amplitude=1.0)
+    assert held.value[0, 0] == 0 and held.third_harmonic[0] == 0
+    assert held.mean_bending_stiffness[0] == pytest.approx(SECTION.bending_stick, rel=1e-12)
+
+
 def test_chains_are_refused():
     with pytest.raises(rd.SceneError, match="elements must be left out with friction"):
         RUBBING.compile(elements=8).frf([9.0], drive=DRIVE, amplitude=1.0)

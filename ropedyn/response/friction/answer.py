@@ -17,20 +17,15 @@ from ..frf import FRF
 class FrictionResponse(FRF):
     """Frequency response with friction between wires, under a force of one amplitude.
 
-    In each cell along the rope B and loss factor are those of the amplitude that the curvature has
-    there. What the moment has at three times the frequency is left out of the motion, and told.
+    In each cell along the rope B and loss factor are those of the amplitude of its curvature.
 
     Attributes
     ----------
-    drive, response, quantity, frequency, cost, decay, stable
-        As in `FRF`; `stable` is not told.
     value : ndarray of complex, shape (responses, f)
-        Motion at the frequency of the drive per amplitude of it.
+        Motion at the frequency of the drive per amplitude of it, else as `FRF`.
     rounding_error : ndarray, as value
         Estimated relative error: the difference that cells twice as long make, and
         `third_harmonic`.
-    mesh_error : ndarray, as value
-        0: only continuous spans are asked.
     drive_amplitude : float
         Of the drive [N, N m; m, rad of an end].
     x : ndarray, shape (cells + 1,)
@@ -84,8 +79,10 @@ class FrictionResponse(FRF):
 
     @property
     def _weight(self) -> Real:
-        square = np.diff(self.x)[:, None] * (self.curvature / self.curvature.max(axis=0)) ** 2
-        return np.asarray(square / square.sum(axis=0))
+        """Share of each cell in the bending of the rope, of all alike where it is not bent."""
+        square = np.diff(self.x)[:, None] * self.curvature**2
+        whole, alike = square.sum(axis=0), np.full(square.shape, 1 / len(square))
+        return np.divide(square, whole, out=alike, where=whole > 0)
 
     def derivative(self, path: str) -> Complex:
         """Refuse it: stiffness and loss would change with the motion.

@@ -16,7 +16,7 @@ from ...base.unit import FORCE, QUANTITIES, push_unit
 from ...chain.compile import compile_scene
 from ...chain.compiled import Compiled, rubbing
 from ...chain.place import observed, points
-from ...chain.port import Point
+from ...chain.port import Point, moving
 from ...scene.damping import WireFriction
 from ...scene.parts.part import stretches
 from ...scene.parts.stretch import RopeChange, changes
@@ -29,13 +29,7 @@ from .balance import Layers, SlipBalance
 from .cells import edges, wave_number
 
 BLOCK = 32  # Frequencies whose transfer functions are kept at once.
-OTHERS = {
-    "solver": "sweep",
-    "decay": 0.0,
-    "harmonic": 1,
-    "branches": False,
-    "tolerance": None,
-}
+OTHERS = {"solver": "sweep", "decay": 0.0, "harmonic": 1, "branches": False, "tolerance": None}
 """What else is asked of responses must be so."""
 MOMENT = FORCE["beta"]
 BENDING = RopeChange._fields.index("bending")
@@ -54,12 +48,8 @@ class Parts(NamedTuple):
         """Take them from H, drives and responses at all edges first; every `step`-th is one."""
         n, length = len(x), np.diff(x[::step])[:, None]
         pairs = np.diff(H[:n:step], axis=0).T
-        return cls(
-            (np.diff(H[n, :n:step], axis=0) / length).T,
-            (np.diff(pairs[:, :n:step], axis=1) / length),
-            H[n, n:].T,
-            pairs[:, n:],
-        )
+        turned, bent = np.diff(H[n, :n:step], axis=0), np.diff(pairs[:, :n:step], axis=1)
+        return cls((turned / length).T, bent / length, H[n, n:].T, pairs[:, n:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +84,8 @@ class Rubbing:
         factor = changes(stretches(scene.parts), stations)[:, BENDING]
         factor = factor[stations.searchsorted(middle) - 1]
         first = np.array(self.friction.slip) * max(scene.mean_tension, 0.0)
-        return Layers(
-            factor[:, None] * np.array(self.friction.stiffness), np.tile(first, (len(middle), 1))
-        )
+        stiffness = factor[:, None] * np.array(self.friction.stiffness)
+        return Layers(stiffness, np.tile(first, (len(middle), 1)))
 
     def own(self, step: int) -> Real:
         """Return of which cell a response feels the moment itself, (responses, cells)."""
@@ -190,6 +179,8 @@ def _asked(
     drives, several = points(model, drive, "drive", forces=False, ends=True)
     if several:
         raise SceneError(f"drive must be one point with friction between wires, got {len(drives)}")
+    if moving(drives[0]) not in model.component_of("beta"):
+        raise SceneError(f"drive must bend the rope with friction between wires, got {drives[0]}")
     if amplitude is None:
         raise SceneError(
             "amplitude must be given with friction between wires, on which stiffness and loss "
@@ -249,7 +240,9 @@ def _third(asked: Rubbing, coarse: CellCourse, f: Real, kappas: list[Complex]) -
         phase = np.divide(kappa, size, out=np.zeros_like(kappa), where=size > 0)
         moment = loops.third * size * phase**3
         held = np.eye(len(kappa)) + moved * (loops.first - coarse.layers.whole)
-        found.append(float(np.abs(np.linalg.solve(held, moved @ moment)).max() / size.max()))
+        found.append(
+            float(np.abs(np.linalg.solve(held, moved @ moment)).max() / (size.max() or 1.0))
+        )
     return found
 
 
