@@ -12,19 +12,23 @@ import ropedyn as rd
 def matrices(scene: rd.Scene, elements: int) -> tuple[csc_array, csc_array, csc_array]:
     """Return stiffness, damping and mass over (z, beta) of the inner nodes.
 
-    The scene has bending and tension, `StiffnessDamping`, point masses and springs.
+    The scene has bending and tension, perhaps `StiffnessDamping`, point masses, springs and
+    dashpots; other damping is left out.
     """
     length = scene.rope.length / elements
     elastic = _assembled(scene.rope.bending_stiffness / length**3 * _bending(length), elements)
     string = _assembled(scene.tension / (30 * length) * _tension(length), elements)
     mass = _assembled(scene.rope.linear_density * length / 420 * _mass(length), elements)
+    damping = getattr(scene.damping, "gamma", 0.0) * elastic
     for part in scene.parts:
         at = unknown(part.x, length)
         if isinstance(part, rd.PointMass):
             mass[at, at] += part.mass
+        elif isinstance(part, rd.Dashpot):
+            damping[at, at] += part.damping
         else:
             elastic[at, at] += part.stiffness
-    return elastic + string, scene.damping.gamma * elastic, mass
+    return elastic + string, damping, mass
 
 
 def unknown(x: float, length: float) -> int:

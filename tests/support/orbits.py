@@ -74,7 +74,9 @@ def multipliers(driven, state):
     """How far the orbit is from closing after a period, relative, and its multipliers."""
     model, asked = driven.asked.model, driven.asked
     linear = model.scene.replace(parts=[]).compile(elements=len(model.x) - 1, element="rigid")
-    M, C, K = (m().toarray() for m in (linear.mass, linear.damping, linear.stiffness))
+    M, C, K = (
+        m().toarray() for m in (linear.mass_matrix, linear.damping_matrix, linear.stiffness_matrix)
+    )
     n = len(M)
     at, push = np.eye(n)[[round(p[1] * (n + 1)) - 1 for p in (driven.points[0], asked.drive)]]
     law, omega = law_of(model.scene), state.place.p
