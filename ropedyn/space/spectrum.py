@@ -185,24 +185,30 @@ class Pursuit:
     def __init__(self, bracket: Bracket) -> None:
         self.bracket, self.at = bracket, bracket.middle
         self.value = np.full(bracket.size, math.inf)
-        self.before = math.inf
+        self.settled = False
         self.vectors: Any = None
         self.error: Any = None
 
     def take(self, nearby: Nearby, unit: float) -> bool:
-        """Go on from what was found at `at`; False where nothing is to come."""
+        """Go on from what was found at `at`; True where nothing is to come."""
         value = self.at + nearby.shift
         change = float(np.abs(value - self.value).max())
         self.value, self.error, self.vectors = value, nearby.error, nearby.around
-        if change <= self.error.min() / 4 or change > self.before / 2:
-            return False
         mean = float(value.mean())
         near = max(8 * float(np.ptp(value)), BESIDE * max(abs(mean), unit))
         # at a shift like the least one the error of the second order is that of rounding
-        if np.abs(nearby.shift).max() <= SETTLED * near:
-            return False
-        self.before, self.at = change, mean + near
-        return True
+        self.settled = bool(
+            change <= self.error.min() / 4 or np.abs(nearby.shift).max() <= SETTLED * near
+        )
+        self.at = mean + near
+        return self.settled
+
+    @property
+    def found(self) -> tuple[Real, Real] | None:
+        """Eigenvalues and rounding errors, None where they did not settle in the bracket."""
+        if self.settled and self.bracket.has(self.value, self.error):
+            return self.value, self.error
+        return None
 
 
 def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[Real, Real] | None]:
@@ -218,12 +224,10 @@ def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[R
             x = start(system, max(one.bracket.size for one in left) + MORE, left)
             times = 3 if any(one.vectors is None for one in left) else 1
             found = ritz(system, x, [one.bracket.size for one in left], times)
-            left = [one for one, near in zip(left, found) if one.take(near, unit)]
+            left = [one for one, near in zip(left, found) if not one.take(near, unit)]
     # rigid motion strains nothing, and has a stiffness of rounding alone
-    return [
-        (s.value, np.maximum(s.error, RIGID * unit)) if s.bracket.has(s.value, s.error) else None
-        for s in pursuits
-    ]
+    found_ones = (one.found for one in pursuits)
+    return [(f[0], np.maximum(f[1], RIGID * unit)) if f else None for f in found_ones]
 
 
 def start(system: Assembly, columns: int, known: Any = ()) -> Real:

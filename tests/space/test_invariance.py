@@ -45,7 +45,9 @@ def turned_and_reversed(rng):
     return axis, rd.Axis.points(points @ turn.T + rng.normal(size=3), fillet), axis.reversed()
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(
+    "seed", [*range(8), 1484]
+)  # of 1484 the first guesses of a mode are far off
 def test_turning_and_reversing_space_polylines_change_nothing(seed):
     axis, turned, back = turned_and_reversed(np.random.default_rng(seed))
     wanted = frequencies(axis)
