@@ -307,6 +307,17 @@ def test_json_is_of_its_schema_and_keeps_every_number(name):
             assert value == (number if finite else None)
 
 
+@pytest.mark.parametrize("name", ANSWERS)
+def test_json_of_an_answer_has_its_plain_fields_beside_the_table(name):
+    answer = ANSWERS[name]
+    sheet = json.loads(answer.to_json())
+    jsonschema.validate(sheet, SCHEMA)
+    assert sheet["rows"] == json.loads(answer.table().to_json())["rows"]
+    for key, value in sheet.get("details", {}).items():
+        if isinstance(value, str):
+            assert value == getattr(answer, key)
+
+
 def test_columns_that_are_called_alike_are_parted_by_their_units_or_numbers():
     table = rd.Table.of("t", {"off [Hz]": [1.0], "off [%]": [2.0], "off": [3.0], "off []": [4.0]})
     assert [one.key for one in table.keys] == ["off_hz", "off_percent", "off_2", "off_3"]

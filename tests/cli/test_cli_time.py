@@ -184,8 +184,8 @@ def test_frf_moves_an_end(scene_file, capsys):
 
 def test_floquet_prints_the_growth_of_the_model(pulsating_file, capsys):
     assert main(["floquet", str(pulsating_file), "--modes", "2", "--json"]) == 0
-    found = model(pulsating_file).floquet(modes=2)
-    assert printed(capsys) == json.loads(found.to_json())
+    floquet = model(pulsating_file).floquet(modes=2)
+    assert printed(capsys) == json.loads(floquet.to_json())
 
 
 def test_stability_prints_and_draws_where_motion_grows(pulsating_file, tmp_path, capsys):
@@ -195,7 +195,7 @@ def test_stability_prints_and_draws_where_motion_grows(pulsating_file, tmp_path,
     chart = model(pulsating_file).stability_map(
         np.linspace(20, 40, 9), np.linspace(0, 40, 3), modes=2
     )
-    assert printed(capsys) == json.loads(chart.table().to_json())
+    assert printed(capsys) == json.loads(chart.to_json())
     assert figure.read_bytes().startswith(b"\x89PNG")
 
 
