@@ -155,10 +155,9 @@ def _mixing(paths: Sequence[str], spread: Real, prior: Known) -> Real:
     mixing = np.diag(spread)
     if isinstance(prior, Prior) and prior.covariance is not None:
         at = [i for i, path in enumerate(paths) if path in prior]
-        law = prior.apart.marginal([paths[i] for i in at]).law if at else None
-        if law is not None:
-            size = np.linalg.norm(law.spread, axis=1)
-            mixing[np.ix_(at, at)] = law.spread * (spread[at] / size)[:, None]
+        rows = prior.law.apart.spread[[list(prior).index(paths[i]) for i in at]]
+        share = (spread[at] / np.linalg.norm(rows, axis=1))[:, None] * rows
+        mixing[np.ix_(at, at)] = np.linalg.cholesky(share @ share.T)
     return mixing
 
 

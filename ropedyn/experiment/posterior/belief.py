@@ -46,7 +46,7 @@ class Belief:
         if not len(prior):
             return cls(tuple(more), by_factor, np.array(mean), covariance, tuple(said))
         given = prior if isinstance(prior, Prior) else Prior(prior)
-        law, q = given.apart.law, len(given)
+        law, q = given.law.apart, len(given)
         whole = np.zeros((q + len(more),) * 2)
         whole[:q, :q], whole[q:, q:] = law.spread @ law.spread.T, covariance
         return cls(

@@ -52,6 +52,25 @@ class JointNormal(NamedTuple):
         factor = np.linalg.cholesky(of_g)
         return cls(by_log, centre, s[:, None] * factor, np.linalg.inv(factor) / s)
 
+    @property
+    def apart(self) -> JointNormal:
+        """The same where each number, or its logarithm, is a variable: of laid ones to first order.
+
+        d D = EA dw + D d ln EA, d C = (C - D^2/EA) d ln(C - D^2/EA) + 2 D dw + w D d ln EA
+        """
+        if self.laid is None:
+            return self
+        i, j, k = self.laid
+        EA, w, free = np.exp(self.centre[i]), self.centre[j], np.exp(self.centre[k])
+        D, C = w * EA, free + w * w * EA
+        turn, centre = np.eye(len(self.centre)), self.centre.copy()
+        turn[j, [i, j]] = D, EA
+        turn[k, [i, j, k]] = w * D / C, 2 * D / C, free / C
+        centre[j], centre[k] = D, np.log(C)
+        half: Any = turn @ self.spread
+        root: Any = np.linalg.cholesky(half @ half.T)
+        return JointNormal(self.by_log, centre, root, np.asarray(np.linalg.inv(root)))
+
     def colour(self, z: Real) -> Real:
         """Return numbers of independent normal z, (n, p)."""
         g = self.centre + z @ self.spread.T

@@ -375,21 +375,14 @@ class Prior(Description, Mapping[str, tuple[float, float]], eq=False, repr=False
         """
         paths = [check.one_of(path, "path", tuple(self)) for path in paths]
         at = np.array([list(self).index(path) for path in paths], dtype=np.intp)
-        # of some laid numbers no law is known but their moments
-        whole = set(laid_paths) <= set(paths)
-        words = {path: self.distribution[path] for path in paths}
-        words = {path: word for path, word in words.items() if whole or word != LAID}
+        covariance = None if self.covariance is None else self.covariance[np.ix_(at, at)]
+        known, words = {path: self[path] for path in paths}, dict(self.distribution)
+        if not set(laid_paths) <= set(paths):
+            # of some laid numbers no law is known but their moments
+            words = {path: NORMAL if word == LAID else word for path, word in words.items()}
         return Prior(
-            {path: self[path] for path in paths},
-            covariance=None if self.covariance is None else self.covariance[np.ix_(at, at)],
-            distribution=words,
+            known, covariance=covariance, distribution={path: words[path] for path in known}
         )
-
-    @property
-    def apart(self) -> Prior:
-        """The same moments with a variable for each number, as `Prior` takes them by nature."""
-        words = {path: word for path, word in self.distribution.items() if word != LAID}
-        return Prior(self.known, covariance=self.covariance, distribution=words)
 
     def residual(self, values: ArrayLike) -> tuple[Real, Real]:
         """Return independent residuals of variance 1, as least squares add them, and their slopes.
