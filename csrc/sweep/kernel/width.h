@@ -66,10 +66,6 @@ RD_INLINE int K_(at)(int i, int j)
 #include "sweep/kernel/plane.h"
 #endif
 
-#if RD_WIDTH == 2
-#include "sweep/kernel/undamped.h"
-#endif
-
 const struct sweep_kernel K_(rd_sweep_kernel) = {
     .make_element = K_(make_element),
     .make_rate = K_(make_rate),
