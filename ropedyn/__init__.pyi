@@ -18,7 +18,7 @@ from .experiment.identify.identify import identify
 from .experiment.identify.response_fit import ResponseFit
 from .experiment.plan.plan import Plan
 from .experiment.plan.planning import plan_measurement
-from .experiment.plan.wire_shifts import WireShifts, broken_wire_shifts
+from .experiment.plan.wire_shifts import broken_wire_shifts
 from .experiment.track.track import Track
 from .experiment.track.tracking import track
 from .family.family import Family
@@ -39,7 +39,6 @@ from .scene.bench.prior import Prior
 from .scene.bench.torsion_test import TorsionTest
 from .scene.construction.construction import Construction, Layer
 from .scene.construction.section import Section
-from .scene.construction.spread import SectionSpread
 from .scene.construction.wire import Fibre, Wire
 from .scene.damping import (
     LossFactor,
@@ -60,7 +59,6 @@ from .scene.parts.stretch import AddedMass, LocalChange
 from .scene.rope import Rope
 from .scene.scene import Scene
 from .scene.tension import Tension
-from .signal.ringdown import RingDown
 from .signal.spectrum import Spectrum
 from .space.model import SpaceModel
 from .space.wire import wound_wire
@@ -123,14 +121,12 @@ __all__ = [
     "Resonances",
     "Resonator",
     "ResponseFit",
-    "RingDown",
     "Rope",
     "RopedynError",
     "Scene",
     "SceneError",
     "SecondHarmonic",
     "Section",
-    "SectionSpread",
     "Sine",
     "SolveError",
     "SpaceModel",
@@ -150,7 +146,6 @@ __all__ = [
     "ViscousDamping",
     "Wire",
     "WireFriction",
-    "WireShifts",
     "accuracy_cost",
     "ask",
     "broken_wire_shifts",
