@@ -168,6 +168,7 @@ def sheet_of(fit: Fit) -> str:
             "rms_relative": _finite(fit.rms),
         },
         "ends": {"taken": fit.ends, "said": list(fit.said_of_ends)},
+        "prior": {"said": list(fit.said_of_prior)},
         "cross_checks": list(fit.cross_checks),
         "record": fit.record,
         "assumed": list(fit.assumed),
