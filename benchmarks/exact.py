@@ -6,9 +6,10 @@ import numpy as np
 import ropedyn as rd
 from ropedyn.chain.chain import Chain
 
-mp.mp.dps = 40
+DIGITS = 40
 
 
+@mp.workdps(DIGITS)
 def receptance(model: rd.Model, frequency: float, gamma: float, at: int) -> complex:
     """Return the response of unknown `at` to a unit force there; gamma is stiffness damping [s]."""
     omega = 2 * mp.pi * mp.mpf(frequency)
@@ -18,6 +19,7 @@ def receptance(model: rd.Model, frequency: float, gamma: float, at: int) -> comp
     return complex(mp.lu_solve(stiffness - omega**2 * mp.diag(mass), force)[at])
 
 
+@mp.workdps(DIGITS)
 def frequency_near(model: rd.Model, frequency: float) -> mp.mpf:
     """Return the natural frequency [Hz] nearest to a good one, by inverse iteration."""
     stiffness, mass = matrices(model.chain, mp.mpf(1))

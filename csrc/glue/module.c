@@ -47,7 +47,7 @@ static PyMethodDef methods[] = {
      "foot"},
     {"space_triples", py_space_triples, METH_VARARGS,
      "space_triples(rates, series, length, halvings, doublings, gentle) -> triples, doublings"},
-    {"space_factor", py_space_factor, METH_VARARGS, 
+    {"space_factor", py_space_factor, METH_VARARGS,
      "space_factor(D, G, Q, N, fixed) -> factors, pivots, failed"},
     {"space_solve", py_space_solve, METH_VARARGS, "space_solve(factors, pivots, right) -> x"},
     {"space_count", py_space_count, METH_VARARGS,

@@ -146,7 +146,7 @@ class Curves(Answer):
         >>> model = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile()
         >>> ax = model.frf([5.0, 10.0, 20.0], drive=("z", 0.5)).plot(phase=True)
         >>> [axes.get_ylabel() for axes in ax.figure.axes]
-        ['receptance, amplitude', 'phase [degrees]']
+        ['receptance, amplitude [m/N]', 'phase [degrees]']
         """
         return draw(self, "plot", ax, phase=phase)
 
