@@ -329,3 +329,21 @@ def test_a_record_of_the_wrong_type_is_named():
 def test_same_input_same_bits():
     one, other = (walk(DAYS, Y, OWN, 5 * OWN) for _ in range(2))
     assert one.std.tobytes() == other.std.tobytes()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_change_is_told_where_nobody_knows_the_ends(seed):
+    """Peaks are explained by nearly pinned ends on one day and by nearly clamped ones on another."""
+    spring = rd.End(beta="free", spring={"beta": 5e6})
+    rope = rd.Rope(60.0, 80.0, bending_stiffness=1.5e6)
+    cable = rd.Scene(rope, tension=5.0e6, ends=(spring, spring))
+    drawn = rd.Scene(rope.replace(bending_stiffness=1.58e6), tension=5.0e6)
+    random, orders = np.random.default_rng(seed), np.array([1, 2, 4, 5, 7, 8])
+    days = []
+    for tension in (5.0e6, 4.9e6):
+        frequency = cable.replace(tension=tension).compile().modes(8).frequency[orders - 1]
+        std = 6e-4 * frequency
+        days.append(rd.Peaks(frequency + random.normal(0.0, std), std=std, order=orders))
+    track = rd.track(drawn, days, ends="unknown")
+    change = np.log(track.measured[1] / track.measured[0])
+    assert abs(change - np.log(0.98)) <= 4 * np.hypot(*track.measured_std) / 5e6 + 2e-3

@@ -214,6 +214,17 @@ SPACE = {
     **ROPE, "torsional_stiffness": 0.4, "axial_stiffness": 4e3, "polar_inertia": 1e-6,
 }  # fmt: skip
 IN_SPACE = rd.Scene(rd.Rope(**SPACE), tension=250.0, planes="both")
+BENT = SPACE | {"length": rd.Axis.arc(2.0, 0.6), "natural": "axis"}
+ARC = IN_SPACE.replace(rope=rd.Rope(**BENT))
+UNEQUAL = BENT | {"bending_stiffness": (0.8, 0.6)}
+FLAT = ARC.replace(rope=rd.Rope(**UNEQUAL))
+STRETCHES = with_only("stretch")
+
+
+def hardens(t, u, v):
+    return -1e5 * u**3
+
+
 APART = {
     "second plane": (BARE, BARE.replace(planes="both")),
     "own weight": (BARE, BARE.replace(gravity=rd.Gravity(9.81, inclination=0.5))),
@@ -222,10 +233,17 @@ APART = {
         BARE.replace(tension=rd.Tension(250.0, amplitude=10.0, frequency=30.0)),
     ),
     "stop": (BARE, BARE.replace(parts=[rd.Stop(0.5, 1e3, gap=1e-3)])),
-    "axis": (
-        IN_SPACE,
-        IN_SPACE.replace(rope=rd.Rope(**SPACE | {"length": rd.Axis.arc(2.0, 0.6)})),
+    "mean stretching": (
+        STRETCHES,
+        STRETCHES.replace(tension=rd.Tension(250.0, stretching=True)),
     ),
+    "node force": (BARE, BARE.replace(parts=[rd.NodeForce(0.5, hardens)])),
+    "modal damping": (BARE, BARE.replace(damping=rd.ModalDamping(0.01))),
+    "wire friction": (BARE, BARE.replace(damping=rd.WireFriction((0.2, 0.1), (0.1, 0.2)))),
+    "axis": (IN_SPACE, IN_SPACE.replace(rope=rd.Rope(**SPACE | {"length": rd.Axis.arc(2.0, 0.6)}))),
+    "initial moment": (ARC, ARC.replace(rope=rd.Rope(**BENT | {"natural": "straight"}))),
+    "shear": (ARC, ARC.replace(rope=rd.Rope(**BENT, shear_stiffness=1e4))),
+    "turned section": (FLAT, FLAT.replace(rope=rd.Rope(**UNEQUAL, principal_angle=0.3))),
 }
 """Effects that not every scene can have beside the others: the scene without and with each."""
 

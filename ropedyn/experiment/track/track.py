@@ -35,8 +35,8 @@ class Track(Answer):
     status : tuple of str
         Of the fit of each record; only those that are "trusted" tell the walk.
     measured, measured_std : ndarray, shape (n,)
-        What each record alone tells [N], and its standard deviation by its own peaks; NaN where
-        left out.
+        What each record alone tells, the middle of its interval [N], and its standard deviation by
+        its own peaks; NaN where left out.
     tension, std, own_std : ndarray, shape (n,)
         What all records tell of the tension at the time of each, left out or not, and its standard
         deviation with and without what all records share [N].

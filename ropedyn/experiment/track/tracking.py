@@ -193,7 +193,8 @@ def _day_of(fit: Fit | RopedynError) -> Day:
     z = quantile(LEVEL)
     whole = max(np.log(high / low) / (2 * z), LEAST_STD)
     own = min(max(fit.budget["peaks"] / z, LEAST_STD), whole)
-    ln_tension = float(np.log(fit.value["tension"]))
+    # the likeliest end may be another one in each record; the middle of what all ends leave is not
+    ln_tension = float(np.log(low * high) / 2)
     return Day(ln_tension, float(own), float(whole), fit.status, "")
 
 
