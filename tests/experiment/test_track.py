@@ -333,7 +333,7 @@ def test_same_input_same_bits():
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_change_is_told_where_nobody_knows_the_ends(seed):
-    """Peaks are explained by nearly pinned ends on one day and by nearly clamped ones on another."""
+    """Nearly pinned ends explain the peaks of one day and nearly clamped ones those of another."""
     spring = rd.End(beta="free", spring={"beta": 5e6})
     rope = rd.Rope(60.0, 80.0, bending_stiffness=1.5e6)
     cable = rd.Scene(rope, tension=5.0e6, ends=(spring, spring))

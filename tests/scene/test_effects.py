@@ -151,6 +151,7 @@ MECHANISMS = {
 }
 """Effects that code of the core serves. All others are numbers of what every scene has: inertia of
 spans and nodes, springs at nodes, sections, complex factors."""
+COUPLES = ("lay", "resonator")
 
 
 def with_gcov(test):
@@ -169,6 +170,8 @@ def counted(tmp_path_factory):
 @with_gcov
 def test_code_of_an_effect_runs_only_where_a_scene_has_it(counted):
     scenes = {"BARE": "BARE"} | {e: f"with_only({e!r})" for e in ALONE}
+    # what stands at nodes goes another way where coordinates are coupled
+    scenes |= {f"coupled {e}": f"with_only({e!r}, *COUPLES)" for e in ALONE}
     scenes |= {f"no {name}": f"full().without{e!r}" for name, e in MECHANISMS.items()}
     lines = {name: set(of) for name, of in zip(scenes, counted(scenes.values()))}
     for name, served in MECHANISMS.items():
@@ -177,6 +180,8 @@ def test_code_of_an_effect_runs_only_where_a_scene_has_it(counted):
         others = {e for e in ALONE if e not in served and not set(served) & set(NEEDED.get(e, ()))}
         own = set().union(*(lines[e] for e in served)) - lines["BARE"]
         own -= set().union(*(lines[e] for e in others | needed))
+        if not {*served} & {"twist", *COUPLES}:
+            own -= set().union(*(lines[f"coupled {e}"] for e in others))
         assert own, name
         # nor may one run it that has all other effects
         assert not own & lines[f"no {name}"], name
