@@ -15,7 +15,7 @@ from ..base.unit import QUANTITIES, place
 from ..chain.port import Point
 from ..experiment.compare.difference import OF_FRF, AnswerChange, change_of_frf
 from ..model import Model
-from ..response.deflection import Deflection
+from ..response.deflection import Deflection, check_some
 from ..response.frf import FRF
 from ..response.solvers import SOLVERS
 from ..scene.parts.part import PointMass
@@ -193,10 +193,7 @@ class StaticQuestion(AnyQuestion):
     each: ClassVar[float] = 1e-5
 
     def __post_init__(self) -> None:
-        what = 'a mapping such as {("z", 0.5): 10.0}'
-        check.instance(self.load, "load", Mapping, what)
-        if not self.load:
-            raise SceneError(f"load must be {what} with at least one entry, got {{}}")
+        check_some(self.load)
         given = {
             check.points(point, "load", forces=False): check.number(value, f"load[{point!r}]")
             for point, value in self.load.items()

@@ -424,14 +424,28 @@ SOLVERS = {
 
 
 def checked_loads(model: Compiled, load: Any, name: str = "load") -> dict[Point, float]:
-    """Return forces at points, those given twice as their sum."""
+    """Return forces at points of a model, none of them where a rope hangs without bending."""
+    loads = summed_loads(load, model.coordinates, model.scene.rope.length, name)
+    for point in loads:
+        refuse_slack(model, point, name)
+    return loads
+
+
+def check_some(load: Any, name: str = "load") -> None:
+    """Refuse what is no mapping, and one without an entry."""
     check.instance(load, name, Mapping, LOAD)
     if not load:
         raise SceneError(f"{name} must be {LOAD} with at least one entry, got {{}}")
+
+
+def summed_loads(
+    load: Any, coordinates: tuple[str, ...], length: float, name: str = "load"
+) -> dict[Point, float]:
+    """Return forces at points of a rope, those given twice as their sum."""
+    check_some(load, name)
     loads: dict[Point, float] = {}
     for key, value in load.items():
-        point = check.point(key, f"{name} point", model.coordinates, model.scene.rope.length)
-        refuse_slack(model, point, name)
+        point = check.point(key, f"{name} point", coordinates, length)
         unit = FORCE_UNIT[point[0]]
         loads[point] = loads.get(point, 0.0) + check.number(value, f"{name}[{key}]", unit)
     return loads

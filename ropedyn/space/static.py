@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -12,12 +11,11 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Real
 from ..base.computed import Late
-from ..base.errors import SceneError, SolveError
-from ..base.unit import FORCE_UNIT
+from ..base.errors import SolveError
 from ..chain.port import Point
 from ..eigen.vectors import within
 from ..response.critical import exceeds
-from ..response.deflection import POINTS, Deflection
+from ..response.deflection import POINTS, Deflection, summed_loads
 from ..scene.scene import Scene
 from .assembly import Assembly, assemble
 from .compile import finer_rope
@@ -31,7 +29,7 @@ def solve_static(
     scene: Scene, rope: SpaceRope, load: Any, *, points: int | None, unstable: bool
 ) -> Deflection:
     """Find the static deflection; see `SpaceModel.static`."""
-    loads = checked_loads(scene, load)
+    loads = summed_loads(load, scene.coordinates, scene.rope.length)
     check_points(rope, points)
     critical = count_below(rope, -1e-13 * rope.unit)
     if critical and not unstable:
@@ -120,17 +118,3 @@ def _rounding(system: Assembly, found: tuple[Real, Real]) -> Real:
     limit = limit[:, ~system.absent]
     limit.setflags(write=False)
     return limit
-
-
-def checked_loads(scene: Scene, load: Any) -> dict[Point, float]:
-    """Return forces at points, those given twice as their sum."""
-    what = 'a mapping such as {("z", 0.5): 10.0}'
-    check.instance(load, "load", Mapping, what)
-    if not load:
-        raise SceneError(f"load must be {what} with at least one entry, got {{}}")
-    loads: dict[Point, float] = {}
-    for key, value in load.items():
-        point = check.point(key, "load point", scene.coordinates, scene.rope.length)
-        amount = check.number(value, f"load[{key}]", FORCE_UNIT[point[0]])
-        loads[point] = loads.get(point, 0.0) + amount
-    return loads
