@@ -77,6 +77,20 @@ STD = "of the peaks, one number or a comma list [Hz]"
 ONLY_PEAKS = switch("--only-peaks", "of the FILE, not all of it", default=None)
 STD_OF_COMPARED = option("--std", STD, text.numbers)
 STD_OF_FITTED = option("--std", f"{STD}; estimated without it", text.numbers)
+ORDERS = option(
+    "--orders",
+    'which mode each peak is, comma list, 0 for none, "auto" or "search" (%(default)s)',
+    text.orders,
+    default="auto",
+)
+HELD = option("--ends", "whether they are known (unknown if the rope bends)", choices=ENDS)
+PRIOR_OF = repeated(
+    "--prior",
+    "what is known of a number beforehand",
+    text.known,
+    default=[],
+    metavar="PATH=VALUE:STD",
+)
 ORDER = option(
     "--order", "which mode each peak is, comma list of whole numbers", text.whole_numbers
 )
@@ -186,26 +200,15 @@ IDENTIFY = Command(
         MEASURED,
         ONLY_PEAKS,
         STD_OF_FITTED,
-        option(
-            "--orders",
-            'which mode each peak is, comma list, 0 for none, "auto" or "search" (%(default)s)',
-            text.orders,
-            default="auto",
-        ),
-        option("--ends", "whether they are known (unknown if the rope bends)", choices=ENDS),
+        ORDERS,
+        HELD,
         option(
             "--unknown",
             "comma list, such as tension,bending_stiffness,ends[0].spring.beta (%(default)s)",
             text.words,
             default="tension",
         ),
-        repeated(
-            "--prior",
-            "what is known of an unknown beforehand",
-            text.known,
-            default=[],
-            metavar="PATH=VALUE:STD",
-        ),
+        PRIOR_OF,
         OptionGroup(OF_FILE, FILE_TITLE),
     ),
     "Tension, stiffness and other numbers of the scene from measured peaks, or a measured "

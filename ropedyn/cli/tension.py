@@ -10,10 +10,10 @@ from ..base.computed import changed
 from ..base.errors import IdentifyWarning, SceneError
 from ..base.unit import MOTIONS
 from ..curves.record.record import Record
-from ..experiment.identify.identify import ENDS, identify, peaks_of_record, said_of
+from ..experiment.identify.identify import identify, peaks_of_record, said_of
 from ..scene.scene import Scene
 from . import text
-from .experiment import PEAKS_ARE, STD_OF_FITTED, peaks_of
+from .experiment import HELD, ORDERS, PEAKS_ARE, PRIOR_OF, STD_OF_FITTED, peaks_of
 from .options import Command, Option, OptionGroup, option, refuse, repeated, shown_fit
 
 COORDINATE = "z"
@@ -112,20 +112,9 @@ TENSION = Command(
         PEAKS,
         STD_OF_FITTED,
         option("--unknown", "comma list (tension, and bending_stiffness if it bends)", text.words),
-        option(
-            "--orders",
-            'which mode each peak is, comma list, 0 for none, "auto" or "search" (%(default)s)',
-            text.orders,
-            default="auto",
-        ),
-        option("--ends", "whether they are known (unknown if the rope bends)", choices=ENDS),
-        repeated(
-            "--prior",
-            "what is known of a number beforehand",
-            text.known,
-            default=[],
-            metavar="PATH=VALUE:STD",
-        ),
+        ORDERS,
+        HELD,
+        PRIOR_OF,
         option("--model-std", "what the model is off, relative", type=float, default=0.0),
         option("--save", "write the scene with what was found; its ends stay", metavar="FILE.toml"),
         option("--seed", "of the random numbers (%(default)s)", type=int, default=0),
