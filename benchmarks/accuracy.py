@@ -121,7 +121,14 @@ CASES = (
         "eigs",
         lambda n: peers.rates_by_eigs(DASHED, n, 5),
     ),
-    Case("a rope that sags", SAGGING, rd.ask.modes(5)),
+    Case(
+        "a rope that sags",
+        SAGGING,
+        rd.ask.modes(5),
+        {},
+        "eigsh",
+        lambda n: peers.sagging_modes_by_eigsh(SAGGING, n, 5),
+    ),
     Case(
         "a driven rope",
         STRING,

@@ -27,6 +27,21 @@ def modes_by_eigsh(scene: rd.Scene, elements: int, number: int) -> np.ndarray:
     return np.sqrt(np.sort(value)) / (2 * np.pi)
 
 
+def sagging_modes_by_eigsh(scene: rd.Scene, elements: int, number: int) -> np.ndarray:
+    """The force that sag adds, alike along the rope, is one unknown more; it has no mass."""
+    K, _, M = matrices(scene, elements)
+    length = scene.rope.length
+    curvature = scene.rope.linear_density * scene.gravity.g / scene.tension
+    softness = length * (1 + (curvature * length) ** 2 / 8) / scene.rope.axial_stiffness
+    area = np.zeros((K.shape[0], 1))
+    area[::2] = curvature * length / elements
+    border = sparse.csc_array([[-softness]])
+    K = sparse.block_array([[K, area], [area.T, border]], format="csc")
+    M = sparse.block_diag([M, 0 * border], format="csc")
+    value = eigsh(K, number, M, sigma=0.0, return_eigenvectors=False)
+    return np.sqrt(np.sort(value)) / (2 * np.pi)
+
+
 def lines_by_solve_banded(
     scene: rd.Scene, elements: int, x: float, lines: np.ndarray
 ) -> np.ndarray:
