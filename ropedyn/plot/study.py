@@ -11,6 +11,7 @@ from ..base.array import Index
 from ..base.unit import duration, power
 from ..study.accuracy import AccuracyCost
 from ..study.effect import EffectCost
+from ..study.effect_words import BESIDE, beside
 from ..study.hard.hard_cases import HardCases
 from .figure import BLUE, GREEN, ORANGE, RED, light_grid, plots
 
@@ -120,8 +121,8 @@ def _effect_note(cost: EffectCost, row: int) -> str:
     """Say what a bar cannot, on a line of its own."""
     if not cost.beyond_error[row]:
         return f"\n{cost.matters[row]}"
-    if cost.changed[row] == "damping ratio":
-        return f"\ndamping ratio {cost.change['damping ratio [1]'][row]:.3g}"
+    if cost.changed[row] in BESIDE:
+        return f"\n{', '.join(beside(cost, row))}"
     lost = int(cost.only_with[row])
     what = "mode" if "rms [Hz]" in cost.change else "response"
     return f"\n{lost} {what}{'s' * (lost > 1)} only with it" if lost else ""

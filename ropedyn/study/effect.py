@@ -50,16 +50,16 @@ class EffectCost(Answer):
         transverse, torsional, axial, of a resonator or of a broken wire. And ``"damping ratio
         [1]"``, of any. Of a frequency response ``"largest [dB]"`` and ``"median [dB]"``, of the
         level |20 log10(without/with)| of all lines, and ``"peak shift [Hz]"``, from the largest
-        peak to the nearest one without the effect, where that has the same number. Of motion over
-        time ``"largest [%]"``, ``"rms [%]"`` of all times and ``"peak [%]"``, of the largest value,
-        in percent of that. Else ``"largest [%]"`` and ``"rms [%]"`` of all values. NaN where there
-        is nothing to compare.
+        peak to the nearest one without the effect, where that has the same number; and ``"phase
+        [deg]"``, by which a line turns at the most. Of motion over time ``"largest [%]"``, ``"rms
+        [%]"`` of all times and ``"peak [%]"``, of the largest value, in percent of that. Else
+        ``"largest [%]"`` and ``"rms [%]"`` of all values. NaN where there is nothing to compare.
     error : ndarray, shape (rows,)
         Error bars of both answers, of mesh and rounding, where the change is largest [Hz, dB, %];
         infinite where none are known, as those of a chain that is not linear.
     changed : ndarray of str, shape (rows,)
         What it changes by more than the error bars that are known, such as ``"frequency, damping
-        ratio"``, ``"level"``, ``"motion"`` or ``"answer"``; empty where nothing.
+        ratio"``, ``"level, phase"``, ``"motion"`` or ``"answer"``; empty where nothing.
     beyond_error : ndarray of bool, shape (rows,)
         Whether that is more than all error bars, or modes or responses are only there with it.
     seen : ndarray of bool, shape (rows,)

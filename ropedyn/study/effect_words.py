@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from .effect import EffectCost
 
 
+BESIDE = {"damping ratio": ("damping ratio [1]", ""), "phase": ("phase [deg]", " deg")}
+"""What can change alone: as which of the changes it is kept, and its unit in words."""
+
+
 def matters(cost: EffectCost, row: int) -> str:
     """Say whether an effect changes the answer."""
     if cost.refusal[row]:
@@ -59,14 +63,22 @@ def _size(cost: EffectCost, row: int) -> str:
     """Say by how much an effect changes an answer."""
     unit = next(iter(cost.change)).partition(" ")[2]
     said = []
-    changed = str(cost.changed[row])
-    if changed and changed != "damping ratio":
+    if set(str(cost.changed[row]).split(", ")) - {"", *BESIDE}:
         said.append(f"{cost.largest[row]:.3g} {unit.strip('[]')}")
-    if "damping ratio" in changed:
-        said.append(f"damping ratio {cost.change['damping ratio [1]'][row]:.3g}")
+    said += beside(cost, row)
     if lost := int(cost.only_with[row]):
         said.append(f"{lost} only with it")
     return ", ".join(said) or "other values"
+
+
+def beside(cost: EffectCost, row: int) -> list[str]:
+    """Say by how much an effect changes what is not in the largest change."""
+    changed = str(cost.changed[row]).split(", ")
+    return [
+        f"{name} {cost.change[measure][row]:.3g}{unit}"
+        for name, (measure, unit) in BESIDE.items()
+        if name in changed
+    ]
 
 
 def _idle(cost: EffectCost) -> str:

@@ -42,12 +42,15 @@ def of_modes(scene, without, question):
 
 
 def of_response(scene, without, question):
-    """Largest change of level [dB]."""
+    """Largest change of level [dB] and of phase [deg]."""
     before, after = (
         one.compile().frf(question.frequency, drive=question.drive).value
         for one in (scene, without)
     )
-    return {"largest [dB]": abs(20 * np.log10(abs(after) / abs(before))).max()}
+    return {
+        "largest [dB]": abs(20 * np.log10(abs(after) / abs(before))).max(),
+        "phase [deg]": np.degrees(abs(np.angle(after / before))).max(),
+    }
 
 
 def of_motion(scene, without, question):
@@ -227,20 +230,51 @@ def test_a_stop_is_priced_by_motion():
     assert (answer.matters[at], answer.seen[at]) == ("yes: motion", True)
 
 
+def test_an_effect_that_turns_a_response_changes_it():
+    # where the receptance h is real, a dashpot c makes it h/(1 + i omega c h)
+    c, f = 1e-3, 7.0
+    h = STRING.compile().frf([f], drive=("z", 0.3)).value.real.item()
+    tan = 2 * math.pi * f * c * h
+    scene, question = STRING.replace(parts=[rd.Dashpot(0.3, c)]), rd.ask.frf([f], drive=("z", 0.3))
+    answer = cost(scene, question)
+    at = row(answer, "dashpot")
+    # of the level it changes 10 lg(1 + tan^2), far less
+    assert answer.change["largest [dB]"][at] == pytest.approx(10 * math.log10(1 + tan**2), rel=1e-6)
+    assert answer.change["phase [deg]"][at] == pytest.approx(math.degrees(math.atan(tan)), rel=1e-9)
+    assert "phase" in answer.matters[at] and "phase" in answer.verdict
+    assert "dashpot" in scene.needed(question, 0.99 * abs(tan))
+    assert "dashpot" not in scene.needed(question, 1.01 * abs(tan))
+
+
 # --- what an answer needs ------------------------------------------------------------------------
 
 
 def off(scene, out, question):
-    """How far frequencies and damping ratios are off without effects, relative."""
+    """How far an answer is off without effects, relative."""
     try:
-        left = scene.without(*out).compile().modes(question.number)
+        return OFF[type(question)](scene, scene.without(*out), question)
     except rd.RopedynError:
         return math.inf
-    whole = scene.compile().modes(question.number)
+
+
+def off_response(scene, left, question):
+    """Of a response, line by line."""
+    whole, left = (
+        one.compile().frf(question.frequency, drive=question.drive).value for one in (scene, left)
+    )
+    return abs(left / whole - 1).max()
+
+
+def off_modes(scene, left, question):
+    """Of frequencies and damping ratios."""
+    whole, left = (one.compile().modes(question.number) for one in (scene, left))
     if (whole.family != left.family).any():
         return math.inf
     apart = abs(left.frequency / whole.frequency - 1).max()
     return max(apart, abs(left.damping_ratio - whole.damping_ratio).max())
+
+
+OFF = {rd.ask.modes: off_modes, rd.ask.frf: off_response}
 
 
 def drawn(seed):
@@ -262,8 +296,9 @@ def drawn(seed):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_no_smaller_set_of_effects_is_within_the_tolerance(seed):
-    scene, question, tolerance = drawn(seed), rd.ask.modes(2), 1e-3
+@pytest.mark.parametrize("question", [rd.ask.modes(2), RESPONSE], ids=["modes", "frf"])
+def test_no_smaller_set_of_effects_is_within_the_tolerance(question, seed):
+    scene, tolerance = drawn(seed), 1e-3
     kept = scene.needed(question, tolerance)
     assert set(kept) <= set(scene.effects)
     out = [effect for effect in scene.effects if effect not in kept]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.array import Index, Real
+from ...base.array import Complex, Index, Real
 from ...chain.chain import CARRIED
 from ...eigen.eigen import solve_modes
 from ...eigen.modes import Modes
@@ -31,12 +31,12 @@ MOTIONS = {
 }
 RATIO_MESH, RATIO_ROUNDING = 100.0, 1e-10
 """Error of a damping ratio, relative: so much of that of the frequency, of a shape's rounding."""
-NEPER = math.log(10) / 20  # of a decibel
 FURTHEST = 16  # Modes are paired with those among at most so many times as many.
 # What is measured of a change, the largest first.
 RATIO = "damping ratio [1]"
 OF_MODES = ("largest [Hz]", "rms [Hz]", "largest [%]", "rms [%]", RATIO)
-OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]")
+PHASE = "phase [deg]"
+OF_FRF = ("largest [dB]", "median [dB]", "peak shift [Hz]", PHASE)
 OF_MOTION = ("largest [%]", "rms [%]", "peak [%]")
 OF_VALUES = ("largest [%]", "rms [%]")
 
@@ -190,28 +190,42 @@ def _numbers(modes: Modes) -> Real:
 def change_of_frf(whole: FRF, left: FRF) -> AnswerChange:
     """Compare a frequency response with that of what is left, line by line."""
     lines = len(whole.frequency)
-    before, after = (_size(frf).reshape(-1, lines) for frf in (whole, left))
-    gone = before.any(axis=1) & ~after.any(axis=1)
-    level = _level(before[~gone], after[~gone])
-    error = _decibel(_relative_error(whole) + _relative_error(left)).reshape(-1, lines)[~gone]
+    before, after = (_known(frf).reshape(-1, lines) for frf in (whole, left))
+    there = ~before.any(axis=1) | after.any(axis=1)
+    before, after = before[there], after[there]
+    off = (_relative_error(whole) + _relative_error(left)).reshape(-1, lines)[there]
+    level, phase = _level(before, after), np.degrees(np.abs(np.angle(after * before.conj())))
+    # of both answers, as a decibel and as an angle
+    error, turned = _decibel(off), np.degrees(np.arcsin(np.minimum(off, 1.0)))
     size = (_of(np.max, level), _of(np.median, level), _peak_shift(whole, left))
+    lost = int((~there).sum())
+    beyond = {"level": level > error, "phase": phase > turned}
+    changed = tuple(name for name, where in beyond.items() if where.any())
     return AnswerChange(
-        size=dict(zip(OF_FRF, size)),
+        size=dict(zip(OF_FRF, (*size, _of(np.max, phase)))),
         error=_of(lambda of: error.flat[of.argmax()], level),
-        beyond_error=bool(gone.any() or (level > error).any()),
-        lost=int(gone.sum()),
-        changed=("level",) * bool((level > error).any()),
-        relative=math.inf if gone.any() else float(np.expm1((level + error).max() * NEPER)),
+        beyond_error=bool(lost or changed),
+        lost=lost,
+        changed=changed,
+        relative=math.inf if lost else _of(np.max, _ratio(after - before, before) + off),
     )
 
 
-def _size(frf: FRF) -> Real:
-    """Return amplitudes; one without a correct digit, as by symmetry, counts as 0."""
-    return np.where(frf.rounding_error < 1, np.abs(frf.value), 0.0)
+def _known(frf: FRF) -> Complex:
+    """Return values; one without a correct digit, as by symmetry, counts as 0."""
+    return np.where(frf.rounding_error < 1, frf.value, 0.0)
 
 
-def _level(before: Real, after: Real) -> Real:
+def _ratio(change: Complex, before: Complex) -> Real:
+    """Return |change/before|: 0 where both are 0, infinite where only what was before is."""
+    size = np.abs(before)
+    none = np.where(change == 0, 0.0, np.inf)
+    return np.divide(np.abs(change), size, out=none, where=size > 0)
+
+
+def _level(before: Complex, after: Complex) -> Real:
     """Return |20 log10(after/before)| [dB]: 0 where both are 0, infinite where only one is."""
+    before, after = np.abs(before), np.abs(after)
     with np.errstate(divide="ignore", invalid="ignore"):
         level = 20 * np.abs(np.log10(after) - np.log10(before))
     return np.where((before == 0) & (after == 0), 0.0, level)
