@@ -91,8 +91,8 @@ class AccuracyCost(Answer):
     array([0.006413, 0.0001  ])
     >>> bool((cost.total_seconds > 0).all()), cost.cheapest[1e-12], cost.cost.method
     (True, 4, 'trials')
-    >>> print(cost.front[-1], cost.verdict[:29])
-    4 For a relative error of 1e-3,
+    >>> print(cost.front[-1], cost.verdict[:28])
+    4 For a relative error of 1e-3
     """
 
     question: str

@@ -17,6 +17,7 @@ LAID = BEAM.replace(torsional_stiffness=0.15, polar_inertia=1.4e-7, lay_slope=0.
 LINES = np.linspace(5.0, 80.0, 40)
 TIMES = np.linspace(0.0, 0.1, 101)
 RESPONSE = rd.ask.frf(LINES, drive=("z", 0.3))
+FEW = rd.ask.frf(LINES[::8], drive=("z", 0.3))
 PULSATING = rd.Tension(300.0, amplitude=20.0, frequency=30.0)
 
 
@@ -295,8 +296,8 @@ def drawn(seed):
     return rd.Scene(rope, tension=400.0, ends=("pinned", "pinned"), parts=parts)
 
 
-@pytest.mark.parametrize("seed", range(10))
-@pytest.mark.parametrize("question", [rd.ask.modes(2), RESPONSE], ids=["modes", "frf"])
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("question", [rd.ask.modes(2), FEW], ids=["modes", "frf"])
 def test_no_smaller_set_of_effects_is_within_the_tolerance(question, seed):
     scene, tolerance = drawn(seed), 1e-3
     kept = scene.needed(question, tolerance)
