@@ -9,8 +9,9 @@ import numpy as np
 from ..base.array import Real
 from ..base.drawing import draws
 from ..base.errors import SceneError
+from ..space.compile import axis_of
 from ..space.model import SpaceModel
-from ..space.shape import ShapeInSpace, axis_of, extent
+from ..space.shape import ShapeInSpace, extent
 from .figure import BLUE, light_grid, new_figure
 
 if TYPE_CHECKING:

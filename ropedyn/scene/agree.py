@@ -46,7 +46,7 @@ def refuse_axis(scene: Described, what: str) -> None:
     if scene.rope.axis is not None:
         raise SceneError(f"rope must be straight for {what}, got one on an axis")
     if scene.is_spatial:
-        raise SceneError(f"torque and principal_angle must be left out for {what}")
+        raise SceneError(f"torque, principal_angle and wound wires must be left out for {what}")
 
 
 def _check_on_axis(scene: Described) -> None:
@@ -54,18 +54,19 @@ def _check_on_axis(scene: Described) -> None:
     if not scene.is_spatial:
         return
     axis, hangs = scene.rope.axis, hanging(scene.rope, scene.gravity)
-    what = "a rope on an axis" if axis else "a rope with torque or turned principal axes"
+    what = "a rope with torque, turned principal axes or a wound wire"
+    what = "a rope on an axis" if axis else what
     if scene.planes != "both":
         raise SceneError(f'planes must be "both" for {what}, got "z"')
     heavy = scene.gravity is not None and hangs is None
     absent = {
-        "parts": check.shown(scene.parts) if scene.parts else "",
         "gravity": check.shown(scene.gravity) if heavy else "",
         "damping": "a ModalDamping" if damping.having(scene.dampings, "ratio") else "",
     }
     for name, got in absent.items():
         if got:
             raise SceneError(f"{name} must be left out for {what}, got {got}")
+    _check_parts_in_space(scene, what)
     if hangs is not None:
         _check_hanging(scene, hangs)
     elif isinstance(scene.tension, Tension):
@@ -81,6 +82,23 @@ def _check_on_axis(scene: Described) -> None:
             f"torque must be 0 without bending_stiffness of the rope, got {scene.torque:g} N m"
         )
     _check_corners(scene)
+
+
+IN_SPACE = ("point mass", "spring", "dashpot", "support", "broken wire")
+"""Kinds of parts that a rope carries whose six coordinates are solved at once."""
+
+
+def _check_parts_in_space(scene: Described, what: str) -> None:
+    """Refuse parts that are not carried where six coordinates are solved at once."""
+    for i, part in enumerate(scene.parts):
+        if part.kind not in IN_SPACE:
+            raise SceneError(
+                f"parts[{i}] must be one of {', '.join(IN_SPACE)} for {what}, got a {part.kind}"
+            )
+        if isinstance(part, BrokenWire) and not part.is_wound:
+            raise SceneError(f"parts[{i}].lay_length must be given for {what}, got None")
+        if isinstance(part, _part.Dashpot) and part.exponent != 1:
+            raise SceneError(f"parts[{i}].exponent must be 1 for {what}, got {part.exponent!r}")
 
 
 def _check_corners(scene: Described) -> None:
@@ -158,7 +176,8 @@ def _check_planes(scene: Described) -> None:
     for name in ACROSS if scene.planes == "z" else ():
         _refuse_pair(scene, f"rope.{name}", getattr(scene.rope, name))
     for i, part in enumerate(scene.parts if scene.planes == "both" else ()):
-        if isinstance(part, BrokenWire) and scene.rope.torsional_stiffness is not None:
+        twists = scene.rope.torsional_stiffness is not None
+        if isinstance(part, BrokenWire) and twists and not part.is_wound:
             _refuse_turned(part, f"parts[{i}].angle")
 
 

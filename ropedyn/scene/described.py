@@ -20,6 +20,7 @@ from .end import End
 from .gravity import Gravity
 from .left import SECOND_PLANE
 from .parts import part as _part
+from .parts.broken_wire import BrokenWire
 from .parts.node import Part
 from .parts.stretch import Stretch
 from .rope import Rope
@@ -72,7 +73,8 @@ class Described(Description):
         >>> rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).is_spatial
         False
         """
-        return self.rope.axis is not None or self.torque != 0 or self.rope.is_turned
+        wound = any(isinstance(part, BrokenWire) and part.is_wound for part in self.parts)
+        return self.rope.axis is not None or self.torque != 0 or self.rope.is_turned or wound
 
     @property
     def is_graded(self) -> bool:

@@ -11,6 +11,7 @@ from .checked import checked_tension
 from .damping import WireFriction
 from .end import STANDING, End
 from .gravity import Gravity
+from .parts.broken_wire import BrokenWire
 from .parts.node import Part
 from .parts.stretch import Stretch, changeable
 from .rope import ACROSS, Rope, own_number
@@ -114,6 +115,9 @@ def _part(part: Part | Stretch, rope: Rope, present: tuple[str, ...]) -> Part | 
     """Return what is left of a part in a scene with less, None where nothing is."""
     if isinstance(part, Stretch):
         return part.on(changeable(rope, present))
+    if isinstance(part, BrokenWire) and part.is_wound and "y" not in present:
+        # in one plane a wire is a straight cantilever
+        part = dataclasses.replace(part, lay_length=None)
     return part if set(part.stands_on) <= set(present) else None
 
 

@@ -18,7 +18,7 @@ from .. import _core
 from ..base.array import Complex, Flags, Index, Real
 from ..base.computed import computed
 from ..base.errors import SolveError
-from .rope import Factors, SpaceRope, halvings, scaled_rates, size_of
+from .rope import Carried, Factors, SpaceRope, halvings, scaled_rates, size_of
 from .samples import coefficients, series_of
 
 GENTLE = 1.5  # The largest entry of a joint's inverse within a part.
@@ -42,6 +42,8 @@ class Assembly:
     inner : ndarray of int, optional
         Where those of equal parts are, if the rope was divided for them.
     z : ndarray, shape (n, 6)
+    doubt : ndarray, shape (n, parts + 1)
+        What rounding may have done to N, where wires are carried.
     """
 
     D: Complex
@@ -52,12 +54,19 @@ class Assembly:
     absent: Flags
     node: Index
     z: Real
+    doubt: Real
     inner: Index | None = None
 
     @property
     def parts(self) -> int:
         """How many there are."""
         return self.D.shape[1]
+
+    @computed
+    def largest(self) -> tuple[Real, Real, Real, Real]:
+        """Entries of D, G, Q and N, the largest of each part; N with its doubt in roundings."""
+        D, G, Q, N = (np.abs(one).max((2, 3)) for one in (self.D, self.G, self.Q, self.N))
+        return D, G, Q, N + self.doubt / (ROUNDINGS * np.finfo(float).eps)
 
     def shown(self, equal: int) -> Index:
         """Return the nodes at the ends of so many equal parts of each piece."""
@@ -177,11 +186,67 @@ def assemble(rope: SpaceRope, factors: Factors, z: Real, *, equal: int = 1) -> A
     node = np.concatenate([[0], np.cumsum(counts)])
     N = np.zeros((len(rates), node[-1] + 1, 6, 6), dtype=np.complex128)
     N[:, node] = rope.nodes(factors) * (z[:, None, :, None] * z[:, None, None, :])
+    doubt = np.zeros(N.shape[:2])
+    for wire in rope.carried:
+        foot, at = foot_of(wire, factors), node[wire.node]
+        N[:, at] += foot.stiffness * (z[:, :, None] * z[:, None, :])
+        doubt[:, at] += (foot.doubt * (z[:, :, None] * z[:, None, :])).max((1, 2))
     held = np.zeros((node[-1] + 1, 6), dtype=bool)
     held[node] = rope.held
     held[:, rope.absent] = True
     D, G, Q = np.concatenate(triples, axis=1).transpose(2, 0, 1, 3, 4)
-    return Assembly(D, G, Q, N, held, rope.absent, node, z)
+    return Assembly(D, G, Q, N, held, rope.absent, node, z, doubt)
+
+
+class Foot(NamedTuple):
+    """What a wire does to the node that carries it, and what rounding does to that."""
+
+    stiffness: Complex  # (n, 6, 6) of the node's motion
+    doubt: Real
+    seen: Complex  # (n, 6) motion of its right end along its aim per motion of the node
+    seen_doubt: Real
+
+
+def foot_of(carried: Carried, factors: Factors) -> Foot:
+    """Solve a wire whose left end moves by each coordinate, its right end free."""
+    one = np.ones_like(factors.inertia)
+    own = Factors(one + 1j * carried.loss * factors.loss, one, one, factors.inertia, 0 * one, one)
+    z = carried.rope.scale(np.abs(factors.inertia))
+    system = assemble(carried.rope, own, z)
+    count, D, Q = len(z), system.D[:, 0], system.Q[:, 0]
+    p = np.zeros((count, system.parts + 1, 6, 7), dtype=np.complex128)
+    d = np.zeros((count, system.parts, 6, 7), dtype=np.complex128)
+    # u_1 - G f_0 = F u_0 of the left end's motion, and a load along the aim
+    d[:, 0, :, :6] = np.eye(6) + D
+    p[:, -1, :, 6] = carried.aim * z
+    u, f = system.apart(system.factored().solve(system.together(p, d)))
+    u[:, 0, :, :6] = np.eye(6)
+    # f_-1 is what the left end asks for
+    force = Q @ u[:, 0] - f[:, 0] - D.swapaxes(1, 2) @ f[:, 0]
+    off = bound(system, (u, f), (u, f))
+    by = carried.arm / z[:, :, None]
+    size = np.abs(by)
+    return Foot(
+        by.swapaxes(1, 2) @ force[:, :, :6] @ by,
+        size.swapaxes(1, 2) @ off[:, :6, :6] @ size,
+        ((carried.aim * z)[:, None] @ u[:, -1, :, :6] @ by)[:, 0],
+        (off[:, 6:, :6] @ size)[:, 0],
+    )
+
+
+ROUNDINGS = 4.0  # Of entries of a part's matrices, in units of the largest one, scaled.
+
+
+def bound(system: Assembly, one: tuple[Any, Any], other: tuple[Any, Any]) -> Real:
+    """Estimate x^T dA y, shape (n, columns of one, of other), by the parts' largest entries."""
+    (u, f), (v, g) = (tuple(np.linalg.norm(w, axis=2) for w in pair) for pair in (one, other))
+    D, G, Q, N = system.largest
+    left, right = u[:, :-1], v[:, :-1]
+    form = "lnd,ln,lnr->ldr"
+    size = np.einsum(form, u, N, v) + np.einsum(form, left, Q, right) + np.einsum(form, f, G, g)
+    size += np.einsum(form, f, 1 + D, right) + np.einsum(form, left, 1 + D, g)
+    limit: Real = ROUNDINGS * np.finfo(float).eps * size
+    return limit
 
 
 def parts_of(rates: Complex, length: float, halved: int) -> Complex:

@@ -171,6 +171,8 @@ class SpaceShapes:
             stress=rope.stress + step * rope.drag[:, None],
             springs=rope.springs + step * rope.dashpots,
         )
+        if rope.carried:
+            found |= self._carried(step)
         for k, name in enumerate(SIX):
             own = np.zeros((6, 6))
             own[k, k] = step.imag
@@ -180,6 +182,20 @@ class SpaceShapes:
                 springs=rope.springs + 1j * own * rope.masses,
             )
         return found
+
+    def _carried(self, step: complex) -> dict[str, SpaceRope]:
+        wires = self.rope.carried
+        softer = [replace(w.rope, soft=w.rope.soft * (1 - step)) for w in wires]
+        heavier = [
+            replace(w.rope, stress=w.rope.stress + step * w.rope.inertia[:, None]) for w in wires
+        ]
+        losing = [replace(w.rope, soft=w.rope.soft * (1 - w.loss * step)) for w in wires]
+        return {
+            name: replace(
+                self.rope, carried=tuple(w._replace(rope=own) for w, own in zip(wires, owns))
+            )
+            for name, owns in zip(CARRIED, (softer, heavier, losing))
+        }
 
     def _form(self, varied: SpaceRope, eigenvalue: Real, z: Real, own: Real) -> Real:
         """Return what an imaginary part adds to x^T A x of vectors (n, rows, columns)."""
@@ -203,6 +219,9 @@ class SpaceShapes:
         return np.select([y & z, y, z], ["space", "y", "z"], "")
 
 
+CARRIED = ("broken wire", "broken wire mass", "broken wire loss")
+"""Strain energy, modal mass and what is lost of wires that are carried."""
+
 SECTION = {
     "bending": np.diag([0, 0, 0, 0, 1, 1]).astype(bool),
     "twist": np.diag([0, 0, 0, 1, 0, 0]).astype(bool),
@@ -224,7 +243,7 @@ def vectors_of(shapes: SpaceShapes) -> UndampedVectors:
     return UndampedVectors(
         damping_ratio=_damping_ratio(shapes, energy, kinetic),
         family=np.array([FAMILY[SIX[k]] for k in own], dtype=np.str_),
-        modal_mass=kinetic.sum(axis=1) / size**2,
+        modal_mass=(kinetic.sum(axis=1) + _of(energy, "broken wire mass")) / size**2,
         shape=(shape / size[:, None, None])[:, :, ~shapes.rope.absent],
         energy=_fractions(shapes, energy, kinetic),
     )
@@ -233,21 +252,30 @@ def vectors_of(shapes: SpaceShapes) -> UndampedVectors:
 def _damping_ratio(shapes: SpaceShapes, energy: dict[str, Real], kinetic: Real) -> Real:
     """Return zeta = x^T Im(dynamic stiffness) x/(2 omega^2 x^T M x), to first order."""
     omega = np.sqrt(np.maximum(shapes.eigenvalue, 0.0))
-    mass = kinetic.sum(axis=1)
+    mass = kinetic.sum(axis=1) + _of(energy, "broken wire mass")
     section = sum((energy[name] for name in SECTION if name in energy), np.zeros_like(omega))
     part = np.stack([section, energy["tension"], energy["spring"], mass, energy["drag"]], axis=1)
     lost = (damping.factors(shapes.scene.dampings, omega).imag * part).sum(axis=1)
+    lost += _of(energy, "broken wire loss")
     ratio = np.zeros_like(omega)
     return np.divide(lost, 2 * omega**2 * mass, where=omega > 0, out=ratio)
 
 
 def _fractions(shapes: SpaceShapes, energy: dict[str, Real], kinetic: Real) -> dict[str, Real]:
     """Return shares of the strain and of the kinetic energy."""
-    stored = {name: energy[name] for name in (*SECTION, "tension", "spring") if name in energy}
+    strains = (*SECTION, "tension", "spring", "broken wire")
+    stored = {name: energy[name] for name in strains if name in energy}
     stored = {name: one for name, one in stored.items() if np.any(one)}
     total = sum(stored.values(), np.zeros(len(kinetic)))
     moves = (shapes.eigenvalue != 0) & (total != 0)
     none = np.zeros_like(total)
     found = {k: np.divide(v, total, where=moves, out=none.copy()) for k, v in stored.items()}
     own = [(k, c) for k, c in enumerate(SIX) if not shapes.rope.absent[k]]
-    return found | {c: kinetic[:, k] / kinetic.sum(axis=1) for k, c in own}
+    moving = {c: kinetic[:, k] for k, c in own}
+    moving |= {name: energy[name] for name in ("broken wire mass",) if name in energy}
+    whole = sum(moving.values(), np.zeros(len(kinetic)))
+    return found | {name: one / whole for name, one in moving.items()}
+
+
+def _of(energy: dict[str, Real], name: str) -> Any:
+    return energy.get(name, 0.0)

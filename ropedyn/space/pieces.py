@@ -144,7 +144,7 @@ def rope_of(
     begins, ends = (np.array([one[k] for one in pieces]) for k in (1, 2))
     starts = np.array([axis.joints[one[0]] for one in pieces])
     count, samples = len(pieces), SAMPLES if any(one[3] for one in pieces) else 1
-    arrays = {name: np.zeros((count, samples, 6, 6)) for name in SAMPLED}
+    arrays: dict[str, Any] = {name: np.zeros((count, samples, 6, 6)) for name in SAMPLED}
     for k, (own, begin, end, _) in enumerate(pieces):
         s = begin + (end - begin) * sample_places(samples)
         for name, value in _along(axis.pieces[own], s, starts[k], section, rest).items():

@@ -13,29 +13,37 @@ from ..base.answer import Cost
 from ..base.array import Complex, Index, Real
 from ..base.computed import Late
 from ..base.errors import SceneError, SolveError
-from ..base.unit import QUANTITIES
+from ..base.unit import QUANTITIES, WIRE
 from ..chain.port import Point
 from ..response.frf import FRF, MeshOfResponse, RoundingOfResponse
 from ..scene import damping
+from ..scene.parts.broken_wire import BrokenWire
 from ..scene.scene import Scene
-from .assembly import Assembly, Singular, assemble
+from .assembly import Assembly, Singular, assemble, bound, foot_of
 from .compile import finer_rope
 from .rope import SIX, Factors, SpaceRope
-from .spectrum import ROUNDINGS
 
 AT_ONCE = 128  # That are assembled together.
 
 
-def checked_points(scene: Scene, given: Any, name: str) -> tuple[tuple[Point, ...], bool]:
-    """Return one or several points, and whether a list of them was given."""
+def checked_points(
+    scene: Scene, given: Any, name: str, *, tips: bool = False
+) -> tuple[tuple[Point, ...], bool]:
+    """Return one or several points, perhaps tips of wires, and whether a list was given."""
     several = isinstance(given, (list, tuple)) and len(given) > 0 and not isinstance(given[0], str)
     found = []
     for k, one in enumerate(given if several else (given,)):
         called = f"{name}[{k}]" if several else name
         if check.is_end(one):
             raise SceneError(f"{called} must not be the motion of an end on an axis, got {one!r}")
-        found.append(check.point(one, called, scene.coordinates, scene.rope.length))
+        own = scene.coordinates, scene.rope.length
+        found.append(check.point(one, called, *own, wires=wires_of(scene) if tips else None))
     return tuple(found), several
+
+
+def wires_of(scene: Scene) -> int:
+    """Return how many broken wires it has."""
+    return sum(isinstance(part, BrokenWire) for part in scene.parts)
 
 
 def solve_frf(
@@ -46,7 +54,7 @@ def solve_frf(
     f = check.frequencies(frequency)
     drives, several = checked_points(scene, drive, "drive")
     given = response is not None
-    responses = checked_points(scene, response, "response")[0] if given else drives
+    responses = checked_points(scene, response, "response", tips=True)[0] if given else drives
     asked = Request.of(scene, rope, f, drives, responses)
     receptance = asked.receptance()
     power = (2j * math.pi * f) ** QUANTITIES[quantity]
@@ -95,7 +103,7 @@ class Request(NamedTuple):
     factors: Factors
     frequency: Real
     node: tuple[Index, Index]  # of drives and of responses
-    coordinate: tuple[Index, Index]
+    point: tuple[tuple[Point, ...], tuple[Point, ...]]
 
     @classmethod
     def of(
@@ -108,14 +116,15 @@ class Request(NamedTuple):
     ) -> Request:
         """Cut the rope at the points."""
         omega = 2 * math.pi * frequency
-        factors = Factors(*damping.factors(scene.dampings, omega).T)
-        places = np.array([at for _, at in (*drives, *responses)])
-        cut, node = rope.cut(places, check.NEAR * scene.rope.length)
-        along = np.array([SIX.index(c) for c, _ in (*drives, *responses)])
-        both = len(drives)
-        return cls(
-            cut, factors, frequency, (node[:both], node[both:]), (along[:both], along[both:])
-        )
+        by = damping.factors(scene.dampings, omega).T
+        factors = Factors(*by, *np.ones((1, len(omega)), dtype=np.complex128))
+        points, both = (tuple(drives), tuple(responses)), len(drives)
+        places = [
+            rope.x[rope.carried[int(at)].node] if c == WIRE else at
+            for c, at in (*drives, *responses)
+        ]
+        cut, node = rope.cut(np.array(places), check.NEAR * scene.rope.length)
+        return cls(cut, factors, frequency, (node[:both], node[both:]), points)
 
     def receptance(self) -> Complex:
         """Return motion per unit force, shape (drives, responses, f)."""
@@ -123,7 +132,9 @@ class Request(NamedTuple):
         value = np.zeros(shape, dtype=np.complex128)
         for lines, system in self._systems():
             motion, _ = self._solved(system, lines, 0)
-            value[:, :, lines] = self._seen(system, motion).transpose(2, 1, 0)
+            row, _ = self._rows(system, lines, 1)
+            seen = np.einsum("lrc,lrcd->drl", row, motion[:, system.node[self.node[1]]])
+            value[:, :, lines] = seen
         return value
 
     def rounding(self) -> Real:
@@ -131,7 +142,10 @@ class Request(NamedTuple):
         limit = np.zeros((len(self.node[0]), len(self.node[1]), len(self.frequency)))
         for lines, system in self._systems():
             one, other = (self._solved(system, lines, i) for i in (0, 1))
+            _, doubt = self._rows(system, lines, 1)
+            moved = np.abs(one[0][:, system.node[self.node[1]]])
             limit[:, :, lines] = bound(system, one, other).transpose(1, 2, 0)
+            limit[:, :, lines] += np.einsum("lrc,lrcd->drl", doubt, moved)
         return limit
 
     def _systems(self) -> Any:
@@ -142,10 +156,11 @@ class Request(NamedTuple):
 
     def _solved(self, system: Assembly, lines: slice, side: int) -> tuple[Complex, Complex]:
         """Return motion and force of unit loads on drives (0) or responses (1)."""
-        node, along = system.node[self.node[side]], self.coordinate[side]
-        n, f = len(system.D), self.frequency[lines]
+        node, f = system.node[self.node[side]], self.frequency[lines]
+        n = len(system.D)
         load = np.zeros((n, system.parts + 1, 6, len(node)), dtype=np.complex128)
-        load[:, node, along, np.arange(len(node))] = system.z[:, along]
+        row, _ = self._rows(system, lines, side)
+        load[:, node, :, np.arange(len(node))] = row.swapaxes(0, 1)
         load[:, system.held] = 0.0
         none = np.zeros((n, system.parts, 6, len(node)))
         try:
@@ -159,19 +174,16 @@ class Request(NamedTuple):
             )
         return system.apart(x)
 
-    def _seen(self, system: Assembly, motion: Complex) -> Complex:
-        node, along = system.node[self.node[1]], self.coordinate[1]
-        seen: Complex = motion[:, node, along] * system.z[:, along][:, :, None]
-        return seen
-
-
-def bound(system: Assembly, one: tuple[Any, Any], other: tuple[Any, Any]) -> Real:
-    """Estimate x^T dA y, shape (n, columns of one, of other), by the parts' largest entries."""
-    (u, f), (v, g) = (tuple(np.linalg.norm(w, axis=2) for w in pair) for pair in (one, other))
-    D, G, Q, N = (np.abs(w).max((2, 3)) for w in (system.D, system.G, system.Q, system.N))
-    left, right = u[:, :-1], v[:, :-1]
-    form = "lnd,ln,lnr->ldr"
-    size = np.einsum(form, u, N, v) + np.einsum(form, left, Q, right) + np.einsum(form, f, G, g)
-    size += np.einsum(form, f, 1 + D, right) + np.einsum(form, left, 1 + D, g)
-    limit: Real = ROUNDINGS * np.finfo(float).eps * size
-    return limit
+    def _rows(self, system: Assembly, lines: slice, side: int) -> tuple[Complex, Real]:
+        """Return what points see of their nodes, (n, points, 6), and what rounding does to it."""
+        row = np.zeros((len(system.z), len(self.point[side]), 6), dtype=np.complex128)
+        doubt = np.zeros(row.shape)
+        factors = Factors(*(one[lines] for one in self.factors))
+        for k, (coordinate, at) in enumerate(self.point[side]):
+            if coordinate == WIRE:
+                foot = foot_of(self.rope.carried[int(at)], factors)
+                row[:, k], doubt[:, k] = foot.seen * system.z, foot.seen_doubt * system.z
+            else:
+                along = SIX.index(coordinate)
+                row[:, k, along] = system.z[:, along]
+        return row, doubt

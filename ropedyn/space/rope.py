@@ -29,6 +29,17 @@ class Factors(NamedTuple):
     springs: Complex
     inertia: Complex
     drag: Complex
+    loss: Complex  # of what is carried: 0 or 1 times its own
+
+
+class Carried(NamedTuple):
+    """A wire that a node carries, clamped to it at its left end."""
+
+    node: int
+    arm: Real  # (6, 6) motion of its left end per motion of the node
+    aim: Real  # (6,) of its right end, what is seen of its motion
+    rope: SpaceRope
+    loss: float  # of its stiffness
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +71,8 @@ class SpaceRope:
     held : ndarray of bool, shape (pieces + 1, 6)
     absent : ndarray of bool, shape (6,)
         Coordinates that it does not have anywhere.
+    carried : tuple of Carried
+        Wires at nodes.
     """
 
     length: Real
@@ -77,6 +90,7 @@ class SpaceRope:
     dashpots: Matrices
     held: Flags
     absent: Flags
+    carried: tuple[Carried, ...] = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -122,6 +136,7 @@ class SpaceRope:
             new[at] = old
             arrays[name] = new
         arrays["held"] |= self.absent
+        arrays["carried"] = tuple(c._replace(node=int(at[c.node])) for c in self.carried)
         share = self.share[piece] * (inside[1] - inside[0])
         cut = replace(self, length=np.diff(stations), share=share, **arrays)
         return cut, np.abs(stations - np.asarray(places)[:, None]).argmin(axis=1)
@@ -134,7 +149,7 @@ class SpaceRope:
 
     def rates(self, factors: Factors) -> Complex:
         """Return Phi, S and q, shape (n, pieces, samples, 3, 6, 6)."""
-        section, tension, _, inertia, drag = (of_lines(one)[..., None] for one in factors)
+        section, tension, _, inertia, drag = (of_lines(one)[..., None] for one in factors[:5])
         initial, S = tension * self.initial, self.soft / section + self.string / tension
         SH = S @ initial
         q = tension * self.stress - initial.swapaxes(3, 4) @ SH
@@ -143,13 +158,13 @@ class SpaceRope:
 
     def nodes(self, factors: Factors) -> Complex:
         """Return the stiffness of what stands at the nodes, shape (n, pieces + 1, 6, 6)."""
-        _, _, springs, inertia, drag = (of_lines(one) for one in factors)
+        _, _, springs, inertia, drag = (of_lines(one) for one in factors[:5])
         return springs * self.springs + inertia * self.masses + drag * self.dashpots
 
     @computed
     def softest(self) -> tuple[float, float]:
         """Flexibilities of bending and of a string, the largest [1/N m^2, 1/N]."""
-        soft, string = (np.diagonal(one, axis1=2, axis2=3) for one in (self.soft, self.string))
+        soft, string = (np.diagonal(one.real, axis1=2, axis2=3) for one in (self.soft, self.string))
         return float(soft[..., 4:].max()), float(string[..., 1:3].max())
 
     @computed
@@ -172,12 +187,12 @@ class SpaceRope:
     @computed
     def stiffest(self) -> float:
         """Flexibility of bending, the least [1/N m^2]."""
-        return float(np.diagonal(self.soft, axis1=2, axis2=3)[..., 4:].min())
+        return float(np.diagonal(self.soft.real, axis1=2, axis2=3)[..., 4:].min())
 
     @computed
     def pull(self) -> float:
         """The largest tension [N]."""
-        return float(self.stress[..., 4, 4].max())
+        return float(self.stress[..., 4, 4].real.max())
 
     @computed
     def least(self) -> float:
@@ -236,7 +251,7 @@ def unforced(eigenvalue: Real | list[float], step: float = 0.0) -> Factors:
     """Return the factors of free motion, lambda + i step."""
     inertia = -(np.asarray(eigenvalue) + 1j * step)
     one = np.ones_like(inertia)
-    return Factors(one, one, one, inertia, 0 * one)
+    return Factors(one, one, one, inertia, 0 * one, 0 * one)
 
 
 def of_lines(factor: Complex) -> Complex:
@@ -265,5 +280,6 @@ def halvings(radians: Real) -> NDArray[np.int32]:
     return np.maximum(np.ceil(np.log2(np.maximum(radians, 1e-300) / RADIANS)), 0).astype(np.int32)
 
 
+SPRINGS = 7  # Where they stand among what the core counts by.
 PARTS = 8  # Of a block that changes: terms of their series fall by 8 each.
 RADIANS = 0.5  # Of the first piece that is summed as a series.

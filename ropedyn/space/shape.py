@@ -6,21 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..axis.axis import Axis
 from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
 from ..eigen.modes import Modes
 from ..scene.scene import Scene
+from .compile import axis_of
 
 VIEWS = ("isometric", "front", "top", "side")
 PART = 0.1  # Of the axis' extent, by which the farthest point moves.
 LEFT = 1e-12  # Of the length: frames of joints are those of the piece on their left.
-
-
-def axis_of(scene: Scene) -> Axis:
-    """Return the axis of a scene, a line where it has none."""
-    return scene.rope.axis or Axis.line(scene.rope.length)
 
 
 def extent(points: Real) -> float:

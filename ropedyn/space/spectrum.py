@@ -12,8 +12,8 @@ import numpy as np
 from .. import _core
 from ..base.array import Real
 from ..base.errors import SolveError
-from .assembly import Assembly, assemble
-from .rope import SpaceRope, unforced
+from .assembly import ROUNDINGS, Assembly, assemble, foot_of
+from .rope import SPRINGS, SpaceRope, unforced
 
 STEP = 2.0**-200  # Of derivatives by a complex step.
 TOGETHER = 1e-8  # Modes that are closer, relative, are found together.
@@ -80,8 +80,7 @@ class Counter:
             if not len(new):
                 return [self.counts[bisect_left(self.values, float(v))] for v in values]
             # joints at a resonance of a part are none a little aside
-            arrays, z = self.rope.core(new)
-            counts = _core.space_count(arrays, new * (1 + nudge * 2.0**-48), z)
+            counts = counts_at(self.rope, new * (1 + nudge * 2.0**-48))
             self.asked += len(new)
             there = ~np.isnan(counts)
             for value, count in zip(new[there].tolist(), counts[there].tolist()):
@@ -98,6 +97,24 @@ class Counter:
             raise SolveError("counts contradict each other: rounding decides where modes are")
         low, high = self.values[at - 1 : at + 1]
         return Bracket(low, high, *self.counts[at - 1 : at + 1])
+
+
+def counts_at(rope: SpaceRope, values: Real) -> Real:
+    """Count the eigenvalues below several, NaN where a part resonates there.
+
+    Those of wires held at their feet, and those of a rope whose nodes have the stiffness of feet.
+    """
+    arrays, z = rope.core(values)
+    if not rope.carried:
+        return np.asarray(_core.space_count(arrays, values, z))
+    springs, found = np.tile(rope.springs, (len(values), 1, 1, 1)), np.zeros(len(values))
+    for one in rope.carried:
+        springs[:, one.node] += foot_of(one, unforced(values)).stiffness.real
+        found += counts_at(one.rope, values)
+    for k, value in enumerate(values):
+        own = (*arrays[:SPRINGS], springs[k], *arrays[SPRINGS + 1 :])
+        found[k] += _core.space_count(own, np.array([value]), z[k : k + 1])[0]
+    return found
 
 
 def count_below(rope: SpaceRope, eigenvalue: float) -> int:
@@ -313,15 +330,10 @@ def mass(system: Assembly, x: Real) -> Real:
     return system.together(*system.imag.apply(*system.apart(x))) / -STEP
 
 
-ROUNDINGS = 4.0  # Of entries of a part's matrices, in units of the largest one, scaled.
-
-
 def _rounding(system: Assembly, x: Real) -> Real:
     """Estimate what rounding of the parts does to the eigenvalues of vectors of unit mass."""
     u, f = (np.linalg.norm(one, axis=2) for one in system.apart(x))
-    D, G, Q, N = (
-        np.abs(one.real).max((2, 3))[:, :, None] for one in (system.D, system.G, system.Q, system.N)
-    )
+    D, G, Q, N = (one[:, :, None] for one in system.largest)
     left = u[:, :-1]
     size = (N * u**2).sum(1) + (Q * left**2 + 2 * (1 + D) * left * f + G * f**2).sum(1)
     bound: Real = ROUNDINGS * np.finfo(float).eps * size

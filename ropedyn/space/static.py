@@ -17,10 +17,9 @@ from ..eigen.vectors import within
 from ..response.critical import exceeds
 from ..response.deflection import POINTS, Deflection, summed_loads
 from ..scene.scene import Scene
-from .assembly import Assembly, assemble
+from .assembly import Assembly, assemble, bound
 from .compile import finer_rope
 from .modes import check_points
-from .response import bound
 from .rope import SIX, SpaceRope, unforced
 from .spectrum import count_below
 

@@ -216,7 +216,14 @@ CORNER = rd.Axis.points([[0, 0, 0], [1, 0, 0], [1, 0, 1]])
 STIFF = {"bending_stiffness": 40.0, "torsional_stiffness": 25.0}
 REFUSED = {
     'planes must be "both"': lambda: rd.Scene(ROPE),
-    "parts must be left out": lambda: SCENE.replace(parts=[rd.PointMass(0.5, 0.1)]),
+    "parts[0] must be one of point mass": lambda: SCENE.replace(parts=[rd.Hinge(0.5)]),
+    "parts[0].lay_length must be given": lambda: SCENE.replace(
+        parts=[rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3)]
+    ),
+    "parts[1].exponent must be 1": lambda: SCENE.replace(
+        parts=[rd.Spring(0.5, 1.0), rd.Dashpot(0.5, 1.0, exponent=2)]
+    ),
+    "must not ask for a wire": lambda: MODEL.frf([1.0], drive=("z", 1.0), response=("wire", 0)),
     "gravity must be left out": lambda: SCENE.replace(gravity=rd.Gravity()),
     "damping must be left out": lambda: SCENE.replace(damping=rd.ModalDamping(0.01)),
     "tension must be one number": lambda: SCENE.replace(

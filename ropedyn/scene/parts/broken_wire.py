@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...base.errors import SceneError
-from ...base.parameter import number
+from ...base.parameter import number, one_of
 from .node import Attached, AttachedRate, NodeRate, NodeTerm, Part
 
 FIRST_ROOT = 1.8751040687119611  # The first root of 1 + cos x cosh x = 0: of a cantilever.
@@ -25,6 +25,10 @@ class BrokenWire(Part):
     dampings of the rope do not act on it, but Rayleigh damping on its mass. The motion of its tip
     along z is the response ("wire", 0) of `Model.frf` for the first one among the parts, and so on.
 
+    With `lay_length` it is still wound: a helix about the axis of the rope, on the cylinder of its
+    radius, with bending, twist, stretch and rotary inertia of its own and its root clamped to the
+    section. It moves with all coordinates of the rope at once, which a `SpaceModel` solves.
+
     Parameters
     ----------
     x : float
@@ -35,7 +39,7 @@ class BrokenWire(Part):
         Of its root from the axis [m]: how far it moves with twist; may be negative.
     angle : float, optional
         Round the rope, from the direction of y to that of z [rad]. In both planes of a rope that
-        twists it must be 0: elsewhere twist would tie the planes.
+        twists it must be 0 if the wire is straight: elsewhere twist would tie the planes.
     youngs_modulus : float, optional
         [N/m^2].
     density : float, optional
@@ -43,14 +47,20 @@ class BrokenWire(Part):
     damping_ratio : float, optional
         The modulus is E (1 + 2 i damping_ratio) in the frequency response and in damped modes:
         every mode of the wire has this damping ratio at its resonance.
+    lay_length : float, optional
+        Along the rope in one turn of a wire that is still wound [m]; straight where left out.
+    sense : {"Z", "S"}
+        Of the lay: "Z" is a right-handed helix.
+    poissons_ratio : float
+        From -1 to 1/2, of the torsional stiffness E I/(1 + nu) of a wound one.
 
     Raises
     ------
     TypeError
         If something is not a number.
     SceneError
-        If something is not finite, a size is not positive or the damping is negative; in a model,
-        if its root cannot move where it stands.
+        If something is not finite or out of range, or a wound wire has no radius; in a model, if
+        its root cannot move where it stands.
 
     Examples
     --------
@@ -70,15 +80,34 @@ class BrokenWire(Part):
     youngs_modulus: float = number("N/m^2", sign="positive", default=2.06e11)
     density: float = number("kg/m^3", sign="positive", default=7850.0)
     damping_ratio: float = number(sign="nonnegative", default=0.0)
+    lay_length: float | None = number("m", sign="positive", default=None)
+    sense: str = one_of(("Z", "S"), default="Z")
+    poissons_ratio: float = number(default=0.3)
 
     def _agree(self) -> None:
         with np.errstate(all="ignore"):
-            numbers = np.array([*self._values[:3], self.frequency])
+            numbers = np.array([*self._values[:3], self._straight])
         if not np.isfinite(numbers).all() or (numbers == 0.0).any():
             raise SceneError(
                 "length and diameter must leave mass and stiffness of the wire numbers, got "
                 f"{self.length!r} m and {self.diameter!r} m"
             )
+        if not -1 < self.poissons_ratio <= 0.5:
+            raise SceneError(f"poissons_ratio must be from -1 to 1/2, got {self.poissons_ratio!r}")
+        if self.is_wound and self.radius == 0:
+            raise SceneError("radius must not be 0 [m] of a wire that is wound, got 0.0")
+
+    @property
+    def is_wound(self) -> bool:
+        """Whether it is a helix.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> rd.BrokenWire(0.5, 0.05, 3e-4, radius=2e-3, lay_length=0.03).is_wound
+        True
+        """
+        return self.lay_length is not None
 
     @property
     def _values(self) -> tuple[float, float, float, float]:
@@ -90,7 +119,16 @@ class BrokenWire(Part):
 
     @property
     def frequency(self) -> float:
-        """The first natural frequency with the root held [Hz]."""
+        """The first natural frequency of a straight one with the root held [Hz].
+
+        That of a wound one is the first of `wound_wire`.
+        """
+        if self.is_wound:
+            raise SceneError("frequency is that of a straight wire: see wound_wire")
+        return self._straight
+
+    @property
+    def _straight(self) -> float:
         mass, stiffness = (np.float64(v) for v in self._values[:2])
         return float(FIRST_ROOT**2 * np.sqrt(stiffness / mass) / (2 * math.pi))
 
@@ -101,6 +139,7 @@ class BrokenWire(Part):
 
     def term(self) -> NodeTerm:
         """Return the structure in each plane, which moves with it and alpha and turns with it."""
+        assert not self.is_wound, "a wound wire moves with all coordinates at once"
         along, across = self._lever
         up = Attached(self.kind, {"z": 1.0, "alpha": along}, {"beta": 1.0}, self._values)
         side = Attached(self.kind, {"y": 1.0, "alpha": across}, {"gamma": 1.0}, self._values)
