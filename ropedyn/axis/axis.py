@@ -161,7 +161,14 @@ class Axis:
         return _placed(UniformPiece(r * turned, 0.0, 1 / r), kind="arc", radius=r, angle=turned)
 
     @staticmethod
-    def helix(radius: float, pitch_angle: float, turns: float, hand: str = "right") -> Axis:
+    def helix(
+        radius: float,
+        pitch_angle: float,
+        turns: float | None = None,
+        hand: str = "right",
+        *,
+        length: float | None = None,
+    ) -> Axis:
         """Return a helix, which begins along X and bends towards Z.
 
         Parameters
@@ -170,18 +177,20 @@ class Axis:
             Of the cylinder [m].
         pitch_angle : float
             Between the tangent and the cross-section of the cylinder [rad], from 0, a circle, to
-            less than pi/2.
-        turns : float
+            pi/2, a line, whose frame does not turn.
+        turns : float, optional
             Around the cylinder.
         hand : {"right", "left"}
             As a screw.
+        length : float, optional
+            Along the helix [m], in place of `turns`; a line has no other.
 
         Raises
         ------
         TypeError
             If something is of the wrong type.
         SceneError
-            If a number is out of range or the hand unknown.
+            If a number is out of range, the hand unknown, or not one of turns and length given.
 
         Examples
         --------
@@ -193,14 +202,23 @@ class Axis:
         """
         r = check.number(radius, "radius", "m", sign="positive")
         pitch = check.number(pitch_angle, "pitch_angle", "rad", sign="nonnegative")
-        if pitch >= math.pi / 2:
-            raise SceneError(f"pitch_angle must be less than pi/2 [rad], got {pitch_angle!r}")
-        around = check.number(turns, "turns", sign="positive")
+        if pitch > math.pi / 2:
+            raise SceneError(f"pitch_angle must be at most pi/2 [rad], got {pitch_angle!r}")
+        around = check.optional(turns, "turns", sign="positive")
+        long = check.optional(length, "length", "m", sign="positive")
+        if (around is None) == (long is None):
+            raise SceneError(f"give either turns or length, got {turns!r} and {length!r}")
         sign = 1 if check.one_of(hand, "hand", ("right", "left")) == "right" else -1
-        c, s = math.cos(pitch), math.sin(pitch)
-        piece = UniformPiece(2 * math.pi * r * around / c, sign * s * c / r, c * c / r)
-        words: dict[str, Any] = {"radius": r, "pitch_angle": pitch, "turns": around, "hand": hand}
-        return _placed(piece, kind="helix", **words)
+        words: dict[str, Any] = {"radius": r, "pitch_angle": pitch, "hand": hand}
+        words |= {"length": long} if around is None else {"turns": around}
+        # the float next to pi/2 has a cosine of 6e-17, which is none
+        c, s = 0.0 if pitch == math.pi / 2 else math.cos(pitch), math.sin(pitch)
+        if around is not None:
+            if c == 0:
+                raise SceneError("length must be given where pitch_angle is pi/2: it does not turn")
+            long = 2 * math.pi * r * around / c
+        assert long is not None
+        return _placed(UniformPiece(long, sign * s * c / r, c * c / r), kind="helix", **words)
 
     @staticmethod
     def catenary(span: float, rise: float = 0.0, *, parameter: float) -> Axis:

@@ -52,12 +52,11 @@ def wound_wire(wire: BrokenWire) -> Scene:
         raise SceneError("lay_length must be given of a wire that is wound, got None")
     lay, radius = wire.lay_length, abs(wire.radius)
     pitch = math.atan2(lay, 2 * math.pi * radius)
-    turns = wire.length / math.hypot(lay, 2 * math.pi * radius)
     area = math.pi * wire.diameter**2 / 4
     inertia = area * wire.diameter**2 / 16
     E, rho = wire.youngs_modulus, wire.density
     hand = "right" if wire.sense == "Z" else "left"
-    axis: Any = Axis.helix(radius, pitch, turns, hand=hand)
+    axis: Any = Axis.helix(radius, pitch, hand=hand, length=wire.length)
     rope = Rope(
         axis,
         rho * area,

@@ -97,6 +97,23 @@ def test_a_steep_helix_is_straight():
     assert np.abs(helix.position(s) - s[:, None] * [1, 0, 0]).max() < 1e-8 * helix.length
 
 
+def test_a_helix_of_ninety_degrees_is_the_line():
+    helix = rd.Axis.helix(1.0, math.pi / 2, length=3.0)
+    assert helix.pieces == rd.Axis.line(3.0).pieces and helix.is_straight
+    # what is nearly so, too, to what curvature and torsion of 1e-8 turn it by
+    near = rd.Axis.helix(1.0, math.pi / 2 - 1e-8, length=3.0)
+    s = np.linspace(0, 3, 7)
+    assert np.abs(near.position(s) - helix.position(s)).max() < 1e-15
+    assert np.abs(near.frame(s) - helix.frame(s)).max() < 4e-8
+    assert rd.Axis.from_words(helix.words) == helix
+
+
+def test_a_helix_is_as_long_as_its_turns():
+    one, other = rd.Axis.helix(0.7, 0.3, 2.5), rd.Axis.helix(0.7, 0.3, length=2.0)
+    assert rd.Axis.helix(0.7, 0.3, length=one.length).pieces == one.pieces
+    assert other.length == 2.0
+
+
 def test_a_catenary_hangs_by_its_weight():
     c = 200.0
     axis = AXES["catenary"]
@@ -158,7 +175,10 @@ def test_equal_axes_are_equal():
 REFUSED = [
     (lambda: rd.Axis.line(0), "length must be a finite number > 0 [m], got 0"),
     (lambda: rd.Axis.arc(1, -1), "angle must be a finite number > 0 [rad], got -1"),
-    (lambda: rd.Axis.helix(1, 1.6, 1), "pitch_angle must be less than pi/2 [rad], got 1.6"),
+    (lambda: rd.Axis.helix(1, 1.6, 1), "pitch_angle must be at most pi/2 [rad], got 1.6"),
+    (lambda: rd.Axis.helix(1, math.pi / 2, 1), "length must be given where pitch_angle is pi/2"),
+    (lambda: rd.Axis.helix(1, 1), "give either turns or length, got None and None"),
+    (lambda: rd.Axis.helix(1, 1, 2, length=3), "give either turns or length, got 2 and 3"),
     (lambda: rd.Axis.helix(1, 1, 1, "up"), 'hand must be one of "right", "left", got \'up\''),
     (lambda: rd.Axis.catenary(1e4, parameter=1), "parameter must be at least span/1000"),
     (lambda: rd.Axis.points([[0, 0, 0]]), "xyz must be two or more points"),

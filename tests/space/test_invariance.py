@@ -77,6 +77,21 @@ def test_turning_and_reversing_many_space_polylines_change_nothing(claim):
     claim(worst)
 
 
+@pytest.mark.parametrize("below", [0.0, 1e-12, 1e-8])
+def test_a_helix_of_ninety_degrees_is_the_straight_rope(below):
+    how = {
+        "bending_stiffness": (40.0, 30.0),
+        "torsional_stiffness": 25.0,
+        "axial_stiffness": 1e5,
+        "polar_inertia": 3e-3,
+    }
+    axis = rd.Axis.helix(0.5, math.pi / 2 - below, length=2.0)
+    rest = {"tension": 100.0, "planes": "both"}
+    wanted = rd.Scene(rd.Rope(2.0, 0.8, **how), **rest).compile().modes(8).frequency
+    found = rd.Scene(rd.Rope(axis, 0.8, **how), **rest).compile().modes(8).frequency
+    assert found == pytest.approx(wanted, rel=1e-12)
+
+
 @pytest.mark.parametrize("tension", [0.0, 300.0, -20.0])
 def test_reversing_a_rope_with_a_lay_and_unlike_ends_changes_nothing(tension):
     helix = rd.Axis.helix(0.5, 0.4, 0.7)
