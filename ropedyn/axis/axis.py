@@ -426,6 +426,35 @@ class Axis:
         """
         return self._each(s, lambda k, at: self.pieces[k].rates(at), (3,))
 
+    def turned(self, s: ArrayLike) -> Real:
+        """Return the angle that curvature turns the tangent by up to arc lengths, corners apart.
+
+        Parameters
+        ----------
+        s : float or array_like
+            Arc lengths [m].
+
+        Returns
+        -------
+        ndarray, shape s.shape
+            [rad].
+
+        Raises
+        ------
+        SceneError
+            If one lies beyond the ends.
+
+        Examples
+        --------
+        >>> import ropedyn as rd
+        >>> corner = [[0, 0, 0], [1, 0, 0], [1, 0, 1]]
+        >>> rounded = rd.Axis.points(corner, fillet=0.2)
+        >>> rounded.turned([0.5, rounded.length]).round(6)
+        array([0.      , 1.570796])
+        """
+        whole = np.concatenate([[0.0], np.cumsum([one.turned(one.length) for one in self.pieces])])
+        return self._each(s, lambda k, at: whole[k] + self.pieces[k].turned(at), ())
+
     def reversed(self) -> Axis:
         """Return the same line from its other end, x and y of its frames turned round.
 

@@ -25,6 +25,10 @@ class UniformPiece(NamedTuple):
         """Return how curvature changes along it [rad/m^2]."""
         return 0 * s
 
+    def turned(self, s: Any) -> Any:
+        """Return the angle that the tangent turns by up to arc lengths [rad]."""
+        return self.curvature * s
+
     def travel(self, s: Real) -> tuple[Real, Real]:
         """Return positions and frames there in the frame of the start, (s, 3) and (s, 3, 3)."""
         # with W the cross product with omega = (tau, -kz, 0) and t = |omega| s
@@ -65,6 +69,11 @@ class CatenaryPiece(NamedTuple):
         """Return how curvature changes along it [rad/m^2]."""
         along: Real = self.begin + s
         return -2 * self.parameter * along / (self.parameter**2 + along**2) ** 2
+
+    def turned(self, s: Any) -> Any:
+        """Return the angle that the tangent turns by up to arc lengths [rad]."""
+        c = self.parameter
+        return np.arctan2(self.begin + s, c) - np.arctan2(self.begin, c)
 
     def pull(self, s: Any) -> Any:
         """Return the tension over weight per length there [m]."""

@@ -19,7 +19,7 @@ from .parts.stretch import Stretch, changeable, refuse_uneven, ropes
 from .rope import ACROSS, own_number
 from .stations import stations_at
 from .tension import Tension
-from .weight import hanging, place_of, refuse_slack
+from .weight import hanging, place_of, refuse_slack, rubbing
 
 if TYPE_CHECKING:
     from .described import Described
@@ -51,6 +51,8 @@ def refuse_axis(scene: Described, what: str) -> None:
 
 def _check_on_axis(scene: Described) -> None:
     """Refuse what is not carried where six coordinates are solved at once."""
+    if scene.rope.axis is None:
+        _refuse_of_axis(scene)
     if not scene.is_spatial:
         return
     axis, hangs = scene.rope.axis, hanging(scene.rope, scene.gravity)
@@ -69,9 +71,13 @@ def _check_on_axis(scene: Described) -> None:
     _check_parts_in_space(scene, what)
     if hangs is not None:
         _check_hanging(scene, hangs)
-    elif isinstance(scene.tension, Tension):
+    elif isinstance(scene.tension, Tension) and not (scene.tension.is_constant and axis):
         got = check.shown(scene.tension)
         raise SceneError(f"tension must be one number for {what} [N], got {got}")
+    if rubs := rubbing(scene.rope, scene.tension):
+        _check_rubbing(scene, rubs)
+    if scene.axial_force:
+        _check_axial_force(scene)
     is_string = axis is not None and scene.rope.bending_stiffness is None
     if is_string and not scene.mean_tension > 0:
         raise SceneError(
@@ -82,6 +88,18 @@ def _check_on_axis(scene: Described) -> None:
             f"torque must be 0 without bending_stiffness of the rope, got {scene.torque:g} N m"
         )
     _check_corners(scene)
+
+
+def _refuse_of_axis(scene: Described) -> None:
+    """Refuse what only a rope on an axis has."""
+    if isinstance(scene.tension, Tension) and scene.tension.friction:
+        raise SceneError(
+            f"friction of the tension must be 0 of a straight rope, got {scene.tension.friction!r}"
+        )
+    if scene.axial_force:
+        raise SceneError(
+            f"axial_force must be 0 of a straight rope, got {scene.axial_force:g} N: say tension"
+        )
 
 
 IN_SPACE = ("point mass", "spring", "dashpot", "support", "broken wire")
@@ -101,11 +119,58 @@ def _check_parts_in_space(scene: Described, what: str) -> None:
             raise SceneError(f"parts[{i}].exponent must be 1 for {what}, got {part.exponent!r}")
 
 
+def _check_rubbing(scene: Described, rubs: Tension) -> None:
+    """Refuse what does not rest on sheaves by T' = friction kz T."""
+    axis = scene.rope.axis
+    assert axis is not None
+    if not axis.is_uniform:
+        raise SceneError(
+            "friction of the tension must be 0 on an axis that is not of lines, arcs and helices, "
+            f"got {rubs.friction!r}"
+        )
+    if not rubs.mean > 0:
+        raise SceneError(
+            "tension must be > 0 for friction, which a rope that presses on nothing has not, got "
+            f"{rubs.mean:g} N"
+        )
+    bends, twists = (
+        (own_number(scene.rope, name) or 0.0) * (scene.rope.natural == "straight")
+        for name in ("bending_stiffness", "torsional_stiffness")
+    )
+    tension = scene.tension_at(axis.joints)
+    for piece, one, other in zip(axis.pieces, tension, tension[1:]):
+        tau, kz, _ = piece.rates(np.zeros(1))[0]
+        # Vy = kz (tau (B - C) - M) presses by tau Vy beside kz T
+        left = abs(tau * (tau * (bends - twists) - scene.torque)) / min(one, other)
+        if kz and left > UNBALANCED:
+            raise SceneError(
+                "friction of the tension must be 0 where twist presses on the sheave too: it "
+                f"leaves {left:.2g} of what the tension presses by, got {rubs.friction!r}"
+            )
+
+
+def _check_axial_force(scene: Described) -> None:
+    """Refuse a load along the axis of what is no spring."""
+    axis, got = scene.rope.axis, f"got {scene.axial_force:g} N"
+    if axis is None or len(axis.pieces) > 1 or not axis.is_uniform or axis.is_straight:
+        raise SceneError(f"axial_force must be 0 on an axis that is no helix, {got}")
+    if not axis.rates(0.0)[0]:
+        raise SceneError(f"axial_force must be 0 on a circle, along whose axis none climbs, {got}")
+    if scene.tension != 0:
+        raise SceneError(
+            "tension must be 0 beside axial_force, which tenses the spring, got "
+            f"{check.shown(scene.tension)}"
+        )
+    if scene.rope.bending_stiffness is None:
+        raise SceneError(f"axial_force must be 0 without bending_stiffness of the rope, {got}")
+
+
 def _check_corners(scene: Described) -> None:
     """Refuse what nothing balances at a corner."""
     kinks = scene.rope.axis.kinks if scene.rope.axis else ()
     corners = [kink.s for kink in kinks if abs(kink.turn[0, 0] - 1) > check.NEAR]
-    for name, value, unit in (("tension", scene.tension, "N"), ("torque", scene.torque, "N m")):
+    loads = ("tension", scene.mean_tension, "N"), ("torque", scene.torque, "N m")
+    for name, value, unit in loads:
         if value != 0 and corners:
             raise SceneError(
                 f"{name} must be 0 on an axis with corners, where nothing balances it: give them a "
@@ -128,7 +193,7 @@ def _check_hanging(scene: Described, piece: CatenaryPiece) -> None:
         )
     mean, wanted, changes = scene.tension, scene.mean_tension, False
     if isinstance(mean, Tension):
-        changes = mean.pulsates or mean.stretching
+        changes = mean.pulsates or mean.stretching or mean.friction != 0
         wanted = float(scene.tension_at(place_of(mean, scene.rope.length)))
         mean = mean.mean
     if changes or (mean != 0 and abs(mean - wanted) > 1e-9 * wanted):

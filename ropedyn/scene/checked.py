@@ -23,7 +23,8 @@ def checked_tension(tension: Any) -> float | Tension:
     """Return a tension as a scene keeps it: a number if it is one."""
     if not isinstance(tension, Tension):
         return check.number(tension, "tension", "N")
-    return tension.mean if tension.is_constant and tension.at == "middle" else tension
+    alike = tension.is_constant and tension.at == "middle" and tension.friction == 0
+    return tension.mean if alike else tension
 
 
 def checked_ends(ends: Any) -> tuple[str | End, str | End]:

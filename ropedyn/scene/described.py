@@ -25,7 +25,17 @@ from .parts.node import Part
 from .parts.stretch import Stretch
 from .rope import Rope
 from .tension import Tension
-from .weight import Grade, curves, grade, hanging, pulls
+from .weight import (
+    Grade,
+    angle_of,
+    climb,
+    curves,
+    grade,
+    hanging,
+    mean_around,
+    pulls,
+    rubbing,
+)
 
 EFFECTS = (
     "tension",
@@ -62,6 +72,7 @@ class Described(Description):
     gravity: Gravity | None = instance(Gravity, "a Gravity or None", default=None)
     planes: str = one_of(("z", "both"), default="z")
     torque: float = number("N m", default=0.0)
+    axial_force: float = number("N", default=0.0)
 
     @property
     def is_spatial(self) -> bool:
@@ -135,6 +146,10 @@ class Described(Description):
             check.position(float(place), "x", self.rope.length)
         if hangs := hanging(self.rope, self.gravity):
             return self._hung(hangs.pull(np.asarray(x, dtype=np.float64)))
+        if self.rope.axis is not None and (rubs := rubbing(self.rope, self.tension)):
+            return np.asarray(rubs.around(self.rope.axis.turned(x) - angle_of(self.rope, rubs)))
+        if self.axial_force:
+            return np.full(np.shape(x), self.mean_tension)
         return self.grade.at(places).reshape(np.shape(x))
 
     @property
@@ -152,6 +167,10 @@ class Described(Description):
             return float(self._hung(hangs.mean_pull))
         if self.is_graded:
             return self.grade.mean
+        if self.axial_force:
+            return self.axial_force * climb(self.rope)
+        if rubs := rubbing(self.rope, self.tension):
+            return mean_around(self.rope, rubs)
         return self.tension.mean if isinstance(self.tension, Tension) else self.tension
 
     def _hung(self, pull: Any) -> Any:
@@ -209,7 +228,7 @@ class Described(Description):
             Gravity.grading: self.is_graded or hanging(rope, self.gravity) is not None,
             SECOND_PLANE: self.planes == "both",
             "axis": rope.axis is not None,
-            "initial moment": rope.natural == "straight" or self.torque != 0,
+            "initial moment": rope.natural == "straight" or bool(self.torque or self.axial_force),
             "turned section": rope.is_turned,
             "shear": rope.shear_stiffness is not None,
         }

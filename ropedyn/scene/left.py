@@ -73,6 +73,7 @@ def left_of(scene: Described, effects: tuple[str, ...]) -> dict[str, Any]:
         "parts": tuple(part for part in left if part is not None),
         "planes": planes,
         "torque": 0.0 if "initial moment" in effects else scene.torque,
+        "axial_force": 0.0 if {"tension", "initial moment"} & {*effects} else scene.axial_force,
     }
 
 
@@ -104,6 +105,8 @@ def _tension(tension: float | Tension, effects: tuple[str, ...]) -> float | Tens
         return 0.0
     if not isinstance(tension, Tension):
         return tension
+    if "axis" in effects:
+        tension = dataclasses.replace(tension, friction=0.0)
     if Tension.pulsating in effects:
         tension = dataclasses.replace(tension, amplitude=0.0, frequency=0.0, phase=0.0)
     if {Tension.growing, "stretch"} & set(effects):

@@ -45,6 +45,9 @@ NodeForce, Stop, AddedMass, LocalChange
         gamma = dy/dx; only a torque, turned principal axes and an axis tie the planes.
     torque : float
         M_alpha that the rope carries at rest [N m], dead (semitangential) where an end turns.
+    axial_force : float
+        Of a helix, along the axis of its cylinder [N]; positive pulls. The axis is that of the
+        loaded spring, in which it leaves tension, shear, bending and twist.
 
     Raises
     ------

@@ -50,6 +50,10 @@ class Tension(Description):
         Of the pulsation [rad].
     stretching : bool
         Whether the tension grows with the amplitude of transverse motion; needs axial_stiffness.
+    friction : float
+        Of a rope on an axis against the sheaves that curve it, at the limit of sliding: the tension
+        grows by exp(friction angle) with the angle that the axis turns by, falls where it is
+        negative (Euler and Eytelwein). What holds the rope so is a dead load.
 
     Raises
     ------
@@ -81,6 +85,7 @@ class Tension(Description):
     frequency: float = number("Hz", sign="nonnegative", default=0.0)
     phase: float = number("rad", default=0.0)
     stretching: bool = flag(default=False)
+    friction: float = number(default=0.0)
 
     def _agree(self) -> None:
         if self.amplitude > 0 and self.frequency == 0:
@@ -95,6 +100,18 @@ class Tension(Description):
     def is_constant(self) -> bool:
         """Whether it varies neither in time nor with the motion."""
         return not self.pulsates and not self.stretching
+
+    def around(self, angle: Any) -> Any:
+        """Return it where the axis has turned by an angle from where the mean is known [N].
+
+        Examples
+        --------
+        >>> import math
+        >>> import ropedyn as rd
+        >>> print(round(rd.Tension(100.0, friction=0.1).around(math.pi), 3))
+        136.911
+        """
+        return self.mean * np.exp(self.friction * angle)
 
     def pulsation(self, time: Real) -> Real:
         """Return what pulsation adds to the mean [N], as `time` [s].

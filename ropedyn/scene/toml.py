@@ -69,8 +69,9 @@ def document(scene: Any) -> dict[str, Any]:
     }
     if scene.planes != "z":
         found["planes"] = scene.planes
-    if scene.torque:
-        found["torque"] = scene.torque
+    for name in ("torque", "axial_force"):
+        if getattr(scene, name):
+            found[name] = getattr(scene, name)
     if scene.gravity is not None:
         found["gravity"] = _plain(scene.gravity)
     if scene.dampings:

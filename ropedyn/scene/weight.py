@@ -1,4 +1,4 @@
-"""The tension along a rope that its own weight pulls along."""
+"""The tension along a rope: what its own weight, sheaves and a load on a spring make of it."""
 
 from __future__ import annotations
 
@@ -45,6 +45,35 @@ def hanging(rope: Rope, gravity: Gravity | None) -> CatenaryPiece | None:
         return None
     piece = rope.axis.pieces[0]
     return piece if isinstance(piece, CatenaryPiece) else None
+
+
+def rubbing(rope: Rope, tension: float | Tension) -> Tension | None:
+    """Return the tension of a rope that rubs against what curves it."""
+    there = rope.axis is not None and isinstance(tension, Tension) and tension.friction != 0
+    return tension if there and isinstance(tension, Tension) else None
+
+
+def angle_of(rope: Rope, tension: Tension) -> float:
+    """Return the angle that the axis turns by up to where a tension is its mean [rad]."""
+    assert rope.axis is not None
+    return float(rope.axis.turned(place_of(tension, rope.length)))
+
+
+def mean_around(rope: Rope, tension: Tension) -> float:
+    """Return the mean along a rope that rubs, T (e^x - 1)/x of each piece, T at its left end."""
+    assert rope.axis is not None
+    joints, pieces = rope.axis.joints, rope.axis.pieces
+    left = tension.around(rope.axis.turned(joints)[:-1] - angle_of(rope, tension))
+    x = tension.friction * np.array([piece.turned(piece.length) for piece in pieces])
+    mean = np.divide(np.expm1(x), x, where=x != 0, out=np.ones_like(x))
+    return float(left * mean @ np.diff(joints) / rope.length)
+
+
+def climb(rope: Rope) -> float:
+    """Return the sine of the pitch angle of a helix."""
+    assert rope.axis is not None
+    tau, kz, _ = rope.axis.rates(0.0)
+    return float(abs(tau) / math.hypot(tau, kz))
 
 
 def curves(gravity: Gravity | None, rope: Rope) -> bool:

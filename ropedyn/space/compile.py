@@ -17,7 +17,7 @@ from ..scene.parts import part as _part
 from ..scene.parts.broken_wire import BrokenWire
 from ..scene.rope import in_plane
 from ..scene.scene import Scene
-from ..scene.weight import hanging
+from ..scene.weight import angle_of, hanging, rubbing
 from .pieces import FINER, FOLLOWED, Rest, SpaceSection, cross, kink_of, rope_of
 from .rope import SIGN, SIX, Carried, SpaceRope
 from .wire import wound_wire
@@ -54,8 +54,12 @@ def rest_of(scene: Scene) -> Rest:
     """Return the state about which the rope moves."""
     hangs = hanging(scene.rope, scene.gravity)
     weight = 0.0 if hangs is None or scene.gravity is None else scene.gravity.g
+    rubs = rubbing(scene.rope, scene.tension)
     return Rest(
-        tension=scene.mean_tension,
+        tension=rubs.mean if rubs else scene.mean_tension,
+        friction=rubs.friction if rubs else 0.0,
+        ahead=angle_of(scene.rope, rubs) if rubs else 0.0,
+        axial=scene.axial_force,
         weight=weight * scene.rope.linear_density,
         torque=scene.torque,
         bent=scene.rope.natural == "straight",

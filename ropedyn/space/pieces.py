@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -120,14 +121,29 @@ class Rest(NamedTuple):
 
     tension: float = 0.0  # [N], but where it hangs
     weight: float = 0.0  # along catenaries [N/m]
+    friction: float = 0.0  # of sheaves
+    ahead: float = 0.0  # angle by which the axis turns up to where the tension is so [rad]
     torque: float = 0.0  # [N m]
+    axial: float = 0.0  # along the cylinder of a helix [N]
     bent: bool = False  # from what is straight when nothing loads it
 
-    def pull(self, piece: Piece, s: Real) -> Real:
-        """Return the tension at arc lengths of a piece [N]."""
+    def pull(self, piece: Piece, s: Real, turned: float) -> Real:
+        """Return the tension at arc lengths of a piece, turned by so much at its left end [N]."""
         if self.weight and isinstance(piece, CatenaryPiece):
             return np.asarray(self.weight * piece.pull(s))
-        return np.full(len(s), self.tension)
+        angle = turned + piece.turned(s) - self.ahead
+        return self.tension * np.exp(self.friction * angle)
+
+    def load(self, tau: float, kz: float) -> tuple[Real, Real]:
+        """Return shear and moment that a force P along the cylinder of a helix leaves.
+
+        n = P c, c = (tau, -kz, 0)/omega along the cylinder, and m = -r x n = P R (-c_y, c_x, 0) at
+        r = -R z from its axis, R = kz/omega^2.
+        """
+        omega = math.copysign(math.hypot(tau, kz), tau)
+        c = np.array([tau, -kz, 0.0]) / omega
+        arm = self.axial * kz / omega**2
+        return np.array([0.0, self.axial * c[1], 0.0]), arm * np.array([-c[1], c[0], 0.0])
 
 
 def rope_of(
@@ -147,7 +163,7 @@ def rope_of(
     arrays: dict[str, Any] = {name: np.zeros((count, samples, 6, 6)) for name in SAMPLED}
     for k, (own, begin, end, _) in enumerate(pieces):
         s = begin + (end - begin) * sample_places(samples)
-        for name, value in _along(axis.pieces[own], s, starts[k], section, rest).items():
+        for name, value in _along(axis, own, s, section, rest).items():
             arrays[name][k] = value
     turn = np.tile(np.eye(6), (count, 1, 1))
     for kink in axis.kinks:
@@ -181,7 +197,7 @@ def _blocks(
     while left:
         begin, end = left.pop()
         s = begin + (end - begin) * sample_places(SAMPLES)
-        given = _along(piece, s, start, section, rest)
+        given = _along(axis, k, s, section, rest)
         missed = max(tail(values) for values in given.values())
         if missed > followed and end - begin > 1e-6 * piece.length:
             left += [((begin + end) / 2, end), (begin, (begin + end) / 2)]
@@ -191,19 +207,21 @@ def _blocks(
     return found
 
 
-def _along(
-    piece: Piece, s: Real, start: float, section: SpaceSection, rest: Rest
-) -> dict[str, Real]:
-    """Return what belongs to arc lengths of a piece, arrays (s, 6, 6)."""
-    tension, rates = rest.pull(piece, s), piece.rates(s)
+def _along(axis: Axis, k: int, s: Real, section: SpaceSection, rest: Rest) -> dict[str, Real]:
+    """Return what belongs to arc lengths of piece k, arrays (s, 6, 6)."""
+    piece, start = axis.pieces[k], axis.joints[k]
+    tension, rates = rest.pull(piece, s, float(axis.turned(start))), piece.rates(s)
     bend = np.array([bend_of(*one) for one in rates])
     string, initial, stress = (np.zeros((len(s), 6, 6)) for _ in range(3))
     if section.bending is None:
         bend[:, 3:] = bend[:, :, 3:] = 0.0
         string[:, 1, 1] = string[:, 2, 2] = 1 / tension
     else:
-        for k, (pull, (tau, kz, _), slope) in enumerate(zip(tension, rates, piece.bending(s))):
-            own = moment_at_rest(section, rest.bent, rest.torque, (tau, kz, slope))
-            initial[k], stress[k] = initial_of(np.array([pull, 0.0, 0.0]) + own[0], own[1])
+        for i, (pull, (tau, kz, _), slope) in enumerate(zip(tension, rates, piece.bending(s))):
+            shear, moment = moment_at_rest(section, rest.bent, rest.torque, (tau, kz, slope))
+            if rest.axial:
+                loaded = rest.load(tau, kz)
+                shear, moment = shear + loaded[0], moment + loaded[1]
+            initial[i], stress[i] = initial_of(np.array([pull, 0.0, 0.0]) + shear, moment)
     soft = section.flexibility(start + s)
     return {"bend": bend, "soft": soft, "string": string, "initial": initial, "stress": stress}
