@@ -11,6 +11,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -29,11 +30,11 @@ import ropedyn as rd  # noqa: E402
 from ropedyn.plot import study2015  # noqa: E402
 
 
-def peaks_of_the_study(path: Path) -> None:
-    """Draw what `ropedyn` writes as figure-12-peaks.png."""
+def of_the_study(name: str, path: Path) -> None:
+    """Draw what `ropedyn` writes under a name."""
     with tempfile.TemporaryDirectory() as folder:
         study2015.draw(Path(folder))
-        path.write_bytes((Path(folder) / "figure-12-peaks.png").read_bytes())
+        path.write_bytes((Path(folder) / name).read_bytes())
 
 
 def hard(path: Path) -> None:
@@ -50,7 +51,8 @@ FIGURES: dict[str, Callable[[Path], None]] = {
     "docs/measured.png": measured.main,
     "docs/broken-wire.png": broken_wire.main,
     "docs/stability.png": stability.main,
-    "docs/figure-12-peaks.png": peaks_of_the_study,
+    "docs/figure-12-peaks.png": partial(of_the_study, "figure-12-peaks.png"),
+    "docs/study-element.png": partial(of_the_study, "figures-02-to-04-element.png"),
     "docs/hard.png": hard,
     "benchmarks/results/accuracy.png": price_of_accuracy,
 }

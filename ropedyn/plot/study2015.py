@@ -13,6 +13,7 @@ from ..base.atomic import replacing
 from ..base.unit import NAME, UNIT
 from ..model import Model
 from ..study.printed import DRIVE, ELEMENTS, MASSES
+from .element import element
 from .figure import new_figure
 
 FREQUENCY = np.linspace(1.0, 450.0, 1797)  # Lines of the amplitude-frequency characteristics [Hz].
@@ -23,6 +24,7 @@ def draw(folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     model = study2015.scene().compile(elements=ELEMENTS, element="difference")
     figures = {
+        "figures-02-to-04-element.png": element(),
         "figure-09-twist.png": characteristics(model, "alpha"),
         "figure-10-transverse.png": characteristics(model, "z"),
         "mode-shapes.png": shapes(model),

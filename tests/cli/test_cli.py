@@ -281,7 +281,7 @@ def test_study_command_prints_and_draws(tmp_path, capsys):
     assert main(["study", "--folder", str(tmp_path / "study")]) == 0
     out = capsys.readouterr().out
     assert "69.40    136.13  197.64" in out
-    assert len(list((tmp_path / "study").glob("*.png"))) == 4
+    assert len(list((tmp_path / "study").glob("*.png"))) == 5
 
 
 def test_module_is_the_command_line(tmp_path):

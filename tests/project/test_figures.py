@@ -38,7 +38,11 @@ def test_captions_say_whether_data_are_measured_or_made():
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    "name", ["measured", "broken-wire", "stability", "figure-12-peaks", "hard", "accuracy"]
+    "name",
+    [
+        *("measured", "broken-wire", "stability", "figure-12-peaks", "study-element", "hard"),
+        "accuracy",
+    ],
 )
 def test_figure_is_the_one_that_is_stored(name, drawn, tmp_path):
     [stored] = [one for one in drawn["FIGURES"] if Path(one).stem == name]
