@@ -5,9 +5,12 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..axis.axis import Axis
 from ..base import check
 from ..base.answer import Frozen
 from ..base.array import Complex, Real
@@ -36,6 +39,11 @@ class Animation(Frozen):
         How far each place moves [m, rad].
     seconds : float
         What the period takes on the screen [s].
+    rest : ndarray, shape (nodes, 3), optional
+        Where the axis lies in space [m], if that is shown: coordinates are X, Y and Z then, and the
+        motion is magnified as the title says.
+    view : str
+        How that is looked at.
     """
 
     title: str
@@ -44,6 +52,8 @@ class Animation(Frozen):
     motion: Real
     envelope: Real
     seconds: float
+    rest: Real | None = None
+    view: str = ""
 
     def __repr__(self) -> str:
         return f"<Animation of {self.title}, {len(self.motion)} frames>"
@@ -97,6 +107,61 @@ class Animation(Frozen):
         b'GIF89a'
         """
         draw(self, "film", check.path(path))
+
+
+VIEWS = ("isometric", "front", "top", "side")
+PART = 0.1  # Of the axis' extent, by which the farthest point moves.
+LEFT = 1e-12  # Of the length: frames of joints are those of the piece on their left.
+
+
+def extent(points: Real) -> float:
+    """Return the diagonal of the box around points (n, 3) [m]."""
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def in_space(
+    axis: Axis, coordinates: tuple[str, ...], x: Real, shape: NDArray[Any]
+) -> tuple[Real, NDArray[Any]]:
+    """Return where an axis lies and where a shape (nodes, coordinates) takes it, (nodes, 3)."""
+    own = np.zeros((len(x), 3), dtype=shape.dtype)
+    for i, coordinate in enumerate(("x", "y", "z")):
+        if coordinate in coordinates:
+            own[:, i] = shape[:, coordinates.index(coordinate)]
+    frames = axis.frame(x * (1 - LEFT))
+    return axis.position(x), np.einsum("nij,nj->ni", frames, own)
+
+
+def scale_of(rest: Real, moved: NDArray[Any], scale: float | None) -> float:
+    """Return by what a displacement is multiplied, a tenth of the extent where nothing is said."""
+    far = float(np.linalg.norm(moved, axis=1).max())
+    if scale is None:
+        scale = PART * extent(rest) / far if far > 0 else 1.0
+    return check.number(scale, "scale")
+
+
+def flying(
+    title: str,
+    rest: Real,
+    moved: NDArray[Any],
+    *,
+    view: str,
+    frames: int,
+    seconds: float,
+) -> Animation:
+    """Turn a displacement in space, (nodes, 3), through a period, magnified."""
+    by = scale_of(rest, moved, None)
+    turn = np.exp(2j * np.pi * np.arange(frames) / frames)
+    motion = (turn[:, None, None] * (by * moved)).real
+    return Animation(
+        f"{title}, {by:.3g} times",
+        ("X", "Y", "Z"),
+        np.arange(len(rest), dtype=np.float64),
+        motion,
+        np.abs(by * moved),
+        seconds,
+        rest,
+        view,
+    )
 
 
 def animated(

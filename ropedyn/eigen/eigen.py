@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ..axis.axis import Axis
 from ..base import check
 from ..base.answer import Cost, Work
 from ..base.array import Index, Real
@@ -87,6 +88,7 @@ def solve_modes(
         mesh=mesh,
         hanging=partial(on_catenary, model, which, frequency),
         solve_shapes=partial(solve_shapes, model, solver, eigenvalue, which),
+        line=partial(Axis.line, model.scene.rope.length),
     )
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..axis.axis import Axis
 from ..base import check
 from ..base.answer import Answer, Frozen, axes
 from ..base.array import Real
@@ -16,7 +18,7 @@ from ..base.computed import Lazy, Read
 from ..base.errors import SceneError
 from ..base.unit import own_coordinate
 from ..chain.chain import CARRIED
-from .animation import Animation, animated
+from .animation import VIEWS, Animation, animated, flying, in_space
 
 Number = TypeVar("Number", np.float64, np.complex128)
 
@@ -48,6 +50,7 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
     coordinates: tuple[str, ...]
     x: Lazy[Real]
     plane: Lazy[NDArray[np.str_]]
+    line: Callable[[], Axis] | None
     vectors: Lazy[OfShapes]
     mesh: Lazy[OfMesh]
 
@@ -64,10 +67,13 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         path: str | os.PathLike[str] | None = None,
         frames: int = 30,
         seconds: float = 2.0,
+        view: str | None = None,
     ) -> Animation:
         """Show one period of a mode in motion.
 
-        Complex shapes travel as they do, Re(shape e^(i omega t)); decay is left out.
+        Complex shapes travel as they do, Re(shape e^(i omega t)); decay is left out. A mode of a
+        rope on an axis moves in space, one of a straight rope coordinate by coordinate, or in space
+        too if a view is given.
 
         Parameters
         ----------
@@ -79,6 +85,8 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
             How many there are in the period, from 2 to 1000.
         seconds : float
             What the period takes on the screen [s].
+        view : {"isometric", "front", "top", "side"}, optional
+            In space, as of `SpaceModel.plot`, magnified to a tenth of the axis' extent.
 
         Returns
         -------
@@ -90,7 +98,8 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
         TypeError
             If an argument is of the wrong type.
         SceneError
-            If a number is out of range, the mode does not oscillate or the file is of another kind.
+            If a number is out of range, the mode does not oscillate or the file is of another kind;
+            for a view, if the modes were read from a file, which has no axis.
         OSError
             If the file cannot be written.
 
@@ -112,8 +121,27 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
             raise SceneError(
                 f"k must be that of a mode that oscillates, got {k}, whose frequency is 0"
             )
-        animation = animated(
-            f"mode {k + 1}: {frequency[k]:.4g} Hz, {self.family[k]}",
+        if view is not None:
+            check.one_of(view, "view", VIEWS)
+        title = f"mode {k + 1}: {frequency[k]:.4g} Hz, {self.family[k]}"
+        axis = None if self.line is None else self.line()
+        if axis is not None and (view is not None or not axis.is_straight):
+            moved = in_space(axis, self.coordinates, self.x, self.shape[k])
+            how: Any = {"view": view or VIEWS[0], "frames": count, "seconds": duration}
+            animation = flying(title, *moved, **how)
+        elif view is not None:
+            raise SceneError(
+                f"view must be left out for modes from a file, which has no axis, got {view!r}"
+            )
+        else:
+            animation = self._beside(k, title, count, duration)
+        if path is not None:
+            animation.write(path)
+        return animation
+
+    def _beside(self, k: int, title: str, count: int, duration: float) -> Animation:
+        return animated(
+            title,
             self.coordinates,
             self.x,
             self.shape[k],
@@ -121,9 +149,6 @@ class FreeMotion(Answer, Generic[Number, OfShapes, OfMesh]):
             frames=count,
             seconds=duration,
         )
-        if path is not None:
-            animation.write(path)
-        return animation
 
     @property
     def _shares(self) -> dict[str, Real]:

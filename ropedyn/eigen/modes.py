@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..axis.axis import Axis
 from ..base import check
 from ..base.answer import TRANSIENT, Cost, Frozen, axes
 from ..base.array import Real
@@ -139,6 +140,7 @@ class Modes(FreeMotion[np.float64, UndampedVectors, UndampedMesh]):
     mesh: Lazy[UndampedMesh] = lazy(UndampedMesh)
     hanging: Lazy[OnCatenary] = lazy(OnCatenary)
     solve_shapes: Callable[..., Shapes] | None = field(default=None, repr=False, metadata=TRANSIENT)
+    line: Callable[[], Axis] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     limit = Read[Real]("mesh", "Frequencies without mesh error [Hz], shape (k,).")
     model_error = Read[Real]("hanging", "Error that the parabola of sag causes [Hz], shape (k,).")

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..base import check
+from ..base.array import Real
 from ..base.atomic import replacing
 from ..base.drawing import draws
 from ..base.errors import SceneError
 from ..base.unit import NAME, UNIT
 from ..eigen.animation import Animation
-from .figure import new_figure
+from .figure import BLUE, new_figure
+from .space import axes_of, line_in_space, name_space, seen
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
@@ -27,20 +29,53 @@ def film(animation: Animation, file: Path) -> None:
     """Write a file as its name says, whole or not at all."""
     writer = _writer(file)
     with replacing(file) as draft:
-        rows = len(animation.coordinates)
-        figure, panels = new_figure(rows, height=2.4 + 1.0 / rows)
-        lines = [_panel(animation, k, ax) for k, ax in enumerate(panels)]
-        panels[0].set_title(animation.title)
-        panels[-1].set_xlabel("position along the rope [m]")
+        scene = _in_panels(animation) if animation.rest is None else _in_space(animation)
+        figure = scene.figure
         # the layout is found once: finding it again takes longer than a frame
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
         frames = writer(fps=len(animation.motion) / animation.seconds)
         with frames.saving(figure, str(draft), dpi=80):
             for frame in animation.motion:
-                for line, u in zip(lines, frame.T):
-                    line.set_ydata(u)
+                scene.move(frame)
                 frames.grab_frame()
+
+
+class Moving(NamedTuple):
+    """A figure, and what takes it to a frame (nodes, coordinates)."""
+
+    figure: Any
+    move: Callable[[Real], None]
+
+
+def _in_panels(animation: Animation) -> Moving:
+    rows = len(animation.coordinates)
+    figure, panels = new_figure(rows, height=2.4 + 1.0 / rows)
+    lines = [_panel(animation, k, ax) for k, ax in enumerate(panels)]
+    panels[0].set_title(animation.title)
+    panels[-1].set_xlabel("position along the rope [m]")
+
+    def move(frame: Real) -> None:
+        for line, u in zip(lines, frame.T):
+            line.set_ydata(u)
+
+    return Moving(figure, move)
+
+
+def _in_space(animation: Animation) -> Moving:
+    rest, view = animation.rest, animation.view
+    assert rest is not None
+    ax: Any = axes_of(view)
+    line_in_space(ax, rest, view, color="0.6", linewidth=1.0)
+    line = line_in_space(ax, rest + animation.motion[0], view, color=BLUE, linewidth=2.0)
+    ax.set_title(animation.title)
+    name_space(ax, np.concatenate([rest - animation.envelope, rest + animation.envelope]), view)
+
+    def move(frame: Real) -> None:
+        at = seen(rest + frame, view)
+        (line.set_data_3d if len(at) == 3 else line.set_data)(*at)
+
+    return Moving(ax.figure, move)
 
 
 def _panel(animation: Animation, k: int, ax: Any) -> Line2D:

@@ -9,9 +9,10 @@ import numpy as np
 from ..base.array import Real
 from ..base.drawing import draws
 from ..base.errors import SceneError
+from ..eigen.animation import extent
 from ..space.compile import axis_of
 from ..space.model import SpaceModel
-from ..space.shape import ShapeInSpace, extent
+from ..space.shape import ShapeInSpace
 from .figure import BLUE, light_grid, new_figure
 
 if TYPE_CHECKING:
@@ -27,20 +28,21 @@ def plot_in_space(
     model: SpaceModel, ax: Axes | None, *, shape: ShapeInSpace | None, view: str
 ) -> Axes:
     """Plot the axis, and a shape beside it, as they look from one side."""
-    ax = _axes(view) if ax is None else ax
+    ax = axes_of(view) if ax is None else ax
     if view == "isometric" and not hasattr(ax, "set_zlabel"):
         raise SceneError('ax must have the projection "3d" for an isometric view, got a plane one')
     axis = axis_of(model.scene)
     rest = axis.position(np.linspace(0.0, axis.length, POINTS)) if shape is None else shape.rest
-    _line(ax, rest, view, color="0.6", linewidth=1.0, label="at rest")
+    line_in_space(ax, rest, view, color="0.6", linewidth=1.0, label="at rest")
     if shape is not None:
-        _line(ax, shape.moved, view, color=BLUE, linewidth=1.8, label=shape.title)
+        line_in_space(ax, shape.moved, view, color=BLUE, linewidth=1.8, label=shape.title)
         ax.set_title(shape.title)
-    _name(ax, rest, view)
+    name_space(ax, rest, view)
     return ax
 
 
-def _axes(view: str) -> Axes:
+def axes_of(view: str) -> Axes:
+    """Return the axes of a new figure for a view."""
     figure, (ax,) = new_figure(1, height=6.0)
     if view != "isometric":
         return ax
@@ -49,11 +51,17 @@ def _axes(view: str) -> Axes:
     return found
 
 
-def _line(ax: Any, points: Real, view: str, **how: Any) -> None:
-    ax.plot(*(points[:, i] for i in SEEN.get(view, (0, 1, 2))), **how)
+def line_in_space(ax: Any, points: Real, view: str, **how: Any) -> Any:
+    """Draw a line through points (n, 3), and return it."""
+    return ax.plot(*seen(points, view), **how)[0]
 
 
-def _name(ax: Any, rest: Real, view: str) -> None:
+def seen(points: Real, view: str) -> list[Real]:
+    """Return the coordinates of points that a view shows."""
+    return [points[:, i] for i in SEEN.get(view, (0, 1, 2))]
+
+
+def name_space(ax: Any, rest: Real, view: str) -> None:
     """Name the directions, and give them one scale."""
     if view == "isometric":
         ax.set(xlabel="X [m]", ylabel="Y [m]", zlabel="Z [m]")

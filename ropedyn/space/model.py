@@ -16,6 +16,7 @@ from ..base.computed import waited
 from ..base.drawing import draw
 from ..base.errors import SceneError
 from ..chain.port import Point
+from ..eigen.animation import VIEWS
 from ..eigen.modes import Modes
 from ..response.deflection import Deflection
 from ..response.frf import FRF
@@ -25,7 +26,7 @@ from .compile import rope_of_scene
 from .modes import solve_modes
 from .response import solve_frf
 from .rope import SpaceRope
-from .shape import VIEWS, ShapeInSpace
+from .shape import ShapeInSpace
 from .spectrum import count_below
 from .static import solve_static
 

@@ -23,7 +23,7 @@ from ..eigen.vectors import largest, within
 from ..scene import damping
 from ..scene.scene import Scene
 from .assembly import MOST_PARTS, Assembly, assemble
-from .compile import finer_rope
+from .compile import axis_of, finer_rope
 from .rope import SIX, SpaceRope, unforced
 from .spectrum import AT_ONCE, BESIDE, MORE, STEP, TOGETHER, Lowest, lowest, ritz, start
 
@@ -59,6 +59,7 @@ def solve_modes(
         mesh=partial(_mesh, scene, rope, value, frequency),
         hanging=partial(OnCatenary, np.zeros_like(frequency), frequency),
         solve_shapes=refuse_derivatives,
+        line=partial(axis_of, scene),
     )
 
 

@@ -4,23 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from ..base import check
 from ..base.array import Real
 from ..base.errors import SceneError
+from ..eigen.animation import in_space, scale_of
 from ..eigen.modes import Modes
 from ..scene.scene import Scene
 from .compile import axis_of
-
-VIEWS = ("isometric", "front", "top", "side")
-PART = 0.1  # Of the axis' extent, by which the farthest point moves.
-LEFT = 1e-12  # Of the length: frames of joints are those of the piece on their left.
-
-
-def extent(points: Real) -> float:
-    """Return the diagonal of the box around points (n, 3) [m]."""
-    return float(np.linalg.norm(np.ptp(points, axis=0)))
 
 
 class ShapeInSpace(NamedTuple):
@@ -37,15 +27,7 @@ class ShapeInSpace(NamedTuple):
         axis = axis_of(scene)
         if abs(modes.x[-1] - axis.length) > check.NEAR * axis.length:
             raise SceneError("modes must be of this model, got those of a rope of another length")
-        frames = axis.frame(modes.x * (1 - LEFT))
-        own = np.zeros((len(modes.x), 3))
-        for i, coordinate in enumerate(("x", "y", "z")):
-            if coordinate in modes.coordinates:
-                own[:, i] = modes.shape[k, :, modes.coordinates.index(coordinate)]
-        rest = axis.position(modes.x)
-        far = float(np.linalg.norm(own, axis=1).max())
-        if scale is None:
-            scale = PART * extent(rest) / far if far > 0 else 1.0
-        by = check.number(scale, "scale")
+        rest, moved = in_space(axis, modes.coordinates, modes.x, modes.shape[k])
+        by = scale_of(rest, moved, scale)
         title = f"{k + 1}: {modes.frequency[k]:.4g} Hz, {modes.family[k]}, {by:.3g} times"
-        return cls(title, by, rest, rest + by * np.einsum("nij,nj->ni", frames, own))
+        return cls(title, by, rest, rest + by * moved)

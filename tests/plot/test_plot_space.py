@@ -68,3 +68,41 @@ def test_what_cannot_be_drawn_is_refused(how, message):
     )
     with pytest.raises(rd.SceneError, match="rope of another length"):
         MODEL.plot(other.compile().modes(1))
+
+
+def test_a_mode_of_an_arch_moves_in_space(tmp_path):
+    film = MODES.animate(1, frames=4, path=tmp_path / "mode.gif")
+    assert film.coordinates == ("X", "Y", "Z") and film.view == "isometric"
+    assert (tmp_path / "mode.gif").read_bytes()[:6] == b"GIF89a"
+    axis = MODEL.scene.rope.axis
+    assert film.rest == pytest.approx(axis.position(MODES.x), abs=1e-15)
+    # the first frame is what is plotted, the third the other way round
+    lines = MODEL.plot(MODES, 1).lines
+    moved = np.array(lines[1].get_data_3d()).T
+    assert film.rest + film.motion[0] == pytest.approx(moved, abs=1e-12)
+    assert film.motion[2] == pytest.approx(-film.motion[0], abs=1e-12)
+    assert film.envelope == pytest.approx(np.abs(film.motion[0]), abs=1e-12)
+
+
+@pytest.mark.parametrize("view", ["isometric", "front", "top", "side"])
+def test_a_straight_rope_in_both_planes_moves_in_space_if_asked(view, tmp_path):
+    rope = rd.Rope(1.0, 0.5, bending_stiffness=(5.0, 4.0))
+    scene = rd.Scene(rope, tension=100.0, planes="both", damping=rd.ViscousDamping(0.3))
+    for damped in (False, True):
+        modes = scene.compile().modes(3, damped=damped)
+        film = modes.animate(0, frames=3, view=view, path=tmp_path / "mode.html")
+        assert film.rest[:, 0] == pytest.approx(modes.x) and (film.rest[:, 1:] == 0).all()
+        # the softer plane is that of y
+        still = np.abs(film.motion).max(axis=(0, 1))
+        assert still[1] == pytest.approx(0.1, rel=1e-9) and still[[0, 2]].max() < 1e-12
+        assert (tmp_path / "mode.html").read_text().count("data:image/png;base64") == 3
+        assert modes.animate(0, frames=3).rest is None
+
+
+def test_modes_from_a_file_have_no_axis(tmp_path):
+    MODES.save(tmp_path / "modes.nc")
+    again = rd.load(tmp_path / "modes.nc")
+    with pytest.raises(rd.SceneError, match="view must be left out for modes from a file"):
+        again.animate(0, view="top")
+    with pytest.raises(rd.SceneError, match="view must be one of"):
+        MODES.animate(0, view="below")

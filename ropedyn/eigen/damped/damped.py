@@ -10,6 +10,7 @@ from functools import partial
 
 import numpy as np
 
+from ...axis.axis import Axis
 from ...base import check
 from ...base.answer import Cost
 from ...base.array import Complex, Index, Real
@@ -97,6 +98,7 @@ def solve_damped(
         cost=Cost(solver, len(model.x) - 1, model.size, answer.sweeps),
         vectors=partial(_vectors, model, answer, finest),
         mesh=mesh,
+        line=partial(Axis.line, model.scene.rope.length),
     )
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.answer import Cost, axes
+from ...axis.axis import Axis
+from ...base.answer import TRANSIENT, Cost, axes
 from ...base.array import Complex, Real
 from ...base.computed import Lazy, lazy
 from ...base.drawing import draw
@@ -99,6 +101,7 @@ class DampedModes(FreeMotion[np.complex128, Vectors[np.complex128], MeshOfModes]
     cost: Cost
     vectors: Lazy[Vectors[np.complex128]] = lazy(Vectors)
     mesh: Lazy[MeshOfModes] = lazy(MeshOfModes)
+    line: Callable[[], Axis] | None = field(default=None, repr=False, metadata=TRANSIENT)
 
     @property
     def frequency(self) -> Real:

@@ -90,6 +90,7 @@ def _answer(
         cost=replace(undamped.cost),
         vectors=partial(_vectors, undamped, mode, value, (ratio * omega)[mode]),
         mesh=partial(_mesh, undamped, mode, scale),
+        line=undamped.line,
     )
 
 
