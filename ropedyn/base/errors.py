@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 
@@ -32,6 +33,21 @@ class SceneError(RopedynError, ValueError):
     ...
     ropedyn.SceneError: bending_stiffness must be a finite number > 0 [N m^2], got nan
     """
+
+
+def at_once(*parts: Callable[[], Any]) -> list[Any]:
+    """Return what each part answers; what several refuse is one error, a line for each."""
+    answers, refused = [], []
+    for part in parts:
+        try:
+            answers.append(part())
+        except SceneError as error:
+            refused.append(error)
+    if len(refused) == 1:
+        raise refused[0]
+    if refused:
+        raise SceneError("\n".join(map(str, refused)))
+    return answers
 
 
 class SolveError(RopedynError, ArithmeticError):

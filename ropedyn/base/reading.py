@@ -29,7 +29,8 @@ def reading(path: str | os.PathLike[str], what: str) -> Iterator[None]:
     except (SceneError, ImportError) as error:
         if isinstance(error, ImportError) or str(file) in str(error):
             raise
-        raise SceneError(f"{file}: {error}") from error
+        said = "\n".join(f"{file}: {line}" for line in str(error).split("\n"))
+        raise SceneError(said) from error
     except Exception as error:
         _raise_hidden(error, before)
         raise SceneError(f"path must be {what}, got {str(file)!r}: {_said(error)}") from error

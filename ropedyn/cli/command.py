@@ -72,7 +72,7 @@ def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def _complain(said: str, status: int) -> int:
-    print(f"{NAME}: {said}", file=sys.stderr)
+    print(*(f"{NAME}: {line}" for line in said.split("\n")), sep="\n", file=sys.stderr)
     return status
 
 

@@ -6,9 +6,10 @@ import argparse
 import json
 import sys
 import warnings
+from functools import partial
 from typing import Any
 
-from ..base.errors import IdentifyWarning
+from ..base.errors import IdentifyWarning, at_once
 from ..base.unit import QUANTITIES
 from ..curves.measured import Measured
 from ..curves.peaks import Peaks
@@ -127,14 +128,13 @@ def _columns(pairs: list[tuple[str, str | int]]) -> dict[str, Any]:
 
 
 def _compare(options: argparse.Namespace) -> None:
-    measured: Any
     if options.peaks is not None:
         refuse(options, (*OF_FILE, BAND), "--measured")
-        measured = peaks_of(options, order=options.order)
+        read: Any = partial(peaks_of, options, order=options.order)
     else:
         refuse(options, (STD_OF_COMPARED, ORDER), "--peaks")
-        measured = _read(options)
-    model = compiled(options)
+        read = partial(_read, options)
+    model, measured = at_once(partial(compiled, options), read)
     calculated = model if options.modes is None else model.modes(options.modes)
     comparison = compare(calculated, measured, within=options.within, band=options.band)
     show(options, comparison, comparison.report())
@@ -158,20 +158,20 @@ COMPARE = Command(
 
 
 def _identify(options: argparse.Namespace) -> int:
-    measured: Any
     whole = options.peaks is None and options.only_peaks is None
     if options.peaks is not None:
         refuse(options, (*OF_FILE, ONLY_PEAKS), "--measured")
-        measured = peaks_of(options)
+        read: Any = peaks_of
     else:
         refuse(options, (STD_OF_FITTED,), "--peaks")
-        measured = _read(options)
-        measured = measured if options.only_peaks is None else Peaks.of(measured)
+        read = _read
+    scene, measured = at_once(partial(Scene.load, options.scene), partial(read, options))
+    measured = measured if options.only_peaks is None else Peaks.of(measured)
     given = {"ends": options.ends, "orders": options.orders}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", IdentifyWarning)
         found: Any = identify(
-            Scene.load(options.scene),
+            scene,
             measured,
             options.unknown,
             prior=dict(options.prior) or None,

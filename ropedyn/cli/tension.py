@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import warnings
+from functools import partial
 from typing import Any
 
 from ..base.computed import changed
-from ..base.errors import IdentifyWarning, SceneError
+from ..base.errors import IdentifyWarning, SceneError, at_once
 from ..base.unit import MOTIONS
 from ..curves.record.record import Record
 from ..experiment.identify.identify import identify, peaks_of_record, said_of
@@ -49,8 +50,7 @@ WIDE = ("tension", "bending_stiffness")
 
 
 def _tension(options: argparse.Namespace) -> int:
-    scene = Scene.load(options.scene)
-    record = _record(options)
+    scene, record = at_once(partial(Scene.load, options.scene), partial(_record, options))
     peaks = peaks_of(options) if record is None else peaks_of_record(record, options.below)
     bends = "beta" in scene.coordinates
     unknown = options.unknown or list(WIDE[: 1 + bends])

@@ -32,8 +32,14 @@ FORCES: dict[str, tuple[type[Description], tuple[str, ...]]] = {
 """Each kind of force, and its numbers in the order in which they follow the word."""
 
 NO_OPTIONS = {"scene", "run", "json", "csv", "file", "record", "name"}
-RENAMED = {"number": "modes", "frequencies": "frequency", "positions": "position"}
-"""Arguments that are options of another name."""
+RENAMED = {
+    "number": ("modes",),
+    "frequencies": ("frequency",),
+    "positions": ("position",),
+    "columns": ("column",),
+    "response": ("channel", "sensors"),
+}
+"""Arguments that are options of another name, or of one of several."""
 ORDERS = {"auto": "auto", "search": None}  # Orders that are words.
 
 
@@ -52,7 +58,11 @@ def figure_file(text: str, option: str) -> Path:
 def in_options(message: str, options: Mapping[str, Any]) -> str:
     """Return what is said of arguments of Python as said of the options of these names."""
     known = {name: f"--{name.replace('_', '-')}" for name in options if name not in NO_OPTIONS}
-    known |= {name: known[one] for name, one in RENAMED.items() if one in known}
+    known |= {
+        name: " or ".join(known[one] for one in names)
+        for name, names in RENAMED.items()
+        if known.keys() >= set(names)
+    }
     if options.get("peaks") is not None:
         known["measured"] = known["peaks"]
 
@@ -66,10 +76,15 @@ def in_options(message: str, options: Mapping[str, Any]) -> str:
     message = re.sub(r"Tension\(([^,()]+), ([^()]*)\)", _table, message)
     message = re.sub(r"\b(?P<name>\w+)=\"?(?P<value>[\w./^]+)\"?", value, message)
     message = re.sub(r"(?<=\bleave )(?P<name>\w+)(?= out\b)", option, message)
+    message = re.sub(r"(?<=\bor )(?P<name>\w+)(?= stated\b)", option, message)
+    message = re.sub(r"\(['\"](\w+)['\"], ([\w.+-]+)\)", r"\1@\2", message)
     message = re.sub(r"\{(?:[^{}:,]+: [^{}:,]+(?:, )?)+\}", _pairs, message)
     message = message.replace(', or "X", "Y" or "Z"', "").replace("got None", "got none")
     return re.sub(
-        r"(?:\A|(?<=; ))(?:measured\.)?(?P<name>\w+)(?:\[[^]]*\])*(?=:? )", option, message
+        r"(?:^|(?<=; ))(?:measured\.)?(?P<name>\w+)(?:\[[^]]*\])*(?=:? )",
+        option,
+        message,
+        flags=re.MULTILINE,
     )
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import os
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
 from ..axis.axis import Axis
 from ..base import check
 from ..base.atomic import write_bytes
-from ..base.errors import SceneError
+from ..base.errors import SceneError, at_once
 from ..base.parameter import Description, required
 from ..base.reading import reading
 from . import damping
@@ -98,27 +99,33 @@ def _named(thing: Any) -> dict[str, Any]:
 
 
 def _arguments(document: Mapping[str, Any], known: set[str]) -> dict[str, Any]:
-    _known_keys(document, known, "the file")
-    if "rope" not in document:
-        raise SceneError("key rope is missing: a scene needs a table [rope]")
-    arguments = dict(document)
-    arguments["rope"] = _built(Rope, _with_axis(document["rope"]), "rope")
+    tables: dict[str, Callable[[], Any]] = {"rope": partial(_rope, document)}
     if isinstance(document.get("tension"), dict):
-        arguments["tension"] = _built(Tension, document["tension"], "tension")
+        tables["tension"] = partial(_built, Tension, document["tension"], "tension")
     if "gravity" in document:
-        arguments["gravity"] = _built(Gravity, document["gravity"], "gravity")
+        tables["gravity"] = partial(_built, Gravity, document["gravity"], "gravity")
     if isinstance(document.get("ends"), list):
-        arguments["ends"] = tuple(
-            _built(End, end, f"ends[{i}]") if isinstance(end, dict) else end
-            for i, end in enumerate(document["ends"])
-        )
+        tables["ends"] = partial(_ends, document["ends"])
     if "damping" in document:
         given = document["damping"]
         many = given if isinstance(given, list) else [given]
-        arguments["damping"] = _each(many, "damping", damping.KINDS)
+        tables["damping"] = partial(_each, many, "damping", damping.KINDS)
     if "parts" in document:
-        arguments["parts"] = _each(document["parts"], "parts", part.KINDS)
-    return arguments
+        tables["parts"] = partial(_each, document["parts"], "parts", part.KINDS)
+    _, *built = at_once(partial(_known_keys, document, known, "the file"), *tables.values())
+    return {**document, **dict(zip(tables, built))}
+
+
+def _rope(document: Mapping[str, Any]) -> Any:
+    if "rope" not in document:
+        raise SceneError("key rope is missing: a scene needs a table [rope]")
+    return _built(Rope, _with_axis(document["rope"]), "rope")
+
+
+def _ends(given: Sequence[Any]) -> tuple[Any, ...]:
+    tables = {i: end for i, end in enumerate(given) if isinstance(end, dict)}
+    built = at_once(*(partial(_built, End, end, f"ends[{i}]") for i, end in tables.items()))
+    return tuple((dict(enumerate(given)) | dict(zip(tables, built))).values())
 
 
 def _with_axis(rope: Any) -> Any:
@@ -137,34 +144,40 @@ def _with_axis(rope: Any) -> Any:
 def _each(given: Any, name: str, kinds: Sequence[Any]) -> tuple[Any, ...]:
     check.instance(given, name, list, f"an array of tables [[{name}]]")
     by_name = {kind.__name__: kind for kind in kinds}
-    built = []
-    for i, table in enumerate(given):
-        where = f"{name}[{i}]"
-        check.instance(table, where, dict, "a table")
-        if "kind" not in table:
-            raise SceneError(f"key {where}.kind is missing: one of {', '.join(by_name)}")
-        kind = by_name[check.one_of(table["kind"], f"{where}.kind", by_name)]
-        arguments = {key: value for key, value in table.items() if key != "kind"}
-        built.append(_built(kind, arguments, where))
-    return tuple(built)
+    tables = (partial(_one, table, f"{name}[{i}]", by_name) for i, table in enumerate(given))
+    return tuple(at_once(*tables))
+
+
+def _one(table: Any, where: str, by_name: Mapping[str, type[Description]]) -> Any:
+    check.instance(table, where, dict, "a table")
+    if "kind" not in table:
+        raise SceneError(f"key {where}.kind is missing: one of {', '.join(by_name)}")
+    kind = by_name[check.one_of(table["kind"], f"{where}.kind", by_name)]
+    return _built(kind, {key: value for key, value in table.items() if key != "kind"}, where)
 
 
 def _built(kind: type[Description], table: Any, where: str) -> Any:
     """Call a description with the keys of a table, and say where an error comes from."""
     check.instance(table, where, dict, "a table")
-    _known_keys(table, {field.name for field in dataclasses.fields(kind)}, where)
-    for key in required(kind):
-        if key not in table:
-            raise SceneError(f"key {where}.{key} is missing")
+    at_once(
+        partial(_known_keys, table, {field.name for field in dataclasses.fields(kind)}, where),
+        *(partial(_has_key, table, key, where) for key in required(kind)),
+    )
     try:
         return kind(**table)
     except (SceneError, TypeError) as error:
         raise type(error)(f"{where}.{error}") from error
 
 
+def _has_key(table: Mapping[str, Any], key: str, where: str) -> None:
+    if key not in table:
+        raise SceneError(f"key {where}.{key} is missing")
+
+
 def _known_keys(table: Mapping[str, Any], known: set[str], where: str) -> None:
-    for key in table:
-        if key not in known:
-            raise SceneError(
-                f"unknown key {key!r} in {where}: expected one of {', '.join(sorted(known))}"
-            )
+    unknown = [repr(key) for key in table if key not in known]
+    if unknown:
+        raise SceneError(
+            f"unknown key {', '.join(unknown)} in {where}: expected one of "
+            f"{', '.join(sorted(known))}"
+        )

@@ -119,5 +119,34 @@ def test_all_questions_of_a_universal_file_are_asked_at_once(tmp_path, monkeypat
     assert main(["compare", "rope.toml", "--measured", "run.uff"]) == 2
     said = capsys.readouterr().err
     asked = ["--position must be .* such as 7=0.5, got none", "--coordinate must .* Z=z, got none"]
-    assert re.search("; ".join([*asked, "--unit must be stated, such as"]), said)
+    assert re.search("\nropedyn: ".join([*asked, "--unit must be stated, such as"]), said)
     assert "{" not in said
+
+
+ASKED = {
+    "compare --measured run.csv": ["column", "drive", "response", "unit"],
+    "identify --measured run.csv --unit m/N": ["column", "drive", "response"],
+    "compare --measured run.csv --column frequency=f --unit m/N": ["column", "drive", "response"],
+    "tension run.csv": ["time", "channel or --sensors"],
+    "tension run.csv --rate 100": ["channel or --sensors"],
+}
+
+
+@pytest.mark.parametrize("line", ASKED)
+def test_all_questions_of_all_files_are_asked_at_once(line, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("rope.toml").write_text("height = 1\n[rope]\nlength = 2.0\n[[parts]]\nx = 1.0\n")
+    Path("run.csv").write_text("f,re,im\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n")
+    command, *rest = line.split()
+    assert main([command, "rope.toml", *rest]) == 2
+    scene = ["unknown key 'height'", "key rope.linear_density is missing", "key parts[0].kind is"]
+    expected = [
+        *(f"rope.toml: {said}" for said in scene),
+        *(f"--{said} must" for said in ASKED[line]),
+    ]
+    said = capsys.readouterr().err.splitlines()
+    assert [one.startswith(f"ropedyn: {words}") for one, words in zip(said, expected)] == [
+        True
+    ] * len(expected)
+    assert len(said) == len(expected)
+    assert not re.search(r"[{}]|\('", "".join(said[len(scene) :]).replace("('f', 're', 'im')", ""))

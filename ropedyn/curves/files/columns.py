@@ -7,6 +7,7 @@ import io
 import json
 import re
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,7 +16,7 @@ import numpy as np
 from ...base import check
 from ...base.array import Complex, Real
 from ...base.atomic import write_bytes
-from ...base.errors import SceneError
+from ...base.errors import SceneError, at_once
 from ...base.reading import reading
 from ...base.unit import QUANTITIES, named
 from ..motion_unit import EXAMPLES, scale, stated
@@ -61,6 +62,12 @@ class Sheet(NamedTuple):
     names: tuple[str, ...] | None  # of the columns; None where the first line has numbers already
     numbers: Real  # (rows, columns)
 
+    @property
+    def there(self) -> str:
+        """The columns in words."""
+        named = ", ".join(map(repr, self.names or ()))
+        return named or f"{self.numbers.shape[1]} columns without names"
+
 
 def read(
     file: Path,
@@ -82,14 +89,13 @@ def read(
                 )
         return _own(file, text, drive)
     sheet = sheet_of(file, text, **layout)
-    if columns is None:
-        there = sheet.names or f"{sheet.numbers.shape[1]} without names"
-        raise SceneError(
-            f"columns must say what the columns of {str(file)!r} are ({there}), such as {SUCH}, "
-            "got None"
-        )
-    found = _columns(file, sheet, columns)
-    meaning, factor = _meaning(file, drive, response, unit, quantity)
+    found, *_ = at_once(
+        partial(_columns, file, sheet, columns),
+        partial(_state, file, "drive", drive, 'what the force acts on, such as ("z", 0.5)'),
+        partial(_state, file, "response", response, 'what is watched, such as ("z", 0.5)'),
+        partial(_state, file, "unit", unit, f"the unit of the numbers, such as {EXAMPLES}"),
+    )
+    meaning, factor = _meaning(drive, response, unit, quantity)
     with np.errstate(all="ignore"):  # what is not finite is refused by name
         found["value"] = found["value"] * np.reshape(factor, (-1, 1))
     return Content(**found, **meaning)
@@ -185,8 +191,19 @@ def _has_commas(cells: list[str], layout: Layout, columns: int) -> bool:
     return split or any(COMMA.fullmatch(cell) or TWO.fullmatch(cell) for cell in cells)
 
 
+def _state(file: Path, name: str, value: Any, what: str) -> None:
+    """Refuse a file of which nobody says what only the user knows."""
+    if value is None:
+        raise SceneError(f"{name} must be stated for {str(file)!r}: {what}; got None")
+
+
 def _columns(file: Path, sheet: Sheet, columns: Any) -> dict[str, Any]:
     """Return frequency, values and coherence of the columns that the user names."""
+    if columns is None:
+        raise SceneError(
+            f"columns must say what the columns of {str(file)!r} are ({sheet.there}), such as "
+            f"{SUCH}, got None"
+        )
     check.instance(columns, "columns", Mapping, f"names or numbers of columns such as {SUCH}")
     for key in columns:
         check.one_of(key, "each key of columns", KEYS)
@@ -240,16 +257,9 @@ def _complex(real: Real, imag: Real) -> Complex:
 
 
 def _meaning(
-    file: Path, drive: Any, response: Any, unit: Any, quantity: str | None
+    drive: Any, response: Any, unit: Any, quantity: str | None
 ) -> tuple[dict[str, Any], list[float]]:
     """Return what the user says that the numbers are, and the factors that make them SI."""
-    for name, value, what in (
-        ("drive", drive, 'what the force acts on, such as ("z", 0.5)'),
-        ("response", response, 'what is watched, such as ("z", 0.5)'),
-        ("unit", unit, f"the unit of the numbers, such as {EXAMPLES}"),
-    ):
-        if value is None:
-            raise SceneError(f"{name} must be stated for {str(file)!r}: {what}; got None")
     cause = check.points(drive, "drive", forces=False)
     points = check.points(response, "response", forces=True)
     points = (points,) if isinstance(points[0], str) else points

@@ -7,6 +7,7 @@ import io
 import json
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,7 +16,7 @@ import numpy as np
 from ...base import check
 from ...base.array import Real
 from ...base.atomic import write_bytes
-from ...base.errors import SceneError
+from ...base.errors import SceneError, at_once
 from ...base.reading import reading
 from ...base.unit import FORCE_UNIT, MOTIONS, UNIT, label, place
 from ..motion_unit import RATES, side
@@ -89,16 +90,19 @@ def _in_order(file: Path, said: Said, channels: Sequence[Any], there: str) -> Sa
     return said._replace(response=dict(zip(channels, said.response)))
 
 
-def _chosen(file: Path, said: Said, taken: Any, there: str) -> dict[str, Any]:
-    """Return the motions and the force that the user names, in SI."""
+def _points(file: Path, said: Said, there: str) -> None:
+    """Refuse a file of which nobody says where its channels are."""
     such = '{"a1": ("z", 3.5)}'
     what = f"which channels of {str(file)!r} are at which points, such as {such} ({there})"
-    response = said.response
-    if not response:
-        raise SceneError(f"response must say {what}, got {response!r}")
-    check.instance(response, "response", Mapping, what)
+    if not said.response:
+        raise SceneError(f"response must say {what}, got {said.response!r}")
+    check.instance(said.response, "response", (Mapping, list, tuple), what)
+
+
+def _chosen(file: Path, said: Said, taken: Any) -> dict[str, Any]:
+    """Return the motions and the force that the user names, in SI."""
     quantity, rows, points = said.quantity, [], []
-    for key, point in response.items():
+    for key, point in said.response.items():
         row, name = taken(key, "response"), f"response[{key!r}]"
         at = check.point(point, name, check.COORDINATES, None)
         value, order = _scaled(
@@ -163,23 +167,27 @@ def _text(file: Path, said: Said, layout: dict[str, Any]) -> RecordContent:
             "Measured.read reads it"
         )
     sheet = sheet_of(file, text, **layout)
-    width = sheet.numbers.shape[1]
-    there = ", ".join(map(repr, sheet.names or ())) or f"{width} columns without names"
+    at_once(partial(_clock, file, said, sheet), partial(_points, file, said, sheet.there))
 
     def taken(key: Any, argument: str) -> Row:
         return Row(sheet.numbers[:, _column(file, sheet, key, argument)], None, None)
 
-    if said.time is None and said.rate is None:
-        raise SceneError(
-            f"time must be the column of the times in {str(file)!r} ({there}), or rate stated in "
-            "Hz, got None"
-        )
     time = None if said.time is None else taken(said.time, "time").value
     keys = [*([] if said.time is None else [said.time]), *(said.force or ())]
     others = {_column(file, sheet, key, "time or force") for key in keys}
-    said = _in_order(file, said, [i for i in range(width) if i not in others], there)
-    found = _chosen(file, said, taken, there)
+    width = sheet.numbers.shape[1]
+    said = _in_order(file, said, [i for i in range(width) if i not in others], sheet.there)
+    found = _chosen(file, said, taken)
     return RecordContent(time=time, rate=said.rate, missing=said.missing, **found)
+
+
+def _clock(file: Path, said: Said, sheet: Sheet) -> None:
+    """Refuse a file of which nobody says when its samples are."""
+    if said.time is None and said.rate is None:
+        raise SceneError(
+            f"time must be the column of the times in {str(file)!r} ({sheet.there}), or rate "
+            "stated in Hz, got None"
+        )
 
 
 def _column(file: Path, sheet: Sheet, key: Any, argument: str) -> int:
@@ -296,9 +304,10 @@ def _foreign(file: Path, found: Sequence[uff.FileFunction], said: Said) -> Recor
 
     if said.time is not None:
         raise SceneError(f"time is for text in columns, got {said.time!r} for {str(file)!r}")
+    _points(file, said, there)
     motions = [k for k, name in names.items() if not {k, name} & set(said.force or ())]
     said = _in_order(file, said, motions, there)
-    chosen = _chosen(file, said, taken, there)
+    chosen = _chosen(file, said, taken)
     time = _times(file, used)
     return RecordContent(time=time, rate=said.rate, missing=said.missing, **chosen)
 

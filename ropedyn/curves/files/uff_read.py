@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,7 +13,7 @@ import numpy as np
 
 from ...base import check
 from ...base.array import Real
-from ...base.errors import SceneError
+from ...base.errors import SceneError, at_once
 from ...base.reading import reading
 from ...base.unit import QUANTITIES
 from ...chain.port import Point
@@ -110,19 +111,14 @@ def _ask_at_once(
     if all(OWN.match(record.fields["id2"]) for record in records):
         return
     code = min(r.fields[side] for r in records for side in ("rsp_dir", "ref_dir"))
-    parts: tuple[Callable[[], Any], ...] = (
+    of_points = (
         partial(_positions, positions, records, file),
         partial(_turned, code, coordinate, records, file),
-        partial(_refuse_without_unit, records, file, unit),
     )
-    asked = []
-    for part in parts:
-        try:
-            part()
-        except SceneError as error:
-            asked.append(str(error))
-    if len(asked) > 1:
-        raise SceneError("; ".join(asked))
+    with suppress(SceneError):
+        at_once(*of_points)
+        return  # those that are left out need no unit
+    at_once(*of_points, partial(_refuse_without_unit, records, file, unit))
 
 
 def _refuse_without_unit(records: Sequence[FileFunction], file: Path, unit: Any) -> None:
