@@ -10,8 +10,9 @@ import numpy as np
 from ..base.array import Real
 from ..scene.construction.construction import Construction
 from ..scene.construction.section import Section
+from ..scene.construction.spread import UNITS, SectionSpread
 from ..scene.construction.strand import Bar, Ring, Strand
-from .figure import BLUE, colour, plots
+from .figure import BLUE, colour, legend, light_grid, plots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +36,34 @@ def plot_construction(construction: Construction, ax: Axes, *, lay: bool = False
 def plot_section(section: Section, ax: Axes) -> None:
     """Draw the wires of the section."""
     plot_construction(section._made, ax)
+
+
+@plots(SectionSpread)
+def plot_spread(spread: SectionSpread, ax: Axes) -> None:
+    """Draw where the draws of each number lie, as shares of its median."""
+    half, most = spread.interval(0.5), spread.interval(0.95)
+    for y, name in enumerate(UNITS):
+        median = float(np.median(getattr(spread, name)))
+        if median == 0:
+            continue  # there is no share of none
+        for bounds, width, said in ((most, 2.0, "95 % of the draws"), (half, 8.0, "half of them")):
+            shares = 100.0 * np.array(bounds[name]) / median
+            ax.plot(shares, (y, y), color=BLUE, linewidth=width, label=None if y else said)
+        ax.plot([100.0], [y], "o", color="white", markeredgecolor=BLUE, zorder=3)
+    if min(np.min(line.get_xdata()) for line in ax.lines) > 0:
+        ax.set_xscale("log")
+    names = [f"{name.replace('_', ' ')}\n{_median(spread, name)}" for name in UNITS]
+    ax.set_yticks(range(len(names)), names, fontsize="small")
+    ax.invert_yaxis()
+    ax.set(xlabel="share of the median [%]")
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.set_title(f"sections of {len(spread.axial_stiffness)} draws")
+    legend(ax)
+    light_grid(ax)
+
+
+def _median(spread: SectionSpread, name: str) -> str:
+    return f"{np.median(getattr(spread, name)):.4g} {UNITS[name]}"
 
 
 def _across(strand: Strand, ax: Axes) -> None:

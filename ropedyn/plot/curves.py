@@ -17,6 +17,7 @@ from ..motion.history import History
 from ..motion.periodic.branches import Branches
 from ..parametric.floquet import Floquet
 from ..parametric.stability import StabilityMap
+from ..parametric.tongues import Boundary
 from ..signal.ringdown import RingDown
 from ..signal.spectrum import Spectrum
 from .figure import BLUE, RED, amplitudes, below, colour, light_grid, plots, unbroken, with_unit
@@ -175,3 +176,19 @@ def plot_stability(stability: StabilityMap, ax: Axes) -> None:
     ax.set(xlabel="frequency of the tension [Hz]", ylabel="amplitude of the tension [N]")
     ax.set(xlim=(f[0], f[-1]), ylim=(a[0], a[-1]) if len(a) > 1 else None)
     ax.set_title("where transverse motion grows", pad=LABELS if stability.tongues else None)
+
+
+@plots(Boundary)
+def plot_boundary(boundary: Boundary, ax: Axes) -> None:
+    """Mark where stability changes, each edge beside the order of its resonance."""
+    orders = np.unique(boundary.order)
+    ax.plot(boundary.frequency, boundary.order, "|", color=RED, markersize=24, markeredgewidth=1.5)
+    ax.set(xlabel="frequency of the tension [Hz]", ylabel="order of the resonance", yticks=orders)
+    if orders.size:
+        ax.set_ylim(orders[0] - 0.5, orders[-1] + 0.5)
+    else:
+        nowhere = "nowhere between the frequencies of the map"
+        ax.text(0.5, 0.5, nowhere, transform=ax.transAxes, ha="center")
+        ax.set(xticks=[])
+    ax.set_title(boundary.table().title)
+    light_grid(ax)

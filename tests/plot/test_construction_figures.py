@@ -31,3 +31,22 @@ def test_a_section_draws_its_construction(tmp_path):
     section.save(tmp_path / "section.nc")
     with pytest.raises(rd.SceneError, match="got one from a file"):
         rd.load(tmp_path / "section.nc").plot()
+
+
+def test_a_spread_draws_the_middle_of_the_draws_of_each_number():
+    spread = rd.Construction.standard("7x7", diameter=4e-3).section().spread(n=200)
+    ax = spread.plot()
+    ends = np.array([ax.lines[0].get_xdata(), ax.lines[1].get_xdata()]) / 100.0
+    EA = spread.axial_stiffness
+    assert ends.ravel().tolist() == pytest.approx(
+        np.quantile(EA, [0.025, 0.975, 0.25, 0.75]) / np.median(EA), rel=1e-14
+    )
+    names = [label.get_text() for label in ax.get_yticklabels()]
+    assert names[0] == f"axial stiffness\n{np.median(EA):.4g} N"
+    assert (ax.get_xlabel(), ax.get_xscale()) == ("share of the median [%]", "log")
+
+
+def test_a_number_that_is_zero_has_no_share():
+    straight = rd.Construction(rd.Wire(4e-3), [])
+    ax = straight.section().spread(n=200).plot()
+    assert {float(line.get_ydata()[0]) for line in ax.lines} == {0.0, 2.0, 3.0, 5.0}

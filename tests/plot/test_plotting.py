@@ -166,3 +166,15 @@ def test_names_of_tongues_stand_apart():
     at = np.sort([text.xy[0] for text in ax.texts])
     assert len(at) > 3
     assert np.diff(at).min() >= 0.0199 * 620.0
+
+
+def test_edges_of_growth_stand_beside_their_orders():
+    mapped = rd.Scene(rd.Rope(1.0, 0.1), tension=1000.0).compile()
+    mapped = mapped.stability_map([40.0, 110.0], [0.0], modes=1)
+    edges = mapped.boundary(100.0)
+    ax = edges.plot()
+    assert np.array_equal(ax.lines[0].get_xydata().T, [edges.frequency, edges.order])
+    assert ax.get_xlabel() == "frequency of the tension [Hz]"
+    assert [text.get_text() for text in mapped.boundary(0.0).plot().texts] == [
+        "nowhere between the frequencies of the map"
+    ]
