@@ -122,7 +122,8 @@ def magnitude(quantity: Any, unit: str) -> Any:
 
 
 def _in(quantity: Any, unit: str) -> Any:
-    return quantity.to(unit).magnitude
+    # to some registries a space before a bracket binds more than a power after it
+    return quantity.to(unit.replace(" ", "*")).magnitude
 
 
 def _in_hertz(quantity: Any, unit: str) -> Any:

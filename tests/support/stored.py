@@ -17,6 +17,7 @@ import hashlib
 import inspect
 import json
 import os
+import sys
 import types
 from collections.abc import Mapping
 from pathlib import Path
@@ -301,10 +302,16 @@ def gather(module, name, found):
         for each in [own] if own else parsed(other)[0]:
             gather(other, each, found)
     elif name in statements and (module, name) not in found:
-        found[module, name] = ast.dump(statements[name])
+        found[module, name] = dumped(statements[name])
         for node in ast.walk(statements[name]):
             if isinstance(node, ast.Name):
                 gather(module, node.id, found)
+
+
+def dumped(node):
+    """A statement as Python 3.11 dumps it; later ones leave lists out, or have more fields."""
+    shown = {"show_empty": True} if sys.version_info >= (3, 13) else {}
+    return ast.dump(node, **shown).replace(", type_params=[]", "")
 
 
 @functools.cache
