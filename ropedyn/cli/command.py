@@ -16,6 +16,7 @@ from ..base.errors import RopedynError, SolveError
 from .experiment import COMPARE, IDENTIFY
 from .file import INSPECT, SCENE_FILE, SCHEMA
 from .hard import HARD
+from .options import BAD_INPUT, REFUSED, SOLVED, STATUS
 from .scene import ACCURACY, EFFECTS, FLOQUET, FRF, MODES, STABILITY, TRANSIENT
 from .section import SECTION
 from .tension import TENSION
@@ -40,8 +41,6 @@ COMMANDS = (
 )
 NAME = "ropedyn"
 FOLDER = Path("ropedyn-study")
-
-SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -81,8 +80,9 @@ def parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=NAME,
         description="Vibration of axially tensed steel ropes. Alone: the 2015 study.",
-        epilog="Exit status: 0, 1 where the numbers refused or a hard case failed, 2 where the "
-        "input was bad, 3 where what was measured leaves several answers.",
+        epilog=f"Exit status: {SOLVED}, {REFUSED} where the numbers refused or a hard case failed, "
+        f"{BAD_INPUT} where the input was bad, {STATUS['ambiguous']} where what was measured "
+        "leaves several answers.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {metadata.version(NAME)}")
     parser.set_defaults(run=_study, folder=FOLDER)

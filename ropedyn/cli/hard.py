@@ -5,15 +5,13 @@ from __future__ import annotations
 import argparse
 
 from ..study.hard.hard_cases import hard_cases
-from .options import Command, option, progress, show
-
-FAILED = 1  # Exit status where a case lost digits, or a random scene failed.
+from .options import REFUSED, SOLVED, Command, option, progress, show
 
 
 def _hard(options: argparse.Namespace) -> int:
     table = hard_cases(options.random, options.seed, progress=progress(options))
     show(options, table, "\n".join([str(table), *table.failures]))
-    return 0 if table.ok else FAILED
+    return SOLVED if table.ok else REFUSED
 
 
 HARD = Command(
@@ -25,7 +23,8 @@ HARD = Command(
         option("--seed", "of the random scenes, given with --random", type=int),
     ),
     "Digits kept in cases that are hard to keep stable, against values of 40 digits and beside "
-    "SciPy; and random hard scenes. Exit status 1 where digits, a bound or a check are lost.",
+    f"SciPy; and random hard scenes. Exit status {REFUSED} where digits, a bound or a check are "
+    "lost.",
     elements=(),
     subject=(),
 )

@@ -103,7 +103,8 @@ def _meant(parse: Callable[[str, str], Any], name: str, text: str) -> Any:
         raise RopedynError(str(error)) from None
 
 
-STATUS = {"trusted": 0, "refused": 1, "ambiguous": 3}
+SOLVED, REFUSED, BAD_INPUT = 0, 1, 2
+STATUS = {"trusted": SOLVED, "refused": REFUSED, "ambiguous": 3}
 """Exit statuses of what was identified."""
 
 SCENE = option("scene", "the scene", metavar="SCENE.toml")

@@ -16,6 +16,7 @@ from ..motion.request import METHODS
 from ..scene.scene import Scene
 from ..study.accuracy import accuracy_cost
 from ..study.effect import effect_cost
+from ..study.truth import FEWEST, MOST
 from . import text
 from .options import (
     DRIVE,
@@ -49,9 +50,11 @@ QUESTION = (
     option(*DRIVE),
     RESPONSE,
 )
+FIRST = 1  # Number of the lowest mode, as people count.
+USUAL = 10  # Modes, where nobody says how many.
 EITHER = (
-    "for modes (10 of them unless --modes or --below is given) or, with --frequency and --drive, "
-    "a frequency response."
+    f"for modes ({USUAL} of them unless --modes or --below is given) or, with --frequency and "
+    "--drive, a frequency response."
 )
 """What a command says that takes a `QUESTION`."""
 
@@ -61,9 +64,9 @@ def _modes(options: argparse.Namespace) -> None:
         raise SceneError("--animate must be given with --mode, got none")
     modes: Any = compiled(options).modes(options.modes, damped=options.damped)
     if options.animate is not None:
-        number = 1 if options.mode is None else options.mode
+        number = FIRST if options.mode is None else options.mode
         check.count(number, "--mode", most=len(modes.frequency))
-        modes.animate(number - 1, path=options.animate)
+        modes.animate(number - FIRST, path=options.animate)
     show(options, modes)
 
 
@@ -72,10 +75,10 @@ MODES = Command(
     _modes,
     "natural frequencies and shapes",
     (
-        option("--modes", "how many (%(default)s)", type=int, default=10),
+        option("--modes", "how many (%(default)s)", type=int, default=USUAL),
         switch("--damped", "complex modes"),
         option("--animate", "write a mode in motion: .gif, .html, .mp4", type=Path, metavar="FILE"),
-        option("--mode", "which of them --animate shows (1)", type=int),
+        option("--mode", f"which of them --animate shows ({FIRST})", type=int),
     ),
 )
 
@@ -100,7 +103,7 @@ def _question(options: argparse.Namespace) -> ask.AnyQuestion:
             raise SceneError("--damped must be given with modes, got --frequency")
         return _frf_question(options)
     refuse(options, (option(*DRIVE), RESPONSE), "--frequency")
-    number = 10 if options.modes is None and options.below is None else options.modes
+    number = USUAL if options.modes is None and options.below is None else options.modes
     return ask.modes(number, below=options.below, damped=options.damped)
 
 
@@ -124,7 +127,9 @@ ACCURACY = Command(
     f"Time and error of every element and solver, {EITHER}",
     (
         option(
-            "--elements", "of chains, comma list (powers of two from 8 to 4096)", text.whole_numbers
+            "--elements",
+            f"of chains, comma list (powers of two from {2**FEWEST} to {2**MOST})",
+            text.whole_numbers,
         ),
         option("--element", "kinds (%(default)s)", text.words, default="rigid,tensed,continuous"),
         option("--solver", "comma list (those usual for the question)", text.words),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from ..base.errors import SceneError
 from ..experiment.plan.wire_shifts import broken_wire_shifts
@@ -35,17 +36,18 @@ def _section(options: argparse.Namespace) -> None:
     rope = Rope.from_construction(options.length, section)
     given = {name: getattr(options, name) for name in ("friction", "modes", "std")}
     asked = {name: value for name, value in given.items() if value is not None}
-    scene = Scene(rope, tension=options.tension or 0.0)
-    show(options, broken_wire_shifts(scene, options.broken, **{"friction": FRICTION, **asked}))
+    scene = Scene(rope, tension=options.tension or TENSION)
+    show(options, broken_wire_shifts(scene, options.broken, **USUAL | asked))
 
 
-FRICTION = 0.2  # Between wires, where none is given.
+FRICTION, TENSION, LOWEST = 0.2, 0.0, 5  # Between wires, of the rope, and modes, where not given.
+USUAL: dict[str, Any] = {"friction": FRICTION, "modes": LOWEST}
 BREAK = (
     option("--broken", "wires broken at one place, such as 1,2,4: shifts instead", whole_numbers),
     option("--length", "of the rope, which is clamped [m]", type=float),
-    option("--tension", "of the rope (0) [N]", type=float),
+    option("--tension", f"of the rope ({TENSION:g}) [N]", type=float),
     option("--friction", f"between wires ({FRICTION})", type=float),
-    option("--modes", "the lowest so many (5)", type=int),
+    option("--modes", f"the lowest so many ({LOWEST})", type=int),
     option("--std", "standard deviation of a measured frequency [Hz]", type=float),
 )
 

@@ -15,7 +15,17 @@ from ..experiment.identify.identify import identify, peaks_of_record, said_of
 from ..scene.scene import Scene
 from . import text
 from .experiment import HELD, ORDERS, PEAKS_ARE, PRIOR_OF, STD_OF_FITTED, peaks_of
-from .options import Command, Option, OptionGroup, option, refuse, repeated, shown_fit
+from .options import (
+    BAD_INPUT,
+    STATUS,
+    Command,
+    Option,
+    OptionGroup,
+    option,
+    refuse,
+    repeated,
+    shown_fit,
+)
 
 COORDINATE = "z"
 """What sensors measure where only their positions are said."""
@@ -121,7 +131,8 @@ TENSION = Command(
         OptionGroup(OF_RECORD, "of a RECORD that does not say so itself"),
     ),
     "The tension of a rope from a recorded time series, or from its peaks: which modes they are "
-    "and how the ends are held is found with it. Exit status 0 where the answer can be trusted, 3 "
-    "where the peaks leave several, 1 where there is none, 2 where the input was bad.",
+    f"and how the ends are held is found with it. Exit status {STATUS['trusted']} where the answer "
+    f"can be trusted, {STATUS['ambiguous']} where the peaks leave several, {STATUS['refused']} "
+    f"where there is none, {BAD_INPUT} where the input was bad.",
     elements=(),
 )

@@ -1,5 +1,8 @@
 """What the README and the pages say in Python and as commands runs, and gives their numbers."""
 
+import ast
+import inspect
+import json
 import re
 import shlex
 from pathlib import Path
@@ -9,6 +12,8 @@ import pytest
 from dataset58 import function
 
 import ropedyn as rd
+from ropedyn.base import progress
+from ropedyn.cli import options
 from ropedyn.cli.command import main, parser
 
 ROOT = Path(__file__).parent.parent.parent
@@ -125,6 +130,62 @@ def test_no_page_has_python_that_nothing_runs():
     assert having <= ran
 
 
+MEASURED = r"\]\(((?:benchmarks/results/|docs/measured|docs/hard|VALIDATION)[^)#]*md)"
+FIGURE = r"(?<![\w.^-])\d+(?: \d{3})*(?:\.\d+)?(?:e[+-]?\d+)?(?: %)?"
+
+
+def figures(text):
+    """Return the numbers of a text as written, what links and code say left out."""
+    plain = re.sub(r"\]\([^)]*\)|`[^`]*`", "", text)
+    return [re.sub(r" (?=\d)", "", one) for one in re.findall(FIGURE, plain)]
+
+
+def stands_in(number, found):
+    """Whether one of the numbers is this one in so many digits; a share may be in per cent."""
+    text = number.removesuffix(" %")
+    digits = re.sub(r"e.*|\.", "", text).lstrip("0")
+    places = len(digits.rstrip("0") if "." not in text else digits) - 1
+    each = [float(one.removesuffix(" %")) for one in found]
+    each += [100 * one for one in each if text != number]
+    return any(f"{one:.{places}e}" == f"{float(text):.{places}e}" for one in each)
+
+
+def measured_claims():
+    """Return of the README each row, item or paragraph with the pages of numbers it leads to."""
+    for part in re.split(r"\n(?=\||- |\n)", README):
+        if pages := re.findall(MEASURED, part):
+            yield part.strip(), pages
+
+
+@pytest.mark.parametrize(("text", "pages"), list(measured_claims()))
+def test_numbers_of_the_readme_stand_on_the_pages_that_made_them(text, pages):
+    made = [one for page in pages for one in figures((ROOT / page).read_text(encoding="utf-8"))]
+    assert [one for one in figures(text) if not stands_in(one, made)] == []
+
+
+@pytest.mark.long
+def test_the_page_of_hard_cases_says_what_comes_of_them():
+    page = " ".join((ROOT / "docs/hard.md").read_text(encoding="utf-8").split())
+    first, last = rd.hard_cases().verdict.split(". ")
+    assert f"runs {first.split()[2]} cases" in page
+    assert last in page
+
+
+@pytest.mark.parametrize(
+    ("number", "found", "is_there"),
+    [
+        ("270", ["272"], True),
+        ("0.29", ["0.286"], True),
+        ("0.29", ["0.28"], False),
+        ("1.6 %", ["0.016"], True),
+        ("1.6", ["0.016"], False),
+        ("4e-9", ["3.6e-09"], True),
+    ],
+)
+def test_a_number_is_found_in_its_digits(number, found, is_there):
+    assert stands_in(number, found) is is_there
+
+
 def slugs(text):
     """Return the anchors of the headings of a page."""
     headings = re.findall(r"^#+ (.+)$", text, flags=re.M)
@@ -140,6 +201,57 @@ def test_links_lead_to_files_and_headings(path):
         at = path.parent / re.sub(to_gallery, r"\1../notebooks/\2", target) if target else path
         assert at.exists(), target
         assert not anchor or anchor in slugs(at.read_text(encoding="utf-8")), anchor
+
+
+def said_of_numbers():
+    """Return what the page of commands says of numbers, with where the code has them."""
+    wait = {2.0: "two"}[progress.PATIENCE]
+    yield f"takes longer than {wait} seconds"
+    for name in ("table", "tension"):
+        schema = json.loads((ROOT / f"ropedyn/{name}-1.schema.json").read_text(encoding="utf-8"))
+        yield f'"{schema["properties"]["schema"]["const"]}"'
+    level = inspect.signature(rd.Fit.interval).parameters["level"].default
+    yield f"with its {100 * level:g} % interval"
+    for status in (options.SOLVED, options.REFUSED, options.BAD_INPUT, *options.STATUS.values()):
+        yield f"\n| {status} | "
+
+
+def test_numbers_of_the_page_of_commands_are_those_of_the_code():
+    page = (ROOT / "docs/command_line.md").read_text(encoding="utf-8")
+    said = [*said_of_numbers(), *("2015 study", "four figures")]
+    assert [one for one in said if one not in page] == []
+    left = re.sub(r"^```.*?^```|`[^`]*`|\{[^}]*\}", "", page, flags=re.M | re.S)
+    for one in said:
+        left = left.replace(one, "")
+    assert re.findall(r"(?<![\w.])\d+", left) == []
+
+
+def test_the_study_draws_four_figures(tmp_path, capsys):
+    assert main(["study", "--folder", str(tmp_path)]) == 0
+    assert len(list(tmp_path.glob("*.png"))) == capsys.readouterr().out.count("figure: ") == 4
+
+
+def texts_of_help():
+    """Return the texts of the command line's options and commands as its source has them."""
+    for path in sorted((ROOT / "ropedyn/cli").glob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in HELP:
+                given = [*node.args, *(word.value for word in node.keywords)]
+                words = [one for part in given for one in ast.walk(part)]
+                yield from (n.value for n in words if isinstance(getattr(n, "value", 0), str))
+
+
+HELP = {"option", "repeated", "switch", "Command", "Option"}
+"""What takes texts of `--help`."""
+EXAMPLES = r"such as .*|end:0:z|\.mp4|0 for none|values of 40 digits|@0\.5"
+"""What they show; the digits are those of the cases (tests/study/test_hard_cases.py)."""
+
+
+def test_numbers_of_help_are_not_typed_but_taken_from_the_code():
+    texts = [re.sub(EXAMPLES, "", one) for one in texts_of_help()]
+    assert len(texts) > 100
+    assert [one for one in texts if re.search(r"\d", one)] == []
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
