@@ -10,8 +10,7 @@ import numpy as np
 from ..base.array import Complex, Real
 from ..scene.force import Chirp, Force, Impulse, Samples, Sine, Step, Sum
 from .modal.chirp import chirp_between, follow
-
-SERIES = 1e-2  # Below this angle the hat of a sample at an end is a series.
+from .modal.exponentials import ramp
 
 
 @singledispatch
@@ -82,17 +81,10 @@ def _(force: Samples, omega: Real, begin: float, end: float) -> Complex:
     h = (end - begin) / (len(time) - 1)
     hats = np.fft.rfft(sample) * np.sinc(omega * h / (2 * np.pi)) ** 2
     hats *= np.exp(-1j * omega * begin)
-    hats -= sample[0] * _half_hat(omega * h) * np.exp(-1j * omega * begin)
-    hats -= sample[-1] * _half_hat(-omega * h) * np.exp(-1j * omega * end)
+    turn = np.asarray(1j * omega * h, dtype=np.complex128)
+    hats -= sample[0] * ramp(turn) * np.exp(-1j * omega * begin)
+    hats -= sample[-1] * ramp(-turn) * np.exp(-1j * omega * end)
     return np.asarray(h * hats)
-
-
-def _half_hat(angle: Real) -> Complex:
-    """Return the integral of (1 + u) e^(-i angle u) from -1 to 0."""
-    near = np.abs(angle) < SERIES
-    a = np.where(near, 1.0, angle)
-    series = 0.5 + 1j * angle / 6 - angle**2 / 24 - 1j * angle**3 / 120 + angle**4 / 720
-    return np.where(near, series, (1 + 1j * a - np.exp(1j * a)) / a**2)
 
 
 @transform.register

@@ -13,6 +13,7 @@ import ropedyn as rd
 from ropedyn.motion.modal.convolution import convolve, release
 from ropedyn.motion.modal.expansion import Expansion
 from ropedyn.motion.modal.exponentials import _circle, _close, is_uniform
+from ropedyn.motion.modal.recurrence import changes
 from ropedyn.motion.modal.truncation import _variation, left_out
 from ropedyn.scene.force import Chirp, Impulse, Samples, Sine, Step, Sum
 
@@ -379,6 +380,31 @@ def test_forces_beyond_measure_are_answered_or_refused(kind):
         except rd.SolveError:
             continue
         assert np.isfinite(value).all()
+
+
+@pytest.mark.parametrize("turn", [1e-9, 1e-3, 0.4, 1.6, 30.0, 1e4])
+@pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.7, 1 - 1e-9, 1.0, 1 + 1e-13, 1.5, 1e3, 1e6])
+def test_change_over_a_step_has_all_its_digits(turn, ratio):
+    h = 0.01
+    sigma, square = ratio * turn / h, (turn / h) ** 2
+    _, S, P, R, *_ = changes(np.array([sigma]), np.array([square]), np.array([h]))[0, :, 0]
+    with mp.workdps(80):
+        split = mp.sqrt(mp.mpf(sigma) ** 2 - mp.mpf(square)) or mp.mpf(10) ** -30
+        near, far = -sigma + split, -sigma - split
+        exact = [
+            mp.re((one(near) - one(far)) / (near - far))
+            for one in (
+                lambda s: mp.exp(s * h),
+                lambda s: mp.expm1(s * h) / s,
+                lambda s: (mp.expm1(s * h) - s * h) / s**2 / h,
+            )
+        ]
+        size = float(abs(far)) * h
+    # S is at most h and 1/far, its integrals so much times h or what the spring lets
+    most = min(h, h / size) * np.array([1.0, min(h, h / turn), min(h, h / turn) / 2])
+    turns = 1 + turn * (ratio < 1)  # phases have their rounding
+    off = np.abs([float(one - other) for one, other in zip((S, P, R), exact)])
+    assert (off <= 8 * EPS * turns * np.maximum(most, np.abs([float(one) for one in exact]))).all()
 
 
 def test_recurrence_keeps_its_phase_and_amplitude_over_many_steps():

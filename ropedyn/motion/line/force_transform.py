@@ -8,10 +8,8 @@ from ...base.array import Complex, Real
 from ...scene.force import Chirp, Force, Samples, Sum
 from ..modal.chirp import chirp_between, follow
 from ..modal.convolution import SinePiece, pieces
+from ..modal.exponentials import ramp
 from .grid import Grid
-
-SMALL = 0.5  # Up to this |z| a hat is Taylor's series,
-TERMS = 14  # of so many terms.
 
 
 def transform(force: Force, grid: Grid) -> Complex:
@@ -73,26 +71,12 @@ def _of_samples(force: Samples, grid: Grid) -> Complex:
     k = np.arange(len(z)) % count
     hat = np.ones(len(z), dtype=np.complex128)
     np.divide(np.sinh(z / 2), z / 2, out=hat, where=z != 0)
-    return np.asarray(h * (spectrum[k] * hat * hat - force.sample[0] * _half_hat(-z)))
+    return np.asarray(h * (spectrum[k] * hat * hat - force.sample[0] * ramp(z)))
 
 
 def _taper(count: int) -> Real:
     """Return half a cosine from 1 to 0 without its ends."""
     return np.asarray((1 + np.cos(np.pi * np.arange(1, count + 1) / (count + 1))) / 2)
-
-
-def _half_hat(z: Complex) -> Complex:
-    """Return the integral of (1 - u) e^(-z u) from 0 to 1, (e^-z - 1 + z)/z^2."""
-    small = np.abs(z) < SMALL
-    result = np.empty_like(z)
-    near, far = z[small], z[~small]
-    total, term = np.zeros_like(near), np.full(near.shape, 0.5, dtype=np.complex128)
-    for n in range(TERMS):
-        total += term
-        term *= -near / (n + 3)
-    result[small] = total
-    result[~small] = (np.expm1(-far) + far) / far**2
-    return result
 
 
 def _of_corners(force: Samples, grid: Grid) -> Complex:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from ...base.array import Complex, Flags, Index, Real
 
+Value = TypeVar("Value", Real, Complex)
 Numerator = Callable[[Complex, Index], Complex]
 
 BLOCK = 128
@@ -21,6 +22,7 @@ NOTHING = 1e-20  # A term has decayed when it is less than this part of the larg
 SLICE = 1 << 16  # So many exponentials are computed at once where times are not a grid.
 DIGITS = 38.0  # A circle around poles is right to so many digits, as a natural logarithm.
 MOST = 4096  # A circle has so many nodes at most, also of numbers near the end of their range.
+SMALL, TERMS = 0.5, 14  # Up to this |z| a ramp is Taylor's series of so many terms.
 CLOSE = 0.5  # Poles nearer than this part of what time and decay tell apart share a circle.
 
 
@@ -83,6 +85,20 @@ def invert(poles: Complex, numerator: Numerator, span: float) -> Exponentials:
 def unity(s: Complex, k: Index) -> Complex:
     """Return the numerator of a blow of 1."""
     return np.ones(len(k), dtype=complex)
+
+
+def ramp(z: Value) -> Value:
+    """Return the integral of (1 - u) e^(z u) from 0 to 1, (e^z - 1 - z)/z^2."""
+    small = np.abs(z) < SMALL
+    result = np.empty_like(z)
+    near, far = z[small], z[~small]
+    total, term = np.zeros_like(near), np.full_like(near, 0.5)
+    for n in range(TERMS):
+        total += term
+        term *= near / (n + 3)
+    result[small] = total
+    result[~small] = (np.expm1(far) - far) / far**2
+    return result
 
 
 def evaluate(rate: Complex, coefficient: Complex, time: Real) -> Real:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ... import _core
-from ...base.array import Complex, Real
+from ...base.array import Real
 from ...scene.force import Samples
-from .exponentials import Oscillators, invert, is_uniform, rates, unity
+from .exponentials import Oscillators, is_uniform, ramp, rates
 
 STEPS = 2048  # The core takes so many steps in one call: a look for Ctrl-C every millisecond.
 LANES = 8  # Modes of the core come in multiples of this.
@@ -71,51 +73,83 @@ def changes(sigma: Real, square: Real, h: Real) -> Real:
     return np.ascontiguousarray(np.stack(parts, axis=1))
 
 
+class _Steps(NamedTuple):
+    """Modes and times, any one shape."""
+
+    sigma: Real  # [1/s]
+    square: Real  # [rad^2/s^2]
+    split: Real  # |sigma^2 - square|^(1/2) [1/s]
+    near: Real  # The real rates, or the real part of both [1/s]
+    far: Real
+    t: Real  # [s]
+
+
 def _integrals(sigma: Real, square: Real, h: Real) -> tuple[Real, Real, Real]:
     """Return S, P and R at times h, shape (h, k) each."""
-    size = np.abs(rates(sigma, square)).max(axis=1)
+    own = rates(sigma, square)
+    split = np.sqrt(np.abs(sigma**2 - square))
+    near, far = own.real.T
+    steps = _Steps(*np.broadcast_arrays(sigma, square, split, near, far, h[:, None]))
     result = np.empty((3, len(h), len(sigma)))
-    octaves = np.frexp(h)[1]  # lengths within a factor of 2 are taken together
-    for octave in (np.flatnonzero(octaves == each) for each in np.unique(octaves)):
-        short = size * h[octave].max() <= SHORT
-        for use, found in ((short, _series), (~short, _inverted)):
-            at = np.ix_(octave, np.flatnonzero(use))
-            for whole, part in zip(result, found(sigma[use], square[use], h[octave])):
-                whole[at] = part
+    swings = np.broadcast_to(square > sigma**2, result.shape[1:])
+    short = np.abs(own).max(axis=1) * steps.t <= SHORT
+    slow = ~swings & (np.abs(near) * steps.t <= SHORT / 2)
+    for use, integrals in (
+        (short, _series),
+        (~short & swings, _swinging),
+        (~short & slow, _creeping),
+        (~short & ~swings & ~slow, _falling),
+    ):
+        if use.any():
+            result[:, use] = integrals(_Steps(*(one[use] for one in steps)))
     return result[0], result[1], result[2]
 
 
-def _series(sigma: Real, square: Real, h: Real) -> Real:
-    """Sum S = sum_n c_n, (n + 1) c_n = -2 sigma h c_(n-1) - square h^2/n c_(n-2), and integrals."""
-    t = h[:, None]
-    before, term = np.zeros((len(h), len(sigma))), np.broadcast_to(t, (len(h), len(sigma)))
-    result = np.zeros((3, len(h), len(sigma)))
+def _series(steps: _Steps) -> Real:
+    """Sum S = sum_n c_n, (n + 1) c_n = -2 sigma t c_(n-1) - square t^2/n c_(n-2), and integrals."""
+    t = steps.t
+    drag, spring = 2 * steps.sigma * t, steps.square * t * t
+    before, term = np.zeros_like(t), t
+    result = np.zeros((3, len(t)))
     for n in range(1, TERMS):
-        result += np.stack([term, term * t / (n + 1), term * t * t / ((n + 1) * (n + 2))])
-        drag, spring = -2 * sigma * t * term, -square * t * t * before
-        before, term = term, (drag + spring / n) / (n + 1)
+        result += term / np.array([[1], [n + 1], [(n + 1) * (n + 2)]])
+        before, term = term, -(drag * term + spring / n * before) / (n + 1)
+    result[1] *= t
+    result[2] *= t * t
     return result
 
 
-def _inverted(sigma: Real, square: Real, h: Real) -> Real:
-    """Invert 1, 1/s and 1/s^2 times the transform of S; R'' + 2 sigma R' + square R = h as well."""
-    result = np.zeros((3, len(h), len(sigma)))
-    own = rates(sigma, square)
-    for k in range(2):
-        result[k] = _inverted_over(own, k, h)
-    slow = np.abs(own).min(axis=1) * h.min() < SHORT / 2
-    result[2][:, slow] = _inverted_over(own[slow], 2, h)
-    S, P = result[:2, :, ~slow]
-    result[2][:, ~slow] = (h[:, None] - 2 * sigma[~slow] * P - S) / square[~slow]
-    return result
+def _swinging(steps: _Steps) -> Real:
+    """Return S = e^(-sigma t) sin(w t)/w, and its integrals."""
+    t, turn = steps.t, steps.split * steps.t
+    decay = np.exp(-steps.sigma * t)
+    return _integrated(steps, decay * t * np.sinc(turn / np.pi), decay * np.cos(turn))
 
 
-def _inverted_over(own: Complex, power: int, h: Real) -> Real:
-    """Invert 1/s^power of each mode's own, shape (h, k)."""
-    result = np.zeros((len(h), len(own)))
-    if len(own):
-        poles = np.concatenate([own, np.zeros((len(own), power))], axis=1)
-        terms = invert(poles, unity, float(h.max()))
-        parts = (np.exp(np.multiply.outer(h, terms.rate)) * terms.weight).real
-        np.add.at(result.T, terms.mode, parts.T)
-    return result
+def _falling(steps: _Steps) -> Real:
+    """Return the same where both rates are real."""
+    t = steps.t
+    slower = np.exp(np.maximum(steps.near, steps.far) * t)
+    apart = -2 * steps.split * t
+    return _integrated(steps, slower * t * _mean(apart), slower * (1 + np.expm1(apart) / 2))
+
+
+def _integrated(steps: _Steps, S: Real, C: Real) -> Real:
+    """Integrate S'' + 2 sigma S' + square S = 0 with S' = C - sigma S, once and twice."""
+    P = (1 - C - steps.sigma * S) / steps.square
+    return np.stack([S, P, (steps.t - 2 * steps.sigma * P - S) / steps.square])
+
+
+def _creeping(steps: _Steps) -> Real:
+    """Return them where one rate is nearly 0: divided differences of e^(s t) and its integrals."""
+    t = steps.t
+    one, other = (
+        np.stack([np.exp(z), t * _mean(z), t * t * ramp(z)])
+        for z in (steps.near * t, steps.far * t)
+    )
+    return (one - other) / (steps.near - steps.far)
+
+
+def _mean(z: Real) -> Real:
+    """Return the integral of e^(z u) from 0 to 1."""
+    return np.divide(np.expm1(z), z, out=np.ones_like(z), where=z != 0)
