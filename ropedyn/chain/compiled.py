@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,11 @@ MOST_POINTS = 1_000_000  # An answer is given at so many parts of a continuous e
 
 
 BELOW = 1e-9  # A bound is taken by so much.
+
+
+KEPT = 8  # So many answers to a question are kept for when it is asked again.
+
+Answered = TypeVar("Answered", bound=tuple[Any, ...])
 
 
 class Triples(NamedTuple):
@@ -117,6 +123,11 @@ class Compiled(Frozen):
     def _parts(self) -> dict[tuple[str, ...], Chain]:
         """Undamped chains of the components, spans joined that nothing parts."""
         return {c: lean(self.chain.undamped.only(c))[0] for c in self.components}
+
+    @computed
+    def _told(self) -> dict[Any, Any]:
+        """What was computed of it last, by what was asked; see `once`."""
+        return {}
 
     @computed
     def _least(self) -> dict[tuple[str, ...], float]:
@@ -328,6 +339,24 @@ class Compiled(Frozen):
 def part_of(model: Compiled, component: tuple[str, ...]) -> Chain:
     """Return the undamped chain of a component, spans joined that nothing parts."""
     return model._parts[component]
+
+
+def once(model: Compiled, asked: Any, compute: Callable[[], Answered]) -> Answered:
+    """Return what computes, or what it returned when the same was asked of the model before.
+
+    That must be a tuple: its arrays become read-only. The last few are kept.
+    """
+    told = model._told
+    known: Answered | None = told.get(asked)
+    if known is None:
+        known = compute()
+        for one in known:
+            if isinstance(one, np.ndarray):
+                one.setflags(write=False)
+        for old in list(told)[: max(0, len(told) - KEPT + 1)]:
+            told.pop(old, None)
+        told[asked] = known
+    return known
 
 
 def least_of(model: Compiled, component: tuple[str, ...]) -> float:

@@ -15,7 +15,7 @@ from ..base.answer import Work
 from ..base.array import Index, Real
 from ..base.errors import SceneError, SolveError
 from ..chain.chain import CHANNELS, Chain
-from ..chain.compiled import MOST_STEPS, Compiled, least_of, part_of
+from ..chain.compiled import MOST_STEPS, Compiled, least_of, once, part_of
 from .closed import closed_count, closed_eigenvalues
 
 LARGEST_DENSE = 8_000
@@ -44,9 +44,12 @@ def spectrum(
     """Return the lowest eigenvalues of one component and their errors [rad^2/s^2]."""
     if number is None:
         refuse_short_waves(model, limit)
-    found = _sweep(model, component, number, limit, shaped=False)
-    eigenvalue, error, _ = merged([found], number)
-    return eigenvalue, error
+
+    def swept() -> tuple[Real, Real]:
+        found = _sweep(model, component, number, limit, shaped=False)
+        return merged([found], number)[:2]
+
+    return once(model, ("spectrum", component, number, limit), swept)
 
 
 def eigenvalue_of(below: Any) -> float:

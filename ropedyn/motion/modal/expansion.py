@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from ...base.array import Index, Real
 from ...base.errors import SceneError, SolveError
 from ...chain import tip
 from ...chain.chain import Chain
-from ...chain.compiled import Compiled
+from ...chain.compiled import Compiled, once
 from ...chain.port import Point, is_force, moving
 from ...eigen.damped.proportional import Proportional, proportional
 from ...eigen.damped.rates import Rates
@@ -106,7 +107,9 @@ def expand(
         if d and r:
             pushed, watched = [drives[k] for k in d], [responses[k] for k in r]
             asked = _Asked(model, component, pushed, watched, modes, resolved, bound)
-            shares.append(Share(np.array(d), np.array(r), _expansion(asked)))
+            key = ("expansion", component, tuple(pushed), tuple(watched), modes, resolved, bound)
+            expansion = once(model, key, partial(_expansion, asked))
+            shares.append(Share(np.array(d), np.array(r), expansion))
     return tuple(shares)
 
 
