@@ -38,6 +38,10 @@ html_math_renderer = "mathml"
 nb_execution_mode = "off"  # gallery_notebooks.py has executed them
 nb_merge_streams = True
 
+linkcheck_timeout = 20  # s
+linkcheck_retries = 2
+suppress_warnings = ["mystnb.mime_priority"]  # of figures, which a check of links does not show
+
 html_theme = "pydata_sphinx_theme"
 html_title = "ropedyn"
 html_static_path = ["_static"]

@@ -16,22 +16,25 @@ GALLERY = ROOT / "docs" / "gallery"
 
 def setup(app):
     """Write the pages before Sphinx looks for them."""
-    app.connect("builder-inited", lambda app: _write_pages(app.verbosity))
+    app.connect("builder-inited", _write_pages)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
-def _write_pages(verbosity):
+def _write_pages(app):
+    shown = app.builder.name != "linkcheck"  # which asks for links alone, of notebooks as stored
     sources = sorted(NOTEBOOKS.glob("*.ipynb"))
     for stale in set(GALLERY.glob("*.ipynb")) - {GALLERY / path.name for path in sources}:
         stale.unlink()
     package = [*(ROOT / "ropedyn").rglob("*.py"), *(ROOT / "csrc").rglob("*.[ch]")]
     changed = max(path.stat().st_mtime for path in package)
-    stale = [path for path in sources if not _is_newer(EXECUTED / path.name, path, changed)]
-    how = ("executing notebooks... ", "brown", len(stale), verbosity)
+    stale = [
+        path for path in sources if shown and not _is_newer(EXECUTED / path.name, path, changed)
+    ]
+    how = ("executing notebooks... ", "brown", len(stale), app.verbosity)
     for path in status_iterator(stale, *how, stringify_func=lambda path: path.stem):
         _execute(path)
     for path in sources:
-        _copy(EXECUTED / path.name, GALLERY / path.name)
+        _copy(EXECUTED / path.name if shown else path, GALLERY / path.name)
     logging.getLogger(__name__).info("executed notebooks: %d of %d", len(stale), len(sources))
 
 
