@@ -9,7 +9,7 @@ import os
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import Field, dataclass, fields
+from dataclasses import Field, dataclass, fields, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -197,7 +197,8 @@ class Answer(Frozen):
 
     def __repr__(self) -> str:
         try:
-            return f"{type(self).__name__}: {self.table()!r}"
+            table = self.table()
+            return repr(replace(table, title=f"{type(self).__name__}: {table.title}"))
         except (SceneError, SolveError) as error:
             return f"{type(self).__name__}: {error}"
 

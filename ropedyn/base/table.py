@@ -8,6 +8,7 @@ import io
 import json
 import math
 import re
+import textwrap
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -130,7 +131,8 @@ class Table:
         return self.to_text(rows=PRINTED)
 
     def __repr__(self) -> str:
-        return self.to_text(rows=max(3, SHOWN - self.title.count("\n")), width=WIDTH)
+        beyond = _wrapped(self._heading(0, 0), WIDTH).count("\n")
+        return self.to_text(rows=max(3, SHOWN - beyond), width=WIDTH)
 
     def to_text(self, *, rows: int | None = None, width: int | None = None) -> str:
         """Return the table as text: whole, or its head and tail and the columns that fit.
@@ -173,7 +175,9 @@ class Table:
             for row in cells
         ]
         rule = "  ".join("-" * width for width in widths[:kept])
-        return "\n".join([self._heading(len(shown), kept), lines[0], rule, *lines[1:]])
+        return "\n".join(
+            [_wrapped(self._heading(len(shown), kept), width), lines[0], rule, *lines[1:]]
+        )
 
     def _shown(self, most: int | None) -> tuple[tuple[Any, ...], ...]:
         """Return the first and the last rows, one less than may be where some are left out."""
@@ -311,6 +315,13 @@ class Table:
 def numbers(values: np.ndarray[Any, Any]) -> tuple[float | None, ...]:
     """Return numbers for a column, None for NaN."""
     return tuple(None if np.isnan(value) else value for value in values.tolist())
+
+
+def _wrapped(text: str, width: int | None) -> str:
+    """Return a text in lines that fit, each of its own lines apart."""
+    if width is None:
+        return text
+    return "\n".join(textwrap.fill(line, width) for line in text.split("\n"))
 
 
 def _text(value: Any) -> str:

@@ -20,7 +20,18 @@ from ..parametric.stability import StabilityMap
 from ..parametric.tongues import Boundary
 from ..signal.ringdown import RingDown
 from ..signal.spectrum import Spectrum
-from .figure import BLUE, RED, amplitudes, below, colour, light_grid, plots, unbroken, with_unit
+from .figure import (
+    BLUE,
+    RED,
+    amplitudes,
+    below,
+    colour,
+    legend,
+    light_grid,
+    plots,
+    unbroken,
+    with_unit,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +90,7 @@ def plot_family_modes(found: FamilyModes, ax: Axes) -> None:
     ax.set(xlabel="row", ylabel="frequency [Hz]")
     ax.locator_params(axis="x", integer=True)
     if ax.lines:
-        ax.legend(title="mode", fontsize="small")
+        legend(ax, "mode")
     light_grid(ax)
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Plot = Callable[..., None]
+NAMED = 16  # Curves that a legend beside a figure has room for.
 BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK = PALETTE = (
     "#0072B2",
     "#E69F00",
@@ -119,7 +120,13 @@ def legend(ax: Axes, title: str | None = None) -> None:
     figure = ax.get_figure()
     if figure is not None and figure.get_layout_engine() is not None:
         place = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
-    ax.legend(title=title, fontsize="small", **place)
+    curves, names = ax.get_legend_handles_labels()
+    if len(names) > NAMED:
+        left = len(names) - NAMED + 1
+        curves, names = curves[: NAMED - 1], names[: NAMED - 1]
+        curves += ax.plot([], [], " ")
+        names.append(f"and {left} more")
+    ax.legend(curves, names, title=title, fontsize="small", **place)
 
 
 def light_grid(ax: Axes) -> None:

@@ -178,3 +178,12 @@ def test_edges_of_growth_stand_beside_their_orders():
     assert [text.get_text() for text in mapped.boundary(0.0).plot().texts] == [
         "nowhere between the frequencies of the map"
     ]
+
+
+def test_a_legend_beside_many_curves_leaves_them_room(model):
+    ax = rd.Scene(rd.Rope(1.0, 0.1), tension=100.0).compile().modes(40).plot()
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert len(names) == 16
+    assert names[-1] == "and 25 more"
+    ax.figure.draw_without_rendering()
+    assert ax.get_position().height > 0.6
