@@ -49,6 +49,13 @@ def refuse_axis(scene: Described, what: str) -> None:
         raise SceneError(f"torque, principal_angle and wound wires must be left out for {what}")
 
 
+def in_space(scene: Described) -> str:
+    """Say of what all six coordinates are solved at once."""
+    if scene.rope.axis is not None:
+        return "a rope on an axis"
+    return "a rope with torque, turned principal axes or a wound wire"
+
+
 def _check_on_axis(scene: Described) -> None:
     """Refuse what is not carried where six coordinates are solved at once."""
     if scene.rope.axis is None:
@@ -56,8 +63,7 @@ def _check_on_axis(scene: Described) -> None:
     if not scene.is_spatial:
         return
     axis, hangs = scene.rope.axis, hanging(scene.rope, scene.gravity)
-    what = "a rope with torque, turned principal axes or a wound wire"
-    what = "a rope on an axis" if axis else what
+    what = in_space(scene)
     if scene.planes != "both":
         raise SceneError(f'planes must be "both" for {what}, got "z"')
     heavy = scene.gravity is not None and hangs is None

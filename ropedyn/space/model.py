@@ -20,6 +20,7 @@ from ..eigen.animation import VIEWS
 from ..eigen.modes import Modes
 from ..response.deflection import Deflection
 from ..response.frf import FRF
+from ..scene.agree import in_space
 from ..scene.card import Card, card, card_html, card_text
 from ..scene.scene import Scene
 from .compile import rope_of_scene
@@ -125,13 +126,11 @@ class SpaceModel(Frozen):
     @property
     def _card(self) -> tuple[str, Card]:
         pieces = f"{len(self.rope.length)} pieces"
-        return "Model of a rope on an axis", card(self.scene) | {"model": pieces}
+        return f"Model of {in_space(self.scene)}", card(self.scene) | {"model": pieces}
 
     def __getattr__(self, name: str) -> NoReturn:
         if name in ELSEWHERE:
-            raise SceneError(
-                f"{name} is not carried for a rope on an axis: the rope must be straight"
-            )
+            raise SceneError(f"{name} is not carried for {in_space(self.scene)}")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def plot(
@@ -239,8 +238,8 @@ class SpaceModel(Frozen):
         [ 1.804 12.36 ] ['y' 'z'] True
         """
         if damped is not False:
-            raise SceneError(f"damped must be False for a rope on an axis, got {damped!r}")
-        _only_sweep(solver)
+            raise SceneError(f"damped must be False for {in_space(self.scene)}, got {damped!r}")
+        _only_sweep(self.scene, solver)
         return solve_modes(self.scene, self.rope, number, below=below, points=points)
 
     def count(self, *, below: float) -> int:
@@ -331,7 +330,7 @@ class SpaceModel(Frozen):
         >>> bool(math.isclose(frf.value[0, 0].real, math.pi / 4 / 50.0, rel_tol=1e-12))
         True
         """
-        _only_sweep(solver)
+        _only_sweep(self.scene, solver)
         if threads is not None:
             check.count(threads, "threads", most=1024)
         return solve_frf(
@@ -384,14 +383,14 @@ class SpaceModel(Frozen):
         >>> print(static.displacement[-1, 1].round(6), round(1 / 150 + 1 / 30 + 1 / 150, 6))
         0.046667 0.046667
         """
-        _only_sweep(solver)
+        _only_sweep(self.scene, solver)
         check.instance(unstable, "unstable", bool, "True or False")
         return solve_static(self.scene, self.rope, load, points=points, unstable=unstable)
 
 
-def _only_sweep(solver: Any) -> None:
+def _only_sweep(scene: Scene, solver: Any) -> None:
     if solver != "sweep":
-        raise SceneError(f'solver must be "sweep" for a rope on an axis, got {solver!r}')
+        raise SceneError(f'solver must be "sweep" for {in_space(scene)}, got {solver!r}')
 
 
 def compile_space(scene: Scene, **how: Any) -> SpaceModel:
@@ -399,7 +398,7 @@ def compile_space(scene: Scene, **how: Any) -> SpaceModel:
     for name, value in how.items():
         if value is not None and not (name == "element" and value == "continuous"):
             raise SceneError(
-                f"{name} must be left out for a rope on an axis, whose pieces are exact, "
+                f"{name} must be left out for {in_space(scene)}, whose pieces are exact, "
                 f"got {check.shown(value)}"
             )
     return SpaceModel(scene, rope_of_scene(scene))

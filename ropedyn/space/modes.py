@@ -14,7 +14,7 @@ from ..base import check
 from ..base.answer import Cost
 from ..base.array import Index, Real
 from ..base.computed import Late, computed
-from ..base.errors import SceneError
+from ..base.errors import SceneError, SolveError
 from ..base.unit import FAMILY
 from ..eigen.eigen import check_asked, no_mesh
 from ..eigen.modes import Modes, OnCatenary, UndampedMesh, UndampedVectors
@@ -25,8 +25,21 @@ from ..scene.scene import Scene
 from .assembly import MOST_PARTS, Assembly, assemble
 from .compile import axis_of, finer_rope
 from .rope import SIX, SpaceRope, unforced
-from .spectrum import AT_ONCE, BESIDE, MORE, STEP, TOGETHER, Lowest, lowest, ritz, start
+from .spectrum import (
+    AT_ONCE,
+    BESIDE,
+    MORE,
+    STEP,
+    TOGETHER,
+    Lowest,
+    counts_at,
+    lowest,
+    ritz,
+    start,
+)
 
+BESIDE_FEET = 1e-10  # From a mode, where feet of wires have poles as close to it as 1e-6.
+STILL = 1e-11  # So close to a mode of a wire that is held, relative, a mode is that.
 SEEN = 1e-9  # Shares of kinetic energy above it are motion.
 
 
@@ -120,12 +133,14 @@ class SpaceShapes:
         shape = np.zeros((len(self.eigenvalue), len(self.rope.length) * self.points + 1, 6))
         variants = self.variants
         energy = {name: np.zeros(len(self.eigenvalue)) for name in variants}
+        self._refuse_still()
         every = list(self.clusters())
         for first in range(0, len(every), AT_ONCE):
             clusters = every[first : first + AT_ONCE]
             means = np.array([self.eigenvalue[one].mean() for one in clusters])
             spread = np.array([np.ptp(self.eigenvalue[one]) for one in clusters])
-            beside = np.maximum(8 * spread, BESIDE * np.maximum(np.abs(means), self.rope.unit))
+            near = BESIDE_FEET if self.rope.carried else BESIDE
+            beside = np.maximum(8 * spread, near * np.maximum(np.abs(means), self.rope.unit))
             z = self.rope.scale(means)
             system = assemble(self.rope, unforced(means + beside, STEP), z, equal=self.points)
             sizes = [len(one) for one in clusters]
@@ -138,6 +153,18 @@ class SpaceShapes:
                 for name, form in forms.items():
                     energy[name][cluster] = form[k, : len(cluster)]
         return shape, energy
+
+    def _refuse_still(self) -> None:
+        """Refuse shapes of modes in which wires move and their feet do not."""
+        sides = self.eigenvalue[:, None] * (1 + STILL * np.array([-1.0, 1.0]))
+        for one in self.rope.carried:
+            held = counts_at(one.rope, sides.ravel()).reshape(-1, 2)
+            still = np.flatnonzero(held[:, 0] != held[:, 1])
+            if len(still):
+                raise SolveError(
+                    f"mode {still[0] + 1} is that of a broken wire whose root stands still: it "
+                    "has a frequency and no shape along the rope"
+                )
 
     def _found(self, system: Assembly, sizes: list[int]) -> Real:
         x = start(system, max(sizes) + MORE)

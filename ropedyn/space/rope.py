@@ -196,8 +196,9 @@ class SpaceRope:
 
     @computed
     def least(self) -> float:
-        """The square of what curvature and length tell of wavenumbers [rad^2/m^2]."""
-        return float(np.abs(self.bend[..., :3, :3]).max() ** 2 + 1 / self.length.sum() ** 2)
+        """The square of what mean curvature and length tell of wavenumbers [rad^2/m^2]."""
+        bent = np.abs(self.bend[..., :3, :3]).max(axis=(1, 2, 3))
+        return float(((bent @ self.length) ** 2 + 1) / self.length.sum() ** 2)
 
     def scale(self, eigenvalue: ArrayLike) -> Real:
         """Return z (n, 6), u = z u^ and f = f^/z, so that what a wave does is of size 1."""

@@ -130,16 +130,24 @@ def lowest(rope: SpaceRope, wanted: int | None, below: float) -> Lowest:
     _isolate(counter, range(wanted), unit)
     while len(left := np.flatnonzero(np.isnan(value))):
         groups = sorted({counter.bracket(int(i)) for i in left})
-        wide = []
+        wide: list[int] = []
         for group, found in zip(groups, refined(rope, groups, unit)):
             if found is None and not group.is_narrow(unit):
-                wide.append(group.first)
+                wide += range(group.first, min(group.last, wanted))
                 continue
             size = min(group.last, wanted) - group.first
             whole = found or (np.full(size, group.middle), np.full(size, group.high - group.low))
             value[group.first :][:size], error[group.first :][:size] = (one[:size] for one in whole)
         _divide(counter, wide, unit)
+        if rope.carried:
+            _narrow(counter, wide, unit)
     return Lowest(value, error, counter.asked)
+
+
+def _narrow(counter: Counter, modes: list[int], unit: float) -> None:
+    """Divide brackets until each is an answer: beside a pole of a foot no iteration is one."""
+    while wide := [i for i in modes if not counter.bracket(i).is_narrow(unit)]:
+        _divide(counter, wide, unit)
 
 
 def _surround(counter: Counter, unit: float, wanted: int | None, below: float) -> int:
@@ -199,10 +207,11 @@ def _middle(low: float, high: float, unit: float) -> float:
 class Pursuit:
     """Inverse iteration for the modes of a bracket, in the space of a few vectors."""
 
-    def __init__(self, bracket: Bracket) -> None:
+    def __init__(self, bracket: Bracket, bends: bool = False) -> None:
         self.bracket, self.at = bracket, bracket.middle
         self.value = np.full(bracket.size, math.inf)
         self.settled = False
+        self.bends = bends  # whether poles of feet bend what is linear about a shift elsewhere
         self.vectors: Any = None
         self.error: Any = None
 
@@ -217,6 +226,10 @@ class Pursuit:
         self.settled = bool(
             change <= self.error.min() / 4 or np.abs(nearby.shift).max() <= SETTLED * near
         )
+        if self.bends:
+            # the error of the second order is a third of what another shift changes
+            self.settled = change <= 2 * float(self.error.min())
+            near *= 2 if abs(self.at - mean) < 1.5 * near else 1
         self.at = mean + near
         return self.settled
 
@@ -230,7 +243,7 @@ class Pursuit:
 
 def refined(rope: SpaceRope, groups: list[Bracket], unit: float) -> list[tuple[Real, Real] | None]:
     """Return eigenvalues and rounding errors of each, or None where they leave the bracket."""
-    pursuits = [Pursuit(group) for group in groups]
+    pursuits = [Pursuit(group, bool(rope.carried)) for group in groups]
     for first in range(0, len(pursuits), AT_ONCE):
         left = pursuits[first : first + AT_ONCE]
         for _ in range(ITERATIONS):

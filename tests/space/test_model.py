@@ -201,6 +201,8 @@ def test_other_verbs_are_refused_by_name():
     for name in ("transient", "floquet", "stability_map", "stepped_sine"):
         with pytest.raises(rd.SceneError, match=f"{name} is not carried for a rope on an axis"):
             getattr(MODEL, name)
+        with pytest.raises(rd.SceneError, match=f"{name} is not carried for a rope with torque"):
+            getattr(rd.Scene(TWISTED, torque=1.0, planes="both").compile(), name)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = MODEL.nonsense
     with pytest.raises(rd.SceneError, match="derivatives and damage are not carried"):
@@ -211,6 +213,7 @@ def test_other_verbs_are_refused_by_name():
         SCENE.family(["tension"]).modes([[1.0]], 2)
 
 
+TWISTED = rd.Rope(1.0, 0.8, bending_stiffness=40.0, torsional_stiffness=25.0)
 CATENARY = rd.Axis.catenary(10.0, parameter=9.0)
 CORNER = rd.Axis.points([[0, 0, 0], [1, 0, 0], [1, 0, 1]])
 STIFF = {"bending_stiffness": 40.0, "torsional_stiffness": 25.0}

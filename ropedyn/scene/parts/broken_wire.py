@@ -94,6 +94,11 @@ class BrokenWire(Part):
             )
         if not -1 < self.poissons_ratio <= 0.5:
             raise SceneError(f"poissons_ratio must be from -1 to 1/2, got {self.poissons_ratio!r}")
+        if self.lay_length is not None and self.lay_length < self.diameter:
+            raise SceneError(
+                f"lay_length must be at least the diameter, {self.diameter!r} m, of a wire that "
+                f"has room in a turn, got {self.lay_length!r}"
+            )
         if self.is_wound and self.radius == 0:
             raise SceneError("radius must not be 0 [m] of a wire that is wound, got 0.0")
 
