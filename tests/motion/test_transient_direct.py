@@ -134,18 +134,34 @@ def test_true_error_is_within_the_tolerance(tolerance, count):
     exact = dense.motion(time, u=dense.rest(dense.load(("z", 0.5))))[0][:, dense.at("z", 0.25)]
     true = np.abs(history.value[0] - exact)
     assert true.max() <= tolerance * np.abs(exact).max()
-    # the estimate is that of the same run: of the order of the true error
     assert np.abs(history.error[0]).max() <= tolerance * np.abs(history.value).max()
-    assert true.max() <= 1.5 * history.error.max()
+    assert true.max() <= history.error.max()
 
 
-def test_step_error_of_given_steps_is_the_true_one():
+@pytest.mark.parametrize("law", [rd.Stop(0.375, 3e3, gap=2e-3), rd.Dashpot(0.375, 3.0, exponent=2)])
+def test_error_of_steps_covers_laws_that_bend(law):
+    """Where two runs cross they tell nothing, and errors fall by other powers than smooth ones."""
+    rope = rd.Rope(1.0, 0.4, bending_stiffness=0.5, rotary_inertia=1e-4)
+    scene = rd.Scene(rope, tension=100.0, damping=rd.StiffnessDamping(1e-3), parts=[law])
+    model, time = scene.compile(elements=8, element="rigid"), np.linspace(0.0, 0.5, 400)
+    asked = {"drive": ("z", 0.25), "force": rd.Sine(3.0, 7.0), "response": ("z", 0.5)}
+    history, finer = (
+        model.transient(time, **asked, method="direct", tolerance=t) for t in (1e-4, 1e-6)
+    )
+    true = np.abs(history.value - finer.value)
+    assert true.max() <= history.error.max()
+    assert (true <= history.error + finer.error).mean() >= 0.99  # measured: 0.99 and 1
+
+
+def test_step_error_of_given_steps_covers_the_true_one():
     model = STRING.compile(elements=8)
     dense = Dense(model)
     history = model.transient(TIME, start=PLUCK, response=("z", 0.25), method="direct", step=1e-4)
     exact = dense.motion(TIME, u=dense.rest(dense.load(("z", 0.5))))[0][:, dense.at("z", 0.25)]
     true = np.abs(history.value[0] - exact)
-    assert history.error[0] == pytest.approx(true, rel=0.1, abs=1e-3 * true.max())
+    assert (true <= history.error[0]).all()
+    # half as much again, and what two runs say of it is right to a tenth
+    assert history.error.max() <= 1.65 * true.max()
 
 
 @pytest.mark.claim(

@@ -19,7 +19,7 @@ from ..request import Run, why_direct
 from .lumped import Lumps, lumped_chains, refuse_model
 from .march import stage_of
 from .run import Passage
-from .steps import march_given, march_within
+from .steps import covering, march_given, march_within
 
 ENERGIES = (
     "kinetic",
@@ -110,4 +110,4 @@ def _error(run: Run, value: Real, step_error: Real) -> Real:
     if run.step is None or len(run.time) < 2:
         return step_error
     finer = march_given(run, lumped_chains(run), stage_of(run.spectral_radius), 2).value
-    return np.asarray(4 / 3 * np.abs(value - finer))
+    return covering(4 / 3 * np.abs(value - finer))

@@ -33,6 +33,8 @@ PER_PERIOD = 16  # a period of what pushes so many,
 PER_BREAK = 8  # and so many lie between two times where forces break.
 MOST_STEPS = 100_000_000  # A run within a tolerance takes so many steps at most.
 AGREE = 1 / 3  # The finer run has this part of the distance of two runs as its error at least.
+TIMES, AROUND = 1.5, 4
+"""What two runs tell is the error so many times over, within so many times that are asked for."""
 AIM = 2.5  # The next run is to have the tolerance over this as its error: twice its steps suffice.
 ORDERS = (0.5, 2.0)  # Errors fall with such powers of the step: friction and contact slower.
 FAR = 0.05  # Where the error is larger than this, it says little about how fine steps must be.
@@ -145,7 +147,15 @@ class Trend:
         moved = np.abs(passage.last - coarse.last).max(axis=0)
         largest = np.maximum(passage.largest, NOTHING * _others(run, passage))[0]
         resolved = bool((moved <= RESOLVED * largest).all())
-        return apart * share, max(distance * share, 0.0 if resolved else FAR)
+        worst = TIMES * distance * share
+        return covering(apart * share), max(worst, 0.0 if resolved else FAR)
+
+
+def covering(told: Real) -> Real:
+    """Return what covers errors that two runs tell, also where runs cross, shape (responses, t)."""
+    from scipy.ndimage import maximum_filter1d
+
+    return np.asarray(TIMES * maximum_filter1d(told, 2 * AROUND + 1, axis=-1))
 
 
 def _order(ratio: float, distance: float, next_ratio: float, next_distance: float) -> float:
